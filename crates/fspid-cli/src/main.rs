@@ -1,0 +1,2 @@
+//! fspid
+fn main() {}
