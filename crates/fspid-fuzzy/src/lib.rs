@@ -1,1 +1,48 @@
-//! fspid-fuzzy
+//! Fuzzy inference for controllers that fly: no heap, no panic, the same bits everywhere.
+//!
+//! The crate answers one question: given an error and its change, by how much should the three
+//! gains of a PID controller move? [`Supervisor`] holds the rule base (seven Gaussian sets on each
+//! input, seven triangular sets on each output, 49 rules) and answers with the **exact** centroid;
+//! the sampled centroids of other tools are there by name ([`Defuzzifier`]) for comparison.
+//!
+//! It knows nothing of time, plants or files: the self-tuning law is in `fspid-core`, the reading
+//! of rule tables from files in `fspid-study`.
+//!
+//! ```
+//! use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+//!
+//! let raise_with_error = "
+//!     NB NB NB NB NB NB NB
+//!     NM NM NM NM NM NM NM
+//!     NS NS NS NS NS NS NS
+//!     ZO ZO ZO ZO ZO ZO ZO
+//!     PS PS PS PS PS PS PS
+//!     PM PM PM PM PM PM PM
+//!     PB PB PB PB PB PB PB";
+//! let table = RuleTable::parse([raise_with_error; 3])?;
+//! let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp)?;
+//! let answer = supervisor.infer(0.0, 1.0)?;
+//! assert!(answer.delta.kp.abs() < 1e-15);
+//! # Ok::<(), fspid_fuzzy::FuzzyError>(())
+//! ```
+#![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+mod centroid;
+mod defuzzifier;
+mod error;
+mod exp;
+mod label;
+pub mod membership;
+mod real;
+mod rule_table;
+mod supervisor;
+
+pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
+pub use error::FuzzyError;
+pub use label::{LABEL_COUNT, Label};
+pub use real::Real;
+pub use rule_table::{Grid, GridError, Output, RuleTable};
+pub use supervisor::{Increments, Inference, InferenceError, OutOfRange, Supervisor};

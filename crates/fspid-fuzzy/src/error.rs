@@ -1,0 +1,76 @@
+//! What can be wrong with a fuzzy system before it is built.
+
+use core::fmt;
+
+use crate::defuzzifier::Defuzzifier;
+use crate::rule_table::{GridError, Output};
+
+/// Why a supervisor could not be built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FuzzyError {
+    /// The half range of the variables is not a finite positive number.
+    Range {
+        /// What was given.
+        found: f64,
+    },
+    /// A parameter of a membership function is not allowed.
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// What was given.
+        found: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A sampled centroid with too few or too many samples.
+    SampleCount {
+        /// What was given.
+        found: u32,
+        /// Fewest allowed.
+        least: u32,
+        /// Most allowed.
+        most: u32,
+    },
+    /// A word that names no defuzzifier.
+    UnknownDefuzzifier,
+    /// A rule grid that cannot be read.
+    Grid {
+        /// Which of the three grids.
+        output: Output,
+        /// What is wrong in it.
+        error: GridError,
+    },
+    /// A supervisor's input that cannot be answered.
+    Inference(crate::supervisor::InferenceError),
+}
+
+impl fmt::Display for FuzzyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Range { found } => write!(
+                f,
+                "range is {found:?}; allowed is a finite number above 0, at least 1e-100 and at most 1e100"
+            ),
+            Self::Parameter { name, found, allowed } => {
+                write!(f, "{name} is {found:?}; allowed is {allowed}")
+            }
+            Self::SampleCount { found, least, most } => {
+                write!(f, "{found} samples for a centroid; allowed are {least} to {most}")
+            }
+            Self::UnknownDefuzzifier => {
+                write!(f, "unknown defuzzifier; known are {}", Defuzzifier::NAMES)
+            }
+            Self::Grid { output, error } => write!(f, "{}: {error}", output.name()),
+            Self::Inference(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for FuzzyError {}
+
+impl From<crate::supervisor::InferenceError> for FuzzyError {
+    fn from(error: crate::supervisor::InferenceError) -> Self {
+        Self::Inference(error)
+    }
+}

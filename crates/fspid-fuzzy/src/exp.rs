@@ -1,0 +1,104 @@
+//! The exponential function, once, for scalar code, vector lanes and generated C.
+//!
+//! A platform's `exp` differs in its last bits from system to system, and with it every trace. This
+//! one uses only additions, multiplications and integer operations on the bits, without branches
+//! that depend on the argument's size, so that each lane of a vector and each C compiler (with
+//! contraction off) gives the same answer.
+//!
+//! $$ x = k \ln 2 + r, \quad |r| \le \tfrac12 \ln 2, \quad e^x = 2^k e^r $$
+//!
+//! $e^r$ is its Taylor series: at $r = \ln 2 / 2$ the first term left out is $4 \cdot 10^{-18}$
+//! (`f64`) and $5 \cdot 10^{-9}$ (`f32`), both well under a tenth of a unit in the last place. The
+//! reduction keeps the rounding error of $r$ apart and adds it last (Cody and Waite, *Software
+//! Manual for the Elementary Functions*, 1980). $2^k$ is applied in two factors, so that results
+//! near overflow and below the normal range come out rounded once.
+//!
+//! Measured against 3000 high-precision values: at most 0.78 units in the last place (`f64`); the
+//! test `exp_is_within_one_unit_in_the_last_place` prints the figure.
+
+/// Adding and subtracting this rounds a small `f64` to the nearest integer, which then stands in
+/// the low bits: 1.5 · 2^52.
+const ROUND_F64: f64 = 6_755_399_441_055_744.0;
+/// ln 2 cut to 32 bits, so that `k · LN2_HIGH` is exact for every possible `k`.
+const LN2_HIGH_F64: f64 = f64::from_bits(0x3FE6_2E42_FEE0_0000);
+/// The rest of ln 2.
+const LN2_LOW_F64: f64 = f64::from_bits(0x3DEA_39EF_3579_3C76);
+/// 1/n! for n = 2 to 13.
+const TAYLOR_F64: [f64; 12] = [
+    1.0 / 2.0,
+    1.0 / 6.0,
+    1.0 / 24.0,
+    1.0 / 120.0,
+    1.0 / 720.0,
+    1.0 / 5_040.0,
+    1.0 / 40_320.0,
+    1.0 / 362_880.0,
+    1.0 / 3_628_800.0,
+    1.0 / 39_916_800.0,
+    1.0 / 479_001_600.0,
+    1.0 / 6_227_020_800.0,
+];
+
+/// $e^x$; infinity above 709.78, zero below -745.13, NaN for NaN.
+pub(crate) fn exp_f64(x: f64) -> f64 {
+    // One step beyond the limits still over- or underflows correctly; NaN passes both tests.
+    let x = if x > 710.0 { 710.0 } else { x };
+    let x = if x < -746.0 { -746.0 } else { x };
+    let k = (x * core::f64::consts::LOG2_E + ROUND_F64) - ROUND_F64;
+    let high = x - k * LN2_HIGH_F64;
+    let low = k * LN2_LOW_F64;
+    let r = high - low;
+
+    let [c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12, c13] = TAYLOR_F64;
+    // Pairs of terms first: shorter chains of dependent operations than Horner's rule.
+    let (r2, r4) = (r * r, (r * r) * (r * r));
+    let t23 = c2 + c3 * r;
+    let t45 = c4 + c5 * r;
+    let t67 = c6 + c7 * r;
+    let t89 = c8 + c9 * r;
+    let t1011 = c10 + c11 * r;
+    let t1213 = c12 + c13 * r;
+    let tail = (t23 + t45 * r2) + r4 * ((t67 + t89 * r2) + r4 * (t1011 + t1213 * r2));
+    let e_r = 1.0 + (high + (r2 * tail - low));
+
+    let k1 = (0.5 * k + ROUND_F64) - ROUND_F64;
+    e_r * power_of_two_f64(k1) * power_of_two_f64(k - k1)
+}
+
+/// 2^k for an integer k in [-1022, 1023] held as a float.
+fn power_of_two_f64(k: f64) -> f64 {
+    // The integer stands in the low bits; the shift moves it into the exponent field.
+    f64::from_bits(((k + ROUND_F64).to_bits() << 52).wrapping_add(1023 << 52))
+}
+
+/// As [`ROUND_F64`]: 1.5 · 2^23.
+const ROUND_F32: f32 = 12_582_912.0;
+/// ln 2 cut to 15 bits.
+const LN2_HIGH_F32: f32 = f32::from_bits(0x3F31_7200);
+/// The rest of ln 2.
+const LN2_LOW_F32: f32 = f32::from_bits(0x35BF_BE8E);
+
+/// $e^x$; infinity above 88.72, zero below -103.97, NaN for NaN.
+pub(crate) fn exp_f32(x: f32) -> f32 {
+    let x = if x > 89.0 { 89.0 } else { x };
+    let x = if x < -105.0 { -105.0 } else { x };
+    let k = (x * core::f32::consts::LOG2_E + ROUND_F32) - ROUND_F32;
+    let high = x - k * LN2_HIGH_F32;
+    let low = k * LN2_LOW_F32;
+    let r = high - low;
+
+    let r2 = r * r;
+    let t23 = 0.5 + (1.0 / 6.0) * r;
+    let t45 = 1.0 / 24.0 + (1.0 / 120.0) * r;
+    let t67 = 1.0 / 720.0 + (1.0 / 5040.0) * r;
+    let tail = t23 + r2 * (t45 + r2 * t67);
+    let e_r = 1.0 + (high + (r2 * tail - low));
+
+    let k1 = (0.5 * k + ROUND_F32) - ROUND_F32;
+    e_r * power_of_two_f32(k1) * power_of_two_f32(k - k1)
+}
+
+/// 2^k for an integer k in [-126, 127] held as a float.
+fn power_of_two_f32(k: f32) -> f32 {
+    f32::from_bits(((k + ROUND_F32).to_bits() << 23).wrapping_add(127 << 23))
+}
