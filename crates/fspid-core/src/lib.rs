@@ -1,1 +1,55 @@
-//! fspid-core
+//! Controllers that can fly: fixed-gain and fuzzy self-tuning PID without heap and without panic.
+//!
+//! A controller is configuration; its memory is passed in, and everything observable is returned:
+//!
+//! ```
+//! use fspid_core::{Gains, Pid, Sample, Shell, State};
+//!
+//! let pid = Pid::new(Gains { kp: 2.0, ki: 0.5, kd: 1.0 }, Shell::sampled_every(0.01))?;
+//! let mut state = State::new();
+//! let step = pid.step(&mut state, Sample { setpoint_rad: 0.1, measurement_rad: 0.0, rate_rad_s: 0.0 });
+//! assert_eq!(step.command_rad, 2.0 * 0.1 + 0.5 * 0.1 * 0.01);
+//! # Ok::<(), fspid_core::ConfigError>(())
+//! ```
+//!
+//! Building a controller may fail; a step may not. A sample that is not finite or absurdly large
+//! leaves the output and the memory as they were and latches a [fault](Faults).
+//!
+//! # Control narrative
+//!
+//! At sample $k$ the measurement $y_k$ is taken. The error is $e_k = r_k - y_k$, its change
+//! $\Delta e_k = e_k - e_{k-1}$ (zero at the first sample). A self-tuning controller asks the
+//! supervisor for the gains first ([`SelfTuner`]); then, with $T$ the sample period,
+//!
+//! $$ I_k = I_{k-1} + k_i e_k T, \qquad D_k = \frac{e_k - e_{k-1}}{T}, \qquad
+//!    u_k = k_p e_k + I_k + k_d D_k - k_r q_k $$
+//!
+//! where $q_k$ is the pitch rate and $k_r$ the gain of the rate-gyro loop. The command is limited
+//! and, if asked for, the integral follows the limit (anti-windup). A positive command means nose
+//! up; the sign of the elevator belongs to the plant.
+//!
+//! Not here: time (the period is fixed at construction), plants, files, units other than SI.
+#![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+mod error;
+mod gains;
+mod guard;
+mod limits;
+mod pid;
+mod shell;
+mod tuner;
+
+pub use error::ConfigError;
+pub use gains::{GainLimits, Gains};
+pub use guard::{Faults, Guard};
+pub use limits::Limits;
+pub use pid::{Fspid, Pid};
+pub use shell::{
+    AntiWindup, Derivative, IntegralForm, Sample, SetpointWeights, Shell, State, Step,
+};
+pub use tuner::{Change, DeadZone, ErrorSign, InputScale, Law, SelfTuner, TunerSettings};
+
+pub use fspid_fuzzy as fuzzy;

@@ -17,7 +17,9 @@ const HALF_SPAN: usize = (LABEL_COUNT - 1) / 2;
 pub(crate) fn centroid<R: Real>(rule: Defuzzifier, strengths: &[R; LABEL_COUNT]) -> R {
     match rule {
         Defuzzifier::Exact => exact(strengths),
-        Defuzzifier::Endpoints(samples) => sampled(strengths, samples, samples - 1, R::ZERO, R::ONE),
+        Defuzzifier::Endpoints(samples) => {
+            sampled(strengths, samples, samples - 1, R::ZERO, R::ONE)
+        }
         Defuzzifier::Midpoint(cells) => sampled(strengths, cells, cells, R::HALF, R::ONE),
         Defuzzifier::Trapezoid(samples) => {
             sampled(strengths, samples, samples - 1, R::ZERO, R::HALF)

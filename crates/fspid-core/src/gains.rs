@@ -1,0 +1,125 @@
+//! Gains of a PID controller in parallel form, and the bounds they may be kept in.
+
+use fspid_fuzzy::{Increments, Real};
+
+use crate::error::{ConfigError, finite};
+use crate::limits::Limits;
+
+/// Gains in parallel form: $u = k_p e + k_i \int e \, dt + k_d \dot e$.
+///
+/// `kp` in command per error, `ki` per second, `kd` in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains<R> {
+    /// Proportional gain, rad/rad.
+    pub kp: R,
+    /// Integral gain, rad/(rad s).
+    pub ki: R,
+    /// Derivative gain, rad/(rad/s).
+    pub kd: R,
+}
+
+impl<R: Real> Gains<R> {
+    /// No gains.
+    pub const ZERO: Self = Self {
+        kp: R::ZERO,
+        ki: R::ZERO,
+        kd: R::ZERO,
+    };
+
+    /// From the ISA form $u = K (e + \frac{1}{T_i} \int e \, dt + T_d \dot e)$; an infinite `ti_s`
+    /// means no integral action.
+    ///
+    /// # Errors
+    /// [`ConfigError::Number`] for a gain or time that is not finite, or a `ti_s` that is not
+    /// positive.
+    pub fn from_isa(gain: R, ti_s: R, td_s: R) -> Result<Self, ConfigError> {
+        let gain = finite("gain K", gain)?;
+        let td_s = crate::error::not_negative("Td, s", td_s)?;
+        // Written so that NaN fails.
+        if !(ti_s > R::ZERO) {
+            let found = ti_s.to_f64();
+            return Err(ConfigError::Number {
+                what: "Ti, s",
+                found,
+                allowed: "a number above 0",
+            });
+        }
+        Ok(Self {
+            kp: gain,
+            ki: gain / ti_s,
+            kd: gain * td_s,
+        })
+    }
+
+    /// The gains if each is finite.
+    ///
+    /// # Errors
+    /// [`ConfigError::Number`] naming the first gain that is not.
+    pub fn checked(self) -> Result<Self, ConfigError> {
+        Ok(Self {
+            kp: finite("kp", self.kp)?,
+            ki: finite("ki", self.ki)?,
+            kd: finite("kd", self.kd)?,
+        })
+    }
+
+    pub(crate) fn are_finite(self) -> bool {
+        self.kp.is_finite() && self.ki.is_finite() && self.kd.is_finite()
+    }
+
+    /// Gain by gain, `f(self, other)`.
+    pub(crate) fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        Self {
+            kp: f(self.kp, other.kp),
+            ki: f(self.ki, other.ki),
+            kd: f(self.kd, other.kd),
+        }
+    }
+}
+
+impl<R: Real> From<Increments<R>> for Gains<R> {
+    fn from(Increments { kp, ki, kd }: Increments<R>) -> Self {
+        Self { kp, ki, kd }
+    }
+}
+
+/// Bounds of the total gains (nominal plus increment).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainLimits<R> {
+    /// Of the proportional gain.
+    pub kp: Limits<R>,
+    /// Of the integral gain.
+    pub ki: Limits<R>,
+    /// Of the derivative gain.
+    pub kd: Limits<R>,
+}
+
+impl<R: Real> GainLimits<R> {
+    /// The gains moved into the limits.
+    pub(crate) fn apply(&self, gains: Gains<R>) -> Gains<R> {
+        Gains {
+            kp: self.kp.clamp(gains.kp),
+            ki: self.ki.clamp(gains.ki),
+            kd: self.kd.clamp(gains.kd),
+        }
+    }
+
+    /// Refuses nominal gains that would be cut at once.
+    pub(crate) fn check(&self, nominal: Gains<R>) -> Result<(), ConfigError> {
+        for (what, found, limits) in [
+            ("nominal kp", nominal.kp, self.kp),
+            ("nominal ki", nominal.ki, self.ki),
+            ("nominal kd", nominal.kd, self.kd),
+        ] {
+            if limits.clamp(found) != found {
+                return Err(ConfigError::OutsideLimits {
+                    what,
+                    found: found.to_f64(),
+                    lower: limits.lower().to_f64(),
+                    upper: limits.upper().to_f64(),
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! Keeping one bad sample from doing harm.
+
+use core::fmt;
+
+use fspid_fuzzy::Real;
+
+use crate::error::{ConfigError, positive};
+use crate::shell::Sample;
+
+/// Faults that a controller has met, latched until they are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults(u8);
+
+impl Faults {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// A sample was NaN or infinite; the output was held.
+    pub const NOT_FINITE: Self = Self(1);
+    /// A sample was beyond the guard's limit; the output was held.
+    pub const ABSURD: Self = Self(1 << 1);
+    /// The calculation overflowed from finite samples; the output was held.
+    pub const OVERFLOW: Self = Self(1 << 2);
+    /// A supervisor that refuses inputs out of range met one; the gains were held.
+    pub const OUT_OF_RANGE: Self = Self(1 << 3);
+    /// Every rule of the supervisor underflowed; it answered as for the clamped inputs.
+    pub const UNDERFLOW: Self = Self(1 << 4);
+
+    const NAMES: [(Self, &'static str); 5] = [
+        (Self::NOT_FINITE, "sample not finite"),
+        (Self::ABSURD, "sample beyond the guard"),
+        (Self::OVERFLOW, "overflow"),
+        (Self::OUT_OF_RANGE, "supervisor input out of range"),
+        (Self::UNDERFLOW, "supervisor underflow"),
+    ];
+
+    /// The bits as a number.
+    #[must_use]
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// True if every fault of `other` is among these.
+    #[must_use]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// True if there is none.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    pub(crate) fn latch(&mut self, fault: Self) {
+        self.0 |= fault.0;
+    }
+
+    /// Returns the faults and clears them.
+    pub fn take(&mut self) -> Self {
+        core::mem::take(self)
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut names = Self::NAMES
+            .iter()
+            .filter(|(fault, _)| self.contains(*fault));
+        f.write_str(names.next().map_or("none", |(_, name)| name))?;
+        names.try_for_each(|(_, name)| write!(f, ", {name}"))
+    }
+}
+
+/// The largest sample that is believed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guard<R> {
+    limit: R,
+}
+
+impl<R: Real> Guard<R> {
+    /// Believes samples up to `limit_rad` (and rates up to the same number of rad/s).
+    ///
+    /// # Errors
+    /// [`ConfigError::Number`] unless the limit is finite and positive.
+    pub fn new(limit_rad: R) -> Result<Self, ConfigError> {
+        Ok(Self {
+            limit: positive("sample guard, rad", limit_rad)?,
+        })
+    }
+
+    /// The fault of a sample, if it has one. A rate that is not used cannot be at fault.
+    pub(crate) fn fault(&self, sample: Sample<R>, uses_rate: bool) -> Option<Faults> {
+        let rate = if uses_rate {
+            sample.rate_rad_s
+        } else {
+            R::ZERO
+        };
+        let values = [sample.setpoint_rad, sample.measurement_rad, rate];
+        if values.iter().any(|value| !value.is_finite()) {
+            return Some(Faults::NOT_FINITE);
+        }
+        values
+            .iter()
+            .any(|value| value.abs() > self.limit)
+            .then_some(Faults::ABSURD)
+    }
+}
+
+impl<R: Real> Default for Guard<R> {
+    /// 10⁹ degrees: no aircraft, but far from overflow.
+    fn default() -> Self {
+        Self {
+            limit: R::from_f64(1e9 * core::f64::consts::PI / 180.0),
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The self-tuning law: from the loop's error to the gains of the moment.
+
+use fspid_fuzzy::{Real, Supervisor};
+
+use crate::error::{ConfigError, finite, not_negative};
+use crate::gains::{GainLimits, Gains};
+use crate::guard::Faults;
+
+/// Which difference the supervisor sees as its error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ErrorSign {
+    /// $e = r - y$, as the PID itself.
+    #[default]
+    SetpointMinusMeasurement,
+    /// $e = y - r$: a large error on a positive step then raises `kp` in the paper's Table 3.
+    MeasurementMinusSetpoint,
+}
+
+/// What the supervisor sees as change of error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Change {
+    /// Rate: $(e_k - e_{k-1}) / T$.
+    #[default]
+    Rate,
+    /// Difference per sample, $e_k - e_{k-1}$, as the paper's $EC(k)$.
+    Delta,
+}
+
+/// How the supervisor's increments become gains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law<R> {
+    /// $k = k' + s \Delta k$: equation (1) of the paper with its misprint mended.
+    Memoryless,
+    /// $k_j = k_{j-1} + s \Delta k T - \lambda (k_{j-1} - k') T$ from $k'$: common in the literature
+    /// that the paper cites. The leakage $\lambda$ [1/s] pulls the gains back; 0 for none.
+    Accumulating {
+        /// Leakage, 1/s.
+        leakage_per_s: R,
+    },
+}
+
+/// Factors before the supervisor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputScale<R> {
+    /// Supervisor units per radian of error.
+    pub error_per_rad: R,
+    /// Supervisor units per rad/s (or per rad and sample) of change.
+    pub change_per_rad: R,
+}
+
+/// Errors so small that the supervisor stays silent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeadZone<R> {
+    /// Error, rad.
+    pub error_rad: R,
+    /// Change of error, rad/s (or rad per sample).
+    pub change_rad: R,
+}
+
+/// Everything about a self-tuner but its rules and its nominal gains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TunerSettings<R> {
+    /// Sign of the supervisor's error and its change.
+    pub error_sign: ErrorSign,
+    /// Rate or difference.
+    pub change: Change,
+    /// Factors before the supervisor.
+    pub input_scale: InputScale<R>,
+    /// Factors behind the supervisor, gain by gain.
+    pub output_scale: Gains<R>,
+    /// Memoryless or accumulating.
+    pub law: Law<R>,
+    /// Bounds of the total gains.
+    pub gain_limits: Option<GainLimits<R>>,
+    /// Where the increments are taken as zero: both error and change must be inside.
+    pub dead_zone: Option<DeadZone<R>>,
+}
+
+impl<R: Real> TunerSettings<R> {
+    /// No factors but 1, no limits, equation (1).
+    pub fn literal() -> Self {
+        Self {
+            error_sign: ErrorSign::default(),
+            change: Change::default(),
+            input_scale: InputScale {
+                error_per_rad: R::ONE,
+                change_per_rad: R::ONE,
+            },
+            output_scale: Gains {
+                kp: R::ONE,
+                ki: R::ONE,
+                kd: R::ONE,
+            },
+            law: Law::Memoryless,
+            gain_limits: None,
+            dead_zone: None,
+        }
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        finite("error_scale", self.input_scale.error_per_rad)?;
+        finite("change_scale", self.input_scale.change_per_rad)?;
+        finite("output_scale kp", self.output_scale.kp)?;
+        finite("output_scale ki", self.output_scale.ki)?;
+        finite("output_scale kd", self.output_scale.kd)?;
+        if let Law::Accumulating { leakage_per_s } = self.law {
+            not_negative("leakage, 1/s", leakage_per_s)?;
+        }
+        if let Some(zone) = self.dead_zone {
+            not_negative("dead zone of the error", zone.error_rad)?;
+            not_negative("dead zone of the change", zone.change_rad)?;
+        }
+        Ok(())
+    }
+}
+
+/// The gains of the moment from error and change of error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfTuner<R> {
+    nominal: Gains<R>,
+    supervisor: Supervisor<R>,
+    settings: TunerSettings<R>,
+}
+
+impl<R: Real> SelfTuner<R> {
+    /// A tuner around `nominal` gains.
+    ///
+    /// # Errors
+    /// [`ConfigError`] for a gain or factor that is not finite, a negative dead zone or leakage,
+    /// and nominal gains outside the gain limits.
+    pub fn new(
+        nominal: Gains<R>,
+        supervisor: Supervisor<R>,
+        settings: TunerSettings<R>,
+    ) -> Result<Self, ConfigError> {
+        settings.check()?;
+        let nominal = nominal.checked()?;
+        if let Some(limits) = settings.gain_limits {
+            limits.check(nominal)?;
+        }
+        Ok(Self {
+            nominal,
+            supervisor,
+            settings,
+        })
+    }
+
+    /// The nominal gains $k'$.
+    pub fn nominal(&self) -> Gains<R> {
+        self.nominal
+    }
+
+    /// The rules.
+    pub fn supervisor(&self) -> &Supervisor<R> {
+        &self.supervisor
+    }
+
+    /// Scaled increments $s \Delta k$ for an error and its change as the loop has them; a fault if
+    /// the supervisor could not answer as asked.
+    fn increments(&self, error_rad: R, change_rad: R) -> Result<(Gains<R>, Faults), Faults> {
+        let settings = &self.settings;
+        if let Some(zone) = settings.dead_zone
+            && error_rad.abs() <= zone.error_rad
+            && change_rad.abs() <= zone.change_rad
+        {
+            return Ok((Gains::ZERO, Faults::NONE));
+        }
+        let sign = match settings.error_sign {
+            ErrorSign::SetpointMinusMeasurement => R::ONE,
+            ErrorSign::MeasurementMinusSetpoint => -R::ONE,
+        };
+        let error = sign * (settings.input_scale.error_per_rad * error_rad);
+        let change = sign * (settings.input_scale.change_per_rad * change_rad);
+        let Ok(inference) = self.supervisor.infer(error, change) else {
+            return Err(Faults::OUT_OF_RANGE);
+        };
+        let fault = if inference.underflowed {
+            Faults::UNDERFLOW
+        } else {
+            Faults::NONE
+        };
+        Ok((
+            settings
+                .output_scale
+                .zip(inference.delta.into(), |s, d| s * d),
+            fault,
+        ))
+    }
+
+    /// The gains of this sample; `previous` are those of the last one, `None` at the first.
+    ///
+    /// A supervisor that refuses the input leaves the gains as they were.
+    pub(crate) fn gains(
+        &self,
+        previous: Option<Gains<R>>,
+        error_rad: R,
+        error_delta_rad: R,
+        dt_s: R,
+    ) -> (Gains<R>, Faults) {
+        let previous = previous.unwrap_or(self.nominal);
+        let change_rad = match self.settings.change {
+            Change::Rate => error_delta_rad / dt_s,
+            Change::Delta => error_delta_rad,
+        };
+        let (scaled, fault) = match self.increments(error_rad, change_rad) {
+            Ok(answer) => answer,
+            Err(fault) => return (previous, fault),
+        };
+        let free = match self.settings.law {
+            Law::Memoryless => self.nominal.zip(scaled, |nominal, delta| nominal + delta),
+            Law::Accumulating { leakage_per_s } => {
+                let pull = previous.zip(self.nominal, |g, nominal| leakage_per_s * (g - nominal));
+                let slope = scaled.zip(pull, |delta, pull| delta - pull);
+                previous.zip(slope, |gain, slope| gain + slope * dt_s)
+            }
+        };
+        (
+            self.settings
+                .gain_limits
+                .map_or(free, |limits| limits.apply(free)),
+            fault,
+        )
+    }
+
+    /// The gains at rest, e = 0 and no change: nominal plus what the rules add at the origin.
+    ///
+    /// Under the accumulating law this is where one second at rest would take the gains.
+    pub fn gains_at_rest(&self) -> Gains<R> {
+        let (added, _) = self
+            .increments(R::ZERO, R::ZERO)
+            .unwrap_or((Gains::ZERO, Faults::OUT_OF_RANGE));
+        let free = self.nominal.zip(added, |nominal, delta| nominal + delta);
+        self.settings
+            .gain_limits
+            .map_or(free, |limits| limits.apply(free))
+    }
+}
