@@ -1,1 +1,33 @@
-//! fspid-sim
+//! The sampled closed loop: scenario in, trace out.
+//!
+//! A [`Scenario`] says what flies (a [`LinearPlant`] behind a [`Servo`]), what is commanded and what
+//! disturbs, and which [`Controller`]s answer; [`simulate`] returns what happened. It is a pure
+//! function: the same scenario gives the same bits on each machine, at each number of threads.
+//! Units are SI and radians; degrees exist in files and reports only.
+//!
+//! Nothing here measures or judges: metrics and verdicts are in `fspid-study`. [`stability`] is the
+//! exception that the loop itself must answer: whether fixed gains hold the plant at all.
+
+mod closed_loop;
+mod controller;
+mod error;
+mod plant;
+mod propagator;
+mod scenario;
+mod servo;
+pub mod signal;
+pub mod stability;
+mod timing;
+mod trace;
+
+pub use closed_loop::{Flight, Instant, fly, simulate};
+pub use controller::Controller;
+pub use error::SimError;
+pub use plant::{ElevatorSign, LinearPlant, PlantChange};
+pub use scenario::{NamedController, Prepared, Scenario};
+pub use servo::Servo;
+pub use timing::{MAX_ROWS, Timing};
+pub use trace::{Outcome, Trace};
+
+pub use fspid_core as core;
+pub use fspid_lti as lti;

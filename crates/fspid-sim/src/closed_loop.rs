@@ -1,0 +1,144 @@
+//! The loop itself: measure, decide, move.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+use fspid_core::{Sample, State, Step};
+
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::propagator::PlantState;
+use crate::scenario::{Prepared, Scenario};
+use crate::trace::{Outcome, Trace};
+
+/// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
+const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
+
+/// Everything observable at one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// Index of the sample.
+    pub k: usize,
+    /// Commanded pitch, rad.
+    pub setpoint_rad: f64,
+    /// Pitch angle, rad.
+    pub theta_rad: f64,
+    /// Pitch rate, rad/s.
+    pub q_rad_s: f64,
+    /// Elevator in the plant's own sign, rad.
+    pub elevator_rad: f64,
+    /// What the controller answered.
+    pub step: Step<f64>,
+}
+
+/// A scenario's flights: the trace of each controller, in the scenario's order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flight {
+    /// The steps in the command.
+    pub edges: Vec<crate::signal::Edge>,
+    /// One trace a controller.
+    pub traces: Vec<Trace>,
+}
+
+/// Flies every controller of the scenario.
+///
+/// # Errors
+/// [`SimError`] where the scenario's plants cannot be discretised; an unstable loop is no error but
+/// a trace that ends with [`Outcome::Diverged`].
+pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
+    let prepared = scenario.prepare()?;
+    let traces = scenario
+        .controllers
+        .iter()
+        .map(|named| record(&prepared, &named.controller));
+    Ok(Flight {
+        traces: traces.collect::<Result<_, _>>()?,
+        edges: prepared.edges,
+    })
+}
+
+fn record(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
+    let mut trace = Trace::with_capacity(prepared.timing.rows());
+    let outcome = fly(prepared, controller, |instant| {
+        trace.time_s.push(prepared.timing.time_s(instant.k));
+        trace.setpoint_rad.push(instant.setpoint_rad);
+        trace.theta_rad.push(instant.theta_rad);
+        trace.q_rad_s.push(instant.q_rad_s);
+        trace.command_rad.push(instant.step.command_rad);
+        trace.elevator_rad.push(instant.elevator_rad);
+        trace.gains.push(instant.step.gains);
+        trace.saturated_samples += usize::from(instant.step.saturated);
+        trace.faults = instant.step.faults;
+        ControlFlow::Continue(())
+    })?;
+    trace.outcome = outcome;
+    Ok(trace)
+}
+
+/// Flies one controller and shows every sample to `observer`, which may end the flight early.
+/// Nothing is recorded and, after the start, nothing is allocated.
+///
+/// # Errors
+/// [`SimError`] where a rate-limited sample cannot be computed (coefficients near overflow).
+pub fn fly(
+    prepared: &Prepared,
+    controller: &Controller,
+    mut observer: impl FnMut(Instant) -> ControlFlow<()>,
+) -> Result<Outcome, SimError> {
+    let mut memory = State::new();
+    let mut delayed: VecDeque<f64> = VecDeque::from(vec![0.0; prepared.servo.delay_samples()]);
+    let mut stages = prepared.stages.iter().peekable();
+    let Some(mut stage) = stages.next() else {
+        return Ok(Outcome::Completed);
+    };
+    let mut plant = PlantState::at_rest(stage.propagator.order());
+
+    for (k, &setpoint_rad) in prepared.setpoint_rad.iter().enumerate() {
+        while let Some(next) = stages.next_if(|next| next.from <= k) {
+            stage = next;
+        }
+        let at = |column: &Option<Vec<f64>>| {
+            column
+                .as_ref()
+                .and_then(|values| values.get(k))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        let disturbance_rad = at(&prepared.at_elevator);
+        let theta_rad = plant.theta_rad();
+        // Written so that NaN fails.
+        if !(theta_rad.abs() <= DIVERGED_RAD) {
+            return Ok(Outcome::Diverged {
+                at_s: prepared.timing.time_s(k),
+            });
+        }
+        let q_rad_s = stage.propagator.rate_rad_s(&plant, disturbance_rad);
+        let step = controller.step(
+            &mut memory,
+            Sample {
+                setpoint_rad,
+                measurement_rad: theta_rad + at(&prepared.at_measurement),
+                rate_rad_s: q_rad_s,
+            },
+        );
+        delayed.push_back(step.command_rad);
+        let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
+        stage.propagator.settle_ideal_servo(&mut plant, command_rad);
+        let elevator_rad = stage.propagator.elevator_rad(&plant, disturbance_rad);
+        let instant = Instant {
+            k,
+            setpoint_rad,
+            theta_rad,
+            q_rad_s,
+            elevator_rad,
+            step,
+        };
+        if observer(instant).is_break() {
+            return Ok(Outcome::Completed);
+        }
+        stage
+            .propagator
+            .advance(&mut plant, command_rad, disturbance_rad)?;
+    }
+    Ok(Outcome::Completed)
+}

@@ -1,0 +1,122 @@
+//! What can be wrong with a scenario before it flies.
+
+use std::fmt;
+
+use fspid_core::ConfigError;
+use fspid_lti::LtiError;
+
+/// Why a part of a scenario could not be built.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SimError {
+    /// A number that is not allowed.
+    Number {
+        /// Name of the setting, with its unit.
+        what: &'static str,
+        /// What was given.
+        found: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// More samples than fit into memory.
+    TooManySamples {
+        /// Samples asked for.
+        found: f64,
+        /// Most allowed.
+        most: usize,
+    },
+    /// A pitch angle that would jump with the elevator.
+    NotStrictlyProper,
+    /// A changed plant of another order.
+    OrderChanges {
+        /// Order before.
+        before: usize,
+        /// Order after.
+        after: usize,
+    },
+    /// A table of set-points that is empty, ragged or not in order of time.
+    Table {
+        /// What is wrong.
+        problem: &'static str,
+        /// Row in question, from 1.
+        row: usize,
+    },
+    /// The linear model is refused.
+    Linear(LtiError),
+    /// The controller is refused.
+    Controller(ConfigError),
+}
+
+impl fmt::Display for SimError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number { what, found, allowed } => {
+                write!(f, "{what} is {found:?}; allowed is {allowed}")
+            }
+            Self::TooManySamples { found, most } => write!(
+                f,
+                "the flight would take {found:e} samples; allowed are at most {most}: shorten the duration or lengthen the sample period"
+            ),
+            Self::NotStrictlyProper => f.write_str(
+                "the transfer function has a numerator as long as its denominator, so the pitch angle would jump with the elevator; allowed is a numerator of lower degree",
+            ),
+            Self::OrderChanges { before, after } => write!(
+                f,
+                "the plant changes from order {before} to order {after}; allowed is a denominator of the same length"
+            ),
+            Self::Table { problem, row } => write!(f, "set-point table, row {row}: {problem}"),
+            Self::Linear(error) => error.fmt(f),
+            Self::Controller(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for SimError {}
+
+impl From<LtiError> for SimError {
+    fn from(error: LtiError) -> Self {
+        Self::Linear(error)
+    }
+}
+
+impl From<ConfigError> for SimError {
+    fn from(error: ConfigError) -> Self {
+        Self::Controller(error)
+    }
+}
+
+/// `value` if it is finite and above zero.
+pub(crate) fn positive(what: &'static str, value: f64) -> Result<f64, SimError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(value);
+    }
+    Err(SimError::Number {
+        what,
+        found: value,
+        allowed: "a finite number above 0",
+    })
+}
+
+/// `value` if it is finite and not below zero.
+pub(crate) fn not_negative(what: &'static str, value: f64) -> Result<f64, SimError> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(value);
+    }
+    Err(SimError::Number {
+        what,
+        found: value,
+        allowed: "a finite number, 0 or above",
+    })
+}
+
+/// `value` if it is finite.
+pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, SimError> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(SimError::Number {
+        what,
+        found: value,
+        allowed: "a finite number",
+    })
+}

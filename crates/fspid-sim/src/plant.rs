@@ -1,0 +1,168 @@
+//! The aircraft as a linear model from elevator to pitch angle.
+
+use fspid_lti::{StateSpace, TransferFunction};
+
+use crate::error::{SimError, not_negative};
+
+/// Which way the elevator of a plant's file is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElevatorSign {
+    /// Positive is trailing edge down, which turns the nose down (the usual convention).
+    NoseDownPositive,
+    /// Positive turns the nose up.
+    NoseUpPositive,
+}
+
+impl ElevatorSign {
+    /// Elevator deflection per unit of a nose-up command: -1 or 1.
+    #[must_use]
+    pub fn per_nose_up(self) -> f64 {
+        match self {
+            Self::NoseDownPositive => -1.0,
+            Self::NoseUpPositive => 1.0,
+        }
+    }
+}
+
+/// Transfer function from elevator [rad] to pitch angle [rad], with the sign of its elevator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearPlant {
+    transfer_function: TransferFunction,
+    elevator_sign: ElevatorSign,
+}
+
+impl LinearPlant {
+    /// A plant from numerator and denominator, highest power of s first.
+    ///
+    /// # Errors
+    /// [`SimError::Linear`] for coefficients that make no proper transfer function,
+    /// [`SimError::NotStrictlyProper`] for one that would let the pitch angle jump.
+    pub fn new(
+        numerator: &[f64],
+        denominator: &[f64],
+        elevator_sign: ElevatorSign,
+    ) -> Result<Self, SimError> {
+        let transfer_function = TransferFunction::new(numerator, denominator)?;
+        if transfer_function.relative_degree() == 0 {
+            return Err(SimError::NotStrictlyProper);
+        }
+        Ok(Self {
+            transfer_function,
+            elevator_sign,
+        })
+    }
+
+    /// From elevator to pitch angle, in the plant's own elevator sign.
+    #[must_use]
+    pub fn transfer_function(&self) -> &TransferFunction {
+        &self.transfer_function
+    }
+
+    /// Which way the elevator is counted.
+    #[must_use]
+    pub fn elevator_sign(&self) -> ElevatorSign {
+        self.elevator_sign
+    }
+
+    /// Order of the model.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.transfer_function.denominator().degree()
+    }
+
+    /// States whose first is the pitch angle and, for a plant whose elevator does not move the
+    /// pitch rate at once, whose second is the pitch rate.
+    pub(crate) fn state_space(&self) -> StateSpace {
+        self.transfer_function.to_state_space()
+    }
+
+    /// Coefficients with a leading denominator coefficient of 1, the numerator filled up to the
+    /// denominator's length.
+    fn normalised(&self) -> (Vec<f64>, Vec<f64>) {
+        let denominator = self.transfer_function.denominator().coefficients();
+        let numerator = self.transfer_function.numerator().coefficients();
+        let lead = denominator.first().copied().unwrap_or(1.0);
+        let mut padded = vec![0.0; denominator.len() - numerator.len()];
+        padded.extend(numerator.iter().map(|c| c / lead));
+        (padded, denominator.iter().map(|c| c / lead).collect())
+    }
+}
+
+/// A change of the plant's coefficients in flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantChange {
+    at_s: f64,
+    ramp_s: f64,
+    target: LinearPlant,
+}
+
+impl PlantChange {
+    /// From `at_s` on the coefficients move in a straight line to those of `target`, which they
+    /// reach `ramp_s` later (at once for 0).
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a time that is negative or not finite.
+    pub fn new(at_s: f64, ramp_s: f64, target: LinearPlant) -> Result<Self, SimError> {
+        let at_s = not_negative("at_s", at_s)?;
+        let ramp_s = not_negative("ramp_s", ramp_s)?;
+        Ok(Self {
+            at_s,
+            ramp_s,
+            target,
+        })
+    }
+
+    /// Start of the change, s.
+    #[must_use]
+    pub fn at_s(&self) -> f64 {
+        self.at_s
+    }
+
+    /// Length of the change, s.
+    #[must_use]
+    pub fn ramp_s(&self) -> f64 {
+        self.ramp_s
+    }
+
+    /// The plant afterwards.
+    #[must_use]
+    pub fn target(&self) -> &LinearPlant {
+        &self.target
+    }
+
+    /// The plant a `fraction` of the way from `before`, in the sign of the target's elevator.
+    ///
+    /// # Errors
+    /// [`SimError::OrderChanges`] where the orders differ.
+    pub(crate) fn between(
+        &self,
+        before: &LinearPlant,
+        fraction: f64,
+    ) -> Result<LinearPlant, SimError> {
+        let (before_order, after_order) = (before.order(), self.target.order());
+        if before_order != after_order {
+            return Err(SimError::OrderChanges {
+                before: before_order,
+                after: after_order,
+            });
+        }
+        if fraction >= 1.0 {
+            return Ok(self.target.clone());
+        }
+        let sign = before.elevator_sign.per_nose_up() * self.target.elevator_sign.per_nose_up();
+        let (from_numerator, from_denominator) = before.normalised();
+        let (to_numerator, to_denominator) = self.target.normalised();
+        let blend = |from: &[f64], to: &[f64], sign: f64| -> Vec<f64> {
+            from.iter()
+                .zip(to)
+                .map(|(a, b)| sign * a + fraction * (b - sign * a))
+                .collect()
+        };
+        let numerator: Vec<f64> = blend(&from_numerator, &to_numerator, sign)
+            .into_iter()
+            .skip_while(|&coefficient| coefficient == 0.0)
+            .collect();
+        let denominator = blend(&from_denominator, &to_denominator, 1.0);
+        LinearPlant::new(&numerator, &denominator, self.target.elevator_sign)
+    }
+}

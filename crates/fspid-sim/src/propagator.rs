@@ -1,0 +1,250 @@
+//! The plant and its servo from one sample to the next, by the exact matrix exponential.
+//!
+//! Between samples everything that enters is held, so the solution of
+//!
+//! $$ \dot x = A x + s B (\delta + d), \qquad \tau \dot \delta = v - \delta $$
+//!
+//! is one matrix product. Where the rate limit holds the servo, $\dot \delta = \rho$ is constant,
+//! and the sample is cut at the instant the limit lets go; no step size and no error is involved.
+
+use fspid_lti::{Matrix, StateSpace, exponential};
+
+use crate::error::SimError;
+use crate::plant::LinearPlant;
+use crate::servo::Servo;
+
+/// Inputs of the propagated system beside its state: servo command (or rate), elevator disturbance.
+const INPUTS: usize = 2;
+
+/// The continuous system of plant, servo and held inputs, discretised for one sample period.
+#[derive(Clone, Debug)]
+pub(crate) struct Propagator {
+    servo: Servo,
+    dt_s: f64,
+    order: usize,
+    /// Free servo: input 0 is the command.
+    free: Matrix,
+    free_step: Vec<f64>,
+    /// Rate-limited servo: input 0 is the rate.
+    ramp: Matrix,
+    ramp_step: Vec<f64>,
+    /// Row vector from state and elevator to pitch rate.
+    rate_output: Vec<f64>,
+    rate_feedthrough: f64,
+    elevator_per_command: f64,
+}
+
+/// Plant state and servo deflection (nose up positive), rad.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlantState {
+    values: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl PlantState {
+    pub(crate) fn at_rest(order: usize) -> Self {
+        Self {
+            values: vec![0.0; order + 1],
+            scratch: vec![0.0; order + 1],
+        }
+    }
+
+    /// State of the plant followed by the servo's deflection.
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    pub(crate) fn theta_rad(&self) -> f64 {
+        self.values.first().copied().unwrap_or(0.0)
+    }
+
+    /// Servo deflection, nose up positive, rad.
+    pub(crate) fn deflection_rad(&self) -> f64 {
+        self.values.last().copied().unwrap_or(0.0)
+    }
+
+    fn set_deflection(&mut self, deflection_rad: f64) {
+        if let Some(last) = self.values.last_mut() {
+            *last = deflection_rad;
+        }
+    }
+
+    /// x ← M [x; input; disturbance]
+    fn advance(&mut self, rows: &[f64], input: f64, disturbance_rad: f64) {
+        let width = self.values.len();
+        for (next, row) in self
+            .scratch
+            .iter_mut()
+            .zip(rows.chunks_exact(width + INPUTS))
+        {
+            let (state_part, input_part) = row.split_at(width);
+            let free: f64 = state_part
+                .iter()
+                .zip(&self.values)
+                .map(|(a, x)| a * x)
+                .sum();
+            let &[by_input, by_disturbance] = input_part else {
+                continue;
+            };
+            *next = free + by_input * input + by_disturbance * disturbance_rad;
+        }
+        std::mem::swap(&mut self.values, &mut self.scratch);
+    }
+}
+
+impl Propagator {
+    pub(crate) fn new(plant: &LinearPlant, servo: Servo, dt_s: f64) -> Result<Self, SimError> {
+        let model = plant.state_space();
+        let elevator_per_command = plant.elevator_sign().per_nose_up();
+        let free = generator(&model, elevator_per_command, &ServoMotion::Free(servo));
+        let ramp = generator(&model, elevator_per_command, &ServoMotion::Ramp);
+        let order = plant.order();
+        let markov = plant.transfer_function().markov_parameters(2);
+        let rate_output = (0..order)
+            .map(|column| if column == 1 { 1.0 } else { 0.0 })
+            .collect();
+        let mut propagator = Self {
+            servo,
+            dt_s,
+            order,
+            free_step: step_rows(&free, dt_s, order)?,
+            free,
+            ramp_step: step_rows(&ramp, dt_s, order)?,
+            ramp,
+            rate_output,
+            rate_feedthrough: markov.get(1).copied().unwrap_or(0.0),
+            elevator_per_command,
+        };
+        if order == 1 {
+            // θ' = -a0 θ + h1 δ: no second state holds the rate.
+            propagator.rate_output = vec![model.a.get(0, 0)];
+        }
+        Ok(propagator)
+    }
+
+    pub(crate) fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Pitch rate $q = \dot \theta$ just before a sample, rad/s.
+    pub(crate) fn rate_rad_s(&self, state: &PlantState, disturbance_rad: f64) -> f64 {
+        let by_state: f64 = self
+            .rate_output
+            .iter()
+            .zip(state.values())
+            .map(|(c, x)| c * x)
+            .sum();
+        by_state + self.rate_feedthrough * self.elevator_rad(state, disturbance_rad)
+    }
+
+    /// Elevator in the plant's own sign, disturbance included, rad.
+    pub(crate) fn elevator_rad(&self, state: &PlantState, disturbance_rad: f64) -> f64 {
+        self.elevator_per_command * (state.deflection_rad() + disturbance_rad)
+    }
+
+    /// Moves an ideal servo to its command at once; a real one stays where it is.
+    pub(crate) fn settle_ideal_servo(&self, state: &mut PlantState, command_rad: f64) {
+        if self.servo.time_constant_s() == 0.0 && self.servo.rate_limited_phase(1.0, 1.0).is_none()
+        {
+            state.set_deflection(self.servo.limited(command_rad));
+        }
+    }
+
+    /// One sample period with everything held.
+    pub(crate) fn advance(
+        &self,
+        state: &mut PlantState,
+        command_rad: f64,
+        disturbance_rad: f64,
+    ) -> Result<(), SimError> {
+        let command_rad = self.servo.limited(command_rad);
+        let gap_rad = command_rad - state.deflection_rad();
+        let Some((rate_rad_s, duration_s)) = self.servo.rate_limited_phase(gap_rad, self.dt_s)
+        else {
+            state.advance(&self.free_step, command_rad, disturbance_rad);
+            return Ok(());
+        };
+        if duration_s >= self.dt_s {
+            state.advance(&self.ramp_step, rate_rad_s, disturbance_rad);
+            return Ok(());
+        }
+        let ramp = step_rows(&self.ramp, duration_s, self.order)?;
+        state.advance(&ramp, rate_rad_s, disturbance_rad);
+        let free = step_rows(&self.free, self.dt_s - duration_s, self.order)?;
+        state.advance(&free, command_rad, disturbance_rad);
+        Ok(())
+    }
+
+    /// The matrix of one sample with a free servo, row by row: state, command, disturbance.
+    pub(crate) fn linear_step(&self) -> &[f64] {
+        &self.free_step
+    }
+
+    /// Row from state (with servo) to pitch rate.
+    pub(crate) fn rate_row(&self) -> Vec<f64> {
+        let mut row = self.rate_output.clone();
+        row.push(self.rate_feedthrough * self.elevator_per_command);
+        row
+    }
+
+    pub(crate) fn servo(&self) -> Servo {
+        self.servo
+    }
+}
+
+enum ServoMotion {
+    /// Follows its command by its own lag (or at once).
+    Free(Servo),
+    /// Moves at a constant rate.
+    Ramp,
+}
+
+/// Generator of plant state, servo and the two held inputs.
+fn generator(model: &StateSpace, sign: f64, motion: &ServoMotion) -> Matrix {
+    let order = model.a.rows();
+    let (servo, input, disturbance) = (order, order + 1, order + 2);
+    let mut g = Matrix::zeros(order + 1 + INPUTS, order + 1 + INPUTS);
+    let elevator = match motion {
+        // An ideal servo is its input; its own state only remembers where it is.
+        ServoMotion::Free(s) if s.time_constant_s() == 0.0 => input,
+        _ => servo,
+    };
+    for row in 0..order {
+        for column in 0..order {
+            g.set(row, column, model.a.get(row, column));
+        }
+        g.set(row, elevator, sign * model.b.get(row, 0));
+        g.set(row, disturbance, sign * model.b.get(row, 0));
+    }
+    match motion {
+        ServoMotion::Free(s) if s.time_constant_s() > 0.0 => {
+            g.set(servo, servo, -1.0 / s.time_constant_s());
+            g.set(servo, input, 1.0 / s.time_constant_s());
+        }
+        ServoMotion::Free(_) => {}
+        ServoMotion::Ramp => g.set(servo, input, 1.0),
+    }
+    g
+}
+
+/// The rows of e^(G t) that belong to plant and servo, flat.
+fn step_rows(generator: &Matrix, duration_s: f64, order: usize) -> Result<Vec<f64>, SimError> {
+    let step = exponential(&generator.scaled(duration_s))?;
+    let width = order + 1 + INPUTS;
+    let mut rows: Vec<f64> = (0..=order)
+        .flat_map(|row| (0..width).map(move |column| (row, column)))
+        .map(|(row, column)| step.get(row, column))
+        .collect();
+    let ideal_servo = generator.get(order, order) == 0.0 && generator.get(order, order + 1) == 0.0;
+    if ideal_servo {
+        // The remembered deflection of an ideal servo is its last command.
+        let start = order * width;
+        rows[start..].fill(0.0);
+        rows[start + order + 1] = 1.0;
+    }
+    Ok(rows)
+}

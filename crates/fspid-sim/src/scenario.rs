@@ -1,0 +1,162 @@
+//! What flies: a scenario without options and without invalid state.
+
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::plant::{LinearPlant, PlantChange};
+use crate::propagator::Propagator;
+use crate::servo::Servo;
+use crate::signal::{Disturbance, Edge, Entry, Profile};
+use crate::timing::Timing;
+
+/// A controller and what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedController {
+    /// Name in traces and reports; unique in its scenario.
+    pub name: String,
+    /// The controller.
+    pub controller: Controller,
+}
+
+/// A flight to be simulated, once for each controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Name in reports.
+    pub name: String,
+    /// The aircraft.
+    pub plant: LinearPlant,
+    /// Changes of the aircraft in flight, in order of time.
+    pub plant_changes: Vec<PlantChange>,
+    /// The elevator servo.
+    pub servo: Servo,
+    /// Samples.
+    pub timing: Timing,
+    /// Commanded pitch.
+    pub setpoint: Profile,
+    /// What disturbs.
+    pub disturbances: Vec<Disturbance>,
+    /// Who answers.
+    pub controllers: Vec<NamedController>,
+}
+
+impl Scenario {
+    /// Everything that does not depend on the controller, computed once.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant change alters the order or makes a model that cannot be sampled.
+    pub fn prepare(&self) -> Result<Prepared, SimError> {
+        let (setpoint_rad, edges) = self.setpoint.sampled(self.timing);
+        let column = |entry: Entry| {
+            let mut sum: Option<Vec<f64>> = None;
+            for (stream, disturbance) in (0_u64..).zip(&self.disturbances) {
+                if disturbance.entry() == entry {
+                    let values = sum.get_or_insert_with(|| vec![0.0; self.timing.rows()]);
+                    disturbance.add_to(values, self.timing, stream);
+                }
+            }
+            sum
+        };
+        Ok(Prepared {
+            timing: self.timing,
+            servo: self.servo,
+            setpoint_rad,
+            edges,
+            at_servo: column(Entry::Servo),
+            at_elevator: column(Entry::Elevator),
+            at_measurement: column(Entry::Measurement),
+            stages: self.stages()?,
+        })
+    }
+
+    /// The plant's discretisations, each with the sample from which it holds.
+    fn stages(&self) -> Result<Vec<Stage>, SimError> {
+        let dt_s = self.timing.dt_s();
+        let new_stage = |from, plant: &LinearPlant| {
+            Ok::<_, SimError>(Stage {
+                from,
+                propagator: Propagator::new(plant, self.servo, dt_s)?,
+            })
+        };
+        let mut stages = vec![new_stage(0, &self.plant)?];
+        let mut before = self.plant.clone();
+        let mut changes = self.plant_changes.iter().peekable();
+        while let Some(change) = changes.next() {
+            let begin = self.timing.first_sample_at(change.at_s());
+            let end = self.timing.first_sample_at(change.at_s() + change.ramp_s());
+            let next_begin = changes.peek().map_or(self.timing.rows(), |next| {
+                self.timing.first_sample_at(next.at_s())
+            });
+            // Within a ramp the coefficients are those of each sample's own time, held through it.
+            for k in begin..=end.min(next_begin.saturating_sub(1)) {
+                let plant = change.between(&before, fraction(change, self.timing.time_s(k)))?;
+                stages.push(new_stage(k, &plant)?);
+            }
+            let reached_s = self.timing.time_s(next_begin);
+            before = change.between(&before, fraction(change, reached_s))?;
+        }
+        Ok(stages)
+    }
+
+    /// Every plant that lasts: the first, and the one after each change.
+    pub(crate) fn lasting_plants(&self) -> Vec<(f64, &LinearPlant)> {
+        let first = std::iter::once((0.0, &self.plant));
+        let later = self
+            .plant_changes
+            .iter()
+            .map(|change| (change.at_s(), change.target()));
+        first.chain(later).collect()
+    }
+}
+
+fn fraction(change: &PlantChange, time_s: f64) -> f64 {
+    if change.ramp_s() > 0.0 {
+        // The same allowance for rounding as everywhere: a millionth of the ramp.
+        let fraction = (time_s - change.at_s()) / change.ramp_s();
+        if fraction > 1.0 - 1e-6 {
+            1.0
+        } else {
+            fraction.max(0.0)
+        }
+    } else {
+        1.0
+    }
+}
+
+/// A discretised plant and the sample from which it holds.
+#[derive(Clone, Debug)]
+pub(crate) struct Stage {
+    pub(crate) from: usize,
+    pub(crate) propagator: Propagator,
+}
+
+/// What all controllers of a scenario share: sampled signals and discretised plants.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    pub(crate) timing: Timing,
+    pub(crate) servo: Servo,
+    pub(crate) setpoint_rad: Vec<f64>,
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) at_servo: Option<Vec<f64>>,
+    pub(crate) at_elevator: Option<Vec<f64>>,
+    pub(crate) at_measurement: Option<Vec<f64>>,
+    pub(crate) stages: Vec<Stage>,
+}
+
+impl Prepared {
+    /// Samples.
+    #[must_use]
+    pub fn timing(&self) -> Timing {
+        self.timing
+    }
+
+    /// Commanded pitch at each sample, rad.
+    #[must_use]
+    pub fn setpoint_rad(&self) -> &[f64] {
+        &self.setpoint_rad
+    }
+
+    /// The steps in the command.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+}

@@ -1,0 +1,10 @@
+//! What is commanded and what disturbs, as functions of time.
+
+mod disturbance;
+mod noise;
+mod profile;
+mod shape;
+
+pub use disturbance::{Disturbance, Entry};
+pub use profile::{Edge, Interpolation, Profile};
+pub use shape::Shape;

@@ -1,0 +1,175 @@
+//! All measures of one controller's flight, and its verdict.
+
+use std::fmt;
+
+use fspid_sim::signal::Edge;
+use fspid_sim::stability::Unstable;
+use fspid_sim::{Outcome, Timing, Trace};
+
+use super::{Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, short};
+
+/// What a flight comes to, in one word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// Every step of the command was settled.
+    Settled,
+    /// Some step was not settled in its window.
+    NotSettled {
+        /// Length of that window, s.
+        window_s: f64,
+    },
+    /// There was no step to settle.
+    Flown,
+    /// The flight diverged.
+    Diverged {
+        /// When, s.
+        at_s: f64,
+    },
+    /// The loop is unstable although the flight did not diverge in its window.
+    Unstable {
+        /// Spectral radius of the sampled closed loop.
+        spectral_radius: f64,
+    },
+}
+
+impl Verdict {
+    /// True for a loop that can be called good as far as the flight tells.
+    #[must_use]
+    pub fn is_good(self) -> bool {
+        matches!(self, Self::Settled | Self::Flown)
+    }
+
+    /// Why nothing can be measured, where that is so.
+    fn absence(self) -> Option<Absent> {
+        match self {
+            Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
+            Self::Unstable { spectral_radius } => Some(Absent::Unstable { spectral_radius }),
+            Self::Settled | Self::NotSettled { .. } | Self::Flown => None,
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Settled => f.write_str("settled"),
+            Self::NotSettled { window_s } => write!(f, "not settled within {} s", short(*window_s)),
+            Self::Flown => f.write_str("flown"),
+            Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
+            Self::Unstable { spectral_radius } => {
+                write!(f, "unstable: spectral radius {spectral_radius:.6}")
+            }
+        }
+    }
+}
+
+/// The measures of one step of the command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeMetrics {
+    /// Time of the step, s.
+    pub at_s: f64,
+    /// Set-point before, rad.
+    pub from_rad: f64,
+    /// Set-point after, rad.
+    pub to_rad: f64,
+    /// Measures up to the next step.
+    pub step: StepMetrics,
+}
+
+/// The measures of one controller's flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightMetrics {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Each step of the command, downward ones too.
+    pub edges: Vec<EdgeMetrics>,
+    /// Integrals of the error over the whole flight.
+    pub integrals: Result<ErrorIntegrals, Absent>,
+    /// Effort of the command over the whole flight.
+    pub effort: Result<CommandEffort, Absent>,
+}
+
+impl FlightMetrics {
+    /// Measures a trace; `unstable` is what the linear loop says of itself.
+    #[must_use]
+    pub fn of(trace: &Trace, edges: &[Edge], timing: Timing, unstable: Option<Unstable>) -> Self {
+        let failed = match (trace.outcome, unstable) {
+            (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
+            (Outcome::Completed, Some(Unstable { spectral_radius, .. })) => {
+                Some(Verdict::Unstable { spectral_radius })
+            }
+            (Outcome::Completed, None) => None,
+        };
+        let absence = failed.and_then(Verdict::absence);
+        let edges = edge_metrics(trace, edges, timing, absence);
+        let restarts: Vec<usize> =
+            edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
+        let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
+        Self {
+            verdict: failed.unwrap_or_else(|| verdict(&edges)),
+            integrals: match absence {
+                Some(reason) => Err(reason),
+                None => Ok(ErrorIntegrals::of(errors, timing.dt_s(), &restarts)),
+            },
+            effort: match absence {
+                Some(reason) => Err(reason),
+                None => Ok(CommandEffort::of(&trace.command_rad, timing.dt_s())),
+            },
+            edges,
+        }
+    }
+
+    /// The measures of the first step of the command.
+    #[must_use]
+    pub fn first_step(&self) -> StepMetrics {
+        match (self.edges.first(), self.verdict.absence()) {
+            (Some(edge), _) => edge.step,
+            (None, Some(reason)) => StepMetrics::absent(reason),
+            (None, None) => StepMetrics::absent(Absent::NoStep),
+        }
+    }
+
+    /// A measure of the step number `index` from 0; absent where there is no such step.
+    pub fn of_step(&self, index: usize, measure: impl Fn(&StepMetrics) -> Measured) -> Measured {
+        self.edges.get(index).map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
+    }
+}
+
+fn edge_metrics(
+    trace: &Trace,
+    edges: &[Edge],
+    timing: Timing,
+    absence: Option<Absent>,
+) -> Vec<EdgeMetrics> {
+    let ends = edges.iter().skip(1).map(|edge| edge.sample).chain([timing.rows()]);
+    edges
+        .iter()
+        .zip(ends)
+        .map(|(edge, end)| {
+            let window = edge.sample..end.min(trace.rows());
+            let step = match (absence, trace.time_s.get(window.clone()), trace.theta_rad.get(window)) {
+                (None, Some(time_s), Some(response)) => {
+                    let (from, to) = (edge.from_rad, edge.to_rad);
+                    StepMetrics::of(StepWindow { time_s, response, from, to })
+                }
+                (Some(reason), ..) => StepMetrics::absent(reason),
+                _ => StepMetrics::absent(Absent::NoStep),
+            };
+            let at_s = timing.time_s(edge.sample);
+            EdgeMetrics { at_s, from_rad: edge.from_rad, to_rad: edge.to_rad, step }
+        })
+        .collect()
+}
+
+fn verdict(edges: &[EdgeMetrics]) -> Verdict {
+    if edges.is_empty() {
+        return Verdict::Flown;
+    }
+    edges
+        .iter()
+        .find_map(|edge| match edge.step.settling_time_s {
+            Err(Absent::NotSettled { window_s }) => Some(Verdict::NotSettled { window_s }),
+            _ => None,
+        })
+        .unwrap_or(Verdict::Settled)
+}

@@ -1,0 +1,71 @@
+//! What a flight amounts to: measures of a response, each a value or the reason there is none.
+
+mod effort;
+mod flight;
+mod step;
+
+pub use effort::{CommandEffort, ErrorIntegrals};
+pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
+pub use step::{StepMetrics, StepWindow};
+
+use std::fmt;
+
+/// Why a measure has no value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Absent {
+    /// The flight left every reasonable range.
+    Diverged {
+        /// When, s.
+        at_s: f64,
+    },
+    /// The loop is unstable, whatever the window shows.
+    Unstable {
+        /// Spectral radius of the sampled closed loop.
+        spectral_radius: f64,
+    },
+    /// A sample of the response is NaN or infinite.
+    NotFinite,
+    /// The response never came within a tenth of the new set-point.
+    NotRisen {
+        /// Length of the window, s.
+        window_s: f64,
+    },
+    /// The response was outside the band at the end of the window.
+    NotSettled {
+        /// Length of the window, s.
+        window_s: f64,
+    },
+    /// There is no step in the command to measure against.
+    NoStep,
+}
+
+impl fmt::Display for Absent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
+            Self::Unstable { spectral_radius } => {
+                write!(f, "unstable: spectral radius {spectral_radius:.6} of the sampled loop")
+            }
+            Self::NotFinite => f.write_str("the response is not finite"),
+            Self::NotRisen { window_s } => {
+                write!(f, "did not rise to 90 % within {} s", short(*window_s))
+            }
+            Self::NotSettled { window_s } => {
+                write!(f, "not settled within {} s", short(*window_s))
+            }
+            Self::NoStep => f.write_str("the command has no step"),
+        }
+    }
+}
+
+impl std::error::Error for Absent {}
+
+/// A measure, or why there is none.
+pub type Measured = Result<f64, Absent>;
+
+/// A time for people: at most six decimals, none that say nothing.
+pub(crate) fn short(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
