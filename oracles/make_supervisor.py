@@ -4,7 +4,7 @@ import random
 import sys
 
 from fixture import write
-from supervisor import GAINS, RULES, infer
+from supervisor import GAINS, RULES, infer, strengths
 
 COLUMNS = [f"d{gain}_{rule}" for rule in RULES for gain in GAINS]
 
@@ -52,8 +52,31 @@ def compare(path):
     print("  largest difference from the reference file:", {rule: f"{d:.1e}" for rule, d in worst.items()})
 
 
+def closed_form(clip):
+    """The handbook's closed form (control 3.4) in double precision, in spacings from the left peak."""
+    area = moment = 0.0
+    for i, (a, b) in enumerate(zip(clip, clip[1:])):
+        h = min(a, b, 0.5)
+        piece = (a - a * a / 2) + (b - b * b / 2) - (h - h * h)
+        area += piece
+        moment += i * piece + (a / 2 - a * a / 2 + a**3 / 6) + (b / 2 - b**3 / 6) - (h - h * h) / 2
+    return moment / area
+
+
+def check_closed_form(rows):
+    worst = dict.fromkeys(("far", "other"), 0.0)
+    for table, half_range, kind, e, ec, *values in rows:
+        for clip, value in zip(strengths(e, ec, half_range, table), values):
+            double = half_range / 3 * (closed_form([float(s) for s in clip]) - 3)
+            key = "far" if kind == "far" else "other"
+            worst[key] = max(worst[key], abs(double - float(value)) / half_range)
+    print("  polygon against the closed form in doubles, shares of the range:", {k: f"{d:.1e}" for k, d in worst.items()})
+
+
 if __name__ == "__main__":
-    write("fspid-fuzzy", "supervisor.csv", "table,range,kind,e,ec," + ",".join(COLUMNS), list(rows()))
+    made = list(rows())
+    write("fspid-fuzzy", "supervisor.csv", "table,range,kind,e,ec," + ",".join(COLUMNS), made)
+    check_closed_form(made)
     spots = {(0, 0): (0.216500696638, 0, -1.666610153842), (5, 5): (-4.234089847555, 4.444274913314, 3.902748775224),
              (-5, -5): (4.444385106649, -4.444274913314, 1.020352034411), (5, -5): (-0.144014896878, 0, 3.188836309895),
              (1, -2): (0.995958158631, -0.608034418811, -0.642500373380),

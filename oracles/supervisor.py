@@ -81,17 +81,23 @@ def height(clip, gap, t):
 
 
 def exact(clip):
-    """Centre of area, in spacings from the left peak; Simpson's rule is exact on each straight piece."""
+    """Centre of area, in spacings from the left peak.
+
+    Gauss's two points integrate each straight piece exactly and lie inside it: a corner at 1 - 1e-170 is lost in
+    40 digits, so nothing may be read off at the corners themselves.
+    """
+    node = 1 / (2 * mp.sqrt(3))
     area = moment = mpf(0)
     for gap in range(6):
         a, b = clip[gap], clip[gap + 1]
         # Every corner: where a triangle is cut, where both slopes meet, where a slope meets the other's top.
         corners = sorted({mpf(0), mpf(1), mpf(1) / 2, a, b, 1 - a, 1 - b})
         for left, right in zip(corners, corners[1:]):
-            middle = (left + right) / 2
-            samples = ((left, 1), (middle, 4), (right, 1))
-            area += sum(w * height(clip, gap, t) for t, w in samples) * (right - left) / 6
-            moment += sum(w * (gap + t) * height(clip, gap, t) for t, w in samples) * (right - left) / 6
+            width, middle = right - left, (left + right) / 2
+            for t in (middle - node * width, middle + node * width):
+                weight = height(clip, gap, t) * width / 2
+                area += weight
+                moment += (gap + t) * weight
     return moment / area
 
 
