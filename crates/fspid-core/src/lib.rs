@@ -30,6 +30,13 @@
 //!
 //! Not here: time (the period is fixed at construction), plants, files, units other than SI.
 #![no_std]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::float_cmp,
+        reason = "tests ask for exact bits where they compare floats"
+    )
+)]
 
 #[cfg(test)]
 extern crate std;

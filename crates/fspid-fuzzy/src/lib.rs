@@ -20,12 +20,19 @@
 //!     PM PM PM PM PM PM PM
 //!     PB PB PB PB PB PB PB";
 //! let table = RuleTable::parse([raise_with_error; 3])?;
-//! let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp)?;
+//! let supervisor = Supervisor::new(&table, 5.0_f64, Defuzzifier::Exact, OutOfRange::Clamp)?;
 //! let answer = supervisor.infer(0.0, 1.0)?;
 //! assert!(answer.delta.kp.abs() < 1e-15);
 //! # Ok::<(), fspid_fuzzy::FuzzyError>(())
 //! ```
 #![no_std]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::float_cmp,
+        reason = "tests ask for exact bits where they compare floats"
+    )
+)]
 
 #[cfg(test)]
 extern crate std;

@@ -7,6 +7,13 @@
 //!
 //! Nothing here measures or judges: metrics and verdicts are in `fspid-study`. [`stability`] is the
 //! exception that the loop itself must answer: whether fixed gains hold the plant at all.
+#![cfg_attr(
+    test,
+    allow(
+        clippy::float_cmp,
+        reason = "tests ask for exact bits where they compare floats"
+    )
+)]
 
 mod closed_loop;
 mod controller;
