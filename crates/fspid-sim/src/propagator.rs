@@ -50,10 +50,6 @@ impl PlantState {
     }
 
     /// State of the plant followed by the servo's deflection.
-    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.values
-    }
-
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
@@ -100,8 +96,8 @@ impl Propagator {
     pub(crate) fn new(plant: &LinearPlant, servo: Servo, dt_s: f64) -> Result<Self, SimError> {
         let model = plant.state_space();
         let elevator_per_command = plant.elevator_sign().per_nose_up();
-        let free = generator(&model, elevator_per_command, &ServoMotion::Free(servo));
-        let ramp = generator(&model, elevator_per_command, &ServoMotion::Ramp);
+        let free = generator(&model, elevator_per_command, &ServoMotion::Free(servo))?;
+        let ramp = generator(&model, elevator_per_command, &ServoMotion::Ramp)?;
         let order = plant.order();
         let markov = plant.transfer_function().markov_parameters(2);
         let rate_output = (0..order)
@@ -111,9 +107,9 @@ impl Propagator {
             servo,
             dt_s,
             order,
-            free_step: step_rows(&free, dt_s, order)?,
+            free_step: step_rows(&free, dt_s)?,
             free,
-            ramp_step: step_rows(&ramp, dt_s, order)?,
+            ramp_step: step_rows(&ramp, dt_s)?,
             ramp,
             rate_output,
             rate_feedthrough: markov.get(1).copied().unwrap_or(0.0),
@@ -121,7 +117,7 @@ impl Propagator {
         };
         if order == 1 {
             // θ' = -a0 θ + h1 δ: no second state holds the rate.
-            propagator.rate_output = vec![model.a.get(0, 0)];
+            propagator.rate_output = model.a().data().to_vec();
         }
         Ok(propagator)
     }
@@ -172,9 +168,9 @@ impl Propagator {
             state.advance(&self.ramp_step, rate_rad_s, disturbance_rad);
             return Ok(());
         }
-        let ramp = step_rows(&self.ramp, duration_s, self.order)?;
+        let ramp = step_rows(&self.ramp, duration_s)?;
         state.advance(&ramp, rate_rad_s, disturbance_rad);
-        let free = step_rows(&self.free, self.dt_s - duration_s, self.order)?;
+        let free = step_rows(&self.free, self.dt_s - duration_s)?;
         state.advance(&free, command_rad, disturbance_rad);
         Ok(())
     }
@@ -204,47 +200,50 @@ enum ServoMotion {
 }
 
 /// Generator of plant state, servo and the two held inputs.
-fn generator(model: &StateSpace, sign: f64, motion: &ServoMotion) -> Matrix {
-    let order = model.a.rows();
+fn generator(model: &StateSpace, sign: f64, motion: &ServoMotion) -> Result<Matrix, SimError> {
+    let order = model.states();
     let (servo, input, disturbance) = (order, order + 1, order + 2);
-    let mut g = Matrix::zeros(order + 1 + INPUTS, order + 1 + INPUTS);
+    let size = order + 1 + INPUTS;
+    let mut rows = vec![vec![0.0; size]; size];
     let elevator = match motion {
         // An ideal servo is its input; its own state only remembers where it is.
         ServoMotion::Free(s) if s.time_constant_s() == 0.0 => input,
         _ => servo,
     };
-    for row in 0..order {
-        for column in 0..order {
-            g.set(row, column, model.a.get(row, column));
-        }
-        g.set(row, elevator, sign * model.b.get(row, 0));
-        g.set(row, disturbance, sign * model.b.get(row, 0));
+    let by_elevator = model.b().data();
+    for ((row, by_state), by_elevator) in rows
+        .iter_mut()
+        .zip(model.a().data().chunks_exact(order))
+        .zip(by_elevator)
+    {
+        row[..order].copy_from_slice(by_state);
+        row[elevator] = sign * by_elevator;
+        row[disturbance] = sign * by_elevator;
     }
     match motion {
         ServoMotion::Free(s) if s.time_constant_s() > 0.0 => {
-            g.set(servo, servo, -1.0 / s.time_constant_s());
-            g.set(servo, input, 1.0 / s.time_constant_s());
+            rows[servo][servo] = -1.0 / s.time_constant_s();
+            rows[servo][input] = 1.0 / s.time_constant_s();
         }
         ServoMotion::Free(_) => {}
-        ServoMotion::Ramp => g.set(servo, input, 1.0),
+        ServoMotion::Ramp => rows[servo][input] = 1.0,
     }
-    g
+    Ok(Matrix::from_rows(&rows)?)
 }
 
 /// The rows of e^(G t) that belong to plant and servo, flat.
-fn step_rows(generator: &Matrix, duration_s: f64, order: usize) -> Result<Vec<f64>, SimError> {
+fn step_rows(generator: &Matrix, duration_s: f64) -> Result<Vec<f64>, SimError> {
     let step = exponential(&generator.scaled(duration_s))?;
-    let width = order + 1 + INPUTS;
-    let mut rows: Vec<f64> = (0..=order)
-        .flat_map(|row| (0..width).map(move |column| (row, column)))
-        .map(|(row, column)| step.get(row, column))
-        .collect();
-    let ideal_servo = generator.get(order, order) == 0.0 && generator.get(order, order + 1) == 0.0;
-    if ideal_servo {
+    let width = generator.columns();
+    let servo = width - INPUTS - 1;
+    let mut rows = step.data()[..(servo + 1) * width].to_vec();
+    let servo_moves = generator.data()[servo * width..(servo + 1) * width]
+        .iter()
+        .any(|g| *g != 0.0);
+    if !servo_moves {
         // The remembered deflection of an ideal servo is its last command.
-        let start = order * width;
-        rows[start..].fill(0.0);
-        rows[start + order + 1] = 1.0;
+        rows[servo * width..].fill(0.0);
+        rows[servo * width + servo + 1] = 1.0;
     }
     Ok(rows)
 }

@@ -6,7 +6,7 @@
 //!
 //! $$ z_{k+1} = M z_k, \qquad z = (x, \delta, \text{delayed commands}, I, d, y_{k-1}) $$
 
-use fspid_core::{Gains, IntegralForm, Shell};
+use fspid_core::{Gains, Shell};
 use fspid_lti::{Matrix, spectral_radius};
 
 use crate::controller::Controller;
@@ -46,7 +46,7 @@ pub fn instability(
     }
     for (from_s, plant) in scenario.lasting_plants() {
         let propagator = Propagator::new(plant, scenario.servo, scenario.timing.dt_s())?;
-        let radius = spectral_radius(&closed_loop(&propagator, pid.gains(), pid.shell()))?;
+        let radius = spectral_radius(&closed_loop(&propagator, pid.gains(), pid.shell())?)?;
         // Written so that NaN counts as unstable.
         if !(radius < 1.0 - MARGIN) {
             return Ok(Some(Unstable {
@@ -68,7 +68,7 @@ pub fn loop_spectral_radius(
     shell: &Shell<f64>,
 ) -> Result<f64, SimError> {
     let propagator = Propagator::new(&scenario.plant, scenario.servo, shell.dt_s)?;
-    Ok(spectral_radius(&closed_loop(&propagator, gains, shell))?)
+    Ok(spectral_radius(&closed_loop(&propagator, gains, shell)?)?)
 }
 
 /// Where the parts of the state stand.
@@ -93,7 +93,11 @@ impl Layout {
 }
 
 /// The one-sample matrix of the loop with the set-point at zero.
-fn closed_loop(propagator: &Propagator, gains: Gains<f64>, shell: &Shell<f64>) -> Matrix {
+fn closed_loop(
+    propagator: &Propagator,
+    gains: Gains<f64>,
+    shell: &Shell<f64>,
+) -> Result<Matrix, SimError> {
     let plant = propagator.order() + 1;
     let layout = Layout {
         plant,
@@ -101,12 +105,7 @@ fn closed_loop(propagator: &Propagator, gains: Gains<f64>, shell: &Shell<f64>) -
     };
     let controller = controller_rows(propagator, gains, shell, &layout);
 
-    let mut m = Matrix::zeros(layout.size(), layout.size());
-    let mut set_row = |row: usize, values: &[f64]| {
-        for (column, &value) in values.iter().enumerate() {
-            m.set(row, column, value);
-        }
-    };
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(layout.size());
     // The command that moves the servo now: the oldest of the queue, or this sample's own.
     let mut arriving = vec![0.0; layout.size()];
     if layout.delay == 0 {
@@ -114,12 +113,12 @@ fn closed_loop(propagator: &Propagator, gains: Gains<f64>, shell: &Shell<f64>) -
     } else {
         arriving[layout.plant] = 1.0;
     }
-    for (row, step) in propagator.linear_step().chunks_exact(plant + 2).enumerate() {
+    for step in propagator.linear_step().chunks_exact(plant + 2) {
         let mut values: Vec<f64> = arriving.iter().map(|a| a * step[plant]).collect();
         for (value, by_state) in values.iter_mut().zip(&step[..plant]) {
             *value += by_state;
         }
-        set_row(row, &values);
+        rows.push(values);
     }
     for place in 0..layout.delay {
         let mut values = vec![0.0; layout.size()];
@@ -128,14 +127,14 @@ fn closed_loop(propagator: &Propagator, gains: Gains<f64>, shell: &Shell<f64>) -
         } else {
             values[layout.plant + place + 1] = 1.0;
         }
-        set_row(layout.plant + place, &values);
+        rows.push(values);
     }
-    set_row(layout.integral(), &controller.integral);
-    set_row(layout.derivative(), &controller.derivative);
+    rows.push(controller.integral);
+    rows.push(controller.derivative);
     let mut measurement = vec![0.0; layout.size()];
     measurement[0] = 1.0;
-    set_row(layout.previous(), &measurement);
-    m
+    rows.push(measurement);
+    Ok(Matrix::from_rows(&rows)?)
 }
 
 /// Rows of the controller over the whole state: command, next integral, next derivative.
@@ -162,11 +161,6 @@ fn controller_rows(
         integral[layout.integral()] = 1.0;
         integral[0] = -ki * dt_s;
     }
-    debug_assert!(matches!(
-        shell.integral,
-        IntegralForm::Bumpless | IntegralForm::Literal
-    ));
-
     let filter_s = shell.derivative.filter_s;
     let mut derivative = zeros();
     derivative[layout.derivative()] = filter_s / (filter_s + dt_s);

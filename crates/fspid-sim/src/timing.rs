@@ -1,6 +1,6 @@
 //! Samples and their times.
 
-use crate::error::{SimError, not_negative, positive};
+use crate::error::{SimError, positive};
 
 /// Most rows a trace may have; nine columns of this length take 720 MB.
 pub const MAX_ROWS: usize = 10_000_000;
