@@ -7,3 +7,6 @@
         reason = "tests ask for exact bits where they compare floats"
     )
 )]
+
+pub mod metrics;
+pub mod tune;

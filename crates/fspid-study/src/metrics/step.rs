@@ -6,6 +6,8 @@
 
 use super::{Absent, Measured};
 
+/// Risen is 90 % of the way.
+const RISEN: f64 = 0.9;
 /// Settled is within 2 % of the step.
 const SETTLING_BAND: f64 = 0.02;
 
@@ -74,11 +76,24 @@ impl StepMetrics {
         if !usable {
             return Self::absent(Absent::NoStep);
         }
-        if window.response.iter().chain(window.time_s).any(|value| !value.is_finite()) {
+        if window
+            .response
+            .iter()
+            .chain(window.time_s)
+            .any(|value| !value.is_finite())
+        {
             return Self::absent(Absent::NotFinite);
         }
-        let way: Vec<f64> = window.response.iter().map(|y| (y - window.from) / step).collect();
-        Normalised { time_s: window.time_s, way: &way }.measure(step.abs())
+        let way: Vec<f64> = window
+            .response
+            .iter()
+            .map(|y| (y - window.from) / step)
+            .collect();
+        Normalised {
+            time_s: window.time_s,
+            way: &way,
+        }
+        .measure(step.abs())
     }
 }
 
@@ -103,7 +118,8 @@ impl Normalised<'_> {
             transient_time_s: self.settling_time_s(SETTLING_BAND * largest_error),
             overshoot_pct: Ok((100.0 * (highest - 1.0)).max(0.0)),
             undershoot_pct: Ok((-100.0 * lowest).max(0.0)),
-            settling_min: risen.map(|way| way.iter().copied().fold(f64::INFINITY, f64::min)),
+            // The crossing itself, at 90 %, is part of what follows it.
+            settling_min: risen.map(|way| way.iter().copied().fold(RISEN, f64::min)),
             settling_max: risen.map(|way| way.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
             peak: Ok(peak * step_size),
             peak_time_s: Ok(peak_time_s),
@@ -137,9 +153,11 @@ impl Normalised<'_> {
     }
 
     fn rise_time_s(&self) -> Measured {
-        match (self.first_crossing_s(0.1), self.first_crossing_s(0.9)) {
+        match (self.first_crossing_s(0.1), self.first_crossing_s(RISEN)) {
             (Some(low), Some(high)) => Ok(high - low),
-            _ => Err(Absent::NotRisen { window_s: self.window_s() }),
+            _ => Err(Absent::NotRisen {
+                window_s: self.window_s(),
+            }),
         }
     }
 
@@ -147,17 +165,27 @@ impl Normalised<'_> {
     fn settling_time_s(&self, band: f64) -> Measured {
         // Written so that NaN counts as outside.
         let inside = |way: f64| (way - 1.0).abs() <= band;
-        let Some(outside) = self.way.iter().rposition(|&way| !inside(way)) else { return Ok(0.0) };
+        let Some(outside) = self.way.iter().rposition(|&way| !inside(way)) else {
+            return Ok(0.0);
+        };
         if outside + 1 == self.way.len() {
-            return Err(Absent::NotSettled { window_s: self.window_s() });
+            return Err(Absent::NotSettled {
+                window_s: self.window_s(),
+            });
         }
-        let edge = if self.way[outside] > 1.0 { 1.0 + band } else { 1.0 - band };
+        let edge = if self.way[outside] > 1.0 {
+            1.0 + band
+        } else {
+            1.0 - band
+        };
         Ok(self.crossing_s(outside + 1, edge))
     }
 
     fn after_rise(&self) -> Result<&[f64], Absent> {
-        let k = self.way.iter().position(|&way| way >= 0.9);
-        k.and_then(|k| self.way.get(k..)).ok_or(Absent::NotRisen { window_s: self.window_s() })
+        let k = self.way.iter().position(|&way| way >= RISEN);
+        k.and_then(|k| self.way.get(k..)).ok_or(Absent::NotRisen {
+            window_s: self.window_s(),
+        })
     }
 
     /// Largest distance from the start, and when, refined by a parabola where there are neighbours.
@@ -179,7 +207,10 @@ impl Normalised<'_> {
         }
         let shift = 0.5 * (before - after) / curvature;
         let spacing_s = self.time_s[top + 1] - self.time_s[top];
-        (here - 0.25 * (before - after) * shift, plain.1 + shift * spacing_s)
+        (
+            here - 0.25 * (before - after) * shift,
+            plain.1 + shift * spacing_s,
+        )
     }
 }
 
@@ -189,14 +220,21 @@ mod tests {
 
     /// Samples of `response` from 0 to `end_s`.
     fn sampled(end_s: f64, response: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
-        let time_s: Vec<f64> = (0..=20_000).map(|k| f64::from(k) * end_s / 20_000.0).collect();
+        let time_s: Vec<f64> = (0..=20_000)
+            .map(|k| f64::from(k) * end_s / 20_000.0)
+            .collect();
         let response = time_s.iter().map(|&t| response(t)).collect();
         (time_s, response)
     }
 
     fn measure(from: f64, to: f64, end_s: f64, response: impl Fn(f64) -> f64) -> StepMetrics {
         let (time_s, response) = sampled(end_s, response);
-        StepMetrics::of(StepWindow { time_s: &time_s, response: &response, from, to })
+        StepMetrics::of(StepWindow {
+            time_s: &time_s,
+            response: &response,
+            from,
+            to,
+        })
     }
 
     fn close(measured: Measured, expected: f64, tolerance: f64) -> bool {
@@ -206,17 +244,28 @@ mod tests {
     #[test]
     fn a_first_order_lag_rises_in_ln_9_and_settles_in_minus_ln_0_02() {
         let metrics = measure(0.0, 1.0, 10.0, |t| 1.0 - (-t).exp());
-        assert!(close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6), "{metrics:?}");
-        assert!(close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6), "{metrics:?}");
+        assert!(
+            close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6),
+            "{metrics:?}"
+        );
+        assert!(
+            close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6),
+            "{metrics:?}"
+        );
         assert_eq!(metrics.overshoot_pct, Ok(0.0));
-        assert!(close(metrics.final_error_pct, 100.0 * (-10.0_f64).exp(), 1e-9));
+        assert!(close(
+            metrics.final_error_pct,
+            100.0 * (-10.0_f64).exp(),
+            1e-9
+        ));
     }
 
     #[test]
     fn a_response_that_turns_to_nan_has_no_metrics() {
         // A peer answers a settling time of 3.92 s and an overshoot of 0.
-        let metrics =
-            measure(0.0, 1.0, 10.0, |t| if t > 5.0 { f64::NAN } else { 1.0 - (-t).exp() });
+        let metrics = measure(0.0, 1.0, 10.0, |t| {
+            if t > 5.0 { f64::NAN } else { 1.0 - (-t).exp() }
+        });
         assert_eq!(metrics, StepMetrics::absent(Absent::NotFinite));
     }
 
@@ -224,8 +273,14 @@ mod tests {
     fn a_response_that_stops_half_way_is_not_risen() {
         // A peer raises an index error.
         let metrics = measure(0.0, 2.0, 10.0, |t| 1.0 - (-t).exp());
-        assert_eq!(metrics.rise_time_s, Err(Absent::NotRisen { window_s: 10.0 }));
-        assert_eq!(metrics.settling_time_s, Err(Absent::NotSettled { window_s: 10.0 }));
+        assert_eq!(
+            metrics.rise_time_s,
+            Err(Absent::NotRisen { window_s: 10.0 })
+        );
+        assert_eq!(
+            metrics.settling_time_s,
+            Err(Absent::NotSettled { window_s: 10.0 })
+        );
         assert!(close(metrics.final_error_pct, 50.0, 0.01));
     }
 
@@ -233,7 +288,10 @@ mod tests {
     fn regulation_to_zero_is_measured_from_where_it_began() {
         // A peer, which takes 0 for "not given", answers an overshoot of 2 180 630 %.
         let metrics = measure(1.0, 0.0, 12.0, |t| (-t).exp());
-        assert!(close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6), "{metrics:?}");
+        assert!(
+            close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6),
+            "{metrics:?}"
+        );
         assert_eq!(metrics.overshoot_pct, Ok(0.0));
     }
 
@@ -241,7 +299,10 @@ mod tests {
     fn a_step_from_one_to_two_rises_as_one_from_zero_to_one() {
         // A peer, which starts every step at 0, answers 1.61 s.
         let metrics = measure(1.0, 2.0, 12.0, |t| 2.0 - (-t).exp());
-        assert!(close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6), "{metrics:?}");
+        assert!(
+            close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6),
+            "{metrics:?}"
+        );
     }
 
     #[test]
@@ -269,8 +330,16 @@ mod tests {
 
     #[test]
     fn a_window_without_a_step_or_without_samples_has_no_metrics() {
-        assert_eq!(measure(1.0, 1.0, 1.0, |_| 1.0), StepMetrics::absent(Absent::NoStep));
-        let empty = StepWindow { time_s: &[], response: &[], from: 0.0, to: 1.0 };
+        assert_eq!(
+            measure(1.0, 1.0, 1.0, |_| 1.0),
+            StepMetrics::absent(Absent::NoStep)
+        );
+        let empty = StepWindow {
+            time_s: &[],
+            response: &[],
+            from: 0.0,
+            to: 1.0,
+        };
         assert_eq!(StepMetrics::of(empty), StepMetrics::absent(Absent::NoStep));
     }
 }

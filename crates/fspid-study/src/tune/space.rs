@@ -1,0 +1,70 @@
+//! The box that is searched.
+
+/// How a parameter is spread over its interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// Evenly in its logarithm; both bounds must be positive.
+    Logarithmic,
+}
+
+/// A parameter and its bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name in reports.
+    pub name: &'static str,
+    /// Least value.
+    pub lower: f64,
+    /// Greatest value.
+    pub upper: f64,
+    /// How it is spread.
+    pub scale: Scale,
+}
+
+impl Parameter {
+    /// Value at `unit` of the way from the lower to the upper bound.
+    fn at(&self, unit: f64) -> f64 {
+        let value = match self.scale {
+            Scale::Linear => self.lower + unit * (self.upper - self.lower),
+            Scale::Logarithmic => self.lower * libm::exp(unit * libm::log(self.upper / self.lower)),
+        };
+        value.clamp(self.lower, self.upper)
+    }
+}
+
+/// A box of parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Space {
+    parameters: Vec<Parameter>,
+}
+
+impl Space {
+    /// The box of these parameters.
+    #[must_use]
+    pub fn new(parameters: Vec<Parameter>) -> Self {
+        Self { parameters }
+    }
+
+    /// Number of parameters.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The point at these coordinates of the unit cube.
+    #[must_use]
+    pub fn point(&self, unit: &[f64]) -> Vec<f64> {
+        self.parameters
+            .iter()
+            .zip(unit)
+            .map(|(parameter, &u)| parameter.at(u))
+            .collect()
+    }
+}
