@@ -1,1 +1,22 @@
-//! fspid-lti
+//! Polynomials, transfer functions, state space and exact sampling of linear time-invariant systems.
+//!
+//! For whoever has a plant as printed in a book (coefficients, highest power first) and wants its poles, its modes,
+//! its states and its exact behaviour between two samples. Pure mathematics: no aeroplane, no controller, no file.
+//! Not for large systems: matrices are dense and everything is meant for some ten states.
+//!
+//! # The same bits on every machine
+//! Sums and products are written out in a fixed order, nothing is fused, every elementary function beyond the square
+//! root comes from `libm`, and results that are sets (roots, eigenvalues) come sorted. Nothing is random.
+//!
+//! # Errors
+//! Every check is written for the good case, so a NaN is refused like any other bad value. What cannot be computed
+//! is a [`LtiError`] that says what was found and what is allowed; nothing here panics on a caller's numbers.
+
+mod complex;
+mod error;
+mod matrix;
+mod solve;
+
+pub use complex::{Complex, modulus, quotient};
+pub use error::LtiError;
+pub use matrix::Matrix;
