@@ -12,11 +12,16 @@
 //! Every check is written for the good case, so a NaN is refused like any other bad value. What cannot be computed
 //! is a [`LtiError`] that says what was found and what is allowed; nothing here panics on a caller's numbers.
 
+mod balance;
 mod complex;
+mod eigenvalues;
 mod error;
 mod matrix;
+mod mode;
 mod solve;
 
 pub use complex::{Complex, modulus, quotient};
+pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
 pub use matrix::Matrix;
+pub use mode::{Mode, continuous_pole};
