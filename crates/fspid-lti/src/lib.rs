@@ -14,10 +14,13 @@
 
 mod balance;
 mod complex;
+mod doubled;
 mod eigenvalues;
 mod error;
 mod matrix;
 mod mode;
+mod polynomial;
+mod roots;
 mod solve;
 
 pub use complex::{Complex, modulus, quotient};
@@ -25,3 +28,4 @@ pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
 pub use matrix::Matrix;
 pub use mode::{Mode, continuous_pole};
+pub use polynomial::{DEGREE_LIMIT, Polynomial};
