@@ -1,0 +1,54 @@
+//! Exact sampling of a linear system whose input is held constant between samples.
+
+use crate::error::LtiError;
+use crate::exponential::exponential;
+use crate::matrix::Matrix;
+
+/// Binary exponent that the input columns are scaled to, far below the states.
+///
+/// The result is linear in each column, so the scaling is exact; without it, large input coefficients would force
+/// needless halvings of the whole matrix and spoil the balance of the states.
+const INPUT_EXPONENT: i32 = -64;
+
+/// State and input matrices of the sampled system, for an input held over `dt_s` seconds.
+///
+/// $$ A_d = e^{A T}, \quad B_d = \int_0^T e^{A \tau} B \, d\tau, \quad
+/// \exp \begin{pmatrix} A T & B T \\ 0 & 0 \end{pmatrix} = \begin{pmatrix} A_d & B_d \\ 0 & I \end{pmatrix} $$
+///
+/// # Source
+/// C. F. Van Loan, Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23 (1978) 395.
+///
+/// # Errors
+/// A state matrix that is not square, an input matrix with another number of rows, an entry that is not finite, a
+/// sample period that is not above zero and finite, a result that overflows.
+pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Matrix), LtiError> {
+    a.require_square_and_finite("state matrix")?;
+    b.require_shape("input matrix", a.rows(), b.columns())?;
+    LtiError::unless_finite("input matrix", b.data())?;
+    if !(dt_s > 0.0 && dt_s.is_finite()) {
+        return Err(LtiError::NotPositive {
+            what: "sample period in seconds",
+            value: dt_s,
+        });
+    }
+    let (states, inputs) = (a.rows(), b.columns());
+    let b_dt = b.scaled(dt_s);
+    let shifts: Vec<i32> = (0..inputs)
+        .map(|input| INPUT_EXPONENT - libm::frexp(b_dt.column_norm(input)).1)
+        .collect();
+    let augmented =
+        Matrix::from_function(states + inputs, states + inputs, |row, column| match column
+            .checked_sub(states)
+        {
+            _ if row >= states => 0.0,
+            Some(input) => libm::scalbn(b_dt.at(row, input), shifts[input]),
+            None => a.at(row, column) * dt_s,
+        });
+    let sampled = exponential(&augmented)?;
+    let a_sampled = Matrix::from_function(states, states, |row, column| sampled.at(row, column));
+    let b_sampled = Matrix::from_function(states, inputs, |row, input| {
+        libm::scalbn(sampled.at(row, states + input), -shifts[input])
+    });
+    LtiError::unless_finite("sampled input matrix", b_sampled.data())?;
+    Ok((a_sampled, b_sampled))
+}
