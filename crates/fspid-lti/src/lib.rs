@@ -11,6 +11,23 @@
 //! # Errors
 //! Every check is written for the good case, so a NaN is refused like any other bad value. What cannot be computed
 //! is a [`LtiError`] that says what was found and what is allowed; nothing here panics on a caller's numbers.
+//!
+//! # Example
+//! The short-period approximation of the Navion, sampled at 20 ms:
+//! ```
+//! use fspid_lti::{LtiError, Mode, TransferFunction, zero_order_hold};
+//!
+//! # fn main() -> Result<(), LtiError> {
+//! let plant = TransferFunction::new(&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0])?;
+//! let short_period = Mode::of_pole(plant.poles()?[0])?;
+//! assert!((short_period.natural_frequency_rad_s - 3.5974).abs() < 5e-5);
+//!
+//! let model = plant.to_state_space();
+//! let (a_sampled, b_sampled) = zero_order_hold(model.a(), model.b(), 0.02)?;
+//! assert_eq!((a_sampled.rows(), b_sampled.columns()), (3, 1));
+//! # Ok(())
+//! # }
+//! ```
 
 mod balance;
 mod complex;
@@ -24,6 +41,8 @@ mod mode;
 mod polynomial;
 mod roots;
 mod solve;
+mod state_space;
+mod transfer_function;
 
 pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
@@ -33,3 +52,5 @@ pub use hold::zero_order_hold;
 pub use matrix::Matrix;
 pub use mode::{Mode, continuous_pole};
 pub use polynomial::{DEGREE_LIMIT, Polynomial};
+pub use state_space::StateSpace;
+pub use transfer_function::TransferFunction;
