@@ -25,7 +25,7 @@ const WHAT: &str = "matrix of the eigenvalues";
 /// # Errors
 /// A matrix that is not square, an entry that is not finite, no convergence within the limit of steps.
 pub fn eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LtiError> {
-    matrix.expect_square_and_finite(WHAT)?;
+    matrix.require_square_and_finite(WHAT)?;
     let mut work = matrix.clone();
     balance(&mut work);
     let largest = work
@@ -148,7 +148,7 @@ fn hessenberg_eigenvalues(mut h: Matrix) -> Result<Vec<Complex>, LtiError> {
     let mut values = Vec::with_capacity(h.rows());
     let (mut end, mut steps) = (h.rows(), 0);
     while end > 0 {
-        let start = start_of_block(&mut h, end);
+        let start = start_of_block(&mut h, end, steps);
         if end - start <= 2 {
             values.extend(block_eigenvalues(&h, start, end));
             (end, steps) = (start, 0);
@@ -166,17 +166,28 @@ fn hessenberg_eigenvalues(mut h: Matrix) -> Result<Vec<Complex>, LtiError> {
 }
 
 /// First row of the lowest block that does not fall apart; the entry that couples it upwards is set to zero.
-fn start_of_block(h: &mut Matrix, end: usize) -> usize {
+fn start_of_block(h: &mut Matrix, end: usize, steps: usize) -> usize {
     for row in (1..end).rev() {
-        let neighbours = h.at(row, row).abs() + h.at(row - 1, row - 1).abs();
-        // The matrix is scaled to 1, so this stands in for its norm when both neighbours vanish.
-        let scale = if neighbours > 0.0 { neighbours } else { 1.0 };
-        if h.at(row, row - 1).abs() <= f64::EPSILON * scale {
+        if h.at(row, row - 1).abs() <= negligible(h, row, steps) {
             *h.at_mut(row, row - 1) = 0.0;
             return row;
         }
     }
     0
+}
+
+/// Size below which the entry left of the diagonal in this row counts as zero.
+///
+/// Rounding of its neighbours on the diagonal at first, which keeps the small eigenvalues of graded matrices. Where
+/// eigenvalues coincide in different blocks the shifts lose their force in rounding noise; then rounding of the whole
+/// matrix, which is scaled to 1, a little more of it with each step.
+fn negligible(h: &Matrix, row: usize, steps: usize) -> f64 {
+    let neighbours = h.at(row, row).abs() + h.at(row - 1, row - 1).abs();
+    if steps > EXCEPTIONAL_EVERY {
+        f64::EPSILON * steps as f64
+    } else {
+        f64::EPSILON * if neighbours > 0.0 { neighbours } else { 1.0 }
+    }
 }
 
 fn block_eigenvalues(h: &Matrix, start: usize, end: usize) -> Vec<Complex> {

@@ -41,7 +41,7 @@ const THETA: f64 = 5.371_920_351_148_152;
 /// # Errors
 /// A matrix that is not square, an entry that is not finite, a result that overflows.
 pub fn exponential(matrix: &Matrix) -> Result<Matrix, LtiError> {
-    matrix.expect_square_and_finite("matrix of the exponential")?;
+    matrix.require_square_and_finite("matrix of the exponential")?;
     let mut balanced = matrix.clone();
     let exponents = balance(&mut balanced);
     let squarings = squarings(balanced.norm_one())?;

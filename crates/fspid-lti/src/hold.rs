@@ -22,8 +22,8 @@ const INPUT_EXPONENT: i32 = -64;
 /// A state matrix that is not square, an input matrix with another number of rows, an entry that is not finite, a
 /// sample period that is not above zero and finite, a result that overflows.
 pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Matrix), LtiError> {
-    a.expect_square_and_finite("state matrix")?;
-    b.expect_shape("input matrix", a.rows(), b.columns())?;
+    a.require_square_and_finite("state matrix")?;
+    b.require_shape("input matrix", a.rows(), b.columns())?;
     LtiError::unless_finite("input matrix", b.data())?;
     if !(dt_s > 0.0 && dt_s.is_finite()) {
         return Err(LtiError::NotPositive {

@@ -147,7 +147,7 @@ impl Matrix {
     /// # Errors
     /// A right factor whose rows are not as many as this one's columns.
     pub fn product(&self, right: &Self) -> Result<Self, LtiError> {
-        right.expect_shape("right factor", self.columns, right.columns)?;
+        right.require_shape("right factor", self.columns, right.columns)?;
         Ok(Self::from_function(
             self.rows,
             right.columns,
@@ -165,7 +165,7 @@ impl Matrix {
     /// # Errors
     /// A second term of another shape.
     pub fn sum(&self, right: &Self) -> Result<Self, LtiError> {
-        right.expect_shape("second term", self.rows, self.columns)?;
+        right.require_shape("second term", self.rows, self.columns)?;
         let data = self
             .data
             .iter()
@@ -225,8 +225,8 @@ impl Matrix {
     /// # Errors
     /// An `x` that is not as long as a row, an `out` that is not as long as a column.
     pub fn apply(&self, x: &[f64], out: &mut [f64]) -> Result<(), LtiError> {
-        expect_length("vector", x.len(), self.columns)?;
-        expect_length("result vector", out.len(), self.rows)?;
+        require_length("vector", x.len(), self.columns)?;
+        require_length("result vector", out.len(), self.rows)?;
         for (row, value) in out.iter_mut().enumerate() {
             *value = self
                 .row(row)
@@ -238,7 +238,7 @@ impl Matrix {
     }
 
     /// `Ok` when the matrix has this shape.
-    pub(crate) fn expect_shape(
+    pub(crate) fn require_shape(
         &self,
         what: &'static str,
         rows: usize,
@@ -257,13 +257,13 @@ impl Matrix {
     }
 
     /// `Ok` when the matrix is square and all its entries are finite.
-    pub(crate) fn expect_square_and_finite(&self, what: &'static str) -> Result<(), LtiError> {
-        self.expect_shape(what, self.rows, self.rows)?;
+    pub(crate) fn require_square_and_finite(&self, what: &'static str) -> Result<(), LtiError> {
+        self.require_shape(what, self.rows, self.rows)?;
         LtiError::unless_finite(what, &self.data)
     }
 }
 
-fn expect_length(what: &'static str, found: usize, allowed: usize) -> Result<(), LtiError> {
+fn require_length(what: &'static str, found: usize, allowed: usize) -> Result<(), LtiError> {
     if found == allowed {
         Ok(())
     } else {

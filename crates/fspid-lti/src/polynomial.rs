@@ -110,7 +110,7 @@ impl Polynomial {
     /// Roots at the origin are exactly zero, complex ones come in exactly conjugate pairs. The roots are those of the
     /// coefficients as given: residuals are computed with twice the working precision, so a simple root is good to
     /// a few units in its last place unless its condition number approaches $10^{16}$. An m-fold root scatters by
-    /// about $10^{-32/m}$ of its size where the coefficients hold it exactly, and by $10^{-16/m}$ otherwise.
+    /// about $10^{-30/m}$ of its size where the coefficients hold it exactly, and by $10^{-16/m}$ otherwise.
     ///
     /// # Source
     /// O. Aberth, Iteration methods for finding all zeros of a polynomial simultaneously, Math. Comp. 27 (1973) 339;

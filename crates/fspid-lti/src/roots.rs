@@ -17,7 +17,9 @@ const REFINING_SWEEPS: usize = 60;
 const EXPONENT: i32 = 400;
 /// Turns the starting points out of the symmetry about the real axis, which the iteration could never leave.
 const FIRST_ANGLE_RAD: f64 = 0.7;
-/// Part of the sum of absolute terms that a residual of the refinement can still be told from zero.
+/// Relative size of a step after which a root has settled: the next one would be lost in rounding.
+const LAST_STEP: f64 = 4.0 * f64::EPSILON;
+/// Rounding of one term of a residual in twice the working precision, with room for the error bounds.
 const DOUBLED_EPSILON: f64 = 1e-31;
 
 const WHAT: &str = "root of the polynomial";
@@ -64,11 +66,11 @@ struct TwoSided {
     outer: Vec<f64>,
 }
 
-/// A polynomial, its derivative and the sum of the absolute terms, at one point.
+/// A polynomial and its derivative at one point.
 struct Value {
     value: Complex,
     derivative: Complex,
-    /// Below this a value cannot be told from zero.
+    /// Bound for the rounding error of the value: below it, it cannot be told from zero.
     noise: f64,
 }
 
@@ -137,7 +139,7 @@ impl TwoSided {
             // The two terms cancelled: leave the stationary point by an arbitrary small turn.
             roots[i] *= Complex::new(0.99, 0.02);
         }
-        modulus(step) <= 0.5 * f64::EPSILON * modulus(roots[i])
+        modulus(step) <= LAST_STEP * modulus(roots[i])
     }
 
     /// p'(z) / p(z); `None` where p(z) cannot be told from zero.
@@ -178,7 +180,7 @@ fn horner(coefficients: &[f64], z: Complex) -> Value {
         derivative = derivative * z + value;
         value = value * z + coefficient;
     }
-    let noise = 4.0 * f64::EPSILON * absolute_sum(coefficients, z);
+    let noise = f64::EPSILON * rounding(coefficients, z);
     Value {
         value,
         derivative,
@@ -194,7 +196,7 @@ fn horner_doubled(coefficients: &[f64], z: Complex) -> Value {
         derivative = derivative.times(z).plus(value);
         value = value.times(z).plus_real(coefficient);
     }
-    let noise = DOUBLED_EPSILON * absolute_sum(coefficients, z);
+    let noise = DOUBLED_EPSILON * rounding(coefficients, z);
     Value {
         value: value.rounded(),
         derivative: derivative.rounded(),
@@ -202,11 +204,17 @@ fn horner_doubled(coefficients: &[f64], z: Complex) -> Value {
     }
 }
 
-fn absolute_sum(coefficients: &[f64], z: Complex) -> f64 {
+/// Bound for the rounding error of Horner's rule in a complex point, as a multiple of the working precision.
+///
+/// # Source
+/// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition, section 5.1, with 2 sqrt(2) for complex
+/// products.
+fn rounding(coefficients: &[f64], z: Complex) -> f64 {
     let size = modulus(z);
-    coefficients
+    let sum = coefficients
         .iter()
-        .fold(0.0, |sum, coefficient| sum * size + coefficient.abs())
+        .fold(0.0, |sum, coefficient| sum * size + coefficient.abs());
+    3.0 * coefficients.len() as f64 * sum
 }
 
 /// One starting point per root, on circles whose radii follow from the upper hull of ln |coefficient| over power.

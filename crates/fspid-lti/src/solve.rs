@@ -16,8 +16,8 @@ impl Matrix {
     /// A matrix that is not square, a right side with another number of rows, an entry that is not finite, a matrix
     /// that is singular to working precision, a solution that overflows.
     pub fn solve(&self, right: &Self) -> Result<Self, LtiError> {
-        self.expect_square_and_finite("matrix of the equations")?;
-        right.expect_shape("right side", self.rows(), right.columns())?;
+        self.require_square_and_finite("matrix of the equations")?;
+        right.require_shape("right side", self.rows(), right.columns())?;
         LtiError::unless_finite("right side", right.data())?;
         let (mut left, mut right) = (self.clone(), right.clone());
         scale_rows(&mut left, &mut right);
@@ -133,7 +133,7 @@ mod tests {
     fn dependent_rows_are_refused_even_when_rounding_hides_the_zero() {
         let exact = matrix(&[[1.0, 2.0], [2.0, 4.0]]).solve(&Matrix::identity(2));
         assert!(matches!(exact, Err(LtiError::Singular { column: 1, .. })));
-        let rounded = matrix(&[[0.1, 0.2, 0.3], [0.3, 0.6, 0.7], [0.4, 0.8, 1.0]])
+        let rounded = matrix(&[[0.1, 0.2, 0.3], [0.3, 1.3, 0.7], [0.4, 1.5, 1.0]])
             .solve(&Matrix::identity(3));
         assert!(matches!(rounded, Err(LtiError::Singular { .. })));
         assert!(Matrix::zeros(2, 2).solve(&Matrix::identity(2)).is_err());

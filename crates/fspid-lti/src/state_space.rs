@@ -22,10 +22,10 @@ impl StateSpace {
     /// # Errors
     /// A state matrix that is not square, another matrix that does not fit it, an entry that is not finite.
     pub fn new(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Result<Self, LtiError> {
-        a.expect_square_and_finite("state matrix")?;
-        b.expect_shape("input matrix", a.rows(), b.columns())?;
-        c.expect_shape("output matrix", c.rows(), a.rows())?;
-        d.expect_shape("feedthrough matrix", c.rows(), b.columns())?;
+        a.require_square_and_finite("state matrix")?;
+        b.require_shape("input matrix", a.rows(), b.columns())?;
+        c.require_shape("output matrix", c.rows(), a.rows())?;
+        d.require_shape("feedthrough matrix", c.rows(), b.columns())?;
         LtiError::unless_finite("input matrix", b.data())?;
         LtiError::unless_finite("output matrix", c.data())?;
         LtiError::unless_finite("feedthrough matrix", d.data())?;
