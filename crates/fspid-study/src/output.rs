@@ -1,0 +1,112 @@
+//! Files that are either the old ones or the new ones, never halves.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// A file or folder that could not be written. Nothing at the path has changed.
+#[derive(Debug)]
+pub struct OutputError {
+    /// Where.
+    pub path: PathBuf,
+    /// Why.
+    pub reason: io::Error,
+}
+
+impl fmt::Display for OutputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot write {}: {}; nothing there was changed", self.path.display(), self.reason)
+    }
+}
+
+impl std::error::Error for OutputError {}
+
+/// Writes `contents` to `path`: into a new file beside it first, flushed to the disk, then renamed.
+///
+/// # Errors
+/// [`OutputError`] with the path; an existing file is then as it was.
+pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
+    let failed = |reason| OutputError { path: path.to_owned(), reason };
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if path.is_dir() {
+        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
+    }
+    // A device or pipe is written as it is: it has nothing that could be lost.
+    if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+        return File::options()
+            .write(true)
+            .open(path)
+            .and_then(|mut file| file.write_all(contents.as_ref()))
+            .map_err(failed);
+    }
+    new_file_in(folder)
+        .and_then(|mut file| {
+            file.write_all(contents.as_ref())?;
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)?;
+            // The rename itself; not every file system knows how, and the file is safe without.
+            let _ = File::open(folder).and_then(|folder| folder.sync_all());
+            Ok(())
+        })
+        .map_err(failed)
+}
+
+fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".fspid-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As any new file: the user's mask takes its part away.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// Makes a folder and those above it.
+///
+/// # Errors
+/// [`OutputError`] with the path.
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path).map_err(|reason| OutputError { path: path.to_owned(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.txt");
+        write(&path, "old").expect("written");
+        write(&path, "new and longer").expect("written");
+        assert_eq!(fs::read_to_string(&path).expect("read"), "new and longer");
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1);
+    }
+
+    #[test]
+    fn a_missing_folder_is_an_error_that_names_the_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("missing/a.txt");
+        let message = write(&path, "x").expect_err("no folder").to_string();
+        assert!(message.contains("missing") && message.contains("nothing there was changed"));
+    }
+
+    #[test]
+    fn a_folder_in_the_way_is_an_error_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        assert!(write(folder.path(), "x").is_err());
+        assert!(folder.path().is_dir());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_an_error() {
+        assert!(write(Path::new("/dev/full"), "x").is_err());
+    }
+}

@@ -1,0 +1,75 @@
+//! The trace as columns: angles in degrees, shortest digits that read back as the same number.
+
+use std::fmt::Write as _;
+
+use super::{ControllerResult, Simulation};
+use crate::units::degrees;
+
+/// Columns of one controller.
+const COLUMNS: [&str; 7] =
+    ["theta_deg", "q_deg_s", "command_deg", "elevator_deg", "kp", "ki", "kd"];
+
+impl Simulation {
+    /// All traces side by side: time and set-point once, then each controller's columns, with its
+    /// name before them where there are several. Cells after a divergence are empty.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = String::from("time_s,setpoint_deg");
+        let several = self.results.len() > 1;
+        for result in &self.results {
+            for column in COLUMNS {
+                let prefix = if several { quoted(&format!("{}.", result.name)) } else { String::new() };
+                text.push(',');
+                text.push_str(&prefix);
+                text.push_str(column);
+            }
+        }
+        text.push('\n');
+        let longest = self.results.iter().max_by_key(|result| result.trace.rows());
+        for k in 0..longest.map_or(0, |result| result.trace.rows()) {
+            if let Some(result) = longest {
+                push(&mut text, result.trace.time_s[k]);
+                text.push(',');
+                push(&mut text, degrees(result.trace.setpoint_rad[k]));
+            }
+            for result in &self.results {
+                push_row(&mut text, result, k);
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn push_row(text: &mut String, result: &ControllerResult, k: usize) {
+    let trace = &result.trace;
+    if k >= trace.rows() {
+        text.push_str(&",".repeat(COLUMNS.len()));
+        return;
+    }
+    let gains = trace.gains[k];
+    let row = [
+        degrees(trace.theta_rad[k]),
+        degrees(trace.q_rad_s[k]),
+        degrees(trace.command_rad[k]),
+        degrees(trace.elevator_rad[k]),
+        gains.kp,
+        gains.ki,
+        gains.kd,
+    ];
+    for value in row {
+        text.push(',');
+        push(text, value);
+    }
+}
+
+/// The shortest digits that read back as `value`, zero without a sign.
+fn push(text: &mut String, value: f64) {
+    // Writing to a string cannot fail.
+    let _ = write!(text, "{:?}", value + 0.0);
+}
+
+/// A heading that holds a comma, quote or line end, as CSV readers want it.
+fn quoted(name: &str) -> String {
+    name.replace([',', '"', '\n', '\r'], "_")
+}

@@ -1,0 +1,104 @@
+//! The answer as JSON: angles in degrees, every absent measure with its reason.
+
+use serde_json::{Map, Value, json};
+
+use super::{ControllerResult, Judgement, Simulation};
+use crate::metrics::{EdgeMetrics, Measured, StepMetrics};
+use crate::units::degrees;
+
+/// Version of the answer's shape.
+const SCHEMA: u32 = 1;
+
+impl Simulation {
+    /// The answer of `simulate --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut answer = json!({
+            "schema": SCHEMA,
+            "scenario": self.scenario,
+            "controllers": self.results.iter().map(controller).collect::<Vec<_>>(),
+        });
+        if !self.judgements.is_empty() {
+            answer["requirements"] = self.judgements.iter().map(judgement).collect();
+        }
+        answer
+    }
+}
+
+fn controller(result: &ControllerResult) -> Value {
+    let metrics = &result.metrics;
+    let mut measures = step_measures(&metrics.first_step());
+    let integrals = metrics.integrals;
+    measures.extend([
+        ("iae", integrals.map(|i| degrees(i.iae_rad_s))),
+        ("itae", integrals.map(|i| degrees(i.itae_rad_s2))),
+        ("ise", integrals.map(|i| degrees(degrees(i.ise_rad2_s)))),
+        ("itse", integrals.map(|i| degrees(degrees(i.itse_rad2_s2)))),
+        ("command_variation", metrics.effort.map(|e| degrees(e.variation_rad))),
+        ("command_max_deg", metrics.effort.map(|e| degrees(e.largest_rad))),
+    ]);
+    let (values, absent) = split(&measures);
+    json!({
+        "name": result.name,
+        "verdict": metrics.verdict.to_string(),
+        "metrics": values,
+        "absent": absent,
+        "edges": metrics.edges.iter().map(edge).collect::<Vec<_>>(),
+        "saturated_samples": result.trace.saturated_samples,
+        "faults": result.trace.faults.to_string(),
+    })
+}
+
+fn edge(edge: &EdgeMetrics) -> Value {
+    let (values, absent) = split(&step_measures(&edge.step));
+    json!({
+        "at_s": edge.at_s,
+        "from_deg": degrees(edge.from_rad),
+        "to_deg": degrees(edge.to_rad),
+        "metrics": values,
+        "absent": absent,
+    })
+}
+
+fn step_measures(step: &StepMetrics) -> Vec<(&'static str, Measured)> {
+    vec![
+        ("rise_time_s", step.rise_time_s),
+        ("settling_time_s", step.settling_time_s),
+        ("transient_time_s", step.transient_time_s),
+        ("overshoot_pct", step.overshoot_pct),
+        ("undershoot_pct", step.undershoot_pct),
+        ("final_error_pct", step.final_error_pct),
+        ("peak_deg", step.peak.map(degrees)),
+        ("peak_time_s", step.peak_time_s),
+    ]
+}
+
+/// Every measure by name, `null` for an absent one, and the reasons of the absent ones.
+fn split(measures: &[(&'static str, Measured)]) -> (Map<String, Value>, Map<String, Value>) {
+    let mut values = Map::new();
+    let mut absent = Map::new();
+    for (name, measured) in measures {
+        match measured {
+            Ok(value) => values.insert((*name).to_owned(), json!(value)),
+            Err(reason) => {
+                absent.insert((*name).to_owned(), json!(reason.to_string()));
+                values.insert((*name).to_owned(), Value::Null)
+            }
+        };
+    }
+    (values, absent)
+}
+
+fn judgement(judgement: &Judgement) -> Value {
+    let mut answer = json!({
+        "controller": judgement.controller,
+        "measure": judgement.requirement.measure.name(),
+        "most": judgement.requirement.most,
+        "met": judgement.met,
+    });
+    match judgement.value {
+        Ok(value) => answer["value"] = json!(value),
+        Err(reason) => answer["absent"] = json!(reason.to_string()),
+    }
+    answer
+}

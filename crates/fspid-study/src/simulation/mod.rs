@@ -1,0 +1,100 @@
+//! Flying a study: every controller's trace, measures and verdict, and whether requirements are met.
+
+mod csv;
+mod json;
+mod text;
+
+use fspid_sim::stability::instability;
+use fspid_sim::{SimError, Trace, simulate};
+
+use crate::file::{Requirement, Study};
+use crate::metrics::FlightMetrics;
+
+/// One controller's flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControllerResult {
+    /// Name of the controller.
+    pub name: String,
+    /// What happened.
+    pub trace: Trace,
+    /// What it amounts to.
+    pub metrics: FlightMetrics,
+}
+
+/// A requirement and how a controller stands to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// Name of the controller.
+    pub controller: String,
+    /// What is required.
+    pub requirement: Requirement,
+    /// The value, or why there is none (which never meets a requirement).
+    pub value: crate::metrics::Measured,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+/// A study that has been flown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// One result a controller, in the file's order.
+    pub results: Vec<ControllerResult>,
+    /// One judgement for each requirement and controller it concerns.
+    pub judgements: Vec<Judgement>,
+}
+
+impl Simulation {
+    /// Flies the study.
+    ///
+    /// # Errors
+    /// [`SimError`] where the plants cannot be sampled; an unstable loop is a result, not an error.
+    pub fn of(study: &Study) -> Result<Self, SimError> {
+        let scenario = &study.scenario;
+        let flight = simulate(scenario)?;
+        let results = scenario
+            .controllers
+            .iter()
+            .zip(flight.traces)
+            .map(|(named, trace)| {
+                let unstable = instability(scenario, &named.controller)?;
+                let metrics = FlightMetrics::of(&trace, &flight.edges, scenario.timing, unstable);
+                Ok(ControllerResult { name: named.name.clone(), trace, metrics })
+            })
+            .collect::<Result<Vec<_>, SimError>>()?;
+        let judgements = judge(&study.requirements, &results);
+        Ok(Self { scenario: scenario.name.clone(), results, judgements })
+    }
+
+    /// True if every requirement is met.
+    #[must_use]
+    pub fn requirements_met(&self) -> bool {
+        self.judgements.iter().all(|judgement| judgement.met)
+    }
+
+    /// The result of the controller with this name.
+    #[must_use]
+    pub fn result(&self, name: &str) -> Option<&ControllerResult> {
+        self.results.iter().find(|result| result.name == name)
+    }
+}
+
+fn judge(requirements: &[Requirement], results: &[ControllerResult]) -> Vec<Judgement> {
+    let mut judgements = Vec::new();
+    for requirement in requirements {
+        for result in results {
+            if requirement.controller.as_ref().is_some_and(|name| *name != result.name) {
+                continue;
+            }
+            let value = requirement.measure.worst(&result.metrics);
+            judgements.push(Judgement {
+                controller: result.name.clone(),
+                requirement: requirement.clone(),
+                value,
+                met: value.is_ok_and(|value| value.abs() <= requirement.most),
+            });
+        }
+    }
+    judgements
+}

@@ -1,0 +1,78 @@
+//! The answer for people.
+
+use std::fmt::Write as _;
+
+use super::Simulation;
+use crate::metrics::{Absent, Measured, StepMetrics};
+use crate::units::degrees;
+
+impl Simulation {
+    /// The answer of `simulate --format text`: a table of controllers, one line for each step of the
+    /// command, then the requirements.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = format!("{}\n", self.scenario);
+        let width = self.results.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(10);
+        for result in &self.results {
+            let metrics = &result.metrics;
+            line(&mut out, format_args!("\n{:width$}  {}", result.name, metrics.verdict));
+            for (index, edge) in metrics.edges.iter().enumerate() {
+                line(&mut out, format_args!(
+                    "  step {} at {:.2} s, {:+.3} to {:+.3} deg: {}",
+                    index + 1,
+                    edge.at_s,
+                    degrees(edge.from_rad),
+                    degrees(edge.to_rad),
+                    step(&edge.step),
+                ));
+            }
+            if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
+                line(&mut out, format_args!(
+                    "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, largest command {:.3} deg",
+                    degrees(integrals.iae_rad_s),
+                    degrees(integrals.itae_rad_s2),
+                    degrees(degrees(integrals.ise_rad2_s)),
+                    degrees(effort.variation_rad),
+                    degrees(effort.largest_rad),
+                ));
+            }
+            if !result.trace.faults.is_empty() {
+                line(&mut out, format_args!("  faults: {}", result.trace.faults));
+            }
+        }
+        for judgement in &self.judgements {
+            let met = if judgement.met { "met" } else { "NOT MET" };
+            let value = match judgement.value {
+                Ok(value) => format!("{value:.4}"),
+                Err(reason) => reason.to_string(),
+            };
+            let (name, most) = (judgement.requirement.measure.name(), judgement.requirement.most);
+            line(&mut out, format_args!("\n{met}: {} {name} {value}, at most {most}", judgement.controller));
+        }
+        out
+    }
+}
+
+/// Writing to a string cannot fail.
+fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
+    let _ = writeln!(out, "{text}");
+}
+
+fn step(step: &StepMetrics) -> String {
+    if let Err(reason @ (Absent::Diverged { .. } | Absent::Unstable { .. } | Absent::NotFinite)) =
+        step.overshoot_pct
+    {
+        return format!("no measures ({reason})");
+    }
+    let show = |measured: Measured, unit: &str| match measured {
+        Ok(value) => format!("{value:.3}{unit}"),
+        Err(reason) => reason.to_string(),
+    };
+    format!(
+        "rise {}, settling {}, overshoot {}, final error {}",
+        show(step.rise_time_s, " s"),
+        show(step.settling_time_s, " s"),
+        show(step.overshoot_pct, " %"),
+        show(step.final_error_pct, " %"),
+    )
+}
