@@ -1,1 +1,3 @@
 //! fspid-study
+
+pub mod figure;

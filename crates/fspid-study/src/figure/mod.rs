@@ -1,0 +1,21 @@
+//! Figures for the report: data in, one self-contained SVG out.
+//!
+//! All inputs are plain owned data in display units (degrees, seconds); all outputs are [`Svg`]. A figure
+//! never fails: what is not finite interrupts a line, what is empty is drawn empty. The same input gives
+//! the same bytes. Colours are CSS variables with fallbacks, so one file is right on white paper and
+//! inline in a dark page; [`page_style`] is the style sheet for such a page.
+//!
+//! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
+
+mod axis;
+mod line;
+mod page;
+mod plot;
+mod style;
+mod svg;
+mod text;
+mod thin;
+
+pub use line::{Band, LineFigure, LinePanel, Series};
+pub use style::{SeriesStyle, page_style};
+pub use svg::Svg;
