@@ -5,17 +5,22 @@
 //! the same bytes. Colours are CSS variables with fallbacks, so one file is right on white paper and
 //! inline in a dark page; [`page_style`] is the style sheet for such a page.
 //!
+//! This module draws and does not compute: peaks, tolerances and ratios come from its callers. Why `kuva`
 //! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
 
 mod axis;
 mod line;
+mod membership;
 mod page;
 mod plot;
+mod ratio;
 mod style;
 mod svg;
 mod text;
 mod thin;
 
 pub use line::{Band, LineFigure, LinePanel, Series};
+pub use membership::memberships;
+pub use ratio::RatioFigure;
 pub use style::{SeriesStyle, page_style};
 pub use svg::Svg;
