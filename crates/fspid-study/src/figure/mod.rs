@@ -9,18 +9,24 @@
 //! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
 
 mod axis;
+mod contour;
 mod line;
 mod membership;
 mod page;
 mod plot;
 mod ratio;
+mod rules;
 mod style;
+mod surface;
 mod svg;
 mod text;
 mod thin;
+mod view;
 
 pub use line::{Band, LineFigure, LinePanel, Series};
 pub use membership::memberships;
 pub use ratio::RatioFigure;
+pub use rules::{Mark, RuleTable, SEVEN};
 pub use style::{SeriesStyle, page_style};
+pub use surface::{Surface, SurfaceKind};
 pub use svg::Svg;
