@@ -10,6 +10,7 @@
 
 mod axis;
 mod contour;
+pub mod diagrams;
 mod line;
 mod membership;
 mod page;
