@@ -20,6 +20,8 @@ mod rules;
 mod style;
 mod surface;
 mod svg;
+#[cfg(test)]
+mod tests;
 mod text;
 mod thin;
 mod view;
