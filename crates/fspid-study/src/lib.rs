@@ -1,4 +1,11 @@
-//! fspid-study
+//! Studies of a closed loop: from the text of a scenario to verdicts and reports.
+//!
+//! ```text
+//! text ─parse▶ document ─validate▶ Study ─simulate▶ Trace ─measure▶ metrics ─judge▶ verdicts ─render▶ report
+//! ```
+//!
+//! One function per verb; the edges (command line, later Python and the browser) contain no formula.
+//! Only this crate knows TOML, JSON and HTML, and only here do degrees become radians and back.
 
 #![cfg_attr(
     test,
@@ -8,5 +15,8 @@
     )
 )]
 
+pub mod figure;
 pub mod metrics;
+pub mod output;
 pub mod tune;
+pub mod units;

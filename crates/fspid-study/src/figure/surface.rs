@@ -1,0 +1,354 @@
+//! A gain as a function of error and change of error: seen in space, or as a map.
+
+use super::axis::{Axis, extent, short_number};
+use super::contour::Grid;
+use super::page::{self, EDGE, LABEL_PX};
+use super::plot::TICK_PX;
+use super::style::{Role, diverging};
+use super::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
+use super::text::text_width;
+use super::view::View;
+
+/// How a [`Surface`] is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurfaceKind {
+    /// Seen from above and aside, right-handed axes.
+    View,
+    /// A map with lines of equal value: full where positive, dashed where negative, thick at zero.
+    Map,
+}
+
+/// Values over a rectangular grid; the colour scale is centred at zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Printed above the figure and read out by screen readers.
+    pub title: String,
+    /// Name and unit along `xs`.
+    pub x_label: String,
+    /// Name and unit along `ys`.
+    pub y_label: String,
+    /// Name and unit of the values.
+    pub z_label: String,
+    /// Ascending abscissas.
+    pub xs: Vec<f64>,
+    /// Ascending ordinates.
+    pub ys: Vec<f64>,
+    /// `values[i][j]` belongs to `xs[j]` and `ys[i]`; what is not finite or missing is left out.
+    pub values: Vec<Vec<f64>>,
+    /// Largest magnitude of the colour scale, to compare figures; `None` takes that of the values.
+    pub limit: Option<f64>,
+}
+
+const WIDTH: f64 = 500.0;
+const MAP: f64 = 336.0;
+const BAR: f64 = 14.0;
+
+impl Surface {
+    /// Draws the surface.
+    #[must_use]
+    pub fn render(&self, kind: SurfaceKind) -> Svg {
+        match kind {
+            SurfaceKind::View => self.view(),
+            SurfaceKind::Map => self.map(),
+        }
+    }
+
+    fn extent(&self) -> Option<(f64, f64)> {
+        extent(self.values.iter().flatten().copied())
+    }
+
+    fn limit(&self) -> f64 {
+        let largest = self.extent().map_or(1.0, |(lo, hi)| lo.abs().max(hi.abs()));
+        let limit = self
+            .limit
+            .filter(|limit| limit.is_finite() && *limit > 0.0)
+            .unwrap_or(largest);
+        if limit > 0.0 { limit } else { 1.0 }
+    }
+
+    fn view(&self) -> Svg {
+        let top = page::title_height(&self.title, WIDTH);
+        let height = 330.0;
+        let mut canvas = Canvas::new(WIDTH, top + height + EDGE);
+        page::title(&mut canvas, &self.title);
+        let ranges = [
+            extent(self.xs.iter().copied()),
+            extent(self.ys.iter().copied()),
+            self.extent(),
+        ];
+        let [x, y, z] = ranges.map(|range| Axis::linear(range, 0.0, 5));
+        let view = View::new(
+            [x, y, z],
+            Rect {
+                x: EDGE,
+                y: top,
+                width: WIDTH - 2.0 * EDGE - 56.0,
+                height,
+            },
+        );
+        let limit = self.limit();
+        view.room(&mut canvas, [&self.x_label, &self.y_label, &self.z_label]);
+        view.faces(&mut canvas, &self.coarse(), |value| {
+            Role::Fixed(diverging(value, limit))
+        });
+        let bar = Rect {
+            x: WIDTH - EDGE - 52.0,
+            y: top + 24.0,
+            width: BAR,
+            height: 186.0,
+        };
+        self.bar(&mut canvas, bar, &z, &shades(&z));
+        canvas.finish(&self.title, &self.describe("Surface in space"))
+    }
+
+    /// At most 40 cells each way: more would only thicken the lines.
+    fn coarse(&self) -> Grid {
+        let pick = |count: usize| -> Vec<usize> {
+            let step = count.saturating_sub(1).div_ceil(40).max(1);
+            let mut kept: Vec<usize> = (0..count).step_by(step).collect();
+            if kept.last().is_some_and(|last| last + 1 < count) {
+                kept.push(count - 1);
+            }
+            kept
+        };
+        let (rows, columns) = (pick(self.ys.len()), pick(self.xs.len()));
+        let value = |i: &usize, j: &usize| {
+            self.values
+                .get(*i)
+                .and_then(|row| row.get(*j))
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        Grid {
+            values: rows
+                .iter()
+                .map(|i| columns.iter().map(|j| value(i, j)).collect())
+                .collect(),
+            xs: columns
+                .iter()
+                .filter_map(|j| self.xs.get(*j).copied())
+                .collect(),
+            ys: rows
+                .iter()
+                .filter_map(|i| self.ys.get(*i).copied())
+                .collect(),
+        }
+    }
+
+    fn map(&self) -> Svg {
+        let [x, y] =
+            [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
+        let left = EDGE + page::upright_room(1) + page::tick_room(&y);
+        let top = page::title_height(&self.title, WIDTH) + 4.0;
+        let area = Rect {
+            x: left,
+            y: top,
+            width: MAP,
+            height: MAP,
+        };
+        let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
+        page::title(&mut canvas, &self.title);
+        let grid = Grid {
+            xs: self
+                .xs
+                .iter()
+                .map(|v| area.x + x.fraction(*v) * area.width)
+                .collect(),
+            ys: self
+                .ys
+                .iter()
+                .map(|v| area.y + (1.0 - y.fraction(*v)) * area.height)
+                .collect(),
+            values: self.values.clone(),
+        };
+        let z = Axis::linear(self.extent(), 0.0, 10);
+        canvas.begin_clip(area);
+        self.paint_map(&mut canvas, &grid, &z);
+        canvas.end();
+        map_axes(&mut canvas, area, &x, &y);
+        canvas.text(
+            area.x + MAP / 2.0,
+            top + MAP + 36.0,
+            &self.x_label,
+            Font::new(LABEL_PX, Anchor::Middle),
+        );
+        page::upright_label(
+            &mut canvas,
+            EDGE + LABEL_PX,
+            top + MAP / 2.0,
+            std::slice::from_ref(&self.y_label),
+        );
+        let bar = Rect {
+            x: area.x + MAP + 22.0,
+            y: top,
+            width: BAR,
+            height: MAP,
+        };
+        self.bar(&mut canvas, bar, &z, &bands(&z));
+        for level in levels(&z) {
+            let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
+            canvas.line(
+                (bar.x, y),
+                (bar.x + bar.width, y),
+                &level_line(level, z.step()),
+            );
+        }
+        canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
+    }
+
+    fn paint_map(&self, canvas: &mut Canvas, grid: &Grid, z: &Axis) {
+        let Some((lowest, _)) = self.extent() else {
+            return;
+        };
+        let (limit, levels) = (self.limit(), levels(z));
+        let floor = levels.first().map_or(lowest, |first| first - z.step());
+        for base in std::iter::once(floor).chain(levels.iter().copied()) {
+            let from = if base <= floor {
+                f64::NEG_INFINITY
+            } else {
+                base
+            };
+            let d: String = grid
+                .region(from)
+                .iter()
+                .map(|polygon| polyline_data(polygon, true))
+                .collect();
+            if !d.is_empty() {
+                canvas.path(
+                    &d,
+                    &Paint::face(Role::Fixed(diverging(base + z.step() / 2.0, limit))),
+                );
+            }
+        }
+        for level in levels {
+            let d: String = grid
+                .lines(level)
+                .iter()
+                .map(|line| polyline_data(line, false))
+                .collect();
+            if !d.is_empty() {
+                canvas.path(&d, &level_line(level, z.step()));
+            }
+        }
+    }
+
+    /// The colour bar with its numbers; `slices` are its boundaries from below.
+    fn bar(&self, canvas: &mut Canvas, r: Rect, z: &Axis, slices: &[f64]) {
+        let limit = self.limit();
+        let place = |value: f64| r.y + (1.0 - z.fraction(value)) * r.height;
+        for pair in slices.windows(2) {
+            let &[lo, hi] = pair else { continue };
+            // Each slice reaches under the one above it, so that no seam shows.
+            let height = (place(lo) - place(hi) + 0.6).min(r.y + r.height - place(hi));
+            let colour = diverging(lo / 2.0 + hi / 2.0, limit);
+            canvas.rect(
+                r.x,
+                place(hi),
+                r.width,
+                height,
+                &Paint::face(Role::Fixed(colour)),
+            );
+        }
+        canvas.rect(r.x, r.y, r.width, r.height, &Paint::line(Role::Ink, 0.8));
+        let mut widest = 0.0_f64;
+        for tick in z.ticks() {
+            let y = r.y + (1.0 - tick.at) * r.height;
+            canvas.line(
+                (r.x + r.width, y),
+                (r.x + r.width + 4.0, y),
+                &Paint::line(Role::Ink, 1.0),
+            );
+            canvas.text(
+                r.x + r.width + 7.0,
+                y + TICK_PX * 0.36,
+                &tick.label,
+                Font::new(TICK_PX, Anchor::Start),
+            );
+            widest = widest.max(text_width(&tick.label, TICK_PX));
+        }
+        let x = (r.x + r.width + 22.0 + widest).min(WIDTH - 4.0);
+        page::upright_label(
+            canvas,
+            x,
+            r.y + r.height / 2.0,
+            std::slice::from_ref(&self.z_label),
+        );
+    }
+
+    fn describe(&self, kind: &str) -> String {
+        let (lo, hi) = self.extent().unwrap_or((f64::NAN, f64::NAN));
+        let (lo, hi) = (short_number(lo), short_number(hi));
+        format!(
+            "{kind}: {} over {} and {}, from {lo} to {hi}.",
+            self.z_label, self.x_label, self.y_label
+        )
+    }
+}
+
+/// Values of the ticks of `z` strictly inside its range.
+fn levels(z: &Axis) -> Vec<f64> {
+    let slack = (z.hi - z.lo) * 1e-6;
+    let first = (z.lo / z.step()).floor();
+    (0..60)
+        .map(|n| (first + f64::from(n)) * z.step())
+        .filter(|level| *level > z.lo + slack && *level < z.hi - slack)
+        .collect()
+}
+
+/// Boundaries of the bands of a map: the levels and both ends.
+fn bands(z: &Axis) -> Vec<f64> {
+    std::iter::once(z.lo)
+        .chain(levels(z))
+        .chain(std::iter::once(z.hi))
+        .collect()
+}
+
+/// Boundaries so close that the scale looks continuous.
+fn shades(z: &Axis) -> Vec<f64> {
+    (0..=64)
+        .map(|n| z.lo + (z.hi - z.lo) * f64::from(n) / 64.0)
+        .collect()
+}
+
+/// Thick at zero, full above and dashed below it.
+fn level_line(level: f64, step: f64) -> Paint {
+    let ink = Role::Fixed([40, 40, 40]);
+    if level.abs() < step * 1e-6 {
+        Paint::line(ink, 1.6)
+    } else if level > 0.0 {
+        Paint::line(ink, 0.7)
+    } else {
+        Paint::line(ink, 0.7).dashed("4 2.5")
+    }
+}
+
+fn map_axes(canvas: &mut Canvas, area: Rect, x: &Axis, y: &Axis) {
+    canvas.rect(
+        area.x,
+        area.y,
+        area.width,
+        area.height,
+        &Paint::line(Role::Ink, 1.0),
+    );
+    let (bottom, ink) = (area.y + area.height, Paint::line(Role::Ink, 1.0));
+    for tick in x.ticks() {
+        let at = area.x + tick.at * area.width;
+        canvas.line((at, bottom), (at, bottom + 4.0), &ink);
+        canvas.text(
+            at,
+            bottom + 4.0 + TICK_PX,
+            &tick.label,
+            Font::new(TICK_PX, Anchor::Middle),
+        );
+    }
+    for tick in y.ticks() {
+        let at = bottom - tick.at * area.height;
+        canvas.line((area.x - 4.0, at), (area.x, at), &ink);
+        canvas.text(
+            area.x - 7.0,
+            at + TICK_PX * 0.36,
+            &tick.label,
+            Font::new(TICK_PX, Anchor::End),
+        );
+    }
+}

@@ -1,0 +1,207 @@
+//! A surface seen in space: parallel projection, far faces first.
+
+use super::axis::Axis;
+use super::contour::Grid;
+use super::page::LABEL_PX;
+use super::plot::TICK_PX;
+use super::style::Role;
+use super::svg::{Anchor, Canvas, Font, Paint, Rect};
+
+/// Half the height of the room over half its width.
+const RISE: f64 = 0.62;
+
+/// A room with three axes and where its points fall on the canvas.
+///
+/// The observer stands at -60 deg from the x axis and 26 deg above the floor, so x runs to the right,
+/// y to the back and z upwards: a right-handed system.
+#[derive(Debug, Clone)]
+pub(super) struct View {
+    axes: [Axis; 3],
+    centre: (f64, f64),
+    scale: f64,
+}
+
+/// Sine and cosine of the observer's azimuth and elevation.
+const AZIMUTH: (f64, f64) = (-0.866_025_403_784_438_6, 0.5);
+const ELEVATION: (f64, f64) = (0.438_371_146_789_077_4, 0.898_794_046_299_167);
+
+impl View {
+    /// A room that fills `area` with space for its labels.
+    pub(super) fn new(axes: [Axis; 3], area: Rect) -> Self {
+        let scale = (area.width / 3.3).min(area.height / 2.75);
+        Self {
+            axes,
+            centre: (area.x + area.width * 0.55, area.y + area.height * 0.455),
+            scale,
+        }
+    }
+
+    /// Canvas place and depth of a point whose coordinates run from -1 to 1; nearer is larger.
+    fn project(&self, [x, y, z]: [f64; 3]) -> ((f64, f64), f64) {
+        let ((sa, ca), (se, ce)) = (AZIMUTH, ELEVATION);
+        let z = z * RISE;
+        let right = -sa * x + ca * y;
+        let up = -se * ca * x - se * sa * y + ce * z;
+        let near = ce * ca * x + ce * sa * y + se * z;
+        (
+            (
+                self.centre.0 + right * self.scale,
+                self.centre.1 - up * self.scale,
+            ),
+            near,
+        )
+    }
+
+    fn at(&self, point: [f64; 3]) -> (f64, f64) {
+        self.project(point).0
+    }
+
+    fn inside(&self, axis: usize, value: f64) -> f64 {
+        self.axes
+            .get(axis)
+            .map_or(0.0, |axis| axis.fraction(value) * 2.0 - 1.0)
+    }
+
+    /// Draws floor, back walls, grid, ticks and labels.
+    pub(super) fn room(&self, canvas: &mut Canvas, labels: [&str; 3]) {
+        let wall = Paint::line(Role::Setpoint, 0.8).filled(Role::Face);
+        for corners in [
+            [
+                [-1.0, -1.0, -1.0],
+                [1.0, -1.0, -1.0],
+                [1.0, 1.0, -1.0],
+                [-1.0, 1.0, -1.0],
+            ],
+            [
+                [-1.0, -1.0, -1.0],
+                [-1.0, 1.0, -1.0],
+                [-1.0, 1.0, 1.0],
+                [-1.0, -1.0, 1.0],
+            ],
+            [
+                [-1.0, 1.0, -1.0],
+                [1.0, 1.0, -1.0],
+                [1.0, 1.0, 1.0],
+                [-1.0, 1.0, 1.0],
+            ],
+        ] {
+            canvas.polyline(&corners.map(|corner| self.at(corner)), true, &wall);
+        }
+        // Per axis: the edge it is written along, and for its grid lines where they start, bend and end.
+        let x_path = |t: f64| [[t, -1.0, -1.0], [t, 1.0, -1.0], [t, 1.0, 1.0]];
+        let y_path = |t: f64| [[1.0, t, -1.0], [-1.0, t, -1.0], [-1.0, t, 1.0]];
+        let z_path = |t: f64| [[-1.0, -1.0, t], [-1.0, 1.0, t], [1.0, 1.0, t]];
+        self.axis(canvas, 0, labels[0], &x_path);
+        self.axis(canvas, 1, labels[1], &y_path);
+        self.axis(canvas, 2, labels[2], &z_path);
+    }
+
+    /// Grid lines, ticks and label of one axis; ticks stand where its grid lines start.
+    fn axis(
+        &self,
+        canvas: &mut Canvas,
+        n: usize,
+        label: &str,
+        path: &dyn Fn(f64) -> [[f64; 3]; 3],
+    ) {
+        let (ends, middle) = (
+            [path(-1.0)[0], path(1.0)[0]].map(|end| self.at(end)),
+            self.at(path(0.0)[0]),
+        );
+        // Outwards, away from the middle of the room.
+        let outward = match n {
+            0 => (-0.35, 0.94),
+            1 => (0.8, 0.6),
+            _ => (-1.0, 0.0),
+        };
+        let anchor = [Anchor::End, Anchor::Start, Anchor::End]
+            .get(n)
+            .copied()
+            .unwrap_or(Anchor::Middle);
+        for tick in self.axes.get(n).map(Axis::ticks).unwrap_or_default() {
+            let points = path(tick.at * 2.0 - 1.0).map(|point| self.at(point));
+            canvas.polyline(&points, false, &Paint::line(Role::Grid, 0.7));
+            let (x, y) = points[0];
+            canvas.line(
+                (x, y),
+                (x + outward.0 * 5.0, y + outward.1 * 5.0),
+                &Paint::line(Role::Ink, 1.0),
+            );
+            let (tx, ty) = (
+                x + outward.0 * 8.0,
+                y + outward.1 * 9.0 + TICK_PX * (0.36 + 0.3 * outward.1),
+            );
+            canvas.text(tx, ty, &tick.label, Font::new(TICK_PX, anchor));
+        }
+        canvas.line(ends[0], ends[1], &Paint::line(Role::Ink, 1.0));
+        let slope = (ends[1].1 - ends[0].1)
+            .atan2(ends[1].0 - ends[0].0)
+            .to_degrees();
+        let (x, y) = match n {
+            0 => (middle.0 - 16.0, middle.1 + 42.0),
+            1 => (middle.0 + 44.0, middle.1 + 29.0),
+            _ => (middle.0 - 40.0, middle.1),
+        };
+        let turn = if n == 2 { -90.0 } else { slope };
+        canvas.text(
+            x,
+            y,
+            label,
+            Font::new(LABEL_PX, Anchor::Middle).turned(turn),
+        );
+    }
+
+    /// Draws the faces of `grid`, whose nodes are in display units.
+    pub(super) fn faces(&self, canvas: &mut Canvas, grid: &Grid, colour: impl Fn(f64) -> Role) {
+        let (rows, columns) = grid.cells();
+        let mut faces = Vec::new();
+        for i in 0..rows {
+            for j in 0..columns {
+                let Some(cell) = grid.cell(i, j) else {
+                    continue;
+                };
+                let corners =
+                    cell.map(|(x, y, z)| [self.inside(0, x), self.inside(1, y), self.inside(2, z)]);
+                let mean = cell.iter().map(|corner| corner.2 / 4.0).sum::<f64>();
+                // Height does not decide what hides what in a surface over the floor.
+                let depth: f64 = corners
+                    .iter()
+                    .map(|[x, y, _]| self.project([*x, *y, 0.0]).1)
+                    .sum();
+                faces.push((depth, corners.map(|corner| self.at(corner)), mean));
+            }
+        }
+        faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, corners, mean) in faces {
+            let paint = Paint::line(Role::Fixed([70, 70, 70]), 0.35).filled(colour(mean));
+            canvas.polyline(&corners, true, &paint);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axes_are_right_handed_and_z_points_up() {
+        let axis = Axis::linear(Some((0.0, 1.0)), 0.0, 5);
+        let view = View::new(
+            [axis; 3],
+            Rect {
+                x: 0.0,
+                y: 0.0,
+                width: 100.0,
+                height: 100.0,
+            },
+        );
+        let origin = view.at([0.0; 3]);
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|p| {
+            let at = view.at(p);
+            (at.0 - origin.0, origin.1 - at.1)
+        });
+        assert!(z.0.abs() < 1e-9 && z.1 > 0.0);
+        // Seen from above, x turns counterclockwise into y.
+        assert!(x.0 * y.1 - x.1 * y.0 > 0.0);
+    }
+}
