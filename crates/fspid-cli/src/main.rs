@@ -1,2 +1,65 @@
-//! fspid
-fn main() {}
+//! `fspid`: the workbench for fuzzy self-tuning PID flight controllers, on the command line.
+//!
+//! One file a command; each calls one function of `fspid-study` and prints what it answers. Standard
+//! output is data, standard error is for people.
+
+mod commands;
+mod exit;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use exit::Failure;
+
+/// Design, simulate and judge fuzzy self-tuning PID controllers of an aircraft's pitch.
+#[derive(Debug, Parser)]
+#[command(
+    name = "fspid",
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Reproduce(commands::reproduce::Arguments),
+    Init(commands::init::Arguments),
+    Check(commands::check::Arguments),
+    Simulate(commands::simulate::Arguments),
+    Infer(commands::infer::Arguments),
+    Schema(commands::schema::Arguments),
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are no mistakes; clap knows which stream is right.
+            let code = if error.use_stderr() { Failure::INPUT } else { 0 };
+            return match error.print() {
+                Ok(()) => ExitCode::from(code),
+                Err(_) => ExitCode::from(Failure::OUTPUT),
+            };
+        }
+    };
+    let done = match arguments.command {
+        Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
+        Command::Init(arguments) => commands::init::run(&arguments),
+        Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Simulate(arguments) => commands::simulate::run(&arguments),
+        Command::Infer(arguments) => commands::infer::run(&arguments),
+        Command::Schema(arguments) => commands::schema::run(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}

@@ -7,7 +7,7 @@
 //! $$ z_{k+1} = M z_k, \qquad z = (x, \delta, \text{delayed commands}, I, d, y_{k-1}) $$
 
 use fspid_core::{Gains, Shell};
-use fspid_lti::{Matrix, spectral_radius};
+use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -69,6 +69,19 @@ pub fn loop_spectral_radius(
 ) -> Result<f64, SimError> {
     let propagator = Propagator::new(&scenario.plant, scenario.servo, shell.dt_s)?;
     Ok(spectral_radius(&closed_loop(&propagator, gains, shell)?)?)
+}
+
+/// Poles of the sampled loop of one plant with fixed gains and no limits.
+///
+/// # Errors
+/// [`SimError`] where the plant cannot be discretised or the eigenvalues are not found.
+pub fn loop_poles(
+    scenario: &Scenario,
+    gains: Gains<f64>,
+    shell: &Shell<f64>,
+) -> Result<Vec<Complex>, SimError> {
+    let propagator = Propagator::new(&scenario.plant, scenario.servo, shell.dt_s)?;
+    Ok(eigenvalues(&closed_loop(&propagator, gains, shell)?)?)
 }
 
 /// Where the parts of the state stand.

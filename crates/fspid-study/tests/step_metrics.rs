@@ -1,6 +1,9 @@
 //! Step metrics against event-located values made by `oracles/make_step_metrics.py`.
 
-#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+#![allow(
+    clippy::float_cmp,
+    reason = "tests ask for exact bits where they compare floats"
+)]
 
 use std::path::Path;
 

@@ -2,10 +2,12 @@
 
 mod effort;
 mod flight;
+mod measure;
 mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
+pub use measure::Measure;
 pub use step::{StepMetrics, StepWindow};
 
 use std::fmt;

@@ -1,0 +1,52 @@
+//! `fspid simulate`: fly a scenario.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::simulation::Simulation;
+use fspid_study::{file, output, report};
+
+/// Fly a scenario: metrics and verdict of each controller, traces and a report if asked for.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scenario file.
+    file: PathBuf,
+    /// Set a value before flying, e.g. `--set loop.sample_period_s=0.02`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Write the traces of all controllers to this CSV file.
+    #[arg(long, value_name = "OUT.csv")]
+    trace: Option<PathBuf>,
+    /// Write a report that opens offline in a browser.
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let simulation = Simulation::of(&study).map_err(Failure::input)?;
+    if let Some(path) = &arguments.trace {
+        output::write(path, simulation.csv())?;
+    }
+    if let Some(path) = &arguments.report {
+        output::write(path, report::of_simulation(&study, &simulation))?;
+    }
+    match arguments.format {
+        Format::Text => print(&simulation.text())?,
+        Format::Json => print(&json_text(&simulation.json()))?,
+    }
+    if simulation.requirements_met() {
+        return Ok(());
+    }
+    let failed = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
+    Err(Failure::not_met(format_args!("{failed} requirement(s) not met")))
+}
