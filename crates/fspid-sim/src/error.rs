@@ -3,6 +3,7 @@
 use std::fmt;
 
 use fspid_core::ConfigError;
+use fspid_core::fuzzy::FuzzyError;
 use fspid_lti::LtiError;
 
 /// Why a part of a scenario could not be built.
@@ -45,6 +46,8 @@ pub enum SimError {
     Linear(LtiError),
     /// The controller is refused.
     Controller(ConfigError),
+    /// The supervisor is refused.
+    Supervisor(FuzzyError),
 }
 
 impl fmt::Display for SimError {
@@ -67,6 +70,7 @@ impl fmt::Display for SimError {
             Self::Table { problem, row } => write!(f, "set-point table, row {row}: {problem}"),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
+            Self::Supervisor(error) => error.fmt(f),
         }
     }
 }
@@ -76,6 +80,12 @@ impl std::error::Error for SimError {}
 impl From<LtiError> for SimError {
     fn from(error: LtiError) -> Self {
         Self::Linear(error)
+    }
+}
+
+impl From<FuzzyError> for SimError {
+    fn from(error: FuzzyError) -> Self {
+        Self::Supervisor(error)
     }
 }
 

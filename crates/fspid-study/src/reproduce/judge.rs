@@ -1,7 +1,8 @@
 //! Holding our flights against the paper's numbers.
 
-use super::claim::{CLAIMS, Claim, Printed, Quantity, Reading, Status, judge_change};
+use super::claim::{CLAIMS, Claim, Printed, Quantity, Status, judge_change};
 use super::figures::{FIGURES, Fit, FlownFigure};
+use super::reading::{FigureFlight, claim, figure_of, number};
 use crate::metrics::Absent;
 
 /// A number of the paper and what came of it.
@@ -26,26 +27,41 @@ pub struct JudgedClaim {
 /// Judges every number against the flights.
 #[must_use]
 pub fn judge(figures: &[FlownFigure]) -> Vec<JudgedClaim> {
-    CLAIMS.iter().map(|claim| judge_claim(claim, figures)).collect()
+    let own = flights(Fit::Own, figures);
+    let shared = flights(Fit::Shared, figures);
+    CLAIMS.iter().map(|claim| judge_claim(claim, &own, &shared)).collect()
 }
 
-fn judge_claim(claim: &Claim, figures: &[FlownFigure]) -> JudgedClaim {
-    let (ours, status) = judge_under(Fit::Own, claim, figures);
-    let (shared, shared_status) = judge_under(Fit::Shared, claim, figures);
+/// The flights of all figures under one fit.
+fn flights(fit: Fit, figures: &[FlownFigure]) -> Vec<FigureFlight<'_>> {
+    let of_figure = |flown: &'_ FlownFigure| flown.fit == fit;
+    figures
+        .iter()
+        .filter(|flown| of_figure(flown))
+        .flat_map(|flown| {
+            flown.simulation.results.iter().map(|result| FigureFlight {
+                figure: flown.figure.id,
+                controller: &result.name,
+                metrics: &result.metrics,
+            })
+        })
+        .collect()
+}
+
+fn judge_claim(
+    claim: &Claim,
+    own: &[FigureFlight<'_>],
+    shared: &[FigureFlight<'_>],
+) -> JudgedClaim {
+    let (ours, status) = judge_under(claim, own);
+    let (shared, shared_status) = judge_under(claim, shared);
     let figure = FIGURES.iter().find(|figure| figure.id == figure_of(claim));
-    let note = match (&ours, claim.source) {
-        (Err(reason), _) => reason.to_string(),
-        (Ok(_), source) => note(claim, source),
+    let note = match ours {
+        Err(reason) => reason.to_string(),
+        Ok(_) => note(claim, claim.source),
     };
-    JudgedClaim {
-        claim: *claim,
-        ours,
-        shared,
-        status,
-        shared_status,
-        assumptions: figure.map_or(&[], |figure| figure.assumptions),
-        note,
-    }
+    let assumptions = figure.map_or(&[][..], |figure| figure.assumptions);
+    JudgedClaim { claim: *claim, ours, shared, status, shared_status, assumptions, note }
 }
 
 fn note(claim: &Claim, source: Quantity) -> String {
@@ -69,69 +85,26 @@ fn note(claim: &Claim, source: Quantity) -> String {
     [special, reading].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
-/// Number and status of a claim under one fit.
-fn judge_under(fit: Fit, claim: &Claim, figures: &[FlownFigure]) -> (Result<f64, Absent>, Status) {
-    let ours = number(fit, claim, figures);
+/// Number and status of a claim.
+fn judge_under(claim: &Claim, flights: &[FigureFlight<'_>]) -> (Result<f64, Absent>, Status) {
+    let ours = number(claim, flights);
     let Ok(value) = ours else { return (ours, Status::Undetermined) };
-    let of_number = claim.paper.judge(value);
     let of_change = match claim.source {
-        Quantity::Later { first, .. } => change_status(fit, claim.paper, value, first, figures),
+        Quantity::Later { first, .. } => change_status(claim.paper, value, first, flights),
         Quantity::Value(_) | Quantity::Percent { .. } => Status::Reproduced,
     };
-    (ours, of_number.max(of_change))
+    (ours, claim.paper.judge(value).max(of_change))
 }
 
 fn change_status(
-    fit: Fit,
     paper: Printed,
     later: f64,
     first: &str,
-    figures: &[FlownFigure],
+    flights: &[FigureFlight<'_>],
 ) -> Status {
     let Some(first) = claim(first) else { return Status::Undetermined };
-    match number(fit, first, figures) {
+    match number(first, flights) {
         Ok(before) => judge_change((first.paper, paper), (before, later)),
         Err(_) => Status::Undetermined,
-    }
-}
-
-fn claim(id: &str) -> Option<&'static Claim> {
-    CLAIMS.iter().find(|claim| claim.id == id)
-}
-
-/// Our number for a claim under one fit.
-///
-/// # Errors
-/// The reason why a measure it needs is absent.
-fn number(fit: Fit, of: &Claim, figures: &[FlownFigure]) -> Result<f64, Absent> {
-    let named = |id: &str| claim(id).map_or(Err(Absent::NoStep), |c| number(fit, c, figures));
-    match of.source {
-        Quantity::Value(reading) | Quantity::Later { reading, .. } => read(fit, reading, figures),
-        Quantity::Percent { first, later, of_later } => {
-            let (first, later) = (named(first)?, named(later)?);
-            Ok(100.0 * (later - first).abs() / if of_later { later } else { first })
-        }
-    }
-}
-
-/// The largest magnitude of a measure over the controllers of a reading.
-fn read(fit: Fit, reading: Reading, figures: &[FlownFigure]) -> Result<f64, Absent> {
-    let flown = figures
-        .iter()
-        .find(|flown| flown.fit == fit && flown.figure.id == reading.figure)
-        .ok_or(Absent::NoStep)?;
-    let mut worst = 0.0_f64;
-    for name in reading.controllers {
-        let result = flown.simulation.result(name).ok_or(Absent::NoStep)?;
-        let value = result.metrics.of_step(reading.edge, |step| reading.measure.of(step))?;
-        worst = worst.max(value.abs());
-    }
-    Ok(worst)
-}
-
-fn figure_of(claim: &Claim) -> &'static str {
-    match claim.source {
-        Quantity::Value(reading) | Quantity::Later { reading, .. } => reading.figure,
-        Quantity::Percent { first, .. } => self::claim(first).map_or("", figure_of),
     }
 }

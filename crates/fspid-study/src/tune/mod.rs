@@ -8,7 +8,7 @@ mod space;
 
 pub use space::{Parameter, Scale, Space};
 
-use optimiser::{DifferentialEvolution, NelderMead, Optimiser};
+use optimiser::{LShade, NelderMead, Optimiser, Start};
 
 /// Effort and seed of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,42 +34,65 @@ pub struct Found {
     pub evaluations: usize,
 }
 
-/// Searches `space` for the least `cost`: differential evolution, then Nelder and Mead's simplex
-/// from the best point. Ends early when a cost of zero is found.
+/// Searches `space` for the least `cost`: L-SHADE, then Nelder and Mead's simplex from the best point.
+/// Ends early when a cost of `enough` is reached.
 ///
-/// A cost that is NaN counts as infinite. `progress` is told the evaluations spent and the best
-/// cost after each generation.
+/// A cost that is NaN counts as infinite. `about` is a point to begin from, in the parameters' own
+/// units, with the spread of the first population as a share of the box; without it the first
+/// population lies anywhere.
 pub fn search(
     space: &Space,
     budget: Budget,
+    about: Option<(&[f64], f64)>,
+    enough: f64,
     cost: impl Fn(&[f64]) -> f64 + Sync,
-    mut progress: impl FnMut(usize, f64),
 ) -> Found {
-    let mut evaluations = 0;
-    let mut run = |optimiser: &mut dyn Optimiser, allowance: usize| {
-        let end = evaluations + allowance;
-        while evaluations < end && optimiser.best().1 > 0.0 {
-            let candidates = optimiser.ask();
-            if candidates.is_empty() {
-                break;
-            }
-            let costs = evaluate(space, &candidates, &cost);
-            evaluations += costs.len();
-            optimiser.tell(&costs);
-            progress(evaluations, optimiser.best().1);
-        }
+    let begin = about.map(|(point, spread)| (space.unit(point), spread));
+    let start = match &begin {
+        Some((point, spread)) => Start::About(point, *spread),
+        None => Start::Anywhere,
     };
-    let mut global = DifferentialEvolution::new(space.dimension(), budget.population, budget.seed);
-    run(&mut global, budget.global);
-    let (start, start_cost) = global.best();
-    let mut local = NelderMead::new(start, start_cost);
-    run(&mut local, budget.polish);
+    let mut global =
+        LShade::new(space.dimension(), budget.population, budget.global, budget.seed, start);
+    let spent = run(&mut global, space, budget.global, enough, &cost);
+    let (best, best_cost) = global.best();
+    let polished = polish(space, (&space.point(best), best_cost), budget.polish, enough, cost);
+    Found { evaluations: spent + polished.evaluations, ..polished }
+}
+
+/// Rolls a simplex downhill from a point of known cost.
+pub fn polish(
+    space: &Space,
+    from: (&[f64], f64),
+    evaluations: usize,
+    enough: f64,
+    cost: impl Fn(&[f64]) -> f64 + Sync,
+) -> Found {
+    let mut local = NelderMead::new(&space.unit(from.0), from.1);
+    let evaluations = run(&mut local, space, evaluations, enough, &cost);
     let (unit, cost) = local.best();
-    Found {
-        point: space.point(unit),
-        cost,
-        evaluations,
+    Found { point: space.point(unit), cost, evaluations }
+}
+
+/// Asks, evaluates and tells until the allowance is spent or the cost is `enough`; evaluations spent.
+fn run(
+    optimiser: &mut dyn Optimiser,
+    space: &Space,
+    allowance: usize,
+    enough: f64,
+    cost: &(impl Fn(&[f64]) -> f64 + Sync),
+) -> usize {
+    let mut spent = 0;
+    while spent < allowance && optimiser.best().1 > enough {
+        let candidates = optimiser.ask();
+        if candidates.is_empty() {
+            break;
+        }
+        let costs = evaluate(space, &candidates, cost);
+        spent += costs.len();
+        optimiser.tell(&costs);
     }
+    spent
 }
 
 /// Costs of candidates, in their order, on as many threads as there are processors.
@@ -138,7 +161,7 @@ mod tests {
     #[test]
     fn a_search_finds_the_bottom_of_a_curved_valley() {
         for seed in 0..5 {
-            let found = search(&space(), budget(seed), rosenbrock, |_, _| ());
+            let found = search(&space(), budget(seed), None, 0.0, rosenbrock);
             assert!(found.cost < 1e-10, "seed {seed}: {found:?}");
             assert!(found.evaluations <= 8_100);
         }
@@ -147,7 +170,7 @@ mod tests {
     #[test]
     fn the_same_seed_finds_the_same_bits_and_another_seed_does_not() {
         let bits = |seed| {
-            let point = search(&space(), budget(seed), rosenbrock, |_, _| ()).point;
+            let point = search(&space(), budget(seed), None, 0.0, rosenbrock).point;
             point.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(1), bits(1));
@@ -162,7 +185,7 @@ mod tests {
             outside.fetch_add(usize::from(!inside), std::sync::atomic::Ordering::Relaxed);
             point.iter().map(|x| (x - 20.0).abs()).sum()
         };
-        let found = search(&space(), budget(3), away, |_, _| ());
+        let found = search(&space(), budget(3), None, 0.0, away);
         assert_eq!(outside.into_inner(), 0);
         assert!(
             found.point.iter().all(|x| (x - 5.0).abs() < 1e-6),
@@ -179,7 +202,7 @@ mod tests {
                 rosenbrock(point)
             }
         };
-        let found = search(&space(), budget(1), cost, |_, _| ());
+        let found = search(&space(), budget(1), None, 0.0, cost);
         assert!(found.point[0] <= 0.0 && found.cost.is_finite());
     }
 }

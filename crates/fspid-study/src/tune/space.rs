@@ -31,6 +31,17 @@ impl Parameter {
         };
         value.clamp(self.lower, self.upper)
     }
+
+    /// How far `value` is on the way from the lower to the upper bound, from 0 to 1.
+    fn unit(&self, value: f64) -> f64 {
+        let unit = match self.scale {
+            Scale::Linear => (value - self.lower) / (self.upper - self.lower),
+            Scale::Logarithmic => {
+                libm::log(value / self.lower) / libm::log(self.upper / self.lower)
+            }
+        };
+        unit.clamp(0.0, 1.0)
+    }
 }
 
 /// A box of parameters.
@@ -56,6 +67,12 @@ impl Space {
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
+    }
+
+    /// The coordinates of a point in the unit cube.
+    #[must_use]
+    pub fn unit(&self, point: &[f64]) -> Vec<f64> {
+        self.parameters.iter().zip(point).map(|(parameter, &x)| parameter.unit(x)).collect()
     }
 
     /// The point at these coordinates of the unit cube.

@@ -1,10 +1,11 @@
 //! Optimisers over the unit cube: one file each. An optimiser is asked for candidates and told their
 //! costs, so that whoever evaluates them may do so anywhere.
 
-mod differential_evolution;
+mod lshade;
 mod nelder_mead;
+mod random;
 
-pub use differential_evolution::DifferentialEvolution;
+pub use lshade::{LShade, Start};
 pub use nelder_mead::NelderMead;
 
 /// Proposes candidates in the unit cube and absorbs their costs.

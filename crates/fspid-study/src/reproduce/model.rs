@@ -1,0 +1,244 @@
+//! A figure's flight as a handful of numbers: what an identification moves, and the scenario file
+//! that it writes.
+
+use std::fmt::Write as _;
+
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_core::{
+    ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid, SelfTuner, Shell,
+    TunerSettings,
+};
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{
+    Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Timing,
+};
+
+use crate::units::radians;
+
+/// Sample period of all figures, s (assumption A4).
+pub const SAMPLE_PERIOD_S: f64 = 0.01;
+/// Time constant of the servo, s (the paper's 10/(s + 10)).
+const SERVO_S: f64 = 0.1;
+/// Size of all commands, degrees (assumption A20).
+const AMPLITUDE_DEG: f64 = 1.0;
+/// Samples of the accepted half periods lie on the sample grid.
+const SAMPLES_PER_S: f64 = 1.0 / SAMPLE_PERIOD_S;
+
+/// The command of a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// A step, flown for this long.
+    Step {
+        /// Length of the window, s.
+        window_s: f64,
+    },
+    /// A bipolar square wave, flown for four half periods.
+    Square {
+        /// Half period, s; a whole number of samples.
+        half_period_s: f64,
+    },
+}
+
+/// The scales of a supervisor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Supervisor units per degree of error.
+    pub error: f64,
+    /// Supervisor units per degree per second of change.
+    pub change: f64,
+    /// Factors of the increments.
+    pub output: [f64; 3],
+}
+
+/// What is common to all controllers and figures of a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Name of the plant.
+    pub plant: &'static str,
+    /// Half range of the supervisor.
+    pub range: f64,
+    /// Sign of its error.
+    pub error_sign: ErrorSign,
+}
+
+/// Figs 5 and 6.
+pub const FULL_MODEL: Setting = Setting {
+    plant: "b747-paper",
+    range: 5.0,
+    error_sign: ErrorSign::SetpointMinusMeasurement,
+};
+/// Figs 7, 8 and 9.
+pub const SHORT_PERIOD: Setting = Setting {
+    plant: "navion-paper",
+    range: 40.0,
+    error_sign: ErrorSign::MeasurementMinusSetpoint,
+};
+
+/// A controller of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControllerModel {
+    /// Its name.
+    pub name: String,
+    /// Fixed or nominal gains.
+    pub gains: [f64; 3],
+    /// Gain of the rate-gyro loop, s.
+    pub rate_gain: f64,
+    /// The supervisor's scales, for a self-tuning one.
+    pub scales: Option<Scales>,
+}
+
+/// A figure's flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightModel {
+    /// Name of the scenario.
+    pub name: String,
+    /// Plant and supervisor.
+    pub setting: Setting,
+    /// The command.
+    pub command: Command,
+    /// Who flies.
+    pub controllers: Vec<ControllerModel>,
+}
+
+/// `half_period_s` on the sample grid.
+#[must_use]
+pub fn on_grid(half_period_s: f64) -> f64 {
+    (half_period_s * SAMPLES_PER_S).round() / SAMPLES_PER_S
+}
+
+impl FlightModel {
+    /// The scenario, built directly; equal to what its [file](Self::toml) reads as.
+    ///
+    /// # Errors
+    /// [`SimError`] for numbers that no scenario may have.
+    pub fn scenario(&self, plant: &LinearPlant, table: &RuleTable) -> Result<Scenario, SimError> {
+        let (shape, duration_s) = match self.command {
+            Command::Step { window_s } => (Shape::Step { at_s: 0.0 }, window_s),
+            Command::Square { half_period_s } => (
+                Shape::Square { at_s: 0.0, half_period_s, bipolar: true },
+                square_duration_s(half_period_s),
+            ),
+        };
+        let controllers = self.controllers.iter().map(|model| {
+            let controller = self.controller(model, table)?;
+            Ok(NamedController { name: model.name.clone(), controller })
+        });
+        Ok(Scenario {
+            name: self.name.clone(),
+            plant: plant.clone(),
+            plant_changes: Vec::new(),
+            servo: Servo::first_order(SERVO_S)?,
+            timing: Timing::new(SAMPLE_PERIOD_S, duration_s)?,
+            setpoint: Profile::new(radians(AMPLITUDE_DEG), shape)?,
+            disturbances: Vec::new(),
+            controllers: controllers.collect::<Result<_, SimError>>()?,
+        })
+    }
+
+    fn controller(
+        &self,
+        model: &ControllerModel,
+        table: &RuleTable,
+    ) -> Result<Controller, SimError> {
+        let [kp, ki, kd] = model.gains;
+        let gains = Gains { kp, ki, kd };
+        let shell = Shell { rate_gain_s: model.rate_gain, ..Shell::sampled_every(SAMPLE_PERIOD_S) };
+        let Some(scales) = model.scales else {
+            return Ok(Controller::Fixed(Pid::new(gains, shell)?));
+        };
+        let shell = Shell { integral: IntegralForm::Literal, ..shell };
+        let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
+        let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
+        let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
+        let per_degree = 1.0 / radians(1.0);
+        let [kp, ki, kd] = scales.output;
+        let settings = TunerSettings {
+            error_sign: self.setting.error_sign,
+            input_scale: InputScale {
+                error_per_rad: scales.error * per_degree,
+                change_per_rad: scales.change * per_degree,
+            },
+            output_scale: Gains { kp, ki, kd },
+            gain_limits: Some(GainLimits { kp: floor, ki: floor, kd: floor }),
+            ..TunerSettings::literal()
+        };
+        let tuner = SelfTuner::new(gains, supervisor, settings)?;
+        Ok(Controller::SelfTuning(Fspid::new(tuner, shell)?))
+    }
+
+    /// The scenario file, with a heading of comment lines.
+    #[must_use]
+    pub fn toml(&self, heading: &[String]) -> String {
+        let mut out = String::new();
+        for line in heading {
+            push(&mut out, format_args!("# {line}"));
+        }
+        push(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
+        push(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
+        push(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
+        let (setpoint, duration_s) = match self.command {
+            Command::Step { window_s } => ("kind = \"step\"".to_owned(), window_s),
+            Command::Square { half_period_s } => (
+                format!("kind = \"square\"\nhalf_period_s = {half_period_s:?}\nbipolar = true"),
+                square_duration_s(half_period_s),
+            ),
+        };
+        push(&mut out, format_args!(
+            "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
+        ));
+        push(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {AMPLITUDE_DEG:?}"));
+        for controller in &self.controllers {
+            self.push_controller(&mut out, controller);
+        }
+        out
+    }
+
+    fn push_controller(&self, out: &mut String, controller: &ControllerModel) {
+        let ControllerModel { name, gains: [kp, ki, kd], rate_gain, scales } = controller;
+        push(out, format_args!("\n[[controller]]\nname = \"{name}\""));
+        match scales {
+            None if *ki == 0.0 && *kd == 0.0 => {
+                push(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
+            }
+            None => {
+                push(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
+            }
+            Some(scales) => {
+                push(out, format_args!(
+                    "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
+                     law = \"memoryless\"\nintegral = \"literal\"\n\
+                     gain_limits = {{ kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }}"
+                ));
+                self.push_supervisor(out, scales);
+            }
+        }
+        if *rate_gain != 0.0 {
+            push(out, format_args!("rate_gain = {rate_gain:?}"));
+        }
+    }
+
+    fn push_supervisor(&self, out: &mut String, scales: &Scales) {
+        let sign = match self.setting.error_sign {
+            ErrorSign::SetpointMinusMeasurement => "setpoint-minus-measurement",
+            ErrorSign::MeasurementMinusSetpoint => "measurement-minus-setpoint",
+        };
+        let [kp, ki, kd] = scales.output;
+        push(out, format_args!(
+            "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
+             supervisor.error_sign = \"{sign}\"\nsupervisor.error_scale = {:?}\n\
+             supervisor.change = \"rate\"\nsupervisor.change_scale = {:?}\n\
+             supervisor.output_scale = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}",
+            self.setting.range, scales.error, scales.change
+        ));
+    }
+}
+
+/// Two upward and two downward steps.
+fn square_duration_s(half_period_s: f64) -> f64 {
+    4.0 * half_period_s
+}
+
+/// A line; writing to a string cannot fail.
+fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
+    let _ = writeln!(out, "{line}");
+}
