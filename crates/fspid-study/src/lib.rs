@@ -7,3 +7,5 @@
         reason = "tests ask for exact bits where they compare floats"
     )
 )]
+
+pub mod file;
