@@ -40,7 +40,7 @@ impl Question<'_> {
     /// [`Refused`] with every problem of the question at once.
     pub fn supervisor(&self) -> Result<Supervisor<f64>, Refused> {
         let mut problems = Vec::new();
-        let table = file::rule_table(self.table)
+        let table = file::load_rule_table(self.table, None)
             .map_err(|problem| problems.push(format!("--table: {problem}")));
         let defuzzifier = self.defuzzifier.parse::<Defuzzifier>().map_err(|problem| {
             problems.push(format!("--defuzzifier {}: {problem}", self.defuzzifier));

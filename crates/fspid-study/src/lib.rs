@@ -16,7 +16,11 @@
 )]
 
 pub mod figure;
+pub mod file;
+pub mod inference;
 pub mod metrics;
 pub mod output;
+pub mod reproduce;
+pub mod simulation;
 pub mod tune;
 pub mod units;

@@ -1,0 +1,177 @@
+//! Plants and rule tables: by name, by file or by their numbers.
+
+use fspid_fuzzy::RuleTable;
+use fspid_lti::LtiError;
+use fspid_sim::{ElevatorSign, LinearPlant, SimError};
+
+use super::elevator_sign;
+use crate::file::check;
+use crate::file::document;
+use crate::file::files::Files;
+use crate::file::preset::{plant_text, rule_table_text};
+use crate::file::report::{Place, Report};
+use crate::file::section::Section;
+use crate::file::spec::{PLANT_FILE, RULE_FILE, Table};
+
+/// The plant of a table with `preset`, `file` or coefficients.
+pub(super) fn plant(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+) -> Option<LinearPlant> {
+    if let Some(name) = section.text("preset") {
+        let part = carried(report, files, &PLANT_FILE, (name, plant_text(name)?))?;
+        return coefficients(report, &part, elevator_sign(&part)?);
+    }
+    if let Some(file) = section.text("file") {
+        let at = (section.at("file"), section.path("file"));
+        let part = referred(report, files, &PLANT_FILE, (file, at))?;
+        return coefficients(report, &part, elevator_sign(&part)?);
+    }
+    coefficients(report, section, elevator_sign(section)?)
+}
+
+/// The plant of a table's numerator and denominator.
+pub(crate) fn coefficients(
+    report: &mut Report,
+    section: &Section,
+    sign: ElevatorSign,
+) -> Option<LinearPlant> {
+    let numerator = section.numbers("numerator")?;
+    let denominator = section.numbers("denominator")?;
+    let error = match LinearPlant::new(&numerator, &denominator, sign) {
+        Ok(plant) => return Some(plant),
+        Err(error) => error,
+    };
+    let key = match &error {
+        SimError::Linear(
+            LtiError::Empty {
+                what: "denominator",
+            }
+            | LtiError::ZeroPolynomial {
+                what: "denominator",
+            }
+            | LtiError::LeadingZero {
+                what: "denominator",
+                ..
+            }
+            | LtiError::DegreeTooHigh {
+                what: "denominator",
+                ..
+            },
+        ) => "denominator",
+        _ => "numerator",
+    };
+    let (message, allowed) = match &error {
+        SimError::Linear(LtiError::ZeroPolynomial { .. }) => (
+            "zero everywhere".to_owned(),
+            "at least one coefficient other than 0".to_owned(),
+        ),
+        SimError::Linear(LtiError::LeadingZero { zeros, .. }) => (
+            format!(
+                "begins with {zeros} zero{}",
+                if *zeros == 1 { "" } else { "s" }
+            ),
+            "a first coefficient other than 0, that of the highest power".to_owned(),
+        ),
+        SimError::Linear(LtiError::Improper {
+            numerator_degree,
+            denominator_degree,
+        }) => (
+            format!("degree {numerator_degree} over degree {denominator_degree} is improper"),
+            "a list shorter than the denominator".to_owned(),
+        ),
+        SimError::NotStrictlyProper => (
+            "as long as the denominator, so that the pitch angle would jump with the elevator"
+                .to_owned(),
+            "a list shorter than the denominator".to_owned(),
+        ),
+        other => (
+            other.to_string(),
+            "coefficients of more like size".to_owned(),
+        ),
+    };
+    report.value(section.at(key), &section.path(key), message, allowed);
+    None
+}
+
+/// The rules of a supervisor's `table`.
+pub(super) fn rules(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    supervisor: &Section,
+) -> Option<RuleTable> {
+    if let Some(grids) = supervisor.section("table") {
+        return rule_table(grids);
+    }
+    let name = supervisor.text("table")?;
+    if let Some(text) = rule_table_text(name) {
+        return rule_table(&carried(report, files, &RULE_FILE, (name, text))?);
+    }
+    let at = (supervisor.at("table"), supervisor.path("table"));
+    rule_table(&referred(report, files, &RULE_FILE, (name, at))?)
+}
+
+/// The rules of a name or file outside of any scenario.
+pub(crate) fn rules_named(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    name: &str,
+) -> Option<RuleTable> {
+    if let Some(text) = rule_table_text(name) {
+        return rule_table(&carried(report, files, &RULE_FILE, (name, text))?);
+    }
+    let source = report.add_source(None, name);
+    let end = name.len();
+    let place = Place {
+        source,
+        start: 0,
+        end,
+    };
+    rule_table(&referred(
+        report,
+        files,
+        &RULE_FILE,
+        (name, (place, String::new())),
+    )?)
+}
+
+fn rule_table(section: &Section) -> Option<RuleTable> {
+    Some(RuleTable::new([
+        section.grid("delta_kp")?,
+        section.grid("delta_ki")?,
+        section.grid("delta_kd")?,
+    ]))
+}
+
+/// A file that the program carries.
+fn carried(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    spec: &'static Table,
+    (name, text): (&str, &str),
+) -> Option<Section> {
+    files.digest(text);
+    let item = document::read(report, Some(format!("{name} (built in)")), text)?;
+    check::table(report, spec, &item, "").filter(|section| section.sound)
+}
+
+/// A file that the scenario refers to at a place.
+fn referred(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    spec: &'static Table,
+    (name, (place, path)): (&str, (Place, String)),
+) -> Option<Section> {
+    let text = match files.read(name) {
+        Ok(text) => text,
+        Err(reason) => {
+            let allowed = "a readable .toml file, its path relative to the scenario's folder";
+            report.value(place, &path, format!("cannot be read: {reason}"), allowed);
+            return None;
+        }
+    };
+    files.digest(&text);
+    let item = document::read(report, Some(name.to_owned()), &text)?;
+    check::table(report, spec, &item, "").filter(|section| section.sound)
+}

@@ -1,0 +1,175 @@
+//! From a checked file to the scenario: units become SI, and the models judge their numbers.
+
+mod controller;
+pub(crate) mod data;
+mod signal;
+mod timing;
+
+use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Servo, SimError, Timing};
+
+use crate::file::files::Files;
+use crate::file::report::Report;
+use crate::file::requirement::{Requirement, requirements};
+use crate::file::section::Section;
+
+/// Radians per degree.
+const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
+
+/// Radians of an angle in degrees.
+fn rad(angle_deg: f64) -> f64 {
+    angle_deg * RAD_PER_DEG
+}
+
+/// The scenario with its requirements; every part that the check left sound is built even where
+/// another is wrong, so that its own problems are found too.
+pub(crate) fn scenario(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+) -> Option<(Scenario, Vec<Requirement>)> {
+    let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
+    let plant = sound(section.section("plant")).and_then(|part| data::plant(report, files, part));
+    let servo = match section.section("actuator") {
+        None => Some(Servo::ideal()),
+        part => sound(part).and_then(|part| servo(report, part)),
+    };
+    if let (Some(plant), Some(timing), Some(servo)) = (&plant, timing, servo) {
+        timing::check_plant(report, section, plant, (timing, servo));
+    }
+    let setpoint =
+        sound(section.section("setpoint")).and_then(|part| signal::setpoint(report, part));
+    let mut disturbances = Vec::new();
+    for part in section
+        .sections("disturbance")
+        .iter()
+        .filter(|part| part.sound)
+    {
+        disturbances.extend(signal::disturbance(report, part));
+    }
+    let plant_changes = timing::plant_changes(
+        report,
+        files,
+        section.sections("plant_change"),
+        (&plant, timing, servo),
+    );
+    let controllers = controllers(report, files, section, timing);
+    let names = names(section);
+    let asked = section.sections("requirement");
+    let requirements = requirements(report, asked, &names);
+    let scenario = Scenario {
+        name: section.text("name")?.to_owned(),
+        plant: plant?,
+        plant_changes,
+        servo: servo?,
+        timing: timing?,
+        setpoint: setpoint?,
+        disturbances,
+        controllers,
+    };
+    if section.sound {
+        timing::check_flight(report, section, &scenario);
+    }
+    Some((scenario, requirements))
+}
+
+/// A part in which the check found nothing wrong.
+fn sound(part: Option<&Section>) -> Option<&Section> {
+    part.filter(|part| part.sound)
+}
+
+/// Which way the elevator is counted.
+pub(crate) fn elevator_sign(section: &Section) -> Option<ElevatorSign> {
+    match section.text("elevator_sign")? {
+        "nose-up-positive" => Some(ElevatorSign::NoseUpPositive),
+        _ => Some(ElevatorSign::NoseDownPositive),
+    }
+}
+
+/// The value, or a problem at `key` in the model's own words.
+fn judged<T, E: std::fmt::Display>(
+    report: &mut Report,
+    (section, key): (&Section, &str),
+    result: Result<T, E>,
+) -> Option<T> {
+    match result {
+        Ok(value) => Some(value),
+        Err(error) => {
+            let text = error.to_string();
+            let (message, allowed) = in_two(&text);
+            report.missing(section.at(key), &section.path(key), message, allowed);
+            None
+        }
+    }
+}
+
+/// A model's sentence in two: what is wrong, and what is allowed if it says so at its end.
+fn in_two(text: &str) -> (&str, &str) {
+    for words in ["; allowed is ", "; allowed are "] {
+        if let Some(parts) = text.split_once(words) {
+            return parts;
+        }
+    }
+    (text, "")
+}
+
+fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
+    let delay = usize::try_from(section.integer("delay_samples")?).unwrap_or(usize::MAX);
+    let lag = Servo::first_order(section.number("time_constant_s")?);
+    let lag = judged(report, (section, "time_constant_s"), lag)?;
+    let servo =
+        lag.with_delay(delay)
+            .and_then(|servo| match section.number("position_limit_deg") {
+                Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),
+                None => Ok(servo),
+            });
+    let servo = servo.and_then(|servo| match section.number("rate_limit_deg_s") {
+        Some(limit_deg_s) => servo.with_rate_limit(rad(limit_deg_s)),
+        None => Ok::<_, SimError>(servo),
+    });
+    judged(report, (section, "delay_samples"), servo)
+}
+
+/// Names of all controllers, sound or not.
+fn names(section: &Section) -> Vec<&str> {
+    let controllers = section.sections("controller").iter();
+    controllers.filter_map(|part| part.text("name")).collect()
+}
+
+fn controllers(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+    timing: Option<Timing>,
+) -> Vec<NamedController> {
+    let parts = section.sections("controller");
+    for (index, part) in parts.iter().enumerate() {
+        let earlier = parts.get(..index).unwrap_or_default();
+        let name = part.text("name");
+        if let Some(twin) = earlier
+            .iter()
+            .find(|other| name.is_some() && other.text("name") == name)
+        {
+            let message = format!("the name is taken by {}", twin.path);
+            report.value(
+                part.at("name"),
+                &part.path("name"),
+                message,
+                "a name of its own",
+            );
+        }
+    }
+    // A period stands in where the loop is wrong, so that the controllers are judged all the same.
+    let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
+    let mut controllers = Vec::new();
+    for part in parts.iter().filter(|part| part.sound) {
+        let name = part.text("name").unwrap_or_default().to_owned();
+        let controller = controller::controller(report, files, part, dt_s);
+        controllers.extend(controller.map(|controller| NamedController { name, controller }));
+    }
+    controllers
+}
+
+/// True for a plant of another order.
+fn order_differs(before: &LinearPlant, after: &LinearPlant) -> bool {
+    before.order() != after.order()
+}

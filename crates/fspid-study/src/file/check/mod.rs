@@ -1,0 +1,196 @@
+//! The check of a document against its specification; it collects every problem.
+
+mod choice;
+mod value;
+
+use crate::file::document::{Item, Member, Value};
+use crate::file::problem::nearest;
+use crate::file::report::{Place, Report};
+use crate::file::section::{Checked, Entry, Section};
+use crate::file::spec::{Default, Key, Presence, Table, Variant};
+
+/// Checks a table. What comes back holds the sound values and says whether all were.
+pub(crate) fn table(
+    report: &mut Report,
+    spec: &'static Table,
+    item: &Item,
+    path: &str,
+) -> Option<Section> {
+    let Value::Table(members) = &item.value else {
+        let found = item.value.type_name();
+        let allowed = format!("a table of {}", names(spec.keys()));
+        report.value(
+            item.place,
+            path,
+            format!("expected a table, not {found}"),
+            allowed,
+        );
+        return None;
+    };
+    let before = report.count();
+    let mut checker = Checker {
+        report,
+        members,
+        section: Section {
+            path: path.to_owned(),
+            place: item.place,
+            kind: "",
+            entries: Vec::new(),
+            sound: false,
+        },
+    };
+    checker.check(spec);
+    let mut section = checker.section;
+    section.sound = report.count() == before;
+    Some(section)
+}
+
+struct Checker<'a> {
+    report: &'a mut Report,
+    members: &'a [Member],
+    section: Section,
+}
+
+impl Checker<'_> {
+    fn check(&mut self, spec: &'static Table) {
+        let mut keys: Vec<&'static Key> = spec.keys().collect();
+        let mut choices: Vec<_> = spec.choices.iter().collect();
+        if !spec.variants.is_empty() {
+            let Some(variant) = self.variant(spec) else {
+                return;
+            };
+            self.section.kind = variant.name;
+            keys.extend(variant.table.keys());
+            choices.extend(variant.table.choices);
+        }
+        self.unknown_keys(spec, &keys);
+        for key in &keys {
+            self.key(key);
+        }
+        for choice in choices {
+            let (report, section) = (&mut *self.report, &self.section);
+            choice::check(report, section, self.members, choice);
+        }
+    }
+
+    fn member(&self, name: &str) -> Option<&Member> {
+        self.members.iter().find(|member| member.name == name)
+    }
+
+    /// The variant that `kind` names.
+    fn variant(&mut self, spec: &'static Table) -> Option<&'static Variant> {
+        let known: Vec<&str> = spec.variants.iter().map(|v| v.name).collect();
+        let path = self.section.path("kind");
+        let Some(item) = self.member("kind").map(|member| member.item.clone()) else {
+            let place = self.section.place;
+            let allowed = quoted(&known);
+            self.report.missing(place, &path, "missing key", allowed);
+            return None;
+        };
+        let word = value::word(self.report, &item, &path, &known, "kind")?;
+        spec.variants.iter().find(|variant| variant.name == word)
+    }
+
+    fn unknown_keys(&mut self, spec: &'static Table, keys: &[&'static Key]) {
+        let tagged = !spec.variants.is_empty();
+        let mut known: Vec<&str> = keys.iter().map(|key| key.name).collect();
+        if tagged {
+            known.insert(0, "kind");
+        }
+        for member in self.members {
+            let name = member.name.as_str();
+            if known.contains(&name) {
+                continue;
+            }
+            let path = self.section.path(name);
+            let owners = owners(spec, name);
+            let message = if !owners.is_empty() {
+                format!(
+                    "a key of kind {}, not of kind \"{}\"",
+                    quoted(&owners),
+                    self.section.kind
+                )
+            } else if let Some(meant) = nearest(name, &known) {
+                format!("unknown key; did you mean `{meant}`?")
+            } else {
+                "unknown key".to_owned()
+            };
+            self.report
+                .missing(member.place, &path, message, known.join(", "));
+        }
+    }
+
+    fn key(&mut self, key: &'static Key) {
+        let path = self.section.path(key.name);
+        let Some(member) = self.member(key.name).cloned() else {
+            return self.absent(key, &path);
+        };
+        if let Some(value) = value::check(self.report, &key.kind, &member.item, &path) {
+            let place = value_place(&member);
+            self.put(key, place, value, true);
+        }
+    }
+
+    fn absent(&mut self, key: &'static Key, path: &str) {
+        match &key.presence {
+            Presence::Optional => {}
+            Presence::Required => {
+                let allowed = value::allowed(&key.kind);
+                self.report
+                    .missing(self.section.place, path, "missing key", allowed);
+            }
+            Presence::Default(default) => {
+                let value = default_value(&key.kind, *default);
+                self.put(key, self.section.place, value, false);
+            }
+        }
+    }
+
+    fn put(&mut self, key: &'static Key, place: Place, value: Checked, given: bool) {
+        let name = key.name;
+        self.section.entries.push(Entry {
+            name,
+            place,
+            value,
+            given,
+        });
+    }
+}
+
+/// The place of the value; that of the key where the value is a table without a place of its own.
+fn value_place(member: &Member) -> Place {
+    let place = member.item.place;
+    if place.end > place.start {
+        place
+    } else {
+        member.place
+    }
+}
+
+fn default_value(kind: &crate::file::spec::Kind, default: Default) -> Checked {
+    use crate::file::spec::Kind;
+    match (kind, default) {
+        (Kind::Defuzzifier, _) => Checked::Defuzzifier(fspid_fuzzy::Defuzzifier::default()),
+        (_, Default::Number(number)) => Checked::Number(number),
+        (_, Default::Integer(integer)) => Checked::Integer(integer),
+        (_, Default::Boolean(boolean)) => Checked::Boolean(boolean),
+        (_, Default::Word(word)) => Checked::Text(word.to_owned()),
+    }
+}
+
+/// The kinds of the table that have a key of this name.
+fn owners(spec: &'static Table, name: &str) -> Vec<&'static str> {
+    let has = |variant: &&Variant| variant.table.keys().any(|key| key.name == name);
+    spec.variants.iter().filter(has).map(|v| v.name).collect()
+}
+
+/// Names of keys, joined by commas.
+pub(super) fn names(keys: impl Iterator<Item = &'static Key>) -> String {
+    keys.map(|key| key.name).collect::<Vec<_>>().join(", ")
+}
+
+/// Words in quotes, joined by commas.
+pub(super) fn quoted(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    quoted.join(", ")
+}

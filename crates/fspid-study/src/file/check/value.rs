@@ -1,0 +1,345 @@
+//! The check of a single value.
+
+use fspid_fuzzy::{Defuzzifier, Grid, GridError};
+
+use crate::file::check::{names, quoted, table};
+use crate::file::document::{Item, Value};
+use crate::file::preset::rule_table_names;
+use crate::file::problem::nearest;
+use crate::file::report::{Place, Report};
+use crate::file::section::Checked;
+use crate::file::spec::{Kind, Range, Table};
+
+/// The value if it is of its kind; otherwise its problems are reported.
+pub(super) fn check(
+    report: &mut Report,
+    kind: &'static Kind,
+    item: &Item,
+    path: &str,
+) -> Option<Checked> {
+    match kind {
+        Kind::Number { unit, range } => {
+            number(report, item, path, *range, unit).map(Checked::Number)
+        }
+        Kind::Integer { least, most } => {
+            integer(report, item, path, (*least, *most)).map(Checked::Integer)
+        }
+        Kind::Boolean => match item.value {
+            Value::Boolean(boolean) => Some(Checked::Boolean(boolean)),
+            _ => wrong_type(report, item, path, kind),
+        },
+        Kind::Text | Kind::Path => match &item.value {
+            Value::Text(text) if !text.trim().is_empty() => Some(Checked::Text(text.clone())),
+            Value::Text(_) => {
+                report.value(item.place, path, "the text is empty", allowed(kind));
+                None
+            }
+            _ => wrong_type(report, item, path, kind),
+        },
+        Kind::Word(words) => word(report, item, path, words, "word").map(Checked::Text),
+        Kind::Preset(list) => word(report, item, path, &list(), "preset").map(Checked::Text),
+        Kind::Rules(grids) => rules(report, item, path, grids),
+        Kind::Grid => grid(report, item, path).map(Checked::Grid),
+        Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
+        Kind::Numbers {
+            unit,
+            range,
+            least,
+            most,
+        } => numbers(report, item, path, (*range, unit), (*least, *most)).map(Checked::Numbers),
+        Kind::Interval { unit, range } => {
+            interval(report, item, path, (*range, unit)).map(Checked::Numbers)
+        }
+        Kind::Table(spec) => table(report, spec, item, path).map(Checked::Section),
+        Kind::Tables { table, least, most } => tables(report, item, path, (table, *least, *most)),
+    }
+}
+
+/// What a key may hold, in words.
+pub(super) fn allowed(kind: &Kind) -> String {
+    match kind {
+        Kind::Number { unit, range } => range.words(unit),
+        Kind::Integer { least, most } if least == most => format!("{least}"),
+        Kind::Integer { least, most } => format!("a whole number from {least} to {most}"),
+        Kind::Boolean => "true or false".to_owned(),
+        Kind::Text => "a text in quotes".to_owned(),
+        Kind::Path => "the path of a file in quotes".to_owned(),
+        Kind::Word(words) => quoted(words),
+        Kind::Preset(list) => quoted(&list()),
+        Kind::Rules(_) => format!(
+            "{}, the path of a .toml file, or a table with delta_kp, delta_ki and delta_kd",
+            quoted(&rule_table_names())
+        ),
+        Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
+        Kind::Defuzzifier => Defuzzifier::NAMES.to_owned(),
+        Kind::Numbers {
+            range, unit, least, ..
+        } => format!(
+            "a list of {least} or more numbers, each {}",
+            range.words(unit)
+        ),
+        Kind::Interval { range, unit } => {
+            format!(
+                "[lower, upper] with lower below upper, each {}",
+                range.words(unit)
+            )
+        }
+        Kind::Table(spec) => format!("a table of {}", names(spec.keys())),
+        Kind::Tables { .. } => "tables under a heading in double brackets".to_owned(),
+    }
+}
+
+fn wrong_type<T>(report: &mut Report, item: &Item, path: &str, kind: &Kind) -> Option<T> {
+    let message = format!("wrong type: {}", item.value.type_name());
+    report.value(item.place, path, message, allowed(kind));
+    None
+}
+
+fn number(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    range: Range,
+    unit: &'static str,
+) -> Option<f64> {
+    let (Value::Integer(value, _) | Value::Float(value)) = item.value else {
+        return wrong_type(report, item, path, &Kind::Number { unit, range });
+    };
+    if range.contains(value) {
+        return Some(value);
+    }
+    let message = if value.is_nan() {
+        "not a number"
+    } else if value.is_finite() {
+        "out of range"
+    } else {
+        "not a finite number"
+    };
+    report.value(item.place, path, message, range.words(unit));
+    None
+}
+
+fn integer(report: &mut Report, item: &Item, path: &str, (least, most): (i64, i64)) -> Option<i64> {
+    let kind = Kind::Integer { least, most };
+    let message = match item.value {
+        Value::Integer(_, Some(value)) if (least..=most).contains(&value) => return Some(value),
+        Value::Integer(..) => "out of range",
+        Value::Float(_) => "not a whole number",
+        _ => return wrong_type(report, item, path, &kind),
+    };
+    report.value(item.place, path, message, allowed(&kind));
+    None
+}
+
+/// A word out of a list; `what` says what the word is.
+pub(super) fn word(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    known: &[&str],
+    what: &str,
+) -> Option<String> {
+    let Value::Text(text) = &item.value else {
+        let message = format!("wrong type: {}", item.value.type_name());
+        report.value(item.place, path, message, quoted(known));
+        return None;
+    };
+    if known.contains(&text.as_str()) {
+        return Some(text.clone());
+    }
+    let meant = nearest(text, known).map(|meant| format!("; did you mean \"{meant}\"?"));
+    let message = format!("unknown {what}{}", meant.unwrap_or_default());
+    report.value(item.place, path, message, quoted(known));
+    None
+}
+
+fn numbers(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    (range, unit): (Range, &'static str),
+    (least, most): (usize, usize),
+) -> Option<Vec<(f64, Place)>> {
+    let kind = Kind::Numbers {
+        unit,
+        range,
+        least,
+        most,
+    };
+    let Value::Array(items) = &item.value else {
+        return wrong_type(report, item, path, &kind);
+    };
+    if !(least..=most).contains(&items.len()) {
+        let message = match items.len() {
+            0 => "the list is empty".to_owned(),
+            count => format!("{count} numbers"),
+        };
+        let allowed = format!("{least} to {most} numbers");
+        report.value(item.place, path, message, allowed);
+        return None;
+    }
+    let before = report.count();
+    let mut values = Vec::with_capacity(items.len());
+    for (index, item) in items.iter().enumerate() {
+        let path = format!("{path}[{index}]");
+        values.extend(number(report, item, &path, range, unit).map(|value| (value, item.place)));
+    }
+    (report.count() == before).then_some(values)
+}
+
+fn interval(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    (range, unit): (Range, &'static str),
+) -> Option<Vec<(f64, Place)>> {
+    let kind = Kind::Interval { unit, range };
+    let Value::Array(items) = &item.value else {
+        return wrong_type(report, item, path, &kind);
+    };
+    if items.len() != 2 {
+        let message = format!("{} numbers instead of two", items.len());
+        report.value(item.place, path, message, allowed(&kind));
+        return None;
+    }
+    let values = numbers(report, item, path, (range, unit), (2, 2))?;
+    if let [(lower, _), (upper, _)] = *values
+        && lower >= upper
+    {
+        let message = "the lower is not below the upper";
+        report.value(item.place, path, message, allowed(&kind));
+        return None;
+    }
+    Some(values)
+}
+
+fn tables(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    (spec, least, most): (&'static Table, usize, usize),
+) -> Option<Checked> {
+    let Value::Array(items) = &item.value else {
+        let message = format!("expected a list of tables, not {}", item.value.type_name());
+        let allowed = format!("[[{path}]] in double brackets before each");
+        report.missing(item.place, path, message, allowed);
+        return None;
+    };
+    if !(least..=most).contains(&items.len()) {
+        let message = match items.len() {
+            0 => "there is none".to_owned(),
+            count => format!("{count} of them"),
+        };
+        report.missing(item.place, path, message, format!("{least} to {most}"));
+        return None;
+    }
+    let sections = items
+        .iter()
+        .enumerate()
+        .filter_map(|(index, item)| table(report, spec, item, &format!("{path}[{index}]")));
+    Some(Checked::Sections(sections.collect()))
+}
+
+fn rules(report: &mut Report, item: &Item, path: &str, grids: &'static Table) -> Option<Checked> {
+    let text = match &item.value {
+        Value::Table(_) => return table(report, grids, item, path).map(Checked::Section),
+        Value::Text(text) => text,
+        _ => return wrong_type(report, item, path, &Kind::Rules(grids)),
+    };
+    let known = rule_table_names();
+    let is_file = std::path::Path::new(text)
+        .extension()
+        .is_some_and(|extension| extension == "toml");
+    if known.contains(&text.as_str()) || is_file {
+        return Some(Checked::Text(text.clone()));
+    }
+    let meant = nearest(text, &known).map(|meant| format!("; did you mean \"{meant}\"?"));
+    let message = format!("unknown rule table{}", meant.unwrap_or_default());
+    report.value(item.place, path, message, allowed(&Kind::Rules(grids)));
+    None
+}
+
+fn defuzzifier(report: &mut Report, item: &Item, path: &str) -> Option<Defuzzifier> {
+    let Value::Text(text) = &item.value else {
+        return wrong_type(report, item, path, &Kind::Defuzzifier);
+    };
+    match text.parse() {
+        Ok(defuzzifier) => Some(defuzzifier),
+        Err(error) => {
+            let message = match error {
+                fspid_fuzzy::FuzzyError::UnknownDefuzzifier => "unknown defuzzifier".to_owned(),
+                other => other.to_string(),
+            };
+            report.value(item.place, path, message, Defuzzifier::NAMES);
+            None
+        }
+    }
+}
+
+fn grid(report: &mut Report, item: &Item, path: &str) -> Option<Grid> {
+    let Value::Text(text) = &item.value else {
+        return wrong_type(report, item, path, &Kind::Grid);
+    };
+    match Grid::parse(text) {
+        Ok(grid) => Some(grid),
+        Err(error) => {
+            let place = cell_place(report, item.place, error);
+            // The message says what is allowed, after a semicolon.
+            let text = error.to_string();
+            let (message, allowed) = text.split_once("; allowed are ").unwrap_or((&text, ""));
+            report.value(place, path, message, allowed);
+            None
+        }
+    }
+}
+
+/// The place of the row or cell that is wrong, in a text of several lines.
+fn cell_place(report: &Report, place: Place, error: GridError) -> Place {
+    let (row, column) = match error {
+        GridError::UnknownLabel { row, column } => (row, Some(column)),
+        GridError::RowLength { row, .. } => (row, None),
+        _ => return place,
+    };
+    let text = report.text(place);
+    let mut start = 0;
+    let quotes = text.chars().take_while(|c| "\"'".contains(*c)).count();
+    let lines = text.split_inclusive('\n').map(|line| {
+        let begin = start;
+        start += line.len();
+        let skip = if begin == 0 {
+            quotes.min(line.len())
+        } else {
+            0
+        };
+        (begin + skip, line.get(skip..).unwrap_or_default())
+    });
+    let filled: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.trim().is_empty()).collect();
+    let Some(&(begin, line)) = filled.get(row - 1) else {
+        return place;
+    };
+    let words = line.split_whitespace();
+    let word = match column {
+        Some(column) => words.clone().nth(column - 1).unwrap_or(line.trim()),
+        None => line.trim(),
+    };
+    // Both are parts of the same line, so that their distance is the column.
+    let mut offset = line.find(word).unwrap_or(0);
+    if let Some(column) = column {
+        offset = word_offset(line, column - 1).unwrap_or(offset);
+    }
+    let start = place.start + begin + offset;
+    Place {
+        start,
+        end: start + word.len(),
+        ..place
+    }
+}
+
+/// Where the word of that number begins in a line.
+fn word_offset(line: &str, number: usize) -> Option<usize> {
+    let starts = line.char_indices().filter(|&(at, c)| {
+        let before = line.get(..at).and_then(|text| text.chars().next_back());
+        !c.is_whitespace() && before.is_none_or(char::is_whitespace)
+    });
+    starts.map(|(at, _)| at).nth(number)
+}

@@ -1,0 +1,71 @@
+//! The files that a file refers to, and the digest of all that was read.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::file::document::FILE_LIMIT;
+
+/// Reads files and keeps the digest of everything read.
+pub(crate) struct Files<'a> {
+    folder: Option<&'a Path>,
+    hasher: Sha256,
+}
+
+impl<'a> Files<'a> {
+    /// Relative paths are those of `folder`; without one, no file can be referred to.
+    pub(crate) fn new(folder: Option<&'a Path>) -> Self {
+        let hasher = Sha256::new();
+        Self { folder, hasher }
+    }
+
+    /// Adds a text to the digest, with its length, so that no two sets of texts look alike.
+    pub(crate) fn digest(&mut self, text: &str) {
+        self.hasher.update((text.len() as u64).to_le_bytes());
+        self.hasher.update(text.as_bytes());
+    }
+
+    /// The digest in hexadecimal digits.
+    pub(crate) fn finish(self) -> String {
+        let bytes = self.hasher.finalize();
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The text of a file that is referred to.
+    pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
+        let Some(folder) = self.folder else {
+            return Err("this scenario is not in a folder, so it cannot refer to files".to_owned());
+        };
+        let bytes = read_regular(&folder.join(path))?;
+        String::from_utf8(bytes).map_err(|error| {
+            let position = error.utf8_error().valid_up_to();
+            format!("not UTF-8 from byte {position} on")
+        })
+    }
+}
+
+/// The bytes of a regular file that is not too large.
+pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
+    let reason = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "it may not be read".to_owned(),
+        _ => error.to_string(),
+    };
+    let metadata = std::fs::metadata(path).map_err(reason)?;
+    if !metadata.is_file() {
+        return Err("it is no regular file".to_owned());
+    }
+    let too_large = || format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024));
+    if metadata.len() > FILE_LIMIT {
+        return Err(too_large());
+    }
+    let file = std::fs::File::open(path).map_err(reason)?;
+    let mut bytes = Vec::new();
+    let mut limited = file.take(FILE_LIMIT + 1);
+    limited.read_to_end(&mut bytes).map_err(reason)?;
+    if bytes.len() as u64 > FILE_LIMIT {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,182 @@
+//! Scenario files: reading, checking, schema and starter.
+//!
+//! One specification (`spec`) lists every key with its kind, unit, range, default and meaning. From
+//! it come the check, which collects all problems of a file with their places, the JSON
+//! [`schema`], and the defaults. Degrees become radians here and nowhere else.
+//!
+//! ```
+//! let study = fspid_study::file::parse(fspid_study::file::starter(), "starter.toml", None, &[])?;
+//! assert_eq!(study.scenario.controllers.len(), 2);
+//!
+//! let problems = fspid_study::file::parse("schema = 1\nnmae = \"x\"", "mine.toml", None, &[]).unwrap_err();
+//! assert!(problems.to_string().contains("mine.toml:2:1: nmae: unknown key; did you mean `name`?"));
+//! # Ok::<(), fspid_study::file::Problems>(())
+//! ```
+//!
+//! Not here: writing files, and what a scenario's flight amounts to.
+
+mod build;
+mod check;
+mod document;
+mod files;
+mod overrides;
+mod preset;
+mod problem;
+mod report;
+mod requirement;
+mod schema;
+mod section;
+mod spec;
+
+use std::fmt;
+use std::path::Path;
+
+use fspid_sim::Scenario;
+
+use crate::file::files::Files;
+use crate::file::report::Report;
+
+pub use preset::{
+    Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
+    rule_table_names,
+};
+pub use problem::{Problem, Problems};
+pub use requirement::Requirement;
+pub use schema::schema;
+
+/// A scenario with what its file asks of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// What flies.
+    pub scenario: Scenario,
+    /// What the responses must meet.
+    pub requirements: Vec<Requirement>,
+    /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
+    pub digest: String,
+    /// What is allowed and probably not meant.
+    pub warnings: Vec<String>,
+}
+
+/// Why a file gave no study.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LoadError {
+    /// It could not be read.
+    Unreadable {
+        /// Its path.
+        path: String,
+        /// The reason.
+        reason: String,
+    },
+    /// It is wrong.
+    Problems(Problems),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
+            Self::Problems(problems) => problems.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {}
+
+/// Reads a scenario file. `overrides` are changes such as `controller.FSPID.nominal.kp=2.5`, applied
+/// before the check; files it refers to are relative to its folder.
+///
+/// # Errors
+/// A file that cannot be read, or everything that is wrong with it.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
+    let name = path.display().to_string();
+    let bytes = files::read_regular(path).map_err(|reason| LoadError::Unreadable {
+        path: name.clone(),
+        reason,
+    })?;
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            let problems = not_utf8(&name, error.as_bytes(), error.utf8_error().valid_up_to());
+            return Err(LoadError::Problems(problems));
+        }
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse(&text, &name, Some(folder), overrides).map_err(LoadError::Problems)
+}
+
+fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
+    let before = bytes.get(..position).unwrap_or_default();
+    let line_start = before
+        .iter()
+        .rposition(|&byte| byte == b'\n')
+        .map_or(0, |at| at + 1);
+    let in_line = String::from_utf8_lossy(before.get(line_start..).unwrap_or_default());
+    let found = bytes.get(position).map(|byte| format!("byte 0x{byte:02X}"));
+    let problem = Problem {
+        origin: None,
+        path: String::new(),
+        line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
+        column: in_line.chars().count() + 1,
+        message: "not UTF-8".to_owned(),
+        found: found.unwrap_or_default(),
+        allowed: "text in UTF-8".to_owned(),
+    };
+    Problems::sorted(name, vec![problem])
+}
+
+/// Reads a scenario from a text called `name` in messages. Without a `folder` it cannot refer to
+/// files.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn parse(
+    text: &str,
+    name: &str,
+    folder: Option<&Path>,
+    overrides: &[String],
+) -> Result<Study, Problems> {
+    let mut report = Report::default();
+    let mut files = Files::new(folder);
+    files.digest(text);
+    let study = read(&mut report, &mut files, text, overrides);
+    let warnings = report.finish(name)?;
+    // Without a problem there is a study; the other case would be a mistake in this module.
+    let (scenario, requirements) = study.ok_or_else(|| Problems::sorted(name, Vec::new()))?;
+    Ok(Study {
+        scenario,
+        requirements,
+        digest: files.finish(),
+        warnings,
+    })
+}
+
+fn read(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    text: &str,
+    overrides: &[String],
+) -> Option<(Scenario, Vec<Requirement>)> {
+    if text.len() as u64 > document::FILE_LIMIT {
+        let source = report.add_source(None, "");
+        let place = report::Place {
+            source,
+            start: 0,
+            end: 0,
+        };
+        report.missing(place, "", "the file is too large", "up to 10 MiB");
+        return None;
+    }
+    let mut document = document::read(report, None, text)?;
+    for text in overrides {
+        files.digest(text);
+        overrides::apply(report, &mut document, text);
+    }
+    let section = check::table(report, &spec::SCENARIO, &document, "")?;
+    build::scenario(report, files, &section)
+}
+
+/// A commented scenario to begin with.
+#[must_use]
+pub fn starter() -> &'static str {
+    include_str!("starter.toml")
+}

@@ -1,0 +1,178 @@
+//! Plants and rule tables that the program carries, and files of the same form.
+
+use std::path::Path;
+
+use fspid_fuzzy::RuleTable;
+use fspid_sim::{ElevatorSign, LinearPlant};
+
+use crate::file::build::{data, elevator_sign};
+use crate::file::check;
+use crate::file::document;
+use crate::file::files::Files;
+use crate::file::problem::Problems;
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::file::spec::PLANT_FILE;
+
+/// Plants by name.
+const PLANTS: [(&str, &str); 5] = [
+    (
+        "b747-paper",
+        include_str!("../../../../data/plants/b747-paper.toml"),
+    ),
+    (
+        "navion-paper",
+        include_str!("../../../../data/plants/navion-paper.toml"),
+    ),
+    (
+        "b747-short-period",
+        include_str!("../../../../data/plants/b747-short-period.toml"),
+    ),
+    (
+        "navion-full",
+        include_str!("../../../../data/plants/navion-full.toml"),
+    ),
+    (
+        "ctms-pitch",
+        include_str!("../../../../data/plants/ctms-pitch.toml"),
+    ),
+];
+
+/// Rule tables by name.
+const RULE_TABLES: [(&str, &str); 2] = [
+    (
+        "printed",
+        include_str!("../../../../data/rule-tables/printed.toml"),
+    ),
+    (
+        "mirrored",
+        include_str!("../../../../data/rule-tables/mirrored.toml"),
+    ),
+];
+
+/// Names of the plants that the program carries.
+#[must_use]
+pub fn plant_names() -> Vec<&'static str> {
+    PLANTS.iter().map(|(name, _)| *name).collect()
+}
+
+/// Names of the rule tables that the program carries.
+#[must_use]
+pub fn rule_table_names() -> Vec<&'static str> {
+    RULE_TABLES.iter().map(|(name, _)| *name).collect()
+}
+
+/// The text of a plant by its name.
+pub(crate) fn plant_text(name: &str) -> Option<&'static str> {
+    let known = PLANTS.iter().find(|(known, _)| *known == name);
+    known.map(|(_, text)| *text)
+}
+
+/// The text of a rule table by its name.
+pub(crate) fn rule_table_text(name: &str) -> Option<&'static str> {
+    let known = RULE_TABLES.iter().find(|(known, _)| *known == name);
+    known.map(|(_, text)| *text)
+}
+
+/// A linear aircraft with what is known about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantFile {
+    /// Name in scenarios.
+    pub name: String,
+    /// What it is, in a line.
+    pub title: String,
+    /// Coefficients of pitch angle over elevator, highest power of s first.
+    pub numerator: Vec<f64>,
+    /// As numerator.
+    pub denominator: Vec<f64>,
+    /// What a positive elevator does in these coefficients.
+    pub elevator_sign: ElevatorSign,
+    /// Flight condition.
+    pub condition: Condition,
+    /// Where the numbers come from.
+    pub source: String,
+    /// What else should be known.
+    pub notes: String,
+    /// The same as a plant of the loop.
+    pub plant: LinearPlant,
+}
+
+/// Flight condition, as far as it is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Condition {
+    /// The aircraft.
+    pub aircraft: Option<String>,
+    /// True airspeed, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Altitude, m.
+    pub altitude_m: Option<f64>,
+    /// Mach number.
+    pub mach: Option<f64>,
+    /// Mass, kg.
+    pub mass_kg: Option<f64>,
+}
+
+/// The plant of that name, `None` if the program carries none.
+#[must_use]
+pub fn preset(name: &str) -> Option<PlantFile> {
+    let text = plant_text(name)?;
+    // The tests read every plant that is carried.
+    parse_plant(text, name).ok()
+}
+
+/// Reads a plant file.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn parse_plant(text: &str, name: &str) -> Result<PlantFile, Problems> {
+    let mut report = Report::default();
+    let file = document::read(&mut report, None, text)
+        .and_then(|item| check::table(&mut report, &PLANT_FILE, &item, ""))
+        .and_then(|section| plant_file(&mut report, &section));
+    report.finish(name)?;
+    file.ok_or_else(|| Problems::sorted(name, Vec::new()))
+}
+
+fn plant_file(report: &mut Report, section: &Section) -> Option<PlantFile> {
+    if !section.sound {
+        return None;
+    }
+    let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
+    let condition = section.section("condition").map(|section| Condition {
+        aircraft: section.text("aircraft").map(str::to_owned),
+        speed_m_s: section.number("speed_m_s"),
+        altitude_m: section.number("altitude_m"),
+        mach: section.number("mach"),
+        mass_kg: section.number("mass_kg"),
+    });
+    Some(PlantFile {
+        name: text("name"),
+        title: text("title"),
+        numerator: section.numbers("numerator")?,
+        denominator: section.numbers("denominator")?,
+        elevator_sign: elevator_sign(section)?,
+        condition: condition.unwrap_or_default(),
+        source: text("source"),
+        notes: text("notes"),
+        plant: data::coefficients(report, section, elevator_sign(section)?)?,
+    })
+}
+
+/// The rule table of that name, `None` if the program carries none.
+#[must_use]
+pub fn rule_table(name: &str) -> Option<RuleTable> {
+    rule_table_text(name)?;
+    load_rule_table(name, None).ok()
+}
+
+/// The rule table of a name or of a `.toml` file, relative to `folder`.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn load_rule_table(name: &str, folder: Option<&Path>) -> Result<RuleTable, Problems> {
+    let mut report = Report::default();
+    let mut files = Files::new(folder.or_else(|| Some(Path::new(""))));
+    let table = data::rules_named(&mut report, &mut files, name);
+    report.finish(name)?;
+    table.ok_or_else(|| Problems::sorted(name, Vec::new()))
+}

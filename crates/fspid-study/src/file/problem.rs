@@ -1,0 +1,151 @@
+//! What is wrong with a file: every problem with its place, what was found and what is allowed.
+
+use std::fmt;
+
+use serde_json::{Value, json};
+
+/// Most problems that are kept; a file with more has the same mistake many times over.
+const MOST: usize = 100;
+
+/// One thing that is wrong with a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Where it was written if not in the file itself: another file, or `--set path=value`.
+    pub origin: Option<String>,
+    /// Path of the value, such as `controller[1].supervisor.range`; empty for the file as a whole.
+    pub path: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What was found, as written; empty where nothing was.
+    pub found: String,
+    /// What would be right; empty where the message says it.
+    pub allowed: String,
+}
+
+/// Everything that is wrong with a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problems {
+    /// Name of the file.
+    pub file: String,
+    /// The problems, in the order of the file; never empty.
+    pub list: Vec<Problem>,
+    /// How many more there are than the list holds.
+    pub omitted: usize,
+}
+
+impl Problems {
+    /// The problems in the order of their places; each place and message once.
+    pub(crate) fn sorted(file: &str, mut list: Vec<Problem>) -> Self {
+        let key = |p: &Problem| (p.origin.clone(), p.line, p.column);
+        list.sort_by_key(key);
+        list.dedup();
+        let omitted = list.len().saturating_sub(MOST);
+        list.truncate(MOST);
+        let file = file.to_owned();
+        Self {
+            file,
+            list,
+            omitted,
+        }
+    }
+
+    /// The problems as JSON: `{"file": …, "problems": [{"path": …, "line": …, …}]}`.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let problem = |p: &Problem| {
+            json!({
+                "origin": p.origin, "path": p.path, "line": p.line, "column": p.column,
+                "message": p.message, "found": p.found, "allowed": p.allowed,
+            })
+        };
+        let problems: Vec<Value> = self.list.iter().map(problem).collect();
+        json!({ "file": self.file, "problems": problems, "omitted": self.omitted })
+    }
+
+    fn write(&self, f: &mut fmt::Formatter<'_>, problem: &Problem) -> fmt::Result {
+        let Problem { line, column, .. } = problem;
+        match &problem.origin {
+            Some(origin) if origin.starts_with("--set") => write!(f, "{origin}: ")?,
+            Some(file) => write!(f, "{file}:{line}:{column}: ")?,
+            None => write!(f, "{}:{line}:{column}: ", self.file)?,
+        }
+        if !problem.path.is_empty() {
+            write!(f, "{}: ", problem.path)?;
+        }
+        f.write_str(&problem.message)?;
+        let details = [("found", &problem.found), ("allowed", &problem.allowed)];
+        let mut separator = "\n    ";
+        for (word, text) in details.iter().filter(|(_, text)| !text.is_empty()) {
+            write!(f, "{separator}{word}: {text}")?;
+            separator = "; ";
+        }
+        f.write_str("\n")
+    }
+}
+
+impl fmt::Display for Problems {
+    /// A block for each problem and a last line with their number.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for problem in &self.list {
+            self.write(f, problem)?;
+        }
+        match self.list.len() + self.omitted {
+            1 => write!(f, "1 problem in {}", self.file)?,
+            count => write!(f, "{count} problems in {}", self.file)?,
+        }
+        if self.omitted > 0 {
+            write!(f, ", the first {} of them above", self.list.len())?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// The known word that was probably meant.
+pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    if word.len() > 64 {
+        return None;
+    }
+    let likeness = |candidate: &&str| {
+        let (a, b) = (word.to_lowercase(), candidate.to_lowercase());
+        let whole = strsim::jaro_winkler(&a, &b);
+        let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
+        // A word without its unit is meant as the word with it: `duration` for `duration_s`.
+        let unit = b
+            .strip_prefix(a.as_str())
+            .is_some_and(|rest| rest.starts_with('_'));
+        if unit {
+            2.0
+        } else if typing {
+            1.0 + whole
+        } else {
+            whole
+        }
+    };
+    let scored = known
+        .iter()
+        .map(|candidate| (likeness(&candidate), *candidate));
+    scored
+        .filter(|(score, _)| *score >= 1.0)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistyped_word_is_recognised_and_a_foreign_one_is_not() {
+        let known = ["sample_period_s", "duration_s", "kp", "kd"];
+        assert_eq!(nearest("sample_perod_s", &known), Some("sample_period_s"));
+        assert_eq!(nearest("duration", &known), Some("duration_s"));
+        assert_eq!(nearest("Kp", &known), Some("kp"));
+        assert_eq!(nearest("colour", &known), None);
+    }
+}

@@ -1,0 +1,152 @@
+//! The texts that are being read and the problems found in them so far.
+
+use crate::file::problem::{Problem, Problems};
+
+/// Longest excerpt of a file in a message, in characters.
+const EXCERPT: usize = 60;
+
+/// A stretch of one of the texts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// Which text: 0 is the file itself.
+    pub(crate) source: usize,
+    /// First byte.
+    pub(crate) start: usize,
+    /// Byte after the last.
+    pub(crate) end: usize,
+}
+
+/// A text and what it is called; `None` for the file itself.
+#[derive(Debug)]
+struct Source {
+    origin: Option<String>,
+    text: String,
+    /// First byte of each line.
+    lines: Vec<usize>,
+}
+
+/// What is known about the files so far.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    sources: Vec<Source>,
+    problems: Vec<Problem>,
+    warnings: Vec<String>,
+}
+
+impl Report {
+    /// Adds a text and returns its number.
+    pub(crate) fn add_source(&mut self, origin: Option<String>, text: &str) -> usize {
+        let after_breaks = text.match_indices('\n').map(|(at, _)| at + 1);
+        let lines = std::iter::once(0).chain(after_breaks).collect();
+        let text = text.to_owned();
+        self.sources.push(Source {
+            origin,
+            text,
+            lines,
+        });
+        self.sources.len() - 1
+    }
+
+    /// The text of a stretch.
+    pub(crate) fn text(&self, place: Place) -> &str {
+        let source = self.sources.get(place.source);
+        source
+            .and_then(|source| source.text.get(place.start..place.end))
+            .unwrap_or_default()
+    }
+
+    /// How many problems there are so far.
+    pub(crate) fn count(&self) -> usize {
+        self.problems.len()
+    }
+
+    /// A problem with a value, which is quoted.
+    pub(crate) fn value(
+        &mut self,
+        place: Place,
+        path: &str,
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        let found = excerpt(self.text(place));
+        self.push(place, path, message.into(), found, allowed.into());
+    }
+
+    /// A problem with something that is not there or too long to quote.
+    pub(crate) fn missing(
+        &mut self,
+        place: Place,
+        path: &str,
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        self.push(place, path, message.into(), String::new(), allowed.into());
+    }
+
+    fn push(&mut self, place: Place, path: &str, message: String, found: String, allowed: String) {
+        let (line, column) = self.line_and_column(place);
+        let origin = self
+            .sources
+            .get(place.source)
+            .and_then(|source| source.origin.clone());
+        let path = path.to_owned();
+        self.problems.push(Problem {
+            origin,
+            path,
+            line,
+            column,
+            message,
+            found,
+            allowed,
+        });
+    }
+
+    fn line_and_column(&self, place: Place) -> (usize, usize) {
+        let Some(source) = self.sources.get(place.source) else {
+            return (1, 1);
+        };
+        let line = source.lines.partition_point(|&start| start <= place.start);
+        let begin = line
+            .checked_sub(1)
+            .and_then(|index| source.lines.get(index))
+            .copied()
+            .unwrap_or(0);
+        let before = source.text.get(begin..place.start).unwrap_or_default();
+        (line, before.chars().count() + 1)
+    }
+
+    /// Something that is allowed and probably not meant.
+    pub(crate) fn warn(&mut self, warning: String) {
+        self.warnings.push(warning);
+    }
+
+    /// The warnings, or the problems if there are any.
+    pub(crate) fn finish(self, file: &str) -> Result<Vec<String>, Problems> {
+        if self.problems.is_empty() {
+            Ok(self.warnings)
+        } else {
+            Err(Problems::sorted(file, self.problems))
+        }
+    }
+}
+
+/// The first line of a text, shortened; control characters are made visible.
+pub(crate) fn excerpt(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    let mut short: String = line
+        .chars()
+        .take(EXCERPT)
+        .flat_map(|c| {
+            let visible = !c.is_control() || c == '\t';
+            if visible {
+                vec![c]
+            } else {
+                c.escape_unicode().collect()
+            }
+        })
+        .collect();
+    if line.chars().nth(EXCERPT).is_some() || text.trim_end().contains('\n') {
+        short.push('…');
+    }
+    short
+}

@@ -1,0 +1,178 @@
+//! The JSON Schema of scenario files, from the same specification as the check.
+
+use serde_json::{Map, Value, json};
+
+use crate::file::preset::rule_table_names;
+use crate::file::spec::{Choice, Default, Key, Kind, Presence, Range, SCENARIO, Table, Way};
+
+/// The JSON Schema (draft 2020-12) of scenario files.
+#[must_use]
+pub fn schema() -> Value {
+    let mut schema = table(&SCENARIO);
+    schema.insert(
+        "$schema".to_owned(),
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
+    schema.insert("title".to_owned(), json!("fspid scenario"));
+    Value::Object(schema)
+}
+
+fn table(spec: &'static Table) -> Map<String, Value> {
+    let mut schema = Map::new();
+    schema.insert("description".to_owned(), json!(spec.doc));
+    schema.insert("type".to_owned(), json!("object"));
+    if spec.variants.is_empty() {
+        let keys: Vec<&Key> = spec.keys().collect();
+        schema.extend(object(&keys, None, spec.choices));
+        return schema;
+    }
+    let variants: Vec<Value> = spec
+        .variants
+        .iter()
+        .map(|variant| {
+            let keys: Vec<&Key> = spec.keys().chain(variant.table.keys()).collect();
+            let mut one = object(&keys, Some(variant.name), variant.table.choices);
+            one.insert("description".to_owned(), json!(variant.table.doc));
+            Value::Object(one)
+        })
+        .collect();
+    schema.insert("oneOf".to_owned(), Value::Array(variants));
+    schema
+}
+
+/// What the keys of an object may be.
+fn object(keys: &[&'static Key], kind: Option<&str>, choices: &[Choice]) -> Map<String, Value> {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    if let Some(kind) = kind {
+        properties.insert("kind".to_owned(), json!({ "const": kind }));
+        required.push("kind");
+    }
+    for key in keys {
+        properties.insert(key.name.to_owned(), property(key));
+        if matches!(key.presence, Presence::Required) {
+            required.push(key.name);
+        }
+    }
+    let mut schema = Map::new();
+    schema.insert("properties".to_owned(), Value::Object(properties));
+    schema.insert("required".to_owned(), json!(required));
+    schema.insert("additionalProperties".to_owned(), json!(false));
+    let all: Vec<Value> = choices.iter().map(choice).collect();
+    if !all.is_empty() {
+        schema.insert("allOf".to_owned(), Value::Array(all));
+    }
+    schema
+}
+
+/// Exactly one of the ways, without a key of another.
+fn choice(choice: &Choice) -> Value {
+    let keys = |way: &Way| {
+        way.required
+            .iter()
+            .chain(way.optional)
+            .copied()
+            .collect::<Vec<_>>()
+    };
+    let ways: Vec<Value> = choice
+        .ways
+        .iter()
+        .map(|way| {
+            let others = choice
+                .ways
+                .iter()
+                .filter(|other| !std::ptr::eq(*other, way));
+            let foreign: Vec<Value> = others
+                .flat_map(keys)
+                .map(|name| json!({ "required": [name] }))
+                .collect();
+            json!({ "required": way.required, "not": { "anyOf": foreign } })
+        })
+        .collect();
+    json!({ "oneOf": ways })
+}
+
+fn property(key: &'static Key) -> Value {
+    let mut schema = kind(&key.kind);
+    let unit = match &key.kind {
+        Kind::Number { unit, .. } | Kind::Numbers { unit, .. } | Kind::Interval { unit, .. } => {
+            unit
+        }
+        _ => "",
+    };
+    let doc = if unit.is_empty() {
+        key.doc.to_owned()
+    } else {
+        format!("{} [{unit}]", key.doc)
+    };
+    schema.insert("description".to_owned(), json!(doc));
+    if let Presence::Default(default) = key.presence {
+        let value = match default {
+            Default::Number(number) => json!(number),
+            Default::Integer(integer) => json!(integer),
+            Default::Boolean(boolean) => json!(boolean),
+            Default::Word(word) => json!(word),
+        };
+        schema.insert("default".to_owned(), value);
+    }
+    Value::Object(schema)
+}
+
+fn kind(kind: &'static Kind) -> Map<String, Value> {
+    let schema = match kind {
+        Kind::Number { range, .. } => number(*range),
+        Kind::Integer { least, most } => {
+            json!({ "type": "integer", "minimum": least, "maximum": most })
+        }
+        Kind::Boolean => json!({ "type": "boolean" }),
+        Kind::Text | Kind::Path => json!({ "type": "string", "minLength": 1 }),
+        Kind::Word(words) => json!({ "type": "string", "enum": words }),
+        Kind::Preset(list) => json!({ "type": "string", "enum": list() }),
+        Kind::Rules(grids) => {
+            json!({ "oneOf": [
+                { "type": "string", "enum": rule_table_names() },
+                { "type": "string", "pattern": "\\.toml$" },
+                table(grids),
+            ] })
+        }
+        Kind::Grid => json!({ "type": "string" }),
+        Kind::Defuzzifier => {
+            json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid):[0-9]+)$" })
+        }
+        Kind::Numbers {
+            range, least, most, ..
+        } => {
+            json!({ "type": "array", "items": number(*range), "minItems": least, "maxItems": most })
+        }
+        Kind::Interval { range, .. } => {
+            json!({ "type": "array", "items": number(*range), "minItems": 2, "maxItems": 2 })
+        }
+        Kind::Table(spec) => return table(spec),
+        Kind::Tables {
+            table: spec,
+            least,
+            most,
+        } => {
+            json!({ "type": "array", "items": table(spec), "minItems": least, "maxItems": most })
+        }
+    };
+    match schema {
+        Value::Object(schema) => schema,
+        _ => Map::new(),
+    }
+}
+
+fn number(range: Range) -> Value {
+    match range {
+        Range::Finite => json!({ "type": "number" }),
+        Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
+        Range::Between(least, most) => {
+            json!({ "type": "number", "minimum": least, "maximum": most })
+        }
+        Range::PositiveUpTo(most) => {
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": most })
+        }
+        Range::UpTo(most) => json!({ "type": "number", "minimum": 0, "maximum": most }),
+    }
+}

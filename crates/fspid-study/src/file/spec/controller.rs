@@ -1,0 +1,374 @@
+//! The controllers.
+
+use super::data::GRIDS;
+use super::{
+    ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
+    finite, not_negative, optional, plain, positive, required,
+};
+
+pub(super) static CONTROLLER: Table = Table {
+    doc: "A controller; a positive command turns the nose up.",
+    groups: &[&[required(
+        "name",
+        Kind::Text,
+        "Name in traces and reports; each only once.",
+    )]],
+    choices: &[],
+    variants: &[
+        Variant {
+            name: "p",
+            table: plain(
+                "Proportional, with an optional inner loop of pitch rate.",
+                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN]],
+            ),
+        },
+        Variant {
+            name: "pid",
+            table: Table {
+                doc: "PID with fixed gains, in parallel or ISA form.",
+                groups: &[
+                    &[
+                        optional("kp", finite(""), "Proportional gain, command per error."),
+                        optional("ki", finite("1/s"), "Integral gain; 0 if left out."),
+                        optional("kd", finite("s"), "Derivative gain; 0 if left out."),
+                        optional("isa", Kind::Table(&ISA), "The gains in ISA form."),
+                    ],
+                    SHELL,
+                ],
+                choices: &[Choice {
+                    ways: &[
+                        Way {
+                            required: &["kp"],
+                            optional: &["ki", "kd"],
+                        },
+                        Way {
+                            required: &["isa"],
+                            optional: &[],
+                        },
+                    ],
+                }],
+                variants: &[],
+            },
+        },
+        Variant {
+            name: "fspid",
+            table: Table {
+                doc: "PID whose gains a fuzzy supervisor tunes while flying.",
+                groups: &[
+                    &[
+                        optional(
+                            "nominal",
+                            Kind::Table(&PARALLEL),
+                            "The gains that the supervisor adds to.",
+                        ),
+                        optional("nominal_isa", Kind::Table(&ISA), "The same in ISA form."),
+                    ],
+                    TUNER,
+                    SHELL,
+                ],
+                choices: &[Choice {
+                    ways: &[
+                        Way {
+                            required: &["nominal"],
+                            optional: &[],
+                        },
+                        Way {
+                            required: &["nominal_isa"],
+                            optional: &[],
+                        },
+                    ],
+                }],
+                variants: &[],
+            },
+        },
+    ],
+};
+
+const RATE_GAIN: Key = defaulted(
+    "rate_gain",
+    finite("s"),
+    Default::Number(0.0),
+    "Gain of the inner loop: command per pitch rate, taken off.",
+);
+
+static PARALLEL: Table = plain(
+    "Gains in parallel form.",
+    &[&[
+        required("kp", finite(""), "Proportional gain, command per error."),
+        defaulted("ki", finite("1/s"), Default::Number(0.0), "Integral gain."),
+        defaulted("kd", finite("s"), Default::Number(0.0), "Derivative gain."),
+    ]],
+);
+
+static ISA: Table = plain(
+    "Gains in ISA form: gain · (e + ∫e dt / ti_s + td_s · de/dt).",
+    &[&[
+        required("gain", finite(""), "K, command per error."),
+        optional(
+            "ti_s",
+            positive("s"),
+            "Integral time; no integral if left out.",
+        ),
+        defaulted(
+            "td_s",
+            not_negative("s"),
+            Default::Number(0.0),
+            "Derivative time.",
+        ),
+        optional(
+            "n",
+            positive(""),
+            "The derivative is filtered with time constant td_s / n; not at all if left out.",
+        ),
+    ]],
+);
+
+/// Everything of a PID controller but its gains.
+const SHELL: &[Key] = &[
+    RATE_GAIN,
+    optional(
+        "setpoint_weights",
+        Kind::Table(&WEIGHTS),
+        "How much of the set-point each term sees.",
+    ),
+    defaulted(
+        "derivative_on",
+        Kind::Word(&["error", "measurement"]),
+        Default::Word("error"),
+        "`measurement` is a derivative weight of 0.",
+    ),
+    optional(
+        "derivative_filter_s",
+        not_negative("s"),
+        "Time constant of the derivative's filter; 0 for none, which is also the default.",
+    ),
+    defaulted(
+        "integral",
+        Kind::Word(&["bumpless", "literal"]),
+        Default::Word("bumpless"),
+        "Sum of ki·e, or ki times the sum of e as the paper has it.",
+    ),
+    optional(
+        "anti_windup",
+        Kind::Table(&ANTI_WINDUP),
+        "What the integral does at a limit; nothing if left out.",
+    ),
+    optional(
+        "output_limits_deg",
+        Kind::Interval {
+            unit: "deg",
+            range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG),
+        },
+        "Lowest and highest command.",
+    ),
+    optional(
+        "slew_limit_deg_s",
+        positive("deg/s"),
+        "Largest rate of the command.",
+    ),
+    defaulted(
+        "sample_guard_deg",
+        Kind::Number {
+            unit: "deg",
+            range: Range::PositiveUpTo(1e300),
+        },
+        Default::Number(1e9),
+        "A larger sample is not believed: the command is held.",
+    ),
+];
+
+static WEIGHTS: Table = plain(
+    "Set-point weights.",
+    &[&[
+        defaulted(
+            "proportional",
+            finite(""),
+            Default::Number(1.0),
+            "Weight in the proportional term.",
+        ),
+        defaulted(
+            "derivative",
+            finite(""),
+            Default::Number(1.0),
+            "Weight in the derivative term.",
+        ),
+    ]],
+);
+
+static ANTI_WINDUP: Table = Table {
+    doc: "Anti-windup.",
+    groups: &[],
+    choices: &[],
+    variants: &[
+        Variant {
+            name: "none",
+            table: plain("The integral runs on.", &[]),
+        },
+        Variant {
+            name: "clamping",
+            table: plain(
+                "The integral's part of the command is kept within limits.",
+                &[&[
+                    required("lower_deg", angle(), "Lowest part."),
+                    required("upper_deg", angle(), "Highest part; above the lowest."),
+                ]],
+            ),
+        },
+        Variant {
+            name: "conditional",
+            table: plain(
+                "The integral stops while it would drive the command further past its limit.",
+                &[],
+            ),
+        },
+        Variant {
+            name: "back-calculation",
+            table: plain(
+                "The integral follows the limited command.",
+                &[&[required("tracking_s", positive("s"), "Tracking time.")]],
+            ),
+        },
+    ],
+};
+
+/// What a self-tuning controller has beyond a PID.
+const TUNER: &[Key] = &[
+    required(
+        "supervisor",
+        Kind::Table(&SUPERVISOR),
+        "The fuzzy rules and their scales.",
+    ),
+    defaulted(
+        "law",
+        Kind::Word(&["memoryless", "accumulating"]),
+        Default::Word("memoryless"),
+        "Gains are nominal plus increment, or add the increment up over time.",
+    ),
+    optional(
+        "leakage_per_s",
+        not_negative("1/s"),
+        "Pulls the gains of the accumulating law back to nominal; 0 if left out.",
+    ),
+    optional(
+        "gain_limits",
+        Kind::Table(&GAIN_LIMITS),
+        "Bounds of the total gains; none if left out.",
+    ),
+    optional(
+        "dead_zone",
+        Kind::Table(&DEAD_ZONE),
+        "Where the supervisor stays silent; nowhere if left out.",
+    ),
+];
+
+static SUPERVISOR: Table = plain(
+    "The supervisor: it sees error and change of error and answers increments of the gains.",
+    &[&[
+        required(
+            "table",
+            Kind::Rules(&GRIDS),
+            "The rules: a name, a file, or the three grids themselves.",
+        ),
+        required(
+            "range",
+            Kind::Number {
+                unit: "",
+                range: Range::Between(1e-100, 1e100),
+            },
+            "Half range of inputs and outputs.",
+        ),
+        defaulted(
+            "defuzzifier",
+            Kind::Defuzzifier,
+            Default::Word("exact"),
+            "How the answer becomes a number.",
+        ),
+        defaulted(
+            "out_of_range",
+            Kind::Word(&["clamp", "evaluate", "error"]),
+            Default::Word("clamp"),
+            "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
+        ),
+        defaulted(
+            "error_sign",
+            Kind::Word(&["setpoint-minus-measurement", "measurement-minus-setpoint"]),
+            Default::Word("setpoint-minus-measurement"),
+            "Sign of the supervisor's error and of its change.",
+        ),
+        defaulted(
+            "error_scale",
+            finite("1/deg"),
+            Default::Number(1.0),
+            "The supervisor sees this times the error in degrees.",
+        ),
+        defaulted(
+            "change",
+            Kind::Word(&["rate", "delta"]),
+            Default::Word("rate"),
+            "Change of error per second or per sample.",
+        ),
+        defaulted(
+            "change_scale",
+            finite(""),
+            Default::Number(1.0),
+            "The supervisor sees this times the change in degrees per second or per sample.",
+        ),
+        optional(
+            "output_scale",
+            Kind::Table(&OUTPUT_SCALE),
+            "Factors of the increments; 1 if left out.",
+        ),
+    ]],
+);
+
+static OUTPUT_SCALE: Table = plain(
+    "Factors of the increments.",
+    &[&[
+        defaulted(
+            "kp",
+            finite(""),
+            Default::Number(1.0),
+            "Factor of the proportional gain's.",
+        ),
+        defaulted(
+            "ki",
+            finite(""),
+            Default::Number(1.0),
+            "Factor of the integral gain's.",
+        ),
+        defaulted(
+            "kd",
+            finite(""),
+            Default::Number(1.0),
+            "Factor of the derivative gain's.",
+        ),
+    ]],
+);
+
+static GAIN_LIMITS: Table = plain(
+    "Lowest and highest total gains; an end that is left out is open.",
+    &[&[
+        optional("kp_min", finite(""), "Lowest proportional gain."),
+        optional("kp_max", finite(""), "Highest proportional gain."),
+        optional("ki_min", finite("1/s"), "Lowest integral gain."),
+        optional("ki_max", finite("1/s"), "Highest integral gain."),
+        optional("kd_min", finite("s"), "Lowest derivative gain."),
+        optional("kd_max", finite("s"), "Highest derivative gain."),
+    ]],
+);
+
+static DEAD_ZONE: Table = plain(
+    "Errors and changes so small that the increments are 0; both must be inside.",
+    &[&[
+        required(
+            "error_deg",
+            not_negative("deg"),
+            "Error up to which it holds.",
+        ),
+        required(
+            "change_deg_s",
+            not_negative("deg/s"),
+            "Change up to which it holds; degrees per sample where change is `delta`.",
+        ),
+    ]],
+);

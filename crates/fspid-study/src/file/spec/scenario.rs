@@ -1,0 +1,235 @@
+//! The scenario file: everything but controllers and signals.
+
+use super::controller::CONTROLLER;
+use super::signal::{DISTURBANCE, SETPOINT};
+use super::{
+    Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
+    positive, required,
+};
+use crate::file::preset::plant_names;
+
+/// The file as a whole.
+pub(crate) static SCENARIO: Table = plain(
+    "A flight to be simulated, once for each controller.",
+    &[&[
+        required(
+            "schema",
+            Kind::Integer { least: 1, most: 1 },
+            "Version of this format.",
+        ),
+        required("name", Kind::Text, "Name in reports."),
+        required(
+            "plant",
+            Kind::Table(&PLANT),
+            "The aircraft, from elevator to pitch angle.",
+        ),
+        optional(
+            "actuator",
+            Kind::Table(&ACTUATOR),
+            "The elevator servo; without this table it is ideal.",
+        ),
+        required("loop", Kind::Table(&LOOP), "Samples and duration."),
+        required(
+            "setpoint",
+            Kind::Table(&SETPOINT),
+            "The commanded pitch angle.",
+        ),
+        optional(
+            "disturbance",
+            Kind::Tables {
+                table: &DISTURBANCE,
+                least: 0,
+                most: 100,
+            },
+            "What disturbs; all are added.",
+        ),
+        optional(
+            "plant_change",
+            Kind::Tables {
+                table: &PLANT_CHANGE,
+                least: 0,
+                most: 100,
+            },
+            "Changes of the aircraft in flight, in order of time.",
+        ),
+        required(
+            "controller",
+            Kind::Tables {
+                table: &CONTROLLER,
+                least: 1,
+                most: 100,
+            },
+            "Who answers; each flies the whole scenario alone.",
+        ),
+        optional(
+            "requirement",
+            Kind::Tables {
+                table: &REQUIREMENT,
+                least: 0,
+                most: 1000,
+            },
+            "What the responses must meet.",
+        ),
+    ]],
+);
+
+/// Words for the sign of the elevator.
+pub(crate) const ELEVATOR_SIGNS: [&str; 2] = ["nose-down-positive", "nose-up-positive"];
+
+/// A list of coefficients.
+pub(super) const COEFFICIENTS: Kind = Kind::Numbers {
+    unit: "",
+    range: Range::Finite,
+    least: 1,
+    most: 101,
+};
+
+const PRESET: Key = optional(
+    "preset",
+    Kind::Preset(plant_names),
+    "A plant that the program carries.",
+);
+const FILE: Key = optional("file", Kind::Path, "A plant file, relative to this file.");
+const NUMERATOR: Key = optional(
+    "numerator",
+    COEFFICIENTS,
+    "Coefficients of pitch angle over elevator, highest power of s first.",
+);
+const DENOMINATOR: Key = optional("denominator", COEFFICIENTS, "As numerator; longer than it.");
+const ELEVATOR_SIGN: Key = optional(
+    "elevator_sign",
+    Kind::Word(&ELEVATOR_SIGNS),
+    "What a positive elevator does in these coefficients.",
+);
+
+static PLANT: Table = Table {
+    doc: "A linear aircraft.",
+    groups: &[&[PRESET, NUMERATOR, DENOMINATOR, ELEVATOR_SIGN, FILE]],
+    choices: &[Choice {
+        ways: &[
+            Way {
+                required: &["preset"],
+                optional: &[],
+            },
+            Way {
+                required: &["numerator", "denominator", "elevator_sign"],
+                optional: &[],
+            },
+            Way {
+                required: &["file"],
+                optional: &[],
+            },
+        ],
+    }],
+    variants: &[],
+};
+
+static PLANT_CHANGE: Table = Table {
+    doc: "A change of the aircraft's coefficients in flight.",
+    groups: &[
+        &[
+            required("at_s", not_negative("s"), "Start of the change."),
+            defaulted(
+                "ramp_s",
+                not_negative("s"),
+                Default::Number(0.0),
+                "Length of the change; 0 for at once.",
+            ),
+        ],
+        &[PRESET, NUMERATOR, DENOMINATOR, ELEVATOR_SIGN, FILE],
+    ],
+    choices: &[Choice {
+        ways: &[
+            Way {
+                required: &["preset"],
+                optional: &[],
+            },
+            // The sign is that of the plant unless it is given.
+            Way {
+                required: &["numerator", "denominator"],
+                optional: &["elevator_sign"],
+            },
+            Way {
+                required: &["file"],
+                optional: &[],
+            },
+        ],
+    }],
+    variants: &[],
+};
+
+static ACTUATOR: Table = plain(
+    "A first-order servo with optional limits behind a delay.",
+    &[&[
+        defaulted(
+            "time_constant_s",
+            not_negative("s"),
+            Default::Number(0.0),
+            "Time constant; 0 for none.",
+        ),
+        optional(
+            "position_limit_deg",
+            positive("deg"),
+            "The deflection is kept within plus and minus this.",
+        ),
+        optional(
+            "rate_limit_deg_s",
+            positive("deg/s"),
+            "The deflection's rate is kept within plus and minus this.",
+        ),
+        defaulted(
+            "delay_samples",
+            Kind::Integer {
+                least: 0,
+                most: 10_000,
+            },
+            Default::Integer(0),
+            "How many samples the command arrives late.",
+        ),
+    ]],
+);
+
+static LOOP: Table = plain(
+    "When samples are taken.",
+    &[&[
+        required(
+            "sample_period_s",
+            positive("s"),
+            "Time from sample to sample.",
+        ),
+        required(
+            "duration_s",
+            positive("s"),
+            "Length of the flight; round(duration_s / sample_period_s) + 1 samples.",
+        ),
+    ]],
+);
+
+/// Words for what a requirement measures.
+pub(crate) const MEASURES: [&str; 4] = [
+    "overshoot_pct",
+    "rise_time_s",
+    "settling_time_s",
+    "final_error_pct",
+];
+
+static REQUIREMENT: Table = plain(
+    "A bound that the response to the first command must meet.",
+    &[&[
+        required(
+            "measure",
+            Kind::Word(&MEASURES),
+            "What is measured; final_error_pct counts by its size.",
+        ),
+        required(
+            "most",
+            not_negative(""),
+            "Largest value that is met, in the unit of the measure.",
+        ),
+        optional(
+            "controller",
+            Kind::Text,
+            "Name of the controller; all of them if it is left out.",
+        ),
+    ]],
+);

@@ -1,0 +1,2 @@
+//! Finding the unpublished parameters.
+mod problem;
