@@ -9,6 +9,8 @@
 //!   counted from the start of the disturbance.
 //! - Tuned controllers had the same budget each, at a size of 1 degree.
 
+use fspid_sim::Trace;
+
 use crate::file::Problems;
 use crate::metrics::{Absent, CommandEffort, ErrorIntegrals};
 use crate::simulation::Simulation;
@@ -62,13 +64,18 @@ pub fn cost(simulation: &Simulation, controller: &str, size_deg: f64) -> Result<
     let result = simulation.result(controller).ok_or(Absent::NoStep)?;
     // The verdict first: a loop that is unstable has no cost, however short the flight.
     result.metrics.integrals?;
-    let trace = &result.trace;
+    Ok(flight_cost(&result.trace, size_deg))
+}
+
+/// The cost of a completed flight whose disturbance has this size.
+#[must_use]
+pub fn flight_cost(trace: &Trace, size_deg: f64) -> f64 {
     let dt_s = trace.time_s.get(1).copied().unwrap_or(0.0);
     let start = trace.time_s.iter().position(|&time| time >= START_S).unwrap_or(0);
     let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
     let itae = ErrorIntegrals::of(errors, dt_s, &[0, start]).itae_rad_s2;
     let variation = CommandEffort::of(&trace.command_rad, dt_s).variation_rad;
-    Ok((degrees(itae) + VARIATION_WEIGHT * degrees(variation)) / size_deg)
+    (degrees(itae) + VARIATION_WEIGHT * degrees(variation)) / size_deg
 }
 
 /// Flies all sizes of all shapes at all places of entry.

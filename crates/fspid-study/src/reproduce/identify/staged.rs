@@ -1,0 +1,173 @@
+//! The search itself: nominal gains from the CPID's claims, then the supervisor's scales, then all
+//! together, tried again with other random numbers until the claims are met or the attempts used up.
+
+use super::problem::{Bench, FigureProblem, Weighing, scale_parameters, scales};
+use crate::tune::{Budget, Found, Space, polish, search};
+
+/// Attempts with different random numbers before the best is taken.
+const ATTEMPTS: usize = 6;
+/// A cost below this is as good as nothing: every number of the fit rounds to the printed digits.
+pub(super) const ACCEPTED: f64 = 0.02;
+/// Where a search stops.
+const ENOUGH: f64 = 1e-9;
+/// Pull towards the middle of the box, for parameters that the claims leave free.
+const PRIOR: f64 = 1e-2;
+/// Spread of the joint search about what the stages found, as a share of the box.
+const JOINT_SPREAD: f64 = 0.05;
+
+/// Evaluations of the stages of one attempt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Effort {
+    pub(super) nominal: usize,
+    pub(super) scales: usize,
+    pub(super) joint: usize,
+    pub(super) polish: usize,
+}
+
+impl Effort {
+    /// For one figure.
+    pub(super) const FIGURE: Self =
+        Self { nominal: 4_000, scales: 6_000, joint: 6_000, polish: 3_000 };
+    /// For all figures of a range.
+    pub(super) const RANGE: Self =
+        Self { nominal: 4_000, scales: 6_000, joint: 15_000, polish: 5_000 };
+}
+
+/// What one seed found.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SeedResult {
+    pub(super) seed: u64,
+    pub(super) attempts: usize,
+    pub(super) evaluations: usize,
+    pub(super) cost: f64,
+    /// Scales, then the parameters of each figure.
+    pub(super) point: Vec<f64>,
+}
+
+/// Figures that are flown with one supervisor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Set<'a> {
+    pub(super) figures: &'a [FigureProblem],
+    pub(super) weighing: Weighing,
+    /// Gain and gyro gain of the proportional loop.
+    pub(super) proportional: [f64; 2],
+    pub(super) effort: Effort,
+}
+
+impl Set<'_> {
+    /// All parameters: scales, then figure by figure.
+    pub(super) fn space(&self) -> Space {
+        let mut parameters = self.scale_space().parameters().to_vec();
+        parameters.extend(self.figures.iter().flat_map(FigureProblem::parameters));
+        Space::new(parameters)
+    }
+
+    fn scale_space(&self) -> Space {
+        Space::new(self.figures.first().map(|f| scale_parameters(f.setting)).unwrap_or_default())
+    }
+
+    /// The part of a point that belongs to each figure.
+    pub(super) fn parts<'p>(&self, point: &'p [f64]) -> Vec<&'p [f64]> {
+        let mut rest = point.get(self.scale_space().dimension()..).unwrap_or_default();
+        self.figures
+            .iter()
+            .map(|figure| {
+                let (part, tail) = rest.split_at(figure.parameters().len().min(rest.len()));
+                rest = tail;
+                part
+            })
+            .collect()
+    }
+
+    fn cost(&self, bench: &Bench, point: &[f64]) -> f64 {
+        let scales = scales(point);
+        self.figures
+            .iter()
+            .zip(self.parts(point))
+            .map(|(figure, part)| {
+                let gyro = Some(self.proportional).filter(|_| figure.gyro);
+                let mut model = figure.flight(part, Some(scales), gyro);
+                // The proportional loop is settled already.
+                model.controllers.retain(|controller| controller.name != "PC");
+                bench.cost(figure.id, &model, self.weighing)
+            })
+            .sum()
+    }
+
+    /// Nominal gains and half period of one figure, from the CPID's claims alone.
+    fn nominal(&self, bench: &Bench, figure: &FigureProblem, seed: u64) -> Found {
+        let space = Space::new(figure.parameters());
+        let budget =
+            Budget { seed, population: 30, global: self.effort.nominal, polish: 0 };
+        search(&space, budget, None, ENOUGH, |point| {
+            let gyro = Some(self.proportional).filter(|_| figure.gyro);
+            let mut model = figure.flight(point, None, gyro);
+            model.controllers.retain(|controller| controller.name != "PC");
+            bench.cost(figure.id, &model, self.weighing) + prior(&space, point)
+        })
+    }
+
+    fn attempt(&self, bench: &Bench, seed: u64) -> Found {
+        let mut evaluations = 0;
+        let mut nominal = Vec::new();
+        for (figure, index) in self.figures.iter().zip(0..) {
+            let found = self.nominal(bench, figure, seed + index);
+            evaluations += found.evaluations;
+            nominal.extend(found.point);
+        }
+        let join = |scales: &[f64]| [scales, &nominal].concat();
+
+        let scale_space = self.scale_space();
+        let budget =
+            Budget { seed: seed + 10, population: 40, global: self.effort.scales, polish: 0 };
+        let found = search(&scale_space, budget, None, ENOUGH, |point| {
+            self.cost(bench, &join(point)) + prior(&scale_space, point)
+        });
+        evaluations += found.evaluations;
+
+        let space = self.space();
+        let begin = join(&found.point);
+        let budget =
+            Budget { seed: seed + 20, population: 40, global: self.effort.joint, polish: 0 };
+        let found = search(&space, budget, Some((&begin, JOINT_SPREAD)), ENOUGH, |point| {
+            self.cost(bench, point) + prior(&space, point)
+        });
+        evaluations += found.evaluations;
+
+        let free_cost = self.cost(bench, &found.point);
+        let found = polish(
+            &space,
+            (&found.point, free_cost),
+            self.effort.polish,
+            ENOUGH,
+            |point| self.cost(bench, point),
+        );
+        Found { evaluations: evaluations + found.evaluations, ..found }
+    }
+
+    /// Searches with one seed.
+    pub(super) fn solve(&self, bench: &Bench, seed: u64) -> SeedResult {
+        let mut best: Option<Found> = None;
+        let mut evaluations = 0;
+        let mut attempts = 0;
+        let settles_for_less = self.weighing == Weighing::Shares;
+        while attempts < if settles_for_less { 2 } else { ATTEMPTS } {
+            let found = self.attempt(bench, 1_000_000 * seed + 1_000 * attempts as u64);
+            attempts += 1;
+            evaluations += found.evaluations;
+            if best.as_ref().is_none_or(|best| found.cost < best.cost) {
+                best = Some(found);
+            }
+            if best.as_ref().is_some_and(|best| best.cost <= ACCEPTED) {
+                break;
+            }
+        }
+        let (point, cost) =
+            best.map_or((Vec::new(), f64::INFINITY), |best| (best.point, best.cost));
+        SeedResult { seed, attempts, evaluations, cost, point }
+    }
+}
+
+fn prior(space: &Space, point: &[f64]) -> f64 {
+    PRIOR * space.unit(point).iter().map(|u| (u - 0.5) * (u - 0.5)).sum::<f64>()
+}
