@@ -26,16 +26,17 @@ pub struct Derivative<R> {
     pub filter_s: R,
 }
 
-/// The largest number a memory may hold: 2^-30 of the largest there is, or 8e28 in single
-/// precision. A memory nearer to overflow could not answer the next sample, however good, and the
-/// output would be held for ever.
-fn largest<R: Real>() -> R {
-    R::from_f64(1.0 / f64::from(1_u32 << 30)) / R::MIN_POSITIVE
-}
+/// Room to be left below overflow by the integral: gains and scales up to 10⁹ then leave the next
+/// sample an answer.
+const INTEGRAL_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
+/// As [`INTEGRAL_ROOM`] for what the next sample's rates are taken from; they act on the integral
+/// through a gain, so that they leave it as much again.
+const RATE_ROOM: f64 = INTEGRAL_ROOM * INTEGRAL_ROOM;
 
-/// True if a memory may hold the number; false for NaN.
-fn small<R: Real>(value: &R) -> bool {
-    value.abs() <= largest()
+/// True if both numbers are below that fraction of the largest; false for NaN.
+fn leave<R: Real>(room: f64, values: [R; 2]) -> bool {
+    let largest = R::from_f64(room) / R::MIN_POSITIVE;
+    values.iter().all(|value| value.abs() <= largest)
 }
 
 impl<R: Real> Derivative<R> {
@@ -180,9 +181,12 @@ impl<R: Real> Shell<R> {
         let excess_rad = free_rad - command_rad;
         let integral = integrator.unwound(state.integral, wound, excess_rad, error_rad);
 
-        // The inputs of limits, too: a limit would turn an overflow into a number.
-        let memory = [wound, integral, derivative_rad_s, free_rad];
-        if !(self.differs_safely([error_rad, derivative_input_rad]) && memory.iter().all(small)) {
+        // Not only what is infinite: from a memory near overflow the way to any other sample would
+        // overflow, however good that sample, and the output would be held for ever.
+        let steepest = [error_rad / self.dt_s, derivative_input_rad / self.dt_s];
+        let clear = leave(RATE_ROOM, steepest) && leave(INTEGRAL_ROOM, [wound, integral]);
+        // Before the limits, which would turn an overflow into a number.
+        if !(clear && free_rad.is_finite()) {
             return self.hold(state, Faults::OVERFLOW, gains);
         }
         let previous = Previous {
@@ -203,14 +207,6 @@ impl<R: Real> Shell<R> {
             saturated: excess_rad != R::ZERO,
             faults: state.faults,
         }
-    }
-
-    /// True if the rate at which each of these falls to zero at the next sample is [`small`].
-    fn differs_safely(&self, values: [R; 2]) -> bool {
-        let dt_s = self.dt_s.smaller(R::ONE);
-        values
-            .iter()
-            .all(|value| value.abs() <= largest::<R>() * dt_s)
     }
 
     fn integrator(&self, ki: R) -> Integrator<R> {

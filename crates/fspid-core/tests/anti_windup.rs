@@ -58,6 +58,30 @@ fn without_anti_windup_the_integral_winds_up_behind_the_limit() {
     }
 }
 
+#[test]
+fn a_command_is_saturated_where_an_output_or_slew_limit_cut_it_to_either_side() {
+    let (limited, mut slewed) = (
+        shell(IntegralForm::Bumpless, AntiWindup::None),
+        Shell::sampled_every(T),
+    );
+    slewed.slew_rad_s = Some(100.0);
+    let only_kp = Gains {
+        kp: 2.0,
+        ..Gains::ZERO
+    };
+    for shell in [limited, slewed] {
+        for (error_rad, command_rad, saturated) in [
+            (0.5, 1.0, false),
+            (0.6, 1.0, true),
+            (-0.5, -1.0, false),
+            (-0.6, -1.0, true),
+        ] {
+            let step = pid(only_kp, shell).step(&mut State::new(), error(error_rad));
+            assert_eq!((step.command_rad, step.saturated), (command_rad, saturated));
+        }
+    }
+}
+
 /// With no error the distance beyond the limit shrinks by (1 - T/Tt) a sample, which for T ≪ Tt is
 /// a time constant of Tt.
 #[test]

@@ -5,6 +5,10 @@
     clippy::float_cmp,
     reason = "tests ask for exact bits where they compare floats"
 )]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "powers of two are exact everywhere"
+)]
 
 mod common;
 
@@ -194,18 +198,31 @@ fn an_overflow_is_held_even_where_a_limit_would_hide_it() {
 /// memory, from where the change to any other sample overflowed: the output was held for ever.
 #[test]
 fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
-    for value in [1e38, 1e36, 1e30, 1e26, 1e20] {
-        for mut shell in [
-            Shell::sampled_every(0.01_f32),
-            full_shell(IntegralForm::Bumpless),
-        ] {
-            shell.guard = Guard::new(3e38).expect("finite");
-            for controller in Controller::all(shell) {
-                let mut state = State::new();
-                controller.step(&mut state, error(value));
-                state.take_faults();
-                let step = controller.step(&mut state, error(0.1));
-                assert!(step.faults.is_empty(), "{value:e}: {step:?}");
+    for form in [IntegralForm::Bumpless, IntegralForm::Literal] {
+        let (plain, mut dead_beat) = (Shell::sampled_every(0.01_f32), full_shell(form));
+        dead_beat.derivative.filter_s = 0.0;
+        dead_beat.anti_windup = AntiWindup::BackCalculation { tracking_s: 0.01 };
+        let fast = Shell::sampled_every(1e-9_f32);
+        for mut shell in [plain, full_shell(form), dead_beat, fast] {
+            (shell.integral, shell.guard) = (form, Guard::new(3e38).expect("finite"));
+            let strong = Gains {
+                kp: 1e3,
+                ki: 1e3,
+                kd: 1e3,
+            };
+            let strong = Controller::Fixed(pid(strong, shell));
+            for controller in Controller::all(shell).iter().chain([&strong]) {
+                // Every power of two up to 2^127, at the first sample and after a good one.
+                for (exponent, before) in (0..128).flat_map(|n| [(n, 0), (n, 1)]) {
+                    let mut state = State::new();
+                    for _ in 0..before {
+                        controller.step(&mut state, error(0.1));
+                    }
+                    controller.step(&mut state, error(2_f32.powi(exponent)));
+                    state.take_faults();
+                    let step = controller.step(&mut state, error(0.1));
+                    assert!(step.faults.is_empty(), "2^{exponent}: {step:?} {shell:?}");
+                }
             }
         }
     }
