@@ -202,24 +202,40 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
         let (plain, mut dead_beat) = (Shell::sampled_every(0.01_f32), full_shell(form));
         dead_beat.derivative.filter_s = 0.0;
         dead_beat.anti_windup = AntiWindup::BackCalculation { tracking_s: 0.01 };
-        let mut fast = Shell::sampled_every(1e-9_f32);
+        let mut fast = Shell::sampled_every(1e-12_f32);
         // The error and what the derivative acts on are then different numbers.
         fast.setpoint_weights.derivative = 0.0;
         for mut shell in [plain, full_shell(form), dead_beat, fast] {
             (shell.integral, shell.guard) = (form, Guard::new(3e38).expect("finite"));
             let strong = Gains {
-                kp: 1e3,
-                ki: 1e3,
-                kd: 1e3,
+                kp: 1e9,
+                ki: 1e9,
+                kd: 1e9,
             };
-            let strong = Controller::Fixed(pid(strong, shell));
-            for controller in Controller::all(shell).iter().chain([&strong]) {
+            let input_scale = InputScale {
+                error_per_rad: 1e9,
+                change_per_rad: 1e9,
+            };
+            let keen = TunerSettings {
+                input_scale,
+                ..TunerSettings::literal()
+            };
+            let extreme = [
+                Controller::Fixed(pid(strong, shell)),
+                Controller::Tuned(Box::new(fspid(keen, shell))),
+            ];
+            for controller in Controller::all(shell).iter().chain(&extreme) {
                 // Every power of two up to 2^127, as an error and as an attitude that is commanded
                 // and measured, at the first sample and after a good one.
                 for n in 0..128_u32 {
                     let huge = 2_f32.powi(n.cast_signed());
                     let attitude = with(error(huge), 1, huge);
-                    for (sample, before) in [(error(huge), 0), (error(huge), 1), (attitude, 1)] {
+                    for (sample, before) in [
+                        (error(huge), 0),
+                        (error(huge), 1),
+                        (attitude, 0),
+                        (attitude, 1),
+                    ] {
                         let mut state = State::new();
                         for _ in 0..before {
                             controller.step(&mut state, error(0.1));
