@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use fspid_fuzzy::Real;
+
 /// Why a controller could not be built: which setting, what was found, what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -74,46 +76,46 @@ impl fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
-/// `value` if it is finite and above zero.
-pub(crate) fn positive<R: fspid_fuzzy::Real>(
-    what: &'static str,
-    value: R,
-) -> Result<R, ConfigError> {
-    if value.is_finite() && value > R::ZERO {
-        return Ok(value);
-    }
-    let allowed = "a finite number above 0";
-    Err(ConfigError::Number {
-        what,
-        found: value.to_f64(),
-        allowed,
-    })
+/// `value` if it is finite, above zero and not denormal: a quotient by it must not overflow.
+pub(crate) fn positive<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+    at_least(R::MIN_POSITIVE, what, value, "a finite number above 0")
 }
 
 /// `value` if it is finite and not below zero.
-pub(crate) fn not_negative<R: fspid_fuzzy::Real>(
-    what: &'static str,
-    value: R,
-) -> Result<R, ConfigError> {
-    if value.is_finite() && value >= R::ZERO {
-        return Ok(value);
-    }
-    let allowed = "a finite number, 0 or above";
-    Err(ConfigError::Number {
-        what,
-        found: value.to_f64(),
-        allowed,
-    })
+pub(crate) fn not_negative<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+    at_least(R::ZERO, what, value, "a finite number, 0 or above")
 }
 
 /// `value` if it is finite.
-pub(crate) fn finite<R: fspid_fuzzy::Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
-    if value.is_finite() {
+pub(crate) fn finite<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+    allowed_if(value.is_finite(), what, value, "a finite number")
+}
+
+/// `value` if it is finite and not below `least`.
+pub(crate) fn at_least<R: Real>(
+    least: R,
+    what: &'static str,
+    value: R,
+    allowed: &'static str,
+) -> Result<R, ConfigError> {
+    // NaN fails both.
+    allowed_if(value.is_finite() && value >= least, what, value, allowed)
+}
+
+/// `value` if it is `good`.
+pub(crate) fn allowed_if<R: Real>(
+    good: bool,
+    what: &'static str,
+    value: R,
+    allowed: &'static str,
+) -> Result<R, ConfigError> {
+    if good {
         return Ok(value);
     }
+    let found = value.to_f64();
     Err(ConfigError::Number {
         what,
-        found: value.to_f64(),
-        allowed: "a finite number",
+        found,
+        allowed,
     })
 }

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::{Increments, Real};
 
-use crate::error::{ConfigError, finite};
+use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::limits::Limits;
 
 /// Gains in parallel form: $u = k_p e + k_i \int e \, dt + k_d \dot e$.
@@ -27,28 +27,22 @@ impl<R: Real> Gains<R> {
     };
 
     /// From the ISA form $u = K (e + \frac{1}{T_i} \int e \, dt + T_d \dot e)$; an infinite `ti_s`
-    /// means no integral action.
+    /// means no integral action. A filter is [`Derivative::from_isa`](crate::Derivative::from_isa).
     ///
     /// # Errors
-    /// [`ConfigError::Number`] for a gain or time that is not finite, or a `ti_s` that is not
-    /// positive.
+    /// [`ConfigError::Number`] for a gain or time that is not finite, a `ti_s` that is not positive
+    /// and a negative `td_s`, or where a gain of the parallel form overflows.
     pub fn from_isa(gain: R, ti_s: R, td_s: R) -> Result<Self, ConfigError> {
         let gain = finite("gain K", gain)?;
-        let td_s = crate::error::not_negative("Td, s", td_s)?;
-        // Written so that NaN fails.
-        if !(ti_s > R::ZERO) {
-            let found = ti_s.to_f64();
-            return Err(ConfigError::Number {
-                what: "Ti, s",
-                found,
-                allowed: "a number above 0",
-            });
-        }
-        Ok(Self {
+        // Infinity passes, NaN does not.
+        let ti_s = allowed_if(ti_s > R::ZERO, "Ti, s", ti_s, "a number above 0")?;
+        let td_s = not_negative("Td, s", td_s)?;
+        Self {
             kp: gain,
             ki: gain / ti_s,
             kd: gain * td_s,
-        })
+        }
+        .checked()
     }
 
     /// The gains if each is finite.

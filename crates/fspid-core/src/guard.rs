@@ -5,7 +5,7 @@ use core::fmt;
 use fspid_fuzzy::Real;
 
 use crate::error::{ConfigError, positive};
-use crate::shell::Sample;
+use crate::state::Sample;
 
 /// Faults that a controller has met, latched until they are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,7 +18,8 @@ impl Faults {
     pub const NOT_FINITE: Self = Self(1);
     /// A sample was beyond the guard's limit; the output was held.
     pub const ABSURD: Self = Self(1 << 1);
-    /// The calculation overflowed from finite samples; the output was held.
+    /// The calculation overflowed from finite samples, or would have at the next; the output was
+    /// held.
     pub const OVERFLOW: Self = Self(1 << 2);
     /// A supervisor that refuses inputs out of range met one; the gains were held.
     pub const OUT_OF_RANGE: Self = Self(1 << 3);
@@ -88,14 +89,13 @@ impl<R: Real> Guard<R> {
         })
     }
 
-    /// The fault of a sample, if it has one. A rate that is not used cannot be at fault.
-    pub(crate) fn fault(&self, sample: Sample<R>, uses_rate: bool) -> Option<Faults> {
-        let rate = if uses_rate {
-            sample.rate_rad_s
-        } else {
-            R::ZERO
-        };
-        let values = [sample.setpoint_rad, sample.measurement_rad, rate];
+    /// The fault of a sample, if it has one.
+    pub(crate) fn fault(&self, sample: Sample<R>) -> Option<Faults> {
+        let values = [
+            sample.setpoint_rad,
+            sample.measurement_rad,
+            sample.rate_rad_s,
+        ];
         if values.iter().any(|value| !value.is_finite()) {
             return Some(Faults::NOT_FINITE);
         }

@@ -44,19 +44,21 @@ extern crate std;
 mod error;
 mod gains;
 mod guard;
+mod integral;
 mod limits;
 mod pid;
 mod shell;
+mod state;
 mod tuner;
 
 pub use error::ConfigError;
 pub use gains::{GainLimits, Gains};
 pub use guard::{Faults, Guard};
+pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
-pub use shell::{
-    AntiWindup, Derivative, IntegralForm, Sample, SetpointWeights, Shell, State, Step,
-};
+pub use shell::{Derivative, SetpointWeights, Shell};
+pub use state::{Sample, State, Step};
 pub use tuner::{Change, DeadZone, ErrorSign, InputScale, Law, SelfTuner, TunerSettings};
 
 pub use fspid_fuzzy as fuzzy;

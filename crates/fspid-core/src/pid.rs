@@ -4,8 +4,8 @@ use fspid_fuzzy::Real;
 
 use crate::error::ConfigError;
 use crate::gains::Gains;
-use crate::guard::Faults;
-use crate::shell::{Sample, Shell, State, Step};
+use crate::shell::Shell;
+use crate::state::{Sample, State, Step};
 use crate::tuner::SelfTuner;
 
 /// A PID controller with fixed gains (`ki = kd = 0`: the paper's proportional controller).
@@ -41,14 +41,10 @@ impl<R: Real> Pid<R> {
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
-        if let Some(fault) = self
-            .shell
-            .guard
-            .fault(sample, self.shell.rate_gain_s != R::ZERO)
-        {
-            return state.hold(fault, self.gains);
+        match self.shell.admitted(sample) {
+            Ok(sample) => self.shell.step(state, sample, self.gains),
+            Err(fault) => self.shell.hold(state, fault, self.gains),
         }
-        self.shell.step(state, sample, self.gains)
     }
 }
 
@@ -67,9 +63,11 @@ impl<R: Real> Fspid<R> {
     /// A controller whose gains come from `tuner`.
     ///
     /// # Errors
-    /// [`ConfigError`] names the first setting that is not allowed.
+    /// [`ConfigError`] names the first setting that is not allowed; a leakage above one per sample
+    /// period, which would throw the gains beyond their nominal values, is one.
     pub fn new(tuner: SelfTuner<R>, shell: Shell<R>) -> Result<Self, ConfigError> {
         shell.check()?;
+        tuner.check_leakage(shell.dt_s)?;
         Ok(Self { tuner, shell })
     }
 
@@ -87,22 +85,21 @@ impl<R: Real> Fspid<R> {
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
         let nominal = self.tuner.nominal();
-        if let Some(fault) = self
-            .shell
-            .guard
-            .fault(sample, self.shell.rate_gain_s != R::ZERO)
-        {
-            return state.hold(fault, nominal);
-        }
+        let sample = match self.shell.admitted(sample) {
+            Ok(sample) => sample,
+            Err(fault) => return self.shell.hold(state, fault, nominal),
+        };
         let error_rad = sample.setpoint_rad - sample.measurement_rad;
         let delta_rad = state.error_delta(error_rad);
-        let (gains, fault) = self
+        let answer = self
             .tuner
             .gains(state.gains(), error_rad, delta_rad, self.shell.dt_s);
-        state.latch(fault);
-        if !gains.are_finite() {
-            return state.hold(Faults::OVERFLOW, nominal);
+        match answer {
+            Ok((gains, fault)) => {
+                state.latch(fault);
+                self.shell.step(state, sample, gains)
+            }
+            Err(fault) => self.shell.hold(state, fault, nominal),
         }
-        self.shell.step(state, sample, gains)
     }
 }

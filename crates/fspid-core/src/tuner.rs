@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::{Real, Supervisor};
 
-use crate::error::{ConfigError, finite, not_negative};
+use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
 
@@ -32,7 +32,8 @@ pub enum Law<R> {
     /// $k = k' + s \Delta k$: equation (1) of the paper with its misprint mended.
     Memoryless,
     /// $k_j = k_{j-1} + s \Delta k T - \lambda (k_{j-1} - k') T$ from $k'$: common in the literature
-    /// that the paper cites. The leakage $\lambda$ [1/s] pulls the gains back; 0 for none.
+    /// that the paper cites. The leakage $\lambda$ [1/s] pulls the gains back; 0 for none, at most
+    /// $1/T$.
     Accumulating {
         /// Leakage, 1/s.
         leakage_per_s: R,
@@ -155,8 +156,17 @@ impl<R: Real> SelfTuner<R> {
         &self.supervisor
     }
 
-    /// Scaled increments $s \Delta k$ for an error and its change as the loop has them; a fault if
-    /// the supervisor could not answer as asked.
+    /// Refuses a leakage that would overshoot within one sample.
+    pub(crate) fn check_leakage(&self, dt_s: R) -> Result<(), ConfigError> {
+        if let Law::Accumulating { leakage_per_s } = self.settings.law {
+            let good = leakage_per_s * dt_s <= R::ONE;
+            let allowed = "at most one per sample period";
+            allowed_if(good, "leakage, 1/s", leakage_per_s, allowed)?;
+        }
+        Ok(())
+    }
+
+    /// Scaled increments $s \Delta k$ for an error and its change as the loop has them.
     fn increments(&self, error_rad: R, change_rad: R) -> Result<(Gains<R>, Faults), Faults> {
         let settings = &self.settings;
         if let Some(zone) = settings.dead_zone
@@ -171,6 +181,9 @@ impl<R: Real> SelfTuner<R> {
         };
         let error = sign * (settings.input_scale.error_per_rad * error_rad);
         let change = sign * (settings.input_scale.change_per_rad * change_rad);
+        if !(error.is_finite() && change.is_finite()) {
+            return Err(Faults::OVERFLOW);
+        }
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
@@ -179,32 +192,30 @@ impl<R: Real> SelfTuner<R> {
         } else {
             Faults::NONE
         };
-        Ok((
-            settings
-                .output_scale
-                .zip(inference.delta.into(), |s, d| s * d),
-            fault,
-        ))
+        let delta = Gains::from(inference.delta);
+        Ok((settings.output_scale.zip(delta, |s, d| s * d), fault))
     }
 
-    /// The gains of this sample; `previous` are those of the last one, `None` at the first.
+    /// The gains of this sample; `previous` are those of the last one, `None` at the first. With
+    /// them a fault to latch: a supervisor that refuses the input leaves the gains as they were.
     ///
-    /// A supervisor that refuses the input leaves the gains as they were.
+    /// # Errors
+    /// [`Faults::OVERFLOW`] where there are none.
     pub(crate) fn gains(
         &self,
         previous: Option<Gains<R>>,
         error_rad: R,
         error_delta_rad: R,
         dt_s: R,
-    ) -> (Gains<R>, Faults) {
+    ) -> Result<(Gains<R>, Faults), Faults> {
         let previous = previous.unwrap_or(self.nominal);
         let change_rad = match self.settings.change {
             Change::Rate => error_delta_rad / dt_s,
             Change::Delta => error_delta_rad,
         };
         let (scaled, fault) = match self.increments(error_rad, change_rad) {
-            Ok(answer) => answer,
-            Err(fault) => return (previous, fault),
+            Err(Faults::OUT_OF_RANGE) => return Ok((previous, Faults::OUT_OF_RANGE)),
+            answer => answer?,
         };
         let free = match self.settings.law {
             Law::Memoryless => self.nominal.zip(scaled, |nominal, delta| nominal + delta),
@@ -214,24 +225,26 @@ impl<R: Real> SelfTuner<R> {
                 previous.zip(slope, |gain, slope| gain + slope * dt_s)
             }
         };
-        (
-            self.settings
-                .gain_limits
-                .map_or(free, |limits| limits.apply(free)),
-            fault,
-        )
+        if !free.are_finite() {
+            return Err(Faults::OVERFLOW);
+        }
+        Ok((self.limited(free), fault))
     }
 
     /// The gains at rest, e = 0 and no change: nominal plus what the rules add at the origin.
     ///
-    /// Under the accumulating law this is where one second at rest would take the gains.
+    /// Under the accumulating law this is where the first second at rest takes the gains if nothing
+    /// leaks; with a leakage they settle at $k' + s \Delta k / \lambda$.
     pub fn gains_at_rest(&self) -> Gains<R> {
+        // The origin is within every range, so there always is an answer.
         let (added, _) = self
             .increments(R::ZERO, R::ZERO)
-            .unwrap_or((Gains::ZERO, Faults::OUT_OF_RANGE));
-        let free = self.nominal.zip(added, |nominal, delta| nominal + delta);
-        self.settings
-            .gain_limits
-            .map_or(free, |limits| limits.apply(free))
+            .unwrap_or((Gains::ZERO, Faults::NONE));
+        self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
+    }
+
+    fn limited(&self, gains: Gains<R>) -> Gains<R> {
+        let limits = self.settings.gain_limits;
+        limits.map_or(gains, |limits| limits.apply(gains))
     }
 }

@@ -278,8 +278,9 @@ impl<R: Real> Supervisor<R> {
         if strongest_error.smaller(strongest_change) < R::MIN_POSITIVE {
             return None;
         }
-        let [kp, ki, kd] = [0, 1, 2].map(|output| {
-            let strengths = self.consequents[output].strengths(&firing);
+        // By reference and without an index: with one, a bounds check stays in the optimised code.
+        let [kp, ki, kd] = self.consequents.each_ref().map(|consequents| {
+            let strengths = consequents.strengths(&firing);
             centroid(self.defuzzifier, &strengths) * self.spacing
         });
         let delta = Increments { kp, ki, kd };

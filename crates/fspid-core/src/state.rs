@@ -1,0 +1,90 @@
+//! What goes into a step, what comes out of it, and what is remembered from one to the next.
+
+use fspid_fuzzy::Real;
+
+use crate::gains::Gains;
+use crate::guard::Faults;
+
+/// What a controller is given at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<R> {
+    /// Commanded pitch, rad.
+    pub setpoint_rad: R,
+    /// Measured pitch, rad.
+    pub measurement_rad: R,
+    /// Measured pitch rate, rad/s; ignored by a controller without a rate loop.
+    pub rate_rad_s: R,
+}
+
+/// What a controller answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<R> {
+    /// Command, rad; positive is nose up.
+    pub command_rad: R,
+    /// Gains used; at a held sample those of the last good one.
+    pub gains: Gains<R>,
+    /// The command was cut by an output or slew limit.
+    pub saturated: bool,
+    /// Faults latched so far.
+    pub faults: Faults,
+}
+
+/// A controller's memory. To start a controller anew, give it a new one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<R> {
+    pub(crate) command_rad: R,
+    /// In rad: the integral of `ki e` (bumpless) or the sum of `e` (literal).
+    pub(crate) integral: R,
+    pub(crate) derivative_rad_s: R,
+    pub(crate) previous: Option<Previous<R>>,
+    pub(crate) faults: Faults,
+}
+
+/// What a controller remembers of the last good sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Previous<R> {
+    pub(crate) error_rad: R,
+    /// What the derivative acts on: $c r - y$.
+    pub(crate) derivative_input_rad: R,
+    pub(crate) gains: Gains<R>,
+}
+
+impl<R: Real> State<R> {
+    /// At rest: no command, empty integral, no previous sample.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            command_rad: R::ZERO,
+            integral: R::ZERO,
+            derivative_rad_s: R::ZERO,
+            previous: None,
+            faults: Faults::NONE,
+        }
+    }
+
+    /// Faults latched since the last call, which clears them.
+    pub fn take_faults(&mut self) -> Faults {
+        self.faults.take()
+    }
+
+    /// Gains of the last good sample, `None` before the first.
+    pub(crate) fn gains(&self) -> Option<Gains<R>> {
+        self.previous.map(|previous| previous.gains)
+    }
+
+    /// $e_k - e_{k-1}$, zero at the first sample.
+    pub(crate) fn error_delta(&self, error_rad: R) -> R {
+        self.previous
+            .map_or(R::ZERO, |previous| error_rad - previous.error_rad)
+    }
+
+    pub(crate) fn latch(&mut self, fault: Faults) {
+        self.faults.latch(fault);
+    }
+}
+
+impl<R: Real> Default for State<R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
