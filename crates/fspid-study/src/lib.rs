@@ -20,6 +20,7 @@ pub mod file;
 pub mod inference;
 pub mod metrics;
 pub mod output;
+pub mod report;
 pub mod reproduce;
 pub mod simulation;
 pub mod tune;

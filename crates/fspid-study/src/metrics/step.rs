@@ -45,7 +45,7 @@ pub struct StepMetrics {
     pub peak: Measured,
     /// Time of the peak after the step, s.
     pub peak_time_s: Measured,
-    /// $100 (y_f - y) / |y_f - y_i|$ at the end of the window, %.
+    /// $100 (y_f - y) / |y_f - y_i|$ at the end of the window, %: positive below the set-point.
     pub final_error_pct: Measured,
 }
 
@@ -93,7 +93,7 @@ impl StepMetrics {
             time_s: window.time_s,
             way: &way,
         }
-        .measure(step.abs())
+        .measure(step)
     }
 }
 
@@ -105,7 +105,7 @@ struct Normalised<'a> {
 }
 
 impl Normalised<'_> {
-    fn measure(&self, step_size: f64) -> StepMetrics {
+    fn measure(&self, step: f64) -> StepMetrics {
         let highest = self.way.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let lowest = self.way.iter().copied().fold(f64::INFINITY, f64::min);
         let last = self.way.last().copied().unwrap_or(0.0);
@@ -121,9 +121,9 @@ impl Normalised<'_> {
             // The crossing itself, at 90 %, is part of what follows it.
             settling_min: risen.map(|way| way.iter().copied().fold(RISEN, f64::min)),
             settling_max: risen.map(|way| way.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-            peak: Ok(peak * step_size),
+            peak: Ok(peak * step.abs()),
             peak_time_s: Ok(peak_time_s),
-            final_error_pct: Ok(100.0 * (1.0 - last)),
+            final_error_pct: Ok(100.0 * (1.0 - last) * step.signum()),
         }
     }
 
@@ -319,6 +319,15 @@ mod tests {
         ] {
             assert!(close(a, b.expect("measured"), 1e-9), "{a:?} {b:?}");
         }
+    }
+
+    #[test]
+    fn the_final_error_is_what_is_missing_upwards_in_per_cent_of_the_step() {
+        // It used to have the opposite sign on downward steps.
+        let above = measure(1.0, -1.0, 10.0, |_| -0.9);
+        assert!(close(above.final_error_pct, -5.0, 1e-9), "{above:?}");
+        let below = measure(-1.0, 1.0, 10.0, |_| 0.9);
+        assert!(close(below.final_error_pct, 5.0, 1e-9), "{below:?}");
     }
 
     #[test]

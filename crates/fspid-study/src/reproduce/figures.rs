@@ -38,38 +38,34 @@ pub struct PaperFigure {
     pub assumptions: &'static [&'static str],
 }
 
-/// What every flight rests on.
-const FULL_MODEL: &[&str] = &[
-    "A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10", "A11", "A12", "A13", "A15", "A18",
-    "A20", "A21",
-];
-const SHORT_PERIOD: &[&str] = &[
-    "A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10", "A11", "A12", "A13", "A18", "A20",
-    "A21",
-];
+/// What every fitted flight rests on.
+macro_rules! resting_on {
+    ($($more:literal),*) => {
+        &["A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10", "A11", "A12", "A13", $($more,)*
+          "A18", "A20", "A21", "A23"]
+    };
+}
+
+/// The full model with the rate-gyro loop.
+const WITH_GYRO: &[&str] = resting_on!["A15", "A19"];
+/// The full model without it.
+const WITHOUT_GYRO: &[&str] = resting_on!["A15"];
+/// The short-period model.
+const SHORT_PERIOD: &[&str] = resting_on![];
+/// The short-period model under the disturbances of Fig. 7.
+pub(super) const DISTURBED: &[&str] = resting_on!["A16", "A17"];
+/// The short-period model whose elevator weakens.
+pub(super) const WEAKENED: &[&str] = resting_on!["A22"];
+/// What the full model without the rate-gyro loop says about damping.
+pub(super) const DAMPING: &[&str] = WITHOUT_GYRO;
 
 /// The figures with numbers, in the paper's order.
+#[rustfmt::skip] // a table: one row a figure
 pub const FIGURES: &[PaperFigure] = &[
-    PaperFigure {
-        id: "5",
-        title: "Fig. 5: PC, CPID and FSPID with the rate-gyro loop, full model",
-        assumptions: FULL_MODEL,
-    },
-    PaperFigure {
-        id: "6",
-        title: "Fig. 6: without the rate-gyro loop, full model",
-        assumptions: FULL_MODEL,
-    },
-    PaperFigure {
-        id: "8a",
-        title: "Fig. 8a: slow tuning, short-period model",
-        assumptions: SHORT_PERIOD,
-    },
-    PaperFigure {
-        id: "8b",
-        title: "Fig. 8b: tuning with overshoot, short-period model",
-        assumptions: SHORT_PERIOD,
-    },
+    PaperFigure { id: "5", title: "Fig. 5: PC, CPID and FSPID with the rate-gyro loop, full model", assumptions: WITH_GYRO },
+    PaperFigure { id: "6", title: "Fig. 6: without the rate-gyro loop, full model", assumptions: WITHOUT_GYRO },
+    PaperFigure { id: "8a", title: "Fig. 8a: slow tuning, short-period model", assumptions: SHORT_PERIOD },
+    PaperFigure { id: "8b", title: "Fig. 8b: tuning with overshoot, short-period model", assumptions: SHORT_PERIOD },
     PaperFigure { id: "9", title: "Fig. 9: tracking, short-period model", assumptions: SHORT_PERIOD },
 ];
 

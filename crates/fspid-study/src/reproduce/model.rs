@@ -203,17 +203,19 @@ impl FlightModel {
             None => {
                 push(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
             }
-            Some(scales) => {
+            Some(_) => {
                 push(out, format_args!(
                     "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
                      law = \"memoryless\"\nintegral = \"literal\"\n\
                      gain_limits = {{ kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }}"
                 ));
-                self.push_supervisor(out, scales);
             }
         }
         if *rate_gain != 0.0 {
             push(out, format_args!("rate_gain = {rate_gain:?}"));
+        }
+        if let Some(scales) = scales {
+            self.push_supervisor(out, scales);
         }
     }
 

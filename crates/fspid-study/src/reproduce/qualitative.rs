@@ -6,7 +6,7 @@ use fspid_sim::{Controller, stability};
 
 use super::claim::Status;
 use super::disturbance::{Contest, Sweep};
-use super::figures::{Fit, FlownFigure};
+use super::figures::{DAMPING, DISTURBED, Fit, FlownFigure, WEAKENED};
 use crate::metrics::ErrorIntegrals;
 use crate::simulation::{ControllerResult, Simulation};
 use crate::units::degrees;
@@ -126,7 +126,7 @@ impl Evidence<'_> {
             paper,
             ours,
             status,
-            assumptions: &["A1", "A2", "A3", "A16", "A17"],
+            assumptions: DISTURBED,
             note: "judged with the same nominal gains over nine sizes and three places of entry: \
                    reproduced if better in all, approached in most",
         }
@@ -171,7 +171,7 @@ impl Evidence<'_> {
                 list(fspids)
             ),
             status,
-            assumptions: &["A1", "A2", "A3", "A18"],
+            assumptions: DAMPING,
             note: "damped: the swing in the last quarter of the window is below a tenth of the step",
         }
     }
@@ -207,7 +207,7 @@ impl Evidence<'_> {
             paper: "FSPID adapts to long-term changes of system parameters, CPID does not",
             ours,
             status,
-            assumptions: &["A1", "A2", "A3", "A22"],
+            assumptions: WEAKENED,
             note: "adapts: the error grows by less than 10 %; approached: it grows less than the \
                    CPID's. A memoryless law remembers nothing, so what helps is its nonlinearity",
         }
@@ -239,7 +239,7 @@ impl Evidence<'_> {
             paper: "CPID is better than PC",
             ours: format!("ITAE of the CPID over that of the PC: {}", text.join("; ")),
             status,
-            assumptions: &["A1", "A13", "A15"],
+            assumptions: &["A1", "A4", "A8", "A13", "A15", "A18", "A19", "A20"],
             note: "reproduced if lower in every figure that shows both, approached in most",
         }
     }

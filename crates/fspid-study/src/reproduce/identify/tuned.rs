@@ -5,7 +5,7 @@ use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{NamedController, Scenario, simulate};
 
 use super::super::disturbance::{ENTRIES, SHAPES, START_S, flight_cost, scenario_name};
-use super::super::figures::Stored;
+use super::super::figures::{DISTURBED, Stored, WEAKENED};
 use super::super::model::{
     Command, ControllerModel, FlightModel, SHORT_PERIOD, Scales,
 };
@@ -19,6 +19,8 @@ use crate::units::radians;
 const FLIGHT_S: f64 = 30.0;
 /// Frequency of the continuous disturbance, Hz.
 const FREQUENCY_HZ: f64 = 0.2;
+/// Length of the abrupt disturbance, s.
+const PULSE_S: f64 = 1.0;
 /// Size at which controllers are tuned, degrees.
 const TUNING_SIZE_DEG: f64 = 1.0;
 /// Evaluations that each controller may spend on each disturbance.
@@ -68,14 +70,14 @@ fn controller(name: &str, gains: [f64; 3], scales: Option<Scales>) -> Controller
 fn shape(name: &str) -> Shape {
     match name {
         "continuous" => Shape::Sine { at_s: START_S, frequency_hz: FREQUENCY_HZ },
-        _ => Shape::Step { at_s: START_S },
+        _ => Shape::Pulse { at_s: START_S, width_s: PULSE_S },
     }
 }
 
 fn disturbance_toml(shape: &str, entry: &str) -> String {
     let kind = match shape {
         "continuous" => format!("kind = \"sine\"\nfrequency_hz = {FREQUENCY_HZ:?}"),
-        _ => "kind = \"step\"".to_owned(),
+        _ => format!("kind = \"pulse\"\nwidth_s = {PULSE_S:?}"),
     };
     format!(
         "\n[[disturbance]]\n{kind}\nenters_at = \"{entry}\"\nat_s = {START_S:?}\n\
@@ -143,8 +145,7 @@ impl Session<'_> {
                      by Figs 8 and 9 (gains of Fig. 8b), and both tuned with {} evaluations each.",
                     BUDGET.global + BUDGET.polish
                 );
-                let assumptions = ["A1", "A2", "A3", "A16", "A17"];
-                let heading = self.heading(&what, &base.found, &assumptions);
+                let heading = self.heading(&what, &base.found, DISTURBED);
                 let text = model.toml(&heading).replace(
                     "amplitude_deg = 1.0\n\n[[controller]]\nname = \"CPID\"",
                     "amplitude_deg = 0.0\n\n[[controller]]\nname = \"CPID\"",
@@ -203,7 +204,7 @@ impl Session<'_> {
         };
         let what = "Claim S2: CPID and FSPID as shared by Figs 8 and 9 (gains of Fig. 8b), while the \
                     elevator loses half of its effectiveness.";
-        let heading = self.heading(what, &base.found, &["A1", "A2", "A3", "A22"]);
+        let heading = self.heading(what, &base.found, WEAKENED);
         let four = format!("duration_s = {:?}", 4.0 * base.half_period_s);
         let ten = format!("duration_s = {:?}", 10.0 * base.half_period_s);
         let change = format!(
