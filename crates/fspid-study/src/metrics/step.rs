@@ -24,6 +24,17 @@ pub struct StepWindow<'a> {
     pub to: f64,
 }
 
+impl StepWindow<'_> {
+    /// Time after the step at which the response first reaches this share of the way, interpolated;
+    /// `None` if it never does or there is no step.
+    #[must_use]
+    pub fn first_crossing_s(&self, share: f64) -> Option<f64> {
+        let step = self.to - self.from;
+        let way: Vec<f64> = self.response.iter().map(|y| (y - self.from) / step).collect();
+        Normalised { time_s: self.time_s, way: &way }.first_crossing_s(share)
+    }
+}
+
 /// Measures of a step response, in seconds and in per cent of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepMetrics {

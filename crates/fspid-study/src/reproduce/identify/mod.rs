@@ -135,7 +135,7 @@ impl Session<'_> {
                 let found = search(&space, budget, None, 1e-12, |point| {
                     let mut model = figure.flight(&[], None, Some([point[0], point[1]]));
                     model.controllers.retain(|controller| controller.name == "PC");
-                    self.bench.cost(figure.id, &model, Weighing::Centre)
+                    self.bench.cost(figure.id, &model, Weighing::Centre).total()
                 });
                 let (cost, point) = (found.cost, found.point);
                 SeedResult { seed, attempts: 1, evaluations: found.evaluations, cost, point }

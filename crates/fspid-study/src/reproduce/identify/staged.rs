@@ -1,23 +1,23 @@
 //! The search itself: nominal gains from the CPID's claims, then the supervisor's scales, then all
 //! together, tried again with other random numbers until the claims are met or the attempts used up.
 
-use super::problem::{Bench, FigureProblem, Weighing, scale_parameters, scales};
+use super::problem::{Bench, Cost, FigureProblem, Weighing, scale_parameters, scales};
 use crate::tune::{Budget, Found, Space, polish, search};
 
-/// Attempts with different random numbers before the best is taken.
-const ATTEMPTS: usize = 6;
 /// A cost below this is as good as nothing: every number of the fit rounds to the printed digits.
 pub(super) const ACCEPTED: f64 = 0.02;
 /// Where a search stops.
 const ENOUGH: f64 = 1e-9;
 /// Pull towards the middle of the box, for parameters that the claims leave free.
-const PRIOR: f64 = 1e-2;
+const PRIOR: f64 = 1e-3;
 /// Spread of the joint search about what the stages found, as a share of the box.
 const JOINT_SPREAD: f64 = 0.05;
 
 /// Evaluations of the stages of one attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Effort {
+    /// Attempts with different random numbers before the best is taken.
+    pub(super) attempts: usize,
     pub(super) nominal: usize,
     pub(super) scales: usize,
     pub(super) joint: usize,
@@ -27,10 +27,10 @@ pub(super) struct Effort {
 impl Effort {
     /// For one figure.
     pub(super) const FIGURE: Self =
-        Self { nominal: 4_000, scales: 6_000, joint: 6_000, polish: 3_000 };
+        Self { attempts: 6, nominal: 4_000, scales: 6_000, joint: 6_000, polish: 3_000 };
     /// For all figures of a range.
     pub(super) const RANGE: Self =
-        Self { nominal: 4_000, scales: 6_000, joint: 15_000, polish: 5_000 };
+        Self { attempts: 3, nominal: 4_000, scales: 6_000, joint: 20_000, polish: 5_000 };
 }
 
 /// What one seed found.
@@ -79,7 +79,7 @@ impl Set<'_> {
             .collect()
     }
 
-    fn cost(&self, bench: &Bench, point: &[f64]) -> f64 {
+    fn cost(&self, bench: &Bench, point: &[f64]) -> Cost {
         let scales = scales(point);
         self.figures
             .iter()
@@ -91,7 +91,10 @@ impl Set<'_> {
                 model.controllers.retain(|controller| controller.name != "PC");
                 bench.cost(figure.id, &model, self.weighing)
             })
-            .sum()
+            .fold(Cost { required: 0.0, preferred: 0.0 }, |sum, cost| Cost {
+                required: sum.required + cost.required,
+                preferred: sum.preferred + cost.preferred,
+            })
     }
 
     /// Nominal gains and half period of one figure, from the CPID's claims alone.
@@ -103,7 +106,7 @@ impl Set<'_> {
             let gyro = Some(self.proportional).filter(|_| figure.gyro);
             let mut model = figure.flight(point, None, gyro);
             model.controllers.retain(|controller| controller.name != "PC");
-            bench.cost(figure.id, &model, self.weighing) + prior(&space, point)
+            bench.cost(figure.id, &model, self.weighing).total() + prior(&space, point)
         })
     }
 
@@ -121,7 +124,7 @@ impl Set<'_> {
         let budget =
             Budget { seed: seed + 10, population: 40, global: self.effort.scales, polish: 0 };
         let found = search(&scale_space, budget, None, ENOUGH, |point| {
-            self.cost(bench, &join(point)) + prior(&scale_space, point)
+            self.cost(bench, &join(point)).total() + prior(&scale_space, point)
         });
         evaluations += found.evaluations;
 
@@ -130,17 +133,17 @@ impl Set<'_> {
         let budget =
             Budget { seed: seed + 20, population: 40, global: self.effort.joint, polish: 0 };
         let found = search(&space, budget, Some((&begin, JOINT_SPREAD)), ENOUGH, |point| {
-            self.cost(bench, point) + prior(&space, point)
+            self.cost(bench, point).total() + prior(&space, point)
         });
         evaluations += found.evaluations;
 
-        let free_cost = self.cost(bench, &found.point);
+        let free_cost = self.cost(bench, &found.point).total();
         let found = polish(
             &space,
             (&found.point, free_cost),
             self.effort.polish,
             ENOUGH,
-            |point| self.cost(bench, point),
+            |point| self.cost(bench, point).total(),
         );
         Found { evaluations: evaluations + found.evaluations, ..found }
     }
@@ -150,14 +153,14 @@ impl Set<'_> {
         let mut best: Option<Found> = None;
         let mut evaluations = 0;
         let mut attempts = 0;
-        let settles_for_less = self.weighing == Weighing::Shares;
-        while attempts < if settles_for_less { 2 } else { ATTEMPTS } {
+        while attempts < self.effort.attempts {
             let found = self.attempt(bench, 1_000_000 * seed + 1_000 * attempts as u64);
             attempts += 1;
             evaluations += found.evaluations;
             if best.as_ref().is_none_or(|best| found.cost < best.cost) {
                 best = Some(found);
             }
+            // A fit with claims that cannot be met is worth every attempt.
             if best.as_ref().is_some_and(|best| best.cost <= ACCEPTED) {
                 break;
             }
