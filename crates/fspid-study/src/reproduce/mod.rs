@@ -110,7 +110,12 @@ impl Reproduction {
             for figure in FIGURES {
                 let study = library.figure(fit, figure.id)?;
                 let simulation = Simulation::of(&study)?;
-                figures.push(FlownFigure { figure: *figure, fit, study, simulation });
+                figures.push(FlownFigure {
+                    figure: *figure,
+                    fit,
+                    study,
+                    simulation,
+                });
             }
         }
         let sweeps = disturbance::sweep(library)?;
@@ -126,19 +131,36 @@ impl Reproduction {
         let statements = evidence.judge();
         let claims = judge::judge(&figures);
         let digest = digest(library);
-        Ok(Self { figures, sweeps, long_term, claims, statements, record, digest })
+        Ok(Self {
+            figures,
+            sweeps,
+            long_term,
+            claims,
+            statements,
+            record,
+            digest,
+        })
     }
 
     /// The figure under a fit.
     #[must_use]
     pub fn figure(&self, fit: Fit, id: &str) -> Option<&FlownFigure> {
-        self.figures.iter().find(|flown| flown.fit == fit && flown.figure.id == id)
+        self.figures
+            .iter()
+            .find(|flown| flown.fit == fit && flown.figure.id == id)
     }
 
     /// Id and status of every claim, numbers first.
     pub fn statuses(&self) -> impl Iterator<Item = (&'static str, Status)> + '_ {
-        let numbers = self.claims.iter().map(|judged| (judged.claim.id, judged.status));
-        numbers.chain(self.statements.iter().map(|judged| (judged.id, judged.status)))
+        let numbers = self
+            .claims
+            .iter()
+            .map(|judged| (judged.claim.id, judged.status));
+        numbers.chain(
+            self.statements
+                .iter()
+                .map(|judged| (judged.id, judged.status)),
+        )
     }
 
     /// How many claims have this status.
@@ -196,5 +218,8 @@ fn digest(library: &Library) -> String {
         hash.update(stored.text.as_bytes());
         hash.update([0]);
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }

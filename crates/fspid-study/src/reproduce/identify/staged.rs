@@ -26,11 +26,21 @@ pub(super) struct Effort {
 
 impl Effort {
     /// For one figure.
-    pub(super) const FIGURE: Self =
-        Self { attempts: 6, nominal: 4_000, scales: 6_000, joint: 6_000, polish: 3_000 };
+    pub(super) const FIGURE: Self = Self {
+        attempts: 6,
+        nominal: 4_000,
+        scales: 6_000,
+        joint: 6_000,
+        polish: 3_000,
+    };
     /// For all figures of a range.
-    pub(super) const RANGE: Self =
-        Self { attempts: 3, nominal: 4_000, scales: 6_000, joint: 20_000, polish: 5_000 };
+    pub(super) const RANGE: Self = Self {
+        attempts: 3,
+        nominal: 4_000,
+        scales: 6_000,
+        joint: 20_000,
+        polish: 5_000,
+    };
 }
 
 /// What one seed found.
@@ -63,12 +73,19 @@ impl Set<'_> {
     }
 
     fn scale_space(&self) -> Space {
-        Space::new(self.figures.first().map(|f| scale_parameters(f.setting)).unwrap_or_default())
+        Space::new(
+            self.figures
+                .first()
+                .map(|f| scale_parameters(f.setting))
+                .unwrap_or_default(),
+        )
     }
 
     /// The part of a point that belongs to each figure.
     pub(super) fn parts<'p>(&self, point: &'p [f64]) -> Vec<&'p [f64]> {
-        let mut rest = point.get(self.scale_space().dimension()..).unwrap_or_default();
+        let mut rest = point
+            .get(self.scale_space().dimension()..)
+            .unwrap_or_default();
         self.figures
             .iter()
             .map(|figure| {
@@ -88,24 +105,38 @@ impl Set<'_> {
                 let gyro = Some(self.proportional).filter(|_| figure.gyro);
                 let mut model = figure.flight(part, Some(scales), gyro);
                 // The proportional loop is settled already.
-                model.controllers.retain(|controller| controller.name != "PC");
+                model
+                    .controllers
+                    .retain(|controller| controller.name != "PC");
                 bench.cost(figure.id, &model, self.weighing)
             })
-            .fold(Cost { required: 0.0, preferred: 0.0 }, |sum, cost| Cost {
-                required: sum.required + cost.required,
-                preferred: sum.preferred + cost.preferred,
-            })
+            .fold(
+                Cost {
+                    required: 0.0,
+                    preferred: 0.0,
+                },
+                |sum, cost| Cost {
+                    required: sum.required + cost.required,
+                    preferred: sum.preferred + cost.preferred,
+                },
+            )
     }
 
     /// Nominal gains and half period of one figure, from the CPID's claims alone.
     fn nominal(&self, bench: &Bench, figure: &FigureProblem, seed: u64) -> Found {
         let space = Space::new(figure.parameters());
-        let budget =
-            Budget { seed, population: 30, global: self.effort.nominal, polish: 0 };
+        let budget = Budget {
+            seed,
+            population: 30,
+            global: self.effort.nominal,
+            polish: 0,
+        };
         search(&space, budget, None, ENOUGH, |point| {
             let gyro = Some(self.proportional).filter(|_| figure.gyro);
             let mut model = figure.flight(point, None, gyro);
-            model.controllers.retain(|controller| controller.name != "PC");
+            model
+                .controllers
+                .retain(|controller| controller.name != "PC");
             bench.cost(figure.id, &model, self.weighing).total() + prior(&space, point)
         })
     }
@@ -121,8 +152,12 @@ impl Set<'_> {
         let join = |scales: &[f64]| [scales, &nominal].concat();
 
         let scale_space = self.scale_space();
-        let budget =
-            Budget { seed: seed + 10, population: 40, global: self.effort.scales, polish: 0 };
+        let budget = Budget {
+            seed: seed + 10,
+            population: 40,
+            global: self.effort.scales,
+            polish: 0,
+        };
         let found = search(&scale_space, budget, None, ENOUGH, |point| {
             self.cost(bench, &join(point)).total() + prior(&scale_space, point)
         });
@@ -130,11 +165,19 @@ impl Set<'_> {
 
         let space = self.space();
         let begin = join(&found.point);
-        let budget =
-            Budget { seed: seed + 20, population: 40, global: self.effort.joint, polish: 0 };
-        let found = search(&space, budget, Some((&begin, JOINT_SPREAD)), ENOUGH, |point| {
-            self.cost(bench, point).total() + prior(&space, point)
-        });
+        let budget = Budget {
+            seed: seed + 20,
+            population: 40,
+            global: self.effort.joint,
+            polish: 0,
+        };
+        let found = search(
+            &space,
+            budget,
+            Some((&begin, JOINT_SPREAD)),
+            ENOUGH,
+            |point| self.cost(bench, point).total() + prior(&space, point),
+        );
         evaluations += found.evaluations;
 
         let free_cost = self.cost(bench, &found.point).total();
@@ -145,7 +188,10 @@ impl Set<'_> {
             ENOUGH,
             |point| self.cost(bench, point).total(),
         );
-        Found { evaluations: evaluations + found.evaluations, ..found }
+        Found {
+            evaluations: evaluations + found.evaluations,
+            ..found
+        }
     }
 
     /// Searches with one seed.
@@ -167,10 +213,21 @@ impl Set<'_> {
         }
         let (point, cost) =
             best.map_or((Vec::new(), f64::INFINITY), |best| (best.point, best.cost));
-        SeedResult { seed, attempts, evaluations, cost, point }
+        SeedResult {
+            seed,
+            attempts,
+            evaluations,
+            cost,
+            point,
+        }
     }
 }
 
 fn prior(space: &Space, point: &[f64]) -> f64 {
-    PRIOR * space.unit(point).iter().map(|u| (u - 0.5) * (u - 0.5)).sum::<f64>()
+    PRIOR
+        * space
+            .unit(point)
+            .iter()
+            .map(|u| (u - 0.5) * (u - 0.5))
+            .sum::<f64>()
 }
