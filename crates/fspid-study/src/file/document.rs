@@ -9,8 +9,6 @@ use crate::file::report::{Place, Report};
 pub(crate) const FILE_LIMIT: u64 = 10 * 1024 * 1024;
 /// Deepest nesting of brackets, and most dots in a key.
 const DEPTH_LIMIT: usize = 64;
-/// Most syntax errors that are reported: later ones are often echoes of the first.
-const SYNTAX_ERRORS: usize = 5;
 
 /// A value and where it stands.
 #[derive(Clone, Debug)]
@@ -67,7 +65,7 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
     let source = report.add_source(origin, text);
     check_shape(report, source, text)?;
     let (table, errors) = DeTable::parse_recoverable(text);
-    report_syntax(report, source, &errors)?;
+    report_syntax(report, source, text, &errors)?;
     let end = text.len().min(1);
     let place = Place {
         source,
@@ -96,23 +94,46 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
-    report_syntax(report, source, &errors)
+    report_syntax(report, source, text, &errors)
         .is_some()
         .then(|| item(source, &value))
 }
 
-fn report_syntax(report: &mut Report, source: usize, errors: &[toml::de::Error]) -> Option<()> {
-    for error in errors.iter().take(SYNTAX_ERRORS) {
+/// Reports the first error, and every key that is there twice; others may be echoes of the first.
+fn report_syntax(
+    report: &mut Report,
+    source: usize,
+    text: &str,
+    errors: &[toml::de::Error],
+) -> Option<()> {
+    for (index, error) in errors.iter().enumerate() {
+        let doubled = error.message().starts_with("duplicate key");
+        if index > 0 && !doubled {
+            continue;
+        }
         let span = error.span().unwrap_or(0..0);
         let place = Place {
             source,
             start: span.start,
             end: span.end,
         };
-        let message = error.message().replace('\n', ", ");
-        report.value(place, "", format!("not TOML: {message}"), "");
+        let message = if doubled {
+            "this key or table is here twice".to_owned()
+        } else if is_decimal_comma(text, span.start) {
+            "not TOML: a number with a comma; its decimal sign is a point".to_owned()
+        } else {
+            format!("not TOML: {}", error.message().replace('\n', ", "))
+        };
+        report.line(place, message);
     }
     errors.is_empty().then_some(())
+}
+
+/// True for the comma of `10,5`, where the number should have ended.
+fn is_decimal_comma(text: &str, at: usize) -> bool {
+    let around = at.checked_sub(1).and_then(|begin| text.get(begin..at + 2));
+    matches!(around.map(str::as_bytes), Some([before, b',', after])
+        if before.is_ascii_digit() && after.is_ascii_digit())
 }
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.
