@@ -108,7 +108,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 64 {
         return None;
     }
-    let likeness = |candidate: &&str| {
+    let likeness = |candidate: &str| {
         let (a, b) = (word.to_lowercase(), candidate.to_lowercase());
         let whole = strsim::jaro_winkler(&a, &b);
         let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
@@ -126,7 +126,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     };
     let scored = known
         .iter()
-        .map(|candidate| (likeness(&candidate), *candidate));
+        .map(|candidate| (likeness(candidate), *candidate));
     scored
         .filter(|(score, _)| *score >= 1.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -1,6 +1,11 @@
 //! Scenario files: what is read, what is refused, and in which words.
+#![allow(
+    clippy::float_cmp,
+    reason = "what is read from a file is compared bit by bit"
+)]
 
 mod abuse;
+mod arrival;
 mod bad_values;
 mod messages;
 mod overrides;

@@ -200,11 +200,11 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
             ));
         }
     }
-    let ramps = section
+    let mut ramps = section
         .sections("plant_change")
         .iter()
         .filter(|part| part.number("ramp_s") > Some(0.0));
-    if let Some(ramp) = ramps.last()
+    if let Some(ramp) = ramps.next_back()
         && report.count() == 0
     {
         judged(report, (ramp, "ramp_s"), scenario.prepare());
