@@ -74,6 +74,12 @@ fn a_byte_order_mark_and_carriage_returns_change_nothing() {
         problems(&format!("\u{feff}{}", bad.replace('\n', "\r\n"))),
     );
     assert_eq!(unix, dos);
+    let first = &problems("\u{feff}nmae = 1").list;
+    assert!(
+        first
+            .iter()
+            .any(|problem| problem.path == "nmae" && (problem.line, problem.column) == (1, 1))
+    );
 }
 
 #[test]
@@ -270,4 +276,31 @@ fn a_damaged_scenario_is_refused_with_a_reason_or_accepted() {
         }
     }
     assert!(refused > 500 && accepted > 500, "{refused} {accepted}");
+}
+
+#[test]
+fn a_ramp_of_the_plant_that_takes_too_many_discretisations_is_refused() {
+    let change = |ramp_s: &str| {
+        format!(
+            "{}\n[[plant_change]]\nat_s = 1.0\nramp_s = {ramp_s}\npreset = \"ctms-pitch\"\n",
+            file::starter().replace("duration_s = 10.0", "duration_s = 2000.0")
+        )
+    };
+    let found = problems(&change("1500.0"));
+    assert_eq!(found.list[0].path, "plant_change[0].ramp_s", "{found}");
+    assert!(file::parse(&change("1.0"), "x", None, &[]).is_ok());
+}
+
+#[test]
+fn a_ramp_through_a_plant_without_effect_is_refused() {
+    let plant = |sign: &str| format!("numerator = [{sign}1.0]\ndenominator = [1.0, 1.0, 0.0]\n");
+    let text = file::starter().replace(
+        "preset = \"navion-paper\"\n",
+        &format!("{}elevator_sign = \"nose-up-positive\"\n", plant("")),
+    );
+    let found = problems(&format!(
+        "{text}\n[[plant_change]]\nat_s = 1.0\nramp_s = 1.0\n{}",
+        plant("-")
+    ));
+    assert_eq!(found.list[0].path, "plant_change[0].ramp_s", "{found}");
 }

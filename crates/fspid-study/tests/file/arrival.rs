@@ -94,7 +94,7 @@ fn tuned() -> Controller {
         output_scale: Gains {
             kp: 0.01,
             ki: 0.001,
-            kd: 0.001,
+            kd: 0.002,
         },
         law: Law::Accumulating { leakage_per_s: 0.1 },
         gain_limits: Some(GainLimits {

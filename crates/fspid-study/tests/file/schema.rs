@@ -66,7 +66,9 @@ fn word_fault(
         }),
         "additionalProperties" => {
             let known = schema["properties"].as_object().expect("an object");
-            members.is_none_or(|members| members.keys().all(|key| known.contains_key(key)))
+            let closed = rule == false;
+            members
+                .is_none_or(|members| !closed || members.keys().all(|key| known.contains_key(key)))
         }
         "allOf" => return list().iter().find_map(|rule| fault(rule, value, path)),
         "anyOf" => list().iter().any(|rule| fault(rule, value, path).is_none()),
