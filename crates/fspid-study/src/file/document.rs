@@ -64,8 +64,10 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
     let text = without_mark(text);
     let source = report.add_source(origin, text);
     check_shape(report, source, text)?;
-    let (table, errors) = DeTable::parse_recoverable(text);
-    report_syntax(report, source, text, &errors)?;
+    let table = match DeTable::parse(text) {
+        Ok(table) => table,
+        Err(error) => return report_syntax(report, source, text, &error),
+    };
     let end = text.len().min(1);
     let place = Place {
         source,
@@ -80,10 +82,10 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
 pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Option<Item> {
     let source = report.add_source(Some(origin), text);
     check_shape(report, source, text)?;
-    let (value, errors) = DeValue::parse_recoverable(text);
-    if errors.is_empty() && !text.contains('\n') {
-        return Some(item(source, &value));
-    }
+    let error = match DeValue::parse(text) {
+        Ok(value) => return Some(item(source, &value)),
+        Err(error) => error,
+    };
     let bare = |c: char| c.is_alphanumeric() || "-_./: ".contains(c);
     if text.trim().starts_with(char::is_alphabetic) && text.chars().all(bare) {
         let place = Place {
@@ -94,39 +96,26 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
-    report_syntax(report, source, text, &errors)
-        .is_some()
-        .then(|| item(source, &value))
+    report_syntax(report, source, text, &error)
 }
 
-/// Reports the first error, and every key that is there twice; others may be echoes of the first.
-fn report_syntax(
+/// Reports why a text is no TOML; later errors would be echoes of the first.
+fn report_syntax<T>(
     report: &mut Report,
     source: usize,
     text: &str,
-    errors: &[toml::de::Error],
-) -> Option<()> {
-    for (index, error) in errors.iter().enumerate() {
-        let doubled = error.message().starts_with("duplicate key");
-        if index > 0 && !doubled {
-            continue;
-        }
-        let span = error.span().unwrap_or(0..0);
-        let place = Place {
-            source,
-            start: span.start,
-            end: span.end,
-        };
-        let message = if doubled {
-            "this key or table is here twice".to_owned()
-        } else if is_decimal_comma(text, span.start) {
-            "not TOML: a number with a comma; its decimal sign is a point".to_owned()
-        } else {
-            format!("not TOML: {}", error.message().replace('\n', ", "))
-        };
-        report.line(place, message);
-    }
-    errors.is_empty().then_some(())
+    error: &toml::de::Error,
+) -> Option<T> {
+    let span = error.span().unwrap_or(0..0);
+    let message = if error.message().starts_with("duplicate key") {
+        "this key or table is here twice".to_owned()
+    } else if is_decimal_comma(text, span.start) {
+        "not TOML: a number with a comma; its decimal sign is a point".to_owned()
+    } else {
+        format!("not TOML: {}", error.message().replace('\n', ", "))
+    };
+    report.line(place(source, span), message);
+    None
 }
 
 /// True for the comma of `10,5`, where the number should have ended.

@@ -18,12 +18,49 @@ fn word_fault(
     value: &Value,
     path: &str,
 ) -> Option<String> {
-    let number = value.as_f64();
     let list = || rule.as_array().expect("a list");
+    let is_valid = |rule: &&Value| fault(rule, value, path).is_none();
+    let good = match word.as_str() {
+        "items" => return items_fault(rule, value, path),
+        "properties" => return properties_fault(rule, value, path),
+        "allOf" => return list().iter().find_map(|rule| fault(rule, value, path)),
+        "anyOf" => list().iter().any(|rule| is_valid(&rule)),
+        "oneOf" => list().iter().filter(is_valid).count() == 1,
+        "not" => !is_valid(&rule),
+        "required" => value.as_object().is_none_or(|members| {
+            let mut names = list().iter().map(|key| key.as_str().expect("a name"));
+            names.all(|name| members.contains_key(name))
+        }),
+        "additionalProperties" => {
+            let known = schema["properties"].as_object().expect("an object");
+            let closed = rule == false;
+            let mut keys = value
+                .as_object()
+                .into_iter()
+                .flat_map(|members| members.keys());
+            !closed || keys.all(|key| known.contains_key(key))
+        }
+        _ => is_allowed(word, rule, value),
+    };
+    (!good).then(|| format!("{path}: {word} {rule}"))
+}
+
+fn items_fault(rule: &Value, value: &Value, path: &str) -> Option<String> {
+    let mut items = value.as_array()?.iter().enumerate();
+    items.find_map(|(i, item)| fault(rule, item, &format!("{path}[{i}]")))
+}
+
+fn properties_fault(rule: &Value, value: &Value, path: &str) -> Option<String> {
+    let mut members = value.as_object()?.iter();
+    members.find_map(|(key, item)| fault(rule.get(key)?, item, &format!("{path}.{key}")))
+}
+
+/// The words that look at the value alone.
+fn is_allowed(word: &str, rule: &Value, value: &Value) -> bool {
+    let number = value.as_f64();
     let bound = || rule.as_f64().expect("a number");
     let size = || value.as_array().map_or(0, Vec::len) as f64;
-    let members = value.as_object();
-    let good = match word.as_str() {
+    match word {
         "$schema" | "title" | "description" | "default" => true,
         "type" => match rule.as_str() {
             Some("object") => value.is_object(),
@@ -35,7 +72,7 @@ fn word_fault(
             other => panic!("type {other:?}"),
         },
         "const" => value == rule,
-        "enum" => list().contains(value),
+        "enum" => rule.as_array().expect("a list").contains(value),
         "minimum" => number.is_none_or(|number| number >= bound()),
         "maximum" => number.is_none_or(|number| number <= bound()),
         "exclusiveMinimum" => number.is_none_or(|number| number > bound()),
@@ -46,43 +83,8 @@ fn word_fault(
             Some("\\.toml$") => text.ends_with(".toml"),
             _ => text.parse::<fspid_fuzzy::Defuzzifier>().is_ok(),
         }),
-        "items" => {
-            return value
-                .as_array()?
-                .iter()
-                .enumerate()
-                .find_map(|(i, item)| fault(rule, item, &format!("{path}[{i}]")));
-        }
-        "properties" => {
-            let known = rule.as_object().expect("an object");
-            return members?
-                .iter()
-                .find_map(|(key, item)| fault(known.get(key)?, item, &format!("{path}.{key}")));
-        }
-        "required" => members.is_none_or(|members| {
-            list()
-                .iter()
-                .all(|key| members.contains_key(key.as_str().expect("a name")))
-        }),
-        "additionalProperties" => {
-            let known = schema["properties"].as_object().expect("an object");
-            let closed = rule == false;
-            members
-                .is_none_or(|members| !closed || members.keys().all(|key| known.contains_key(key)))
-        }
-        "allOf" => return list().iter().find_map(|rule| fault(rule, value, path)),
-        "anyOf" => list().iter().any(|rule| fault(rule, value, path).is_none()),
-        "oneOf" => {
-            list()
-                .iter()
-                .filter(|rule| fault(rule, value, path).is_none())
-                .count()
-                == 1
-        }
-        "not" => fault(rule, value, path).is_some(),
         other => panic!("the test knows no `{other}`"),
-    };
-    (!good).then(|| format!("{path}: {word} {rule}"))
+    }
 }
 
 /// A text as the schema sees it.
