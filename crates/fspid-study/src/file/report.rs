@@ -65,6 +65,11 @@ impl Report {
         self.problems.len() + self.omitted
     }
 
+    /// True when further problems are only counted.
+    pub(crate) fn is_full(&self) -> bool {
+        self.problems.len() >= MOST
+    }
+
     /// A problem with a value, which is quoted.
     pub(crate) fn value(
         &mut self,
@@ -102,7 +107,7 @@ impl Report {
     }
 
     fn push(&mut self, place: Place, path: &str, message: String, found: String, allowed: String) {
-        if self.problems.len() >= MOST {
+        if self.is_full() {
             self.omitted += 1;
             return;
         }

@@ -106,6 +106,10 @@ impl<'a> Checker<'a> {
             if known.contains(&name) {
                 continue;
             }
+            if self.report.is_full() {
+                self.report.missing(member.place, "", "", "");
+                continue;
+            }
             let (owners, meant) = (owners(spec, name), nearest(name, &known));
             let message = if !owners.is_empty() {
                 let kind = self.section.kind;
