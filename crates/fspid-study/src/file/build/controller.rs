@@ -86,11 +86,10 @@ fn shell(
     (dt_s, isa_filter_s): (f64, Option<f64>),
 ) -> Option<Shell<f64>> {
     let limits = match section.interval("output_limits_deg") {
-        Some((lower, upper)) => Some(Limits::new("output limits", rad(lower), rad(upper))),
-        None => None,
-    };
-    let limits = match limits {
-        Some(limits) => Some(judged(report, (section, "output_limits_deg"), limits)?),
+        Some((lower, upper)) => {
+            let limits = Limits::new("output limits", rad(lower), rad(upper));
+            Some(judged(report, (section, "output_limits_deg"), limits)?)
+        }
         None => None,
     };
     let guard = Guard::new(rad(section.number("sample_guard_deg")?));
@@ -199,10 +198,7 @@ fn tuner(
     let part = section.section("supervisor")?;
     let supervisor = supervisor(report, files, part);
     let limits = section.section("gain_limits");
-    let gain_limits = match limits {
-        Some(limits) => Some(gain_limits(report, limits)),
-        None => None,
-    };
+    let gain_limits = limits.map(|limits| gain_limits(report, limits));
     let law = law(report, section);
     let settings = TunerSettings {
         error_sign: match part.text("error_sign")? {

@@ -53,6 +53,9 @@ pub(crate) fn scenario(
         (&plant, timing, servo),
     );
     let controllers = controllers(report, files, section, timing);
+    if let Some(timing) = timing {
+        timing::check_memory(report, section, timing);
+    }
     let names = names(section);
     let asked = section.sections("requirement");
     let requirements = requirements(report, asked, &names);
