@@ -76,36 +76,25 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     };
     let proportional = session.proportional();
     let mut files = Vec::new();
-    let mut shared_short = None;
+    let mut own = Vec::new();
     for figure in PROBLEMS {
-        let set = Set {
-            figures: &[figure],
-            weighing: Weighing::Digits,
-            proportional,
-            effort: Effort::FIGURE,
-        };
-        let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set);
+        let figures = [figure];
+        let (weighing, effort) = (Weighing::Digits, Effort::FIGURE);
+        let set = Set { figures: &figures, weighing, proportional, effort };
+        let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set, None);
         files.extend(session.files(Fit::Own, &set, &found));
+        own.push((figure, found));
     }
+    let mut shared_short = None;
     for (name, setting, weighing) in [
         ("Figs 5 and 6, one supervisor", FULL_MODEL, Weighing::Digits),
-        (
-            "Figs 8a, 8b and 9, one supervisor",
-            SHORT_PERIOD,
-            Weighing::Shares,
-        ),
+        ("Figs 8a, 8b and 9, one supervisor", SHORT_PERIOD, Weighing::Shares),
     ] {
-        let figures: Vec<FigureProblem> = PROBLEMS
-            .into_iter()
-            .filter(|figure| figure.setting == setting)
-            .collect();
-        let set = Set {
-            figures: &figures,
-            weighing,
-            proportional,
-            effort: Effort::RANGE,
-        };
-        let found = session.solve(name, &set);
+        let of_range = || own.iter().filter(|(figure, _)| figure.setting == setting);
+        let figures: Vec<FigureProblem> = of_range().map(|(figure, _)| *figure).collect();
+        let points: Vec<&[f64]> = of_range().map(|(_, found)| &found.point[..]).collect();
+        let set = Set { figures: &figures, weighing, proportional, effort: Effort::RANGE };
+        let found = session.solve(name, &set, Some(&set.between(&points)));
         files.extend(session.files(Fit::Shared, &set, &found));
         if setting == SHORT_PERIOD {
             shared_short = Some(tuned::Base::of(&set, &found));
@@ -191,10 +180,10 @@ impl Session<'_> {
         ]
     }
 
-    fn solve(&mut self, name: &str, set: &Set<'_>) -> SeedResult {
+    fn solve(&mut self, name: &str, set: &Set<'_>, begin: Option<&[f64]>) -> SeedResult {
         let mut runs = Vec::new();
         for seed in self.seeds() {
-            let run = set.solve(self.bench, seed);
+            let run = set.solve(self.bench, seed, begin);
             (self.progress)(&format!(
                 "{name}: seed {seed}, cost {:.3e} after {} attempt(s), {} evaluations",
                 run.cost, run.attempts, run.evaluations
