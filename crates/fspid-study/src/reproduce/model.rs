@@ -11,7 +11,7 @@ use fspid_core::{
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Timing};
 
-use crate::units::radians;
+use crate::units::{degrees, radians};
 
 /// Sample period of all figures, s (assumption A4).
 pub(super) const SAMPLE_PERIOD_S: f64 = 0.01;
@@ -165,13 +165,13 @@ impl FlightModel {
         let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
         let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
         let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
-        let per_degree = 1.0 / radians(1.0);
         let [kp, ki, kd] = scales.output;
         let settings = TunerSettings {
             error_sign: self.setting.error_sign,
+            // A factor per degree is as many times larger per radian as a radian has degrees.
             input_scale: InputScale {
-                error_per_rad: scales.error * per_degree,
-                change_per_rad: scales.change * per_degree,
+                error_per_rad: degrees(scales.error),
+                change_per_rad: degrees(scales.change),
             },
             output_scale: Gains { kp, ki, kd },
             gain_limits: Some(GainLimits {
@@ -291,4 +291,46 @@ fn square_duration_s(half_period_s: f64) -> f64 {
 /// A line; writing to a string cannot fail.
 fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file;
+
+    fn model(setting: Setting, command: Command, rate_gain: f64) -> FlightModel {
+        let scales = Scales { error: 23.71, change: 29.5, output: [0.28, 0.0096, 0.034] };
+        let controller = |name: &str, gains, scales| ControllerModel {
+            name: name.to_owned(),
+            gains,
+            rate_gain,
+            scales,
+        };
+        FlightModel {
+            name: "a figure".to_owned(),
+            setting,
+            command,
+            controllers: vec![
+                controller("PC", [3.531_360_275_7, 0.0, 0.0], None),
+                controller("CPID", [0.5423, 0.0354, 0.177], None),
+                controller("FSPID", [0.5423, 0.0354, 0.177], Some(scales)),
+            ],
+        }
+    }
+
+    #[test]
+    fn the_scenario_that_is_searched_is_the_one_that_is_written() {
+        let table = file::rule_table("printed").expect("shipped");
+        for (setting, command, rate_gain) in [
+            (FULL_MODEL, Command::Step { window_s: 12.0 }, 0.93),
+            (SHORT_PERIOD, Command::Square { half_period_s: 6.61 }, 0.0),
+        ] {
+            let model = model(setting, command, rate_gain);
+            let plant = file::preset(setting.plant).expect("shipped").plant;
+            let built = model.scenario(&plant, &table).expect("allowed");
+            let heading = ["a heading".to_owned()];
+            let read = file::parse(&model.toml(&heading), "model", None, &[]);
+            assert_eq!(read.expect("good").scenario, built);
+        }
+    }
 }
