@@ -1,7 +1,8 @@
 use std::path::Path;
 
 use fspid_sim::Controller;
-use fspid_study::file::{self, LoadError, Measure};
+use fspid_study::file::{self, LoadError};
+use fspid_study::metrics::Measure;
 
 use crate::{repository, shipped, text};
 

@@ -8,7 +8,8 @@ use fspid_core::{
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
-use super::{RAD_PER_DEG, data, judged, rad};
+use crate::units::degrees;
+use super::{data, judged, rad};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
@@ -232,7 +233,8 @@ fn tuner(
 
 fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
     let mut per_rad = |key| {
-        let scale = part.number(key)? / RAD_PER_DEG;
+        // A factor per degree is as many times larger per radian as a radian has degrees.
+        let scale = degrees(part.number(key)?);
         if scale.is_finite() {
             return Some(scale);
         }
