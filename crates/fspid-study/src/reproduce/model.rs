@@ -299,7 +299,11 @@ mod tests {
     use crate::file;
 
     fn model(setting: Setting, command: Command, rate_gain: f64) -> FlightModel {
-        let scales = Scales { error: 23.71, change: 29.5, output: [0.28, 0.0096, 0.034] };
+        let scales = Scales {
+            error: 23.71,
+            change: 29.5,
+            output: [0.28, 0.0096, 0.034],
+        };
         let controller = |name: &str, gains, scales| ControllerModel {
             name: name.to_owned(),
             gains,
@@ -323,7 +327,13 @@ mod tests {
         let table = file::rule_table("printed").expect("shipped");
         for (setting, command, rate_gain) in [
             (FULL_MODEL, Command::Step { window_s: 12.0 }, 0.93),
-            (SHORT_PERIOD, Command::Square { half_period_s: 6.61 }, 0.0),
+            (
+                SHORT_PERIOD,
+                Command::Square {
+                    half_period_s: 6.61,
+                },
+                0.0,
+            ),
         ] {
             let model = model(setting, command, rate_gain);
             let plant = file::preset(setting.plant).expect("shipped").plant;

@@ -8,11 +8,11 @@ use fspid_core::{
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
-use crate::units::degrees;
 use super::{data, judged, rad};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::units::degrees;
 
 /// The controller of a sound section.
 pub(super) fn controller(

@@ -80,7 +80,12 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     for figure in PROBLEMS {
         let figures = [figure];
         let (weighing, effort) = (Weighing::Digits, Effort::FIGURE);
-        let set = Set { figures: &figures, weighing, proportional, effort };
+        let set = Set {
+            figures: &figures,
+            weighing,
+            proportional,
+            effort,
+        };
         let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set, None);
         files.extend(session.files(Fit::Own, &set, &found));
         own.push((figure, found));
@@ -88,12 +93,21 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     let mut shared_short = None;
     for (name, setting, weighing) in [
         ("Figs 5 and 6, one supervisor", FULL_MODEL, Weighing::Digits),
-        ("Figs 8a, 8b and 9, one supervisor", SHORT_PERIOD, Weighing::Shares),
+        (
+            "Figs 8a, 8b and 9, one supervisor",
+            SHORT_PERIOD,
+            Weighing::Shares,
+        ),
     ] {
         let of_range = || own.iter().filter(|(figure, _)| figure.setting == setting);
         let figures: Vec<FigureProblem> = of_range().map(|(figure, _)| *figure).collect();
         let points: Vec<&[f64]> = of_range().map(|(_, found)| &found.point[..]).collect();
-        let set = Set { figures: &figures, weighing, proportional, effort: Effort::RANGE };
+        let set = Set {
+            figures: &figures,
+            weighing,
+            proportional,
+            effort: Effort::RANGE,
+        };
         let found = session.solve(name, &set, Some(&set.between(&points)));
         files.extend(session.files(Fit::Shared, &set, &found));
         if setting == SHORT_PERIOD {

@@ -158,9 +158,15 @@ impl FigureProblem {
     pub(super) fn part(&self, index: usize, parts: usize) -> Self {
         let half_period_s = self.half_period_s.map(|(lower, upper)| {
             let width = (upper - lower) / parts as f64;
-            (lower + width * index as f64, lower + width * (index + 1) as f64)
+            (
+                lower + width * index as f64,
+                lower + width * (index + 1) as f64,
+            )
         });
-        Self { half_period_s, ..*self }
+        Self {
+            half_period_s,
+            ..*self
+        }
     }
 
     /// Nominal gains of each tuning, then the half period if there is one.

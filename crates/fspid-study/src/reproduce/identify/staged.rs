@@ -1,9 +1,7 @@
 //! The search itself: nominal gains from the CPID's claims, then the supervisor's scales, then all
 //! together, tried again with other random numbers until the claims are met or the attempts used up.
 
-use super::problem::{
-    Bench, Cost, FigureProblem, HALF_PERIOD, Weighing, scale_parameters, scales,
-};
+use super::problem::{Bench, Cost, FigureProblem, HALF_PERIOD, Weighing, scale_parameters, scales};
 use crate::tune::{Budget, Found, Space, polish, search};
 
 /// A cost below this is as good as nothing: every number of the fit rounds to the printed digits.
@@ -91,10 +89,15 @@ impl Set<'_> {
     pub(super) fn between(&self, points: &[&[f64]]) -> Vec<f64> {
         let scales = self.scale_space().dimension();
         let mean = |index: usize| {
-            let logarithms = points.iter().filter_map(|point| point.get(index)).map(|x| libm::log(*x));
+            let logarithms = points
+                .iter()
+                .filter_map(|point| point.get(index))
+                .map(|x| libm::log(*x));
             libm::exp(logarithms.sum::<f64>() / points.len().max(1) as f64)
         };
-        let parts = points.iter().flat_map(|point| point.iter().skip(scales).copied());
+        let parts = points
+            .iter()
+            .flat_map(|point| point.iter().skip(scales).copied());
         (0..scales).map(mean).chain(parts).collect()
     }
 
@@ -170,19 +173,32 @@ impl Set<'_> {
         let join = |scales: &[f64]| [scales, &nominal].concat();
         let space = self.scale_space();
         let global = self.effort.scales;
-        let budget = Budget { seed: seed + 10, population: 40, global, polish: 0 };
+        let budget = Budget {
+            seed: seed + 10,
+            population: 40,
+            global,
+            polish: 0,
+        };
         let found = search(&space, budget, None, ENOUGH, |point| {
             self.cost(bench, &join(point)).total() + prior(&space, point)
         });
         let joint = self.joint(bench, seed, &join(&found.point), STAGED_SPREAD);
-        Found { evaluations: evaluations + found.evaluations + joint.evaluations, ..joint }
+        Found {
+            evaluations: evaluations + found.evaluations + joint.evaluations,
+            ..joint
+        }
     }
 
     /// All parameters together, from about a point.
     fn joint(&self, bench: &Bench, seed: u64, begin: &[f64], spread: f64) -> Found {
         let space = self.space();
         let global = self.effort.joint;
-        let budget = Budget { seed: seed + 20, population: 40, global, polish: 0 };
+        let budget = Budget {
+            seed: seed + 20,
+            population: 40,
+            global,
+            polish: 0,
+        };
         let found = search(&space, budget, Some((begin, spread)), ENOUGH, |point| {
             self.cost(bench, point).total() + prior(&space, point)
         });
@@ -190,7 +206,9 @@ impl Set<'_> {
         let held = |point: &[f64]| -> Vec<f64> {
             let names = space.parameters().iter().map(|parameter| parameter.name);
             let pairs = point.iter().zip(&found.point).zip(names);
-            pairs.map(|((new, old), name)| if name == HALF_PERIOD { *old } else { *new }).collect()
+            pairs
+                .map(|((new, old), name)| if name == HALF_PERIOD { *old } else { *new })
+                .collect()
         };
         let free_cost = self.cost(bench, &found.point).total();
         let from = (&found.point[..], free_cost);
@@ -198,7 +216,11 @@ impl Set<'_> {
             self.cost(bench, &held(point)).total()
         });
         let evaluations = found.evaluations + polished.evaluations;
-        Found { point: held(&polished.point), cost: polished.cost, evaluations }
+        Found {
+            point: held(&polished.point),
+            cost: polished.cost,
+            evaluations,
+        }
     }
 
     /// Searches with one seed: in stages, each attempt in another part of the half period's interval;
@@ -213,7 +235,11 @@ impl Set<'_> {
                 None => {
                     let part = |figure: &FigureProblem| figure.part(attempts, self.effort.attempts);
                     let figures: Vec<FigureProblem> = self.figures.iter().map(part).collect();
-                    Set { figures: &figures, ..*self }.staged(bench, attempt_seed)
+                    Set {
+                        figures: &figures,
+                        ..*self
+                    }
+                    .staged(bench, attempt_seed)
                 }
                 Some(begin) => match &best {
                     None => self.joint(bench, attempt_seed, begin, FIRST_SPREAD),
@@ -231,7 +257,13 @@ impl Set<'_> {
         }
         let (point, cost) =
             best.map_or((Vec::new(), f64::INFINITY), |best| (best.point, best.cost));
-        SeedResult { seed, attempts, evaluations, cost, point }
+        SeedResult {
+            seed,
+            attempts,
+            evaluations,
+            cost,
+            point,
+        }
     }
 }
 
