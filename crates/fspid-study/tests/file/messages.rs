@@ -99,13 +99,13 @@ const MISTAKES: [(&str, &str, &str); 31] = [
     ),
     (
         "command limits the wrong way round",
-        "kd = 0.1\n",
-        "kd = 0.1\noutput_limits_deg = [20, -20]\n",
+        "kd = 0.15\n",
+        "kd = 0.15\noutput_limits_deg = [20, -20]\n",
     ),
     (
         "anti-windup without a limit",
-        "kd = 0.1\n",
-        "kd = 0.1\nanti_windup = { kind = \"conditional\" }\n",
+        "kd = 0.15\n",
+        "kd = 0.15\nanti_windup = { kind = \"conditional\" }\n",
     ),
     (
         "leakage without accumulation",
@@ -158,7 +158,7 @@ fn longer() -> Vec<(&'static str, String)> {
         ("an unknown label in a rule table", inline(&label)),
         (
             "a derivative on both",
-            starter.replace("kd = 0.1\n", &format!("kd = 0.1\n{conflict}\n")),
+            starter.replace("kd = 0.15\n", &format!("kd = 0.15\n{conflict}\n")),
         ),
         (
             "plant changes of another order and out of order",

@@ -171,7 +171,7 @@ fn degrees_of_the_file_are_radians_of_the_controller() {
         "{gains:?}"
     );
     assert!(
-        (gains.kd - (0.1 + 0.01 * delta.kd)).abs() < 1e-14,
+        (gains.kd - (0.15 + 0.01 * delta.kd)).abs() < 1e-14,
         "{gains:?}"
     );
 }
