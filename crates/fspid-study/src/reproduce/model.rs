@@ -30,10 +30,17 @@ pub(super) enum Command {
         /// Length of the window, s.
         window_s: f64,
     },
-    /// A bipolar square wave, flown for four half periods.
+    /// No command, flown for this long.
+    Rest {
+        /// Length of the window, s.
+        window_s: f64,
+    },
+    /// A bipolar square wave.
     Square {
         /// Half period, s; a whole number of samples.
         half_period_s: f64,
+        /// How many of them are flown.
+        half_periods: u32,
     },
 }
 
@@ -105,6 +112,23 @@ pub(super) fn on_grid(half_period_s: f64) -> f64 {
 }
 
 impl FlightModel {
+    /// Length of the flight, s.
+    fn duration_s(&self) -> f64 {
+        match self.command {
+            Command::Step { window_s } | Command::Rest { window_s } => window_s,
+            Command::Square { half_period_s, half_periods } => {
+                f64::from(half_periods) * half_period_s
+            }
+        }
+    }
+
+    fn amplitude_deg(&self) -> f64 {
+        match self.command {
+            Command::Rest { .. } => 0.0,
+            Command::Step { .. } | Command::Square { .. } => AMPLITUDE_DEG,
+        }
+    }
+
     /// The scenario, built directly; equal to what its [file](Self::toml) reads as.
     ///
     /// # Errors
@@ -114,16 +138,11 @@ impl FlightModel {
         plant: &LinearPlant,
         table: &RuleTable,
     ) -> Result<Scenario, SimError> {
-        let (shape, duration_s) = match self.command {
-            Command::Step { window_s } => (Shape::Step { at_s: 0.0 }, window_s),
-            Command::Square { half_period_s } => (
-                Shape::Square {
-                    at_s: 0.0,
-                    half_period_s,
-                    bipolar: true,
-                },
-                square_duration_s(half_period_s),
-            ),
+        let shape = match self.command {
+            Command::Step { .. } | Command::Rest { .. } => Shape::Step { at_s: 0.0 },
+            Command::Square { half_period_s, .. } => {
+                Shape::Square { at_s: 0.0, half_period_s, bipolar: true }
+            }
         };
         let controllers = self.controllers.iter().map(|model| {
             let controller = self.controller(model, table)?;
@@ -137,8 +156,8 @@ impl FlightModel {
             plant: plant.clone(),
             plant_changes: Vec::new(),
             servo: Servo::first_order(SERVO_S)?,
-            timing: Timing::new(SAMPLE_PERIOD_S, duration_s)?,
-            setpoint: Profile::new(radians(AMPLITUDE_DEG), shape)?,
+            timing: Timing::new(SAMPLE_PERIOD_S, self.duration_s())?,
+            setpoint: Profile::new(radians(self.amplitude_deg()), shape)?,
             disturbances: Vec::new(),
             controllers: controllers.collect::<Result<_, SimError>>()?,
         })
@@ -204,13 +223,13 @@ impl FlightModel {
             &mut out,
             format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"),
         );
-        let (setpoint, duration_s) = match self.command {
-            Command::Step { window_s } => ("kind = \"step\"".to_owned(), window_s),
-            Command::Square { half_period_s } => (
-                format!("kind = \"square\"\nhalf_period_s = {half_period_s:?}\nbipolar = true"),
-                square_duration_s(half_period_s),
-            ),
+        let setpoint = match self.command {
+            Command::Step { .. } | Command::Rest { .. } => "kind = \"step\"".to_owned(),
+            Command::Square { half_period_s, .. } => {
+                format!("kind = \"square\"\nhalf_period_s = {half_period_s:?}\nbipolar = true")
+            }
         };
+        let (duration_s, amplitude_deg) = (self.duration_s(), self.amplitude_deg());
         push(
             &mut out,
             format_args!(
@@ -219,7 +238,7 @@ impl FlightModel {
         );
         push(
             &mut out,
-            format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {AMPLITUDE_DEG:?}"),
+            format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"),
         );
         for controller in &self.controllers {
             self.push_controller(&mut out, controller);
@@ -283,11 +302,6 @@ impl FlightModel {
     }
 }
 
-/// Two upward and two downward steps.
-fn square_duration_s(half_period_s: f64) -> f64 {
-    4.0 * half_period_s
-}
-
 /// A line; writing to a string cannot fail.
 fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{line}");
@@ -327,13 +341,8 @@ mod tests {
         let table = file::rule_table("printed").expect("shipped");
         for (setting, command, rate_gain) in [
             (FULL_MODEL, Command::Step { window_s: 12.0 }, 0.93),
-            (
-                SHORT_PERIOD,
-                Command::Square {
-                    half_period_s: 6.61,
-                },
-                0.0,
-            ),
+            (SHORT_PERIOD, Command::Square { half_period_s: 6.61, half_periods: 4 }, 0.0),
+            (SHORT_PERIOD, Command::Rest { window_s: 30.0 }, 0.0),
         ] {
             let model = model(setting, command, rate_gain);
             let plant = file::preset(setting.plant).expect("shipped").plant;

@@ -2,79 +2,62 @@
 
 use std::fmt::Write as _;
 
-use super::Simulation;
+use super::{ControllerResult, Judgement, Simulation};
 use crate::metrics::{Absent, Measured, StepMetrics};
 use crate::units::degrees;
 
 impl Simulation {
-    /// The answer of `simulate --format text`: a table of controllers, one line for each step of the
+    /// The answer of `simulate --format text`: each controller with one line for each step of the
     /// command, then the requirements.
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = format!("{}\n", self.scenario);
-        let width = self
-            .results
-            .iter()
-            .map(|r| r.name.chars().count())
-            .max()
-            .unwrap_or(0)
-            .max(10);
+        let width = self.results.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(10);
         for result in &self.results {
-            let metrics = &result.metrics;
-            line(
-                &mut out,
-                format_args!("\n{:width$}  {}", result.name, metrics.verdict),
-            );
-            for (index, edge) in metrics.edges.iter().enumerate() {
-                line(
-                    &mut out,
-                    format_args!(
-                        "  step {} at {:.2} s, {:+.3} to {:+.3} deg: {}",
-                        index + 1,
-                        edge.at_s,
-                        degrees(edge.from_rad),
-                        degrees(edge.to_rad),
-                        step(&edge.step),
-                    ),
-                );
-            }
-            if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
-                line(
-                    &mut out,
-                    format_args!(
-                        "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, largest command {:.3} deg",
-                        degrees(integrals.iae_rad_s),
-                        degrees(integrals.itae_rad_s2),
-                        degrees(degrees(integrals.ise_rad2_s)),
-                        degrees(effort.variation_rad),
-                        degrees(effort.largest_rad),
-                    ),
-                );
-            }
-            if !result.trace.faults.is_empty() {
-                line(&mut out, format_args!("  faults: {}", result.trace.faults));
-            }
+            line(&mut out, format_args!("\n{:width$}  {}", result.name, result.metrics.verdict));
+            push_measures(&mut out, result);
         }
         for judgement in &self.judgements {
-            let met = if judgement.met { "met" } else { "NOT MET" };
-            let value = match judgement.value {
-                Ok(value) => format!("{value:.4}"),
-                Err(reason) => reason.to_string(),
-            };
-            let (name, most) = (
-                judgement.requirement.measure.name(),
-                judgement.requirement.most,
-            );
-            line(
-                &mut out,
-                format_args!(
-                    "\n{met}: {} {name} {value}, at most {most}",
-                    judgement.controller
-                ),
-            );
+            push_judgement(&mut out, judgement);
         }
         out
     }
+}
+
+fn push_measures(out: &mut String, result: &ControllerResult) {
+    let metrics = &result.metrics;
+    for (edge, number) in metrics.edges.iter().zip(1..) {
+        let (from_deg, to_deg) = (degrees(edge.from_rad), degrees(edge.to_rad));
+        line(out, format_args!(
+            "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}",
+            edge.at_s,
+            step(&edge.step),
+        ));
+    }
+    if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
+        line(out, format_args!(
+            "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, \
+             largest command {:.3} deg",
+            degrees(integrals.iae_rad_s),
+            degrees(integrals.itae_rad_s2),
+            degrees(degrees(integrals.ise_rad2_s)),
+            degrees(effort.variation_rad),
+            degrees(effort.largest_rad),
+        ));
+    }
+    if !result.trace.faults.is_empty() {
+        line(out, format_args!("  faults: {}", result.trace.faults));
+    }
+}
+
+fn push_judgement(out: &mut String, judgement: &Judgement) {
+    let met = if judgement.met { "met" } else { "NOT MET" };
+    let value = match judgement.value {
+        Ok(value) => format!("{value:.4}"),
+        Err(reason) => reason.to_string(),
+    };
+    let (name, most) = (judgement.requirement.measure.name(), judgement.requirement.most);
+    line(out, format_args!("\n{met}: {} {name} {value}, at most {most}", judgement.controller));
 }
 
 /// Writing to a string cannot fail.

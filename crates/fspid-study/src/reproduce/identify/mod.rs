@@ -21,6 +21,9 @@ use super::model::{Command, FULL_MODEL, SHORT_PERIOD, Scales};
 use crate::file;
 use crate::tune::{Budget, Parameter, Scale, Space, search};
 
+/// Two upward and two downward steps are shown of a square wave.
+const SHOWN_HALF_PERIODS: u32 = 4;
+
 /// What to search with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -79,7 +82,9 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     let mut own = Vec::new();
     for figure in PROBLEMS {
         let figures = [figure];
-        let (weighing, effort) = (Weighing::Digits, Effort::FIGURE);
+        let weighing = Weighing::Digits;
+        // Long flights, and claims that no attempt can meet.
+        let effort = if figure.id == "9" { Effort::LONG_FIGURE } else { Effort::FIGURE };
         let set = Set {
             figures: &figures,
             weighing,
@@ -248,7 +253,8 @@ impl Session<'_> {
             let [gain, gyro_gain] = set.proportional;
             let gyro = if figure.gyro { gyro_gain } else { 0.0 };
             let mut model = figure.flight(part, Some(scales), Some([gain, gyro]));
-            if matches!(model.command, Command::Square { .. }) {
+            if let Command::Square { half_periods, .. } = &mut model.command {
+                *half_periods = SHOWN_HALF_PERIODS;
                 model
                     .controllers
                     .retain(|controller| controller.name != "PC");

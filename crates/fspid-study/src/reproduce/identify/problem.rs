@@ -20,6 +20,9 @@ use crate::units::degrees;
 /// Reading time of Figs 5 and 6, s (assumption A15).
 pub(super) const WINDOW_S: f64 = 12.0;
 
+/// The claims speak of the first and the third step of a square wave; the search flies no further.
+const JUDGED_HALF_PERIODS: u32 = 3;
+
 /// What a flight that diverges costs, times up to two for an early end.
 const DIVERGED_COST: f64 = 1e8;
 
@@ -201,9 +204,9 @@ impl FigureProblem {
         proportional: Option<[f64; 2]>,
     ) -> FlightModel {
         let command = match (self.half_period_s, point.get(3 * self.tunings)) {
-            (Some(_), Some(&half)) => Command::Square {
-                half_period_s: on_grid(half),
-            },
+            (Some(_), Some(&half)) => {
+                Command::Square { half_period_s: on_grid(half), half_periods: JUDGED_HALF_PERIODS }
+            }
             _ => Command::Step { window_s: WINDOW_S },
         };
         let [gain, gyro_gain] = proportional.unwrap_or([0.0; 2]);

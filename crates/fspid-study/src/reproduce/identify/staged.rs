@@ -29,21 +29,14 @@ pub(super) struct Effort {
 
 impl Effort {
     /// For one figure.
-    pub(super) const FIGURE: Self = Self {
-        attempts: 6,
-        nominal: 4_000,
-        scales: 6_000,
-        joint: 6_000,
-        polish: 3_000,
-    };
+    pub(super) const FIGURE: Self =
+        Self { attempts: 6, nominal: 4_000, scales: 6_000, joint: 6_000, polish: 3_000 };
+    /// For a figure with long flights.
+    pub(super) const LONG_FIGURE: Self =
+        Self { attempts: 3, nominal: 4_000, scales: 4_000, joint: 4_000, polish: 1_500 };
     /// For all figures of a range.
-    pub(super) const RANGE: Self = Self {
-        attempts: 3,
-        nominal: 4_000,
-        scales: 6_000,
-        joint: 20_000,
-        polish: 5_000,
-    };
+    pub(super) const RANGE: Self =
+        Self { attempts: 2, nominal: 4_000, scales: 6_000, joint: 12_000, polish: 3_000 };
 }
 
 /// What one seed found.

@@ -1,7 +1,7 @@
 //! The controllers of Fig. 7 and of the long-term change: the shared supervisor with the nominal
 //! gains of Fig. 8b, and both kinds of controller tuned against each disturbance with equal effort.
 
-use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
+use fspid_sim::signal::{Disturbance, Entry, Shape};
 use fspid_sim::{NamedController, Scenario, simulate};
 
 use super::super::disturbance::{ENTRIES, SHAPES, START_S, flight_cost, scenario_name};
@@ -28,7 +28,8 @@ const BUDGET: Budget = Budget {
     global: 2_000,
     polish: 500,
 };
-/// The long-term change: start and length, s.
+/// The long-term change: length of the flight and start of the change in half periods, length in s.
+const CHANGE_FLIGHT_HALF_PERIODS: u32 = 10;
 const CHANGE_AT_HALF_PERIODS: f64 = 4.0;
 const CHANGE_RAMP_S: f64 = 10.0;
 /// The short-period model with half of its elevator effectiveness: half the printed numerator.
@@ -112,14 +113,13 @@ fn disturbed(
     entry: Entry,
 ) -> Option<Scenario> {
     let mut scenario = model.scenario(&bench.short, &bench.table).ok()?;
-    scenario.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).ok()?;
     let size_rad = radians(TUNING_SIZE_DEG);
     scenario.disturbances = vec![Disturbance::new(entry, size_rad, shape(shape_name)).ok()?];
     Some(scenario)
 }
 
 fn at_rest(name: String, controllers: Vec<ControllerModel>) -> FlightModel {
-    let command = Command::Step { window_s: FLIGHT_S };
+    let command = Command::Rest { window_s: FLIGHT_S };
     FlightModel {
         name,
         setting: SHORT_PERIOD,
@@ -174,11 +174,7 @@ impl Session<'_> {
                     BUDGET.global + BUDGET.polish
                 );
                 let heading = self.heading(&what, &base.found, DISTURBED);
-                let text = model.toml(&heading).replace(
-                    "amplitude_deg = 1.0\n\n[[controller]]\nname = \"CPID\"",
-                    "amplitude_deg = 0.0\n\n[[controller]]\nname = \"CPID\"",
-                );
-                let text = text + &disturbance_toml(shape_name, entry_name);
+                let text = model.toml(&heading) + &disturbance_toml(shape_name, entry_name);
                 files.push(Stored {
                     name: scenario_name(shape_name, entry_name),
                     text,
@@ -252,19 +248,18 @@ impl Session<'_> {
             setting: SHORT_PERIOD,
             command: Command::Square {
                 half_period_s: base.half_period_s,
+                half_periods: CHANGE_FLIGHT_HALF_PERIODS,
             },
             controllers: base.pair(),
         };
         let what = "Claim S2: CPID and FSPID as shared by Figs 8 and 9 (gains of Fig. 8b), while the \
                     elevator loses half of its effectiveness.";
         let heading = self.heading(what, &base.found, WEAKENED);
-        let four = format!("duration_s = {:?}", 4.0 * base.half_period_s);
-        let ten = format!("duration_s = {:?}", 10.0 * base.half_period_s);
         let change = format!(
             "\n[[plant_change]]\nat_s = {:?}\nramp_s = {CHANGE_RAMP_S:?}\n{WEAK_ELEVATOR}",
             CHANGE_AT_HALF_PERIODS * base.half_period_s
         );
-        let text = model.toml(&heading).replace(&four, &ten) + &change;
+        let text = model.toml(&heading) + &change;
         Stored {
             name: "long-term-change.toml".to_owned(),
             text,
