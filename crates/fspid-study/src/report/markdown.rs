@@ -199,6 +199,10 @@ pub(super) fn linked(text: &str) -> String {
         out.push_str(&escape(before));
         if is_number(word) {
             out.push_str(&format!("<a href=\"#{word}\">{word}</a>"));
+        } else if let Some((index, after)) = subscript(word, after) {
+            out.push_str(&format!("{word}<sub>{}</sub>", escape(index)));
+            rest = after;
+            continue;
         } else {
             out.push_str(&escape(word));
         }
@@ -206,6 +210,15 @@ pub(super) fn linked(text: &str) -> String {
     }
     out.push_str(&escape(rest));
     out
+}
+
+/// The index of a letter such as k_p or Z_ẇ, and what follows it; words such as error_scale have none.
+fn subscript<'a>(word: &str, after: &'a str) -> Option<(&'a str, &'a str)> {
+    let rest = after.strip_prefix('_').filter(|_| word.len() == 1)?;
+    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '\u{307}').unwrap_or(rest.len());
+    let (index, after) = rest.split_at(end);
+    let short = (1..=2).contains(&index.chars().filter(|c| c.is_alphanumeric()).count());
+    (short && !after.starts_with('_')).then_some((index, after))
 }
 
 #[cfg(test)]
@@ -219,6 +232,11 @@ mod tests {
         assert!(html.contains("<tr id=\"E8\"><th scope=\"row\">E8</th><td data-label=\"x\">a <code>b</code>"), "{html}");
         assert!(html.contains("<p id=\"E18\"><strong>E18.</strong>"), "{html}");
         assert!(html.contains("<a href=\"#A2\">A2</a>") && !html.contains("<c>") && !html.contains("<h1"));
+    }
+
+    #[test]
+    fn letters_with_an_index_are_set_lower_and_names_of_keys_are_not() {
+        assert_eq!(linked("\u{394}k_p, Z_w\u{307}: error_scale"), "\u{394}k<sub>p</sub>, Z<sub>w\u{307}</sub>: error_scale");
     }
 
     #[test]

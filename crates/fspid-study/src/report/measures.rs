@@ -2,6 +2,7 @@
 
 use super::number;
 use super::page::{Cell, Row, Table};
+use super::traces::fails;
 use crate::metrics::{EdgeMetrics, FlightMetrics, Measured, StepMetrics};
 use crate::simulation::{ControllerResult, Simulation};
 use crate::units::degrees;
@@ -43,6 +44,11 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
             .collect::<Vec<_>>()
     };
     let metrics = &result.metrics;
+    if fails(result) {
+        let reason = format!("\u{2717} {}: no measures", metrics.verdict);
+        let cells = vec![Cell::text(&result.name), Cell::text("all"), Cell::failing(reason, columns.len())];
+        return vec![Row { class: "first", ..Row::from(cells) }];
+    }
     if metrics.edges.is_empty() {
         let mut cells = vec![Cell::text(&result.name), Cell::text("no step in the command")];
         cells.extend(measures(&metrics.first_step()));
@@ -83,9 +89,11 @@ pub(super) fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only
     for result in first.results.iter().filter(|r| only.is_empty() || only.contains(&r.name.as_str())) {
         let mut rows = rows(result, &columns);
         for (_, other) in variants.iter().skip(1) {
-            let others = other.result(&result.name).map(|result| self::rows(result, &columns));
-            for (row, other) in rows.iter_mut().zip(others.unwrap_or_default()) {
-                row.cells.extend(other.cells.into_iter().skip(2));
+            let others = other.result(&result.name).map(|result| self::rows(result, &columns)).unwrap_or_default();
+            // A failed flight has one row for all steps: it says so on each.
+            for (index, row) in rows.iter_mut().enumerate() {
+                let other = others.get(index).or_else(|| others.first());
+                row.cells.extend(other.iter().flat_map(|row| row.cells.iter().skip(2).cloned()));
             }
         }
         table.rows.extend(rows);
@@ -104,6 +112,12 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
     for result in &simulation.results {
         let FlightMetrics { integrals, effort, .. } = &result.metrics;
         let mut cells = vec![Cell::text(&result.name)];
+        if fails(result) {
+            cells.push(Cell::failing(format!("\u{2717} {}: no measures", result.metrics.verdict), 7));
+            cells.extend(tail(result));
+            table.push(cells);
+            continue;
+        }
         let squared = |value: f64| degrees(degrees(value));
         cells.extend([
             Cell::measured(integrals.map(|i| degrees(i.iae_rad_s)), 4),
@@ -113,11 +127,16 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
             Cell::measured(effort.map(|e| degrees(e.variation_rad)), 3),
             Cell::measured(effort.map(|e| degrees(e.largest_rad)), 3),
             Cell::measured(effort.map(|e| degrees(e.fastest_rad_s)), 2),
-            Cell::number(result.trace.saturated_samples.to_string()),
         ]);
-        let faults = result.trace.faults;
-        cells.push(Cell::text(if faults.is_empty() { "none".to_owned() } else { faults.to_string() }));
+        cells.extend(tail(result));
         table.push(cells);
     }
     table
+}
+
+/// What is known of a failed flight too.
+fn tail(result: &ControllerResult) -> [Cell; 2] {
+    let faults = result.trace.faults;
+    let faults = if faults.is_empty() { "none".to_owned() } else { faults.to_string() };
+    [Cell::number(result.trace.saturated_samples.to_string()), Cell::text(faults)]
 }

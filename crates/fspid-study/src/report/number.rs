@@ -16,7 +16,8 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
 /// `value` with its sign, `+` too.
 pub(super) fn with_sign(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
-    if text.starts_with(['\u{2212}', '\u{2013}']) || value == 0.0 { text } else { format!("+{text}") }
+    let is_zero = !text.contains(|c: char| ('1'..='9').contains(&c));
+    if text.starts_with('\u{2212}') || is_zero { text } else { format!("+{text}") }
 }
 
 /// `value` with so many significant digits, in powers of ten where that is shorter.
@@ -48,6 +49,12 @@ pub(super) fn measured(value: Measured, decimals: usize) -> String {
     value.map_or_else(|reason| reason.to_string(), |value| fixed(value, decimals))
 }
 
+/// The text with a capital at its beginning.
+pub(super) fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,6 +64,7 @@ mod tests {
         assert_eq!(fixed(-1.25, 1), "\u{2212}1.2");
         assert_eq!(fixed(-0.001, 2), "0.00");
         assert_eq!(with_sign(0.2165, 4), "+0.2165");
+        assert_eq!(with_sign(1e-12, 4), "0.0000");
         assert_eq!(fixed(f64::NAN, 2), "\u{2013}");
     }
 

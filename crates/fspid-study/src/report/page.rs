@@ -3,7 +3,7 @@
 use minijinja::value::Value;
 use serde::Serialize;
 
-use super::{html, number};
+use super::{html, markdown, number};
 use crate::figure::{Svg, page_style};
 use crate::metrics::Measured;
 use crate::reproduce::Status;
@@ -15,11 +15,16 @@ pub(super) struct Figure {
     pub(super) name: String,
     /// The drawing.
     pub(super) svg: String,
+    /// True for a drawing that does not shrink to a narrow screen but is moved sideways there.
+    pub(super) wide: bool,
     /// What it shows.
     pub(super) caption: String,
     /// Numbers of the assumptions it rests on.
     pub(super) assumptions: Vec<Reference>,
 }
+
+/// A drawing that is wider than this cannot be read when it is shrunk to a phone, px.
+const WIDE_PX: f64 = 600.0;
 
 /// Numbered things that are referred to: one, or a run of them from the first to the last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -33,6 +38,8 @@ pub(super) struct Reference {
 /// References to these ids; three or more numbers in a row become a run.
 pub(super) fn references(ids: &[&str]) -> Vec<Reference> {
     let number = |id: &str| id.get(1..).and_then(|digits| digits.parse::<u32>().ok());
+    let mut ids = ids.to_vec();
+    ids.sort_by_key(|id| number(id));
     let mut runs: Vec<Vec<&str>> = Vec::new();
     for id in ids {
         let follows = |run: &Vec<&str>| {
@@ -56,7 +63,10 @@ pub(super) fn references(ids: &[&str]) -> Vec<Reference> {
 impl Figure {
     /// A figure without assumptions.
     pub(super) fn new(name: impl Into<String>, svg: Svg, caption: impl Into<String>) -> Self {
-        Self { name: name.into(), svg: svg.into_string(), caption: caption.into(), assumptions: Vec::new() }
+        let svg = svg.into_string();
+        let width = svg.split(" width=\"").nth(1).and_then(|rest| rest.split('"').next());
+        let wide = width.and_then(|width| width.parse::<f64>().ok()).is_some_and(|width| width > WIDE_PX);
+        Self { name: name.into(), svg, wide, caption: caption.into(), assumptions: Vec::new() }
     }
 
     /// The same, resting on these.
@@ -72,6 +82,10 @@ pub(super) struct Cell {
     pub(super) text: String,
     /// How it looks: `number`, `absent`, a status, or nothing.
     pub(super) class: &'static str,
+    /// Over how many columns; 0 and 1 are one.
+    pub(super) span: usize,
+    /// In place of the text: markup of our own.
+    pub(super) markup: String,
     /// What it refers to, after the text.
     pub(super) links: Vec<Reference>,
 }
@@ -84,23 +98,33 @@ impl Cell {
 
     /// A number, already written.
     pub(super) fn number(text: impl Into<String>) -> Self {
-        Self { text: text.into(), class: "number", links: Vec::new() }
+        Self { text: text.into(), class: "number", ..Self::default() }
     }
 
     /// A measure, or in words why there is none.
     pub(super) fn measured(value: Measured, decimals: usize) -> Self {
         let class = if value.is_ok() { "number" } else { "absent" };
-        Self { text: number::measured(value, decimals), class, links: Vec::new() }
+        Self { text: number::measured(value, decimals), class, ..Self::default() }
     }
 
     /// A status as a sign and a word.
     pub(super) fn status(status: Status) -> Self {
-        Self { text: format!("{} {}", sign(status), status.name()), class: status.name(), links: Vec::new() }
+        Self { text: format!("{} {}", sign(status), status.name()), class: status.name(), ..Self::default() }
     }
 
     /// Links to these ids.
     pub(super) fn links(ids: &[&str]) -> Self {
-        Self { links: references(ids), ..Self::default() }
+        Self { links: references(ids), class: "refs", ..Self::default() }
+    }
+
+    /// One reason in place of so many measures.
+    pub(super) fn failing(reason: impl Into<String>, span: usize) -> Self {
+        Self { text: reason.into(), class: "failing", span, ..Self::default() }
+    }
+
+    /// Words in which assumptions and errata are linked.
+    pub(super) fn linked(text: &str) -> Self {
+        Self { markup: markdown::linked(text), ..Self::default() }
     }
 }
 
@@ -225,7 +249,7 @@ mod tests {
 
     #[test]
     fn three_in_a_row_are_a_run() {
-        let found = references(&["A1", "A2", "A3", "A5", "A6", "A23"]);
+        let found = references(&["A1", "A2", "A23", "A3", "A5", "A6"]);
         let text: Vec<String> = found.iter().map(|r| format!("{}-{}", r.first, r.last)).collect();
         assert_eq!(text, ["A1-A3", "A5-", "A6-", "A23-"]);
     }

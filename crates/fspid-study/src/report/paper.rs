@@ -24,6 +24,7 @@ pub(super) fn report(paper: &Paper<'_>) -> String {
         lead => html::render("paper", context! {}),
         style => page::style(),
         sections,
+        verdict_first => false,
         version => env!("CARGO_PKG_VERSION"),
     };
     html::render("page", context)

@@ -113,11 +113,25 @@ fn renamed(path: &str) -> (String, &'static str) {
     for (ending, unit) in UNITS {
         if let Some(stem) = path.strip_suffix(ending) {
             let kept = if ending.starts_with(' ') { stem } else { path };
-            return (kept.to_owned(), unit);
+            return (plain(kept), unit);
         }
     }
     let unit = if path.ends_with("gains ki") || path.ends_with("nominal ki") { "1/s" } else { "" };
-    (path.to_owned(), unit)
+    (plain(path), unit)
+}
+
+/// Names inside that say little outside.
+const PLAIN: [(&str, &str); 5] = [
+    ("dt", "sample period"),
+    ("rows", "samples"),
+    ("slew", "slew limit of the command"),
+    ("limits", "limits of the command"),
+    ("anti windup", "anti-windup"),
+];
+
+fn plain(path: &str) -> String {
+    let named = PLAIN.iter().find(|(name, _)| *name == path);
+    named.map_or_else(|| path.to_owned(), |(_, plain)| (*plain).to_owned())
 }
 
 /// A value as it is shown: degrees where the inside has radians.
@@ -181,6 +195,23 @@ fn grid(consequents: &Node) -> Option<Grid> {
         *rows.get_mut(cell / 7)?.get_mut(cell % 7)? = *label;
     }
     Some(Grid::new(rows))
+}
+
+/// What disturbs, in words: "pulse (at 1 s, width 1 s)".
+pub(super) fn disturbance_forms(scenario: &Scenario) -> Vec<String> {
+    let node = Node::of(scenario);
+    let disturbances = node.field("disturbances").map(Node::items).unwrap_or_default();
+    disturbances.iter().filter_map(|disturbance| form(disturbance.field("shape")?)).collect()
+}
+
+fn form(shape: &Node) -> Option<String> {
+    let Node::Struct(name, fields) = shape.inside() else { return None };
+    let detail = |(field, node): &(String, Node)| {
+        let (name, unit) = renamed(&format!(" {}", field.replace('_', " ")));
+        format!("{} {} {unit}", name.trim(), value(&name, node)).trim_end().to_owned()
+    };
+    let details: Vec<String> = fields.iter().map(detail).collect();
+    Some(format!("{} ({})", words(name), details.join(", ")))
 }
 
 /// The law of a controller's tuner in words; `None` for fixed gains.

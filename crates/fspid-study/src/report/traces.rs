@@ -1,6 +1,6 @@
 //! Time responses as figures.
 
-use fspid_sim::{Controller, Outcome, Scenario};
+use fspid_sim::{Controller, Outcome, Scenario, Trace};
 
 use crate::figure::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::metrics::Verdict;
@@ -17,12 +17,14 @@ pub(super) struct Drawing<'a> {
     pub(super) simulation: &'a Simulation,
     /// Only these controllers; all of them if empty.
     pub(super) only: &'a [&'a str],
-    /// Also the elevator, and bands of 2 % about the set-points.
+    /// Also the elevator, and bands of 2 % about the set-points; colours by place, not by name.
     pub(super) detailed: bool,
+    /// Width, px: the narrower, the larger the letters where the figure is fitted to a column.
+    pub(super) width_px: f64,
 }
 
-/// Width of a time response, px.
-const WIDTH_PX: f64 = 720.0;
+/// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
+const SPIKE: f64 = 3.0;
 /// A pitch panel shows at most this many times the largest good excursion where a loop fails.
 const HEADROOM: f64 = 1.6;
 
@@ -50,7 +52,7 @@ impl Drawing<'_> {
             panels.push(self.gain("k_{i} (1/s)", |gains| gains.ki));
             panels.push(self.gain("k_{d} (s)", |gains| gains.kd));
         }
-        LineFigure { title: self.title.to_owned(), panels, width_px: WIDTH_PX }.render()
+        LineFigure { title: self.title.to_owned(), panels, width_px: self.width_px }.render()
     }
 
     fn flown(&self) -> impl Iterator<Item = (usize, &ControllerResult)> {
@@ -66,8 +68,8 @@ impl Drawing<'_> {
     fn series(&self, y: impl Fn(&ControllerResult) -> Vec<f64>, stairs: bool) -> Vec<Series> {
         let one = |(index, result): (usize, &ControllerResult)| Series {
             name: result.name.clone(),
-            style: style(&result.name, index),
-            x: result.trace.time_s.clone(),
+            style: if self.detailed { SeriesStyle::Numbered(index) } else { style(&result.name, index) },
+            x: shown(&result.trace, &result.trace.time_s).to_vec(),
             y: y(result),
             stairs,
         };
@@ -83,8 +85,8 @@ impl Drawing<'_> {
             series.push(Series {
                 name: "set-point".to_owned(),
                 style: SeriesStyle::Setpoint,
-                x: trace.time_s.clone(),
-                y: in_degrees(&trace.setpoint_rad),
+                x: shown(trace, &trace.time_s).to_vec(),
+                y: in_degrees(shown(trace, &trace.setpoint_rad)),
                 stairs: true,
             });
         }
@@ -102,9 +104,39 @@ impl Drawing<'_> {
 
     fn angle(&self, label: &str, of: fn(&ControllerResult) -> &Vec<f64>) -> LinePanel {
         let series = self.series(|result| of(result).iter().copied().map(degrees).collect(), true);
-        let y_range = self.range(&[], of);
+        let y_range = self.range(&[], of).or_else(|| self.without_spikes(of));
         let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
         LinePanel { y_label, x_label, series, y_range, x_range: self.window(), ..LinePanel::default() }
+    }
+
+    /// A range without the spikes of single samples, if there are any.
+    fn without_spikes(&self, of: fn(&ControllerResult) -> &Vec<f64>) -> Option<(f64, f64)> {
+        let trace = |(_, result): (usize, &'_ ControllerResult)| {
+            shown(&result.trace, of(result)).iter().copied().map(degrees).collect::<Vec<f64>>()
+        };
+        let mut values: Vec<f64> = self.flown().flat_map(trace).collect();
+        values.sort_by(f64::total_cmp);
+        let (low, high) = (*values.get(values.len() / 200)?, *values.get(values.len() * 199 / 200)?);
+        let (lowest, highest) = (*values.first()?, *values.last()?);
+        let usual = low.abs().max(high.abs());
+        let margin = 0.15 * (high - low);
+        let spiky = lowest.abs().max(highest.abs()) > SPIKE * usual && margin > 0.0;
+        spiky.then_some((lowest.max(low - margin), highest.min(high + margin)))
+    }
+
+    /// A sentence for the caption where the command's panel leaves spikes out.
+    pub(super) fn spikes(&self) -> String {
+        let command: fn(&ControllerResult) -> &Vec<f64> = |result| &result.trace.command_rad;
+        if self.range(&[], command).is_some() || self.without_spikes(command).is_none() {
+            return String::new();
+        }
+        let largest = self.flown().flat_map(|(_, result)| shown(&result.trace, &result.trace.command_rad));
+        let largest = largest.map(|command| degrees(command.abs())).fold(0.0, f64::max);
+        format!(
+            " At a step the derivative of the error moves the command by up to {} deg for a sample; the panel leaves \
+             these spikes out.",
+            super::number::significant(largest, 2)
+        )
     }
 
     fn gain(&self, label: &str, of: fn(&fspid_core::Gains<f64>) -> f64) -> LinePanel {
@@ -159,6 +191,16 @@ impl Drawing<'_> {
         }
         bands
     }
+}
+
+/// The samples that are drawn: without the last one if the command steps there, since nothing follows.
+fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
+    let steps_at_end = match trace.setpoint_rad.as_slice() {
+        [.., before, last] => before.to_bits() != last.to_bits(),
+        _ => false,
+    };
+    let end = if steps_at_end { column.len().saturating_sub(1) } else { column.len() };
+    column.get(..end).unwrap_or(column)
 }
 
 /// True for a flight without measures.

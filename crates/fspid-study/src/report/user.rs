@@ -3,7 +3,7 @@
 use fspid_sim::Controller;
 use serde::Serialize;
 
-use super::number::{exact, fixed, measured, significant, with_sign};
+use super::number::{capital, exact, fixed, measured, significant, with_sign};
 use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor::{self, Marks};
 use super::traces::{Drawing, fails};
@@ -32,6 +32,7 @@ pub(super) fn report(study: &Study, simulation: &Simulation) -> String {
         lead => html::render("user", context! { part => "lead" }),
         style => page::style(),
         sections,
+        verdict_first => true,
         version => env!("CARGO_PKG_VERSION"),
     };
     html::render("page", context)
@@ -82,11 +83,6 @@ fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> St
     if value.is_ok() { format!("{text} {unit}") } else { format!("absent ({text})") }
 }
 
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
-}
-
 impl User<'_> {
     fn verdicts(self) -> Section {
         let outcomes: Vec<Outcome> = self.simulation.results.iter().map(outcome).collect();
@@ -124,12 +120,14 @@ impl User<'_> {
             simulation: self.simulation,
             only: &[],
             detailed: true,
+            width_px: 720.0,
         };
         let failing: Vec<&str> =
             self.simulation.results.iter().filter(|r| fails(r)).map(|r| r.name.as_str()).collect();
         let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
                        of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
                        self-tuning controllers.";
+        let caption = format!("{caption}{}", drawing.spikes());
         let figure = Figure::new("responses-figure", drawing.render(), caption);
         Section::of("responses", "Time responses", "user", context! { part => "responses", figure, failing })
     }

@@ -41,7 +41,7 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
                 value(judged.shared),
                 Cell::status(judged.shared_status),
                 Cell::links(judged.assumptions),
-                Cell::text(&judged.note),
+                Cell::linked(&judged.note),
             ],
         });
     }
@@ -61,7 +61,7 @@ fn statements(statements: &[JudgedStatement]) -> Table {
                 Cell::text(&judged.ours),
                 Cell::status(judged.status),
                 Cell::links(judged.assumptions),
-                Cell::text(judged.note),
+                Cell::linked(judged.note),
             ],
         });
     }

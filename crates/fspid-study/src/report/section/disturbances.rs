@@ -7,8 +7,10 @@ use crate::figure::{RatioFigure, Series, SeriesStyle};
 use crate::file::Study;
 use crate::report::html::context;
 use crate::report::number::{exact, fixed, significant};
+use crate::report::number::capital;
 use crate::report::page::{Cell, Figure, Row, Section, Table};
 use crate::report::paper::Paper;
+use crate::report::settings;
 use crate::report::traces::Drawing;
 use crate::reproduce::disturbance::{
     CONTROLLERS, Contest, ENTRIES, SHAPES, SIZES_DEG, START_S, Sweep, VARIATION_WEIGHT, scenario_name,
@@ -61,6 +63,8 @@ pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simul
 #[derive(Serialize)]
 struct Shape {
     name: &'static str,
+    title: String,
+    form: String,
     verdicts: Vec<String>,
     ratios: Vec<Figure>,
     response: Option<Figure>,
@@ -74,6 +78,8 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         .iter()
         .map(|shape| Shape {
             name: shape,
+            title: capital(shape),
+            form: form(shape, &flights),
             verdicts: MATCHES.iter().map(|of| verdict(of, sweeps, shape)).collect(),
             ratios: MATCHES.iter().map(|of| ratio(of, sweeps, shape)).collect(),
             response: flights.iter().find_map(|flown| response(shape, flown)),
@@ -86,6 +92,8 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         gains => gains(&flights),
         weight => exact(VARIATION_WEIGHT),
         start => exact(START_S),
+        // What A16 says of a change after a first run holds for the pulse only.
+        replaced => shapes.iter().any(|shape| shape.name == "abrupt" && shape.form.contains("pulse")),
         sizes => SIZES_DEG.len(),
         smallest => exact(SIZES_DEG.iter().copied().fold(f64::INFINITY, f64::min)),
         largest => exact(SIZES_DEG.iter().copied().fold(0.0, f64::max)),
@@ -95,21 +103,33 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
     Section::of("disturbances", "Figure 7: disturbances", "disturbances", context).with_figures(figures)
 }
 
+/// The form of a shape as its scenario has it.
+fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
+    let named = flights.iter().find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
+    named.map_or_else(String::new, |(_, study, _)| settings::disturbance_forms(&study.scenario).join(" and "))
+}
+
 /// Who wins, in words: the geometric mean decides, the count qualifies.
 pub(super) fn verdict(of: &Match, sweeps: &[Sweep], shape: &str) -> String {
     let Contest { won, cases, lowest, mean, highest } = of.contest(sweeps, shape);
-    let by = if mean < 1.0 {
-        format!("the FSPID's cost is {} % lower on average", fixed(100.0 * (1.0 - mean), 0))
-    } else {
-        format!("the FSPID's cost is {} % higher on average", fixed(100.0 * (mean - 1.0), 0))
-    };
     format!(
-        "{}: FSPID better in {won} of {cases} cases; {by} (geometric mean ratio {}, from {} to {}).",
+        "{}: FSPID better in {won} of {cases} cases; its cost is {} on average (geometric mean of the ratio {}, \
+         from {} to {}).",
         of.name,
+        compared(mean),
         fixed(mean, 3),
         fixed(lowest, 3),
         fixed(highest, 3)
     )
+}
+
+/// "14 % lower", "37 % higher", "47 times as high".
+pub(super) fn compared(ratio: f64) -> String {
+    match ratio {
+        ratio if ratio >= 2.0 => format!("{} times as high", significant(ratio, 2)),
+        ratio if ratio < 1.0 => format!("{} % lower", fixed(100.0 * (1.0 - ratio), 0)),
+        _ => format!("{} % higher", fixed(100.0 * (ratio - 1.0), 0)),
+    }
 }
 
 fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
@@ -134,7 +154,7 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
         reference: Some((1.0, "equal cost".to_owned())),
         width_px: 480.0,
     };
-    let caption = format!("Cost ratio for a {shape} disturbance: {}.", of.name);
+    let caption = format!("Cost ratio, {shape} disturbance: {}.", of.name);
     Figure::new(format!("figure-7-{shape}-{}", of.slug), drawn.render(), caption)
 }
 
@@ -144,10 +164,11 @@ fn response(shape: &str, (name, study, simulation): &(String, Study, Simulation)
     }
     let title = format!("Fig. 7, {shape} disturbance at the {SHOWN_AT}");
     let (scenario, only) = (&study.scenario, &CONTROLLERS[..]);
-    let drawing = Drawing { title: &title, scenario, simulation, only, detailed: false };
+    let drawing = Drawing { title: &title, scenario, simulation, only, detailed: false, width_px: 720.0 };
     let caption = format!(
-        "A {shape} disturbance entering at the {SHOWN_AT}, at the size of the stored scenario; the set-point stays at \
-         zero. Pitch angle, command, and gains of both FSPIDs."
+        "Response to the {shape} disturbance entering at the {SHOWN_AT}, at the size of the stored scenario; the \
+         set-point stays at zero. From above: pitch angle, command, gains of both FSPIDs.{}",
+        drawing.spikes()
     );
     let figure = Figure::new(format!("figure-7-{shape}-response"), drawing.render(), caption);
     Some(figure.resting_on(&["A16", "A17"]))

@@ -66,26 +66,28 @@ fn part(paper: &Paper<'_>, id: &'static str) -> Option<Part> {
 }
 
 fn figure(flown: &FlownFigure, fit: &str) -> Figure {
-    let title = format!("{} ({})", flown.figure.title, match flown.fit {
-        Fit::Own => "own fit",
-        Fit::Shared => "shared supervisor",
-    });
+    let title = match flown.fit {
+        Fit::Own => format!("Fig. {}, own fit", flown.figure.id),
+        Fit::Shared => format!("Fig. {}, shared supervisor", flown.figure.id),
+    };
     let drawing = Drawing {
         title: &title,
         scenario: &flown.study.scenario,
         simulation: &flown.simulation,
         only: &[],
         detailed: false,
+        width_px: 520.0,
     };
     let timing = flown.study.scenario.timing;
     let names: Vec<&str> = flown.simulation.results.iter().map(|result| result.name.as_str()).collect();
     let caption = format!(
         "Fig. {} with {fit}. Window {} s, sampled every {} s; controllers {}. From above: pitch angle, command, and \
-         the three gains of the FSPID.",
+         the three gains of the FSPID.{}",
         flown.figure.id,
         exact(timing.time_s(timing.rows().saturating_sub(1))),
         exact(timing.dt_s()),
         names.join(", "),
+        drawing.spikes(),
     );
     Figure::new(format!("figure-{}-{}", flown.figure.id, flown.fit.name()), drawing.render(), caption)
         .resting_on(flown.figure.assumptions)

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::disturbances::{MATCHES, Match};
+use super::disturbances::{MATCHES, Match, compared};
 use crate::metrics::{Measured, StepMetrics};
 use crate::report::html::context;
 use crate::report::number::{fixed, measured, significant};
@@ -36,7 +36,7 @@ fn statuses(reproduction: &Reproduction) -> Table {
     let mut head = vec!["claims".to_owned()];
     head.extend(Status::ALL.map(|status| Cell::status(status).text));
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut table = Table::new("How many claims stand how.", &head);
+    let mut table = Table::new("How many claims stand how.", &head).as_cards();
     let own = reproduction.claims.iter().map(|judged| judged.status).collect();
     let shared = reproduction.claims.iter().map(|judged| judged.shared_status).collect();
     let words = reproduction.statements.iter().map(|judged| judged.status).collect();
@@ -116,9 +116,7 @@ struct Outcome {
 fn contests(reproduction: &Reproduction) -> Vec<Outcome> {
     let one = |of: &Match, shape: &str| {
         let Contest { won, cases, mean, .. } = of.contest(&reproduction.sweeps, shape);
-        let way = if mean < 1.0 { "lower" } else { "higher" };
-        let by = fixed(100.0 * (mean - 1.0).abs(), 0);
-        format!("{shape}: better in {won} of {cases} cases, cost {by} % {way} on average")
+        format!("{shape}, better in {won} of {cases} cases, cost {} on average", compared(mean))
     };
     let outcome = |of: &Match| Outcome {
         name: of.name,
@@ -139,6 +137,10 @@ struct Memory {
     alone_small: String,
     alone_large: String,
     ratio: String,
+    /// That share is more than half.
+    mostly: bool,
+    /// Share of the gain in rise time that a step without a past has too, %; `None` without a gain.
+    share_pct: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -159,10 +161,13 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
     };
     let size = |index: usize| metrics.edges.get(index).map(|edge| (edge.to_rad - edge.from_rad).abs());
     let (small, large) = (size(0)?, size(2)?);
-    let alone = |size_rad: f64| {
-        let rise = alone(paper, figure, controller, crate::units::degrees(size_rad));
-        rise.map_or_else(|| "\u{2013}".to_owned(), |rise| measured(rise, 2))
+    let alone = |size_rad: f64| alone(paper, figure, controller, crate::units::degrees(size_rad));
+    let (alone_small, alone_large) = (alone(small)?, alone(large)?);
+    let rise = |index: usize| metrics.of_step(index, |step| step.rise_time_s).ok();
+    let share = |first: f64, later: f64, alone: f64| {
+        (first > later).then(|| 100.0 * (first - alone) / (first - later))
     };
+    let share_pct = share(rise(0)?, rise(2)?, alone_large.ok()?);
     let mut laws: Vec<String> = paper
         .reproduction
         .figures
@@ -178,9 +183,11 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
         first: step(0)?,
         down: step(1)?,
         later: step(2)?,
-        alone_small: alone(small),
-        alone_large: alone(large),
+        alone_small: measured(alone_small, 2),
+        alone_large: measured(alone_large, 2),
         ratio: significant(large / small, 2),
+        mostly: share_pct.is_some_and(|share| share > 50.0),
+        share_pct: share_pct.map(|share| fixed(share, 0)),
     })
 }
 
