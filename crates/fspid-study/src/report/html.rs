@@ -72,7 +72,10 @@ pub(super) fn render(template: &str, context: Value) -> String {
         .get_template(template)
         .and_then(|found| found.render(context))
         .unwrap_or_else(|error| {
-            format!("<p class=\"failed\">This part could not be written: {}</p>", escape(&format!("{error:#}")))
+            format!(
+                "<p class=\"failed\">This part could not be written: {}</p>",
+                escape(&format!("{error:#}"))
+            )
         })
 }
 
@@ -99,7 +102,11 @@ mod tests {
     fn every_template_can_be_read() {
         for (name, text) in TEMPLATES {
             let mut alone = Environment::new();
-            assert!(alone.add_template(name, text).is_ok(), "{name}: {:?}", alone.add_template(name, text).err());
+            assert!(
+                alone.add_template(name, text).is_ok(),
+                "{name}: {:?}",
+                alone.add_template(name, text).err()
+            );
         }
     }
 }

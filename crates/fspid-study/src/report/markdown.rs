@@ -11,7 +11,10 @@ use super::html::escape;
 /// A document without its title, as HTML; headings of the second level become `<h3>`. Tables turn
 /// into cards on a narrow screen.
 pub(super) fn html(text: &str) -> String {
-    let mut writer = Writer { known: numbers(text), ..Writer::default() };
+    let mut writer = Writer {
+        known: numbers(text),
+        ..Writer::default()
+    };
     let events = Parser::new_ext(text, Options::ENABLE_TABLES);
     for event in events {
         writer.event(event);
@@ -25,7 +28,10 @@ fn is_number(word: &str) -> bool {
     let letter = chars.next().is_some_and(|c| c == 'A' || c == 'E');
     let rest = chars.as_str();
     let digits = rest.trim_end_matches(|c: char| c.is_ascii_lowercase());
-    letter && !digits.is_empty() && rest.len() - digits.len() <= 1 && digits.bytes().all(|b| b.is_ascii_digit())
+    letter
+        && !digits.is_empty()
+        && rest.len() - digits.len() <= 1
+        && digits.bytes().all(|b| b.is_ascii_digit())
 }
 
 /// The numbers that head a section, a row or a paragraph of the text.
@@ -36,7 +42,9 @@ fn numbers(text: &str) -> Vec<String> {
         let word = rest.split(|c: char| !c.is_ascii_alphanumeric()).next()?;
         is_number(word).then(|| word.to_owned())
     };
-    text.lines().filter_map(|line| starts.iter().find_map(|start| word_after(line, start))).collect()
+    text.lines()
+        .filter_map(|line| starts.iter().find_map(|start| word_after(line, start)))
+        .collect()
 }
 
 /// Where the writer is.
@@ -64,7 +72,9 @@ impl Writer {
             Event::End(tag) => self.end(tag),
             Event::Text(text) => self.text(&text),
             Event::Code(text) => {
-                if self.in_head && let Some(head) = self.heads.last_mut() {
+                if self.in_head
+                    && let Some(head) = self.heads.last_mut()
+                {
                     head.push_str(&text);
                 }
                 self.push(&format!("<code>{}</code>", escape(&text)));
@@ -92,8 +102,14 @@ impl Writer {
 
     fn start(&mut self, tag: &Tag<'_>) {
         match tag {
-            Tag::Heading { level: HeadingLevel::H1, .. } => self.in_title = true,
-            Tag::Heading { level: HeadingLevel::H2, .. } => self.open("h3"),
+            Tag::Heading {
+                level: HeadingLevel::H1,
+                ..
+            } => self.in_title = true,
+            Tag::Heading {
+                level: HeadingLevel::H2,
+                ..
+            } => self.open("h3"),
             Tag::Heading { .. } => self.open("h4"),
             Tag::Paragraph => self.open("p"),
             Tag::List(None) => self.push("<ul>\n"),
@@ -129,7 +145,11 @@ impl Writer {
         } else if self.column == 0 {
             self.push("<th scope=\"row\">");
         } else {
-            let label = self.heads.get(self.column).map(|head| escape(head)).unwrap_or_default();
+            let label = self
+                .heads
+                .get(self.column)
+                .map(|head| escape(head))
+                .unwrap_or_default();
             self.push(&format!("<td data-label=\"{label}\">"));
         }
     }
@@ -156,7 +176,11 @@ impl Writer {
             }
             TagEnd::TableRow => self.push("</tr>\n"),
             TagEnd::TableCell => {
-                let closed = if self.in_head || self.column == 0 { "</th>" } else { "</td>" };
+                let closed = if self.in_head || self.column == 0 {
+                    "</th>"
+                } else {
+                    "</td>"
+                };
                 self.push(closed);
                 self.column += 1;
             }
@@ -165,10 +189,15 @@ impl Writer {
     }
 
     fn text(&mut self, text: &str) {
-        if self.in_head && let Some(head) = self.heads.last_mut() {
+        if self.in_head
+            && let Some(head) = self.heads.last_mut()
+        {
             head.push_str(text);
         }
-        let first = text.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
+        let first = text
+            .split(|c: char| !c.is_ascii_alphanumeric())
+            .next()
+            .unwrap_or_default();
         if let Some(at) = self.opened.take()
             && is_number(first)
             && self.known.iter().any(|known| known == first)
@@ -194,7 +223,9 @@ pub(super) fn linked(text: &str) -> String {
     let mut rest = text;
     while let Some(at) = rest.find(|c: char| c.is_ascii_alphanumeric()) {
         let (before, word_on) = rest.split_at(at);
-        let end = word_on.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(word_on.len());
+        let end = word_on
+            .find(|c: char| !c.is_ascii_alphanumeric())
+            .unwrap_or(word_on.len());
         let (word, after) = word_on.split_at(end);
         out.push_str(&escape(before));
         if is_number(word) {
@@ -215,9 +246,14 @@ pub(super) fn linked(text: &str) -> String {
 /// The index of a letter such as k_p or Z_ẇ, and what follows it; words such as error_scale have none.
 fn subscript<'a>(word: &str, after: &'a str) -> Option<(&'a str, &'a str)> {
     let rest = after.strip_prefix('_').filter(|_| word.len() == 1)?;
-    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '\u{307}').unwrap_or(rest.len());
+    if let Some(braced) = rest.strip_prefix('{') {
+        return braced.split_once('}');
+    }
+    let end = rest
+        .find(|c: char| !c.is_alphanumeric() && c != '\u{307}')
+        .unwrap_or(rest.len());
     let (index, after) = rest.split_at(end);
-    let short = (1..=2).contains(&index.chars().filter(|c| c.is_alphanumeric()).count());
+    let short = (1..=3).contains(&index.chars().filter(|c| c.is_alphanumeric()).count());
     (short && !after.starts_with('_')).then_some((index, after))
 }
 
@@ -227,16 +263,34 @@ mod tests {
 
     #[test]
     fn what_is_numbered_has_its_number_as_id_and_is_linked_elsewhere() {
-        let html = html("# T\n\n## A3 Factors\n\nAs A2 and E8.\n\n| no. | x |\n| --- | --- |\n| E8 | a `b` <c> |\n\n**E18.** Sums.\n");
+        let html = html(
+            "# T\n\n## A3 Factors\n\nAs A2 and E8.\n\n| no. | x |\n| --- | --- |\n| E8 | a `b` <c> |\n\n**E18.** Sums.\n",
+        );
         assert!(html.contains("<h3 id=\"A3\">A3 Factors</h3>"), "{html}");
-        assert!(html.contains("<tr id=\"E8\"><th scope=\"row\">E8</th><td data-label=\"x\">a <code>b</code>"), "{html}");
-        assert!(html.contains("<p id=\"E18\"><strong>E18.</strong>"), "{html}");
-        assert!(html.contains("<a href=\"#A2\">A2</a>") && !html.contains("<c>") && !html.contains("<h1"));
+        assert!(
+            html.contains(
+                "<tr id=\"E8\"><th scope=\"row\">E8</th><td data-label=\"x\">a <code>b</code>"
+            ),
+            "{html}"
+        );
+        assert!(
+            html.contains("<p id=\"E18\"><strong>E18.</strong>"),
+            "{html}"
+        );
+        assert!(
+            html.contains("<a href=\"#A2\">A2</a>")
+                && !html.contains("<c>")
+                && !html.contains("<h1")
+        );
     }
 
     #[test]
     fn letters_with_an_index_are_set_lower_and_names_of_keys_are_not() {
-        assert_eq!(linked("\u{394}k_p, Z_w\u{307}: error_scale"), "\u{394}k<sub>p</sub>, Z<sub>w\u{307}</sub>: error_scale");
+        assert_eq!(linked("e_{k\u{2212}1}"), "e<sub>k\u{2212}1</sub>");
+        assert_eq!(
+            linked("\u{394}k_p, Z_w\u{307}: error_scale"),
+            "\u{394}k<sub>p</sub>, Z<sub>w\u{307}</sub>: error_scale"
+        );
     }
 
     #[test]

@@ -25,7 +25,11 @@ const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
 
 /// "2, down: +1 to −1 deg at 6.60 s".
 pub(super) fn step_name(index: usize, edge: &EdgeMetrics) -> String {
-    let way = if edge.to_rad >= edge.from_rad { "up" } else { "down" };
+    let way = if edge.to_rad >= edge.from_rad {
+        "up"
+    } else {
+        "down"
+    };
     let (from, to) = (degrees(edge.from_rad), degrees(edge.to_rad));
     let level = |value: f64| {
         let text = number::fixed(value, 3);
@@ -46,18 +50,34 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
     let metrics = &result.metrics;
     if fails(result) {
         let reason = format!("\u{2717} {}: no measures", metrics.verdict);
-        let cells = vec![Cell::text(&result.name), Cell::text("all"), Cell::failing(reason, columns.len())];
-        return vec![Row { class: "first", ..Row::from(cells) }];
+        let cells = vec![
+            Cell::text(&result.name),
+            Cell::text("all"),
+            Cell::failing(reason, columns.len()),
+        ];
+        return vec![Row {
+            class: "first",
+            ..Row::from(cells)
+        }];
     }
     if metrics.edges.is_empty() {
-        let mut cells = vec![Cell::text(&result.name), Cell::text("no step in the command")];
+        let mut cells = vec![
+            Cell::text(&result.name),
+            Cell::text("no step in the command"),
+        ];
         cells.extend(measures(&metrics.first_step()));
-        return vec![Row { class: "first", ..Row::from(cells) }];
+        return vec![Row {
+            class: "first",
+            ..Row::from(cells)
+        }];
     }
     let row = |(index, edge): (usize, &EdgeMetrics)| {
         let mut cells = vec![Cell::text(&result.name), Cell::text(step_name(index, edge))];
         cells.extend(measures(&edge.step));
-        Row { class: if index == 0 { "first" } else { "" }, ..Row::from(cells) }
+        Row {
+            class: if index == 0 { "first" } else { "" },
+            ..Row::from(cells)
+        }
     };
     metrics.edges.iter().enumerate().map(row).collect()
 }
@@ -76,8 +96,15 @@ pub(super) fn table(caption: &str, simulation: &Simulation) -> Table {
 
 /// What the paper measures, under two fits or variants side by side; both fly the same controllers
 /// and steps.
-pub(super) fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&str]) -> Table {
-    let columns: Vec<&Column> = OF_THE_PAPER.iter().filter_map(|index| COLUMNS.get(*index)).collect();
+pub(super) fn side_by_side(
+    caption: &str,
+    variants: &[(&str, &Simulation)],
+    only: &[&str],
+) -> Table {
+    let columns: Vec<&Column> = OF_THE_PAPER
+        .iter()
+        .filter_map(|index| COLUMNS.get(*index))
+        .collect();
     let mut head = vec!["controller", "step of the command"];
     let mut groups = vec![("", 2)];
     for (name, _) in variants {
@@ -85,15 +112,28 @@ pub(super) fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only
         groups.push((name, columns.len()));
     }
     let mut table = Table::new(caption, &head).grouped(&groups).as_cards();
-    let Some((_, first)) = variants.first() else { return table };
-    for result in first.results.iter().filter(|r| only.is_empty() || only.contains(&r.name.as_str())) {
+    let Some((_, first)) = variants.first() else {
+        return table;
+    };
+    for result in first
+        .results
+        .iter()
+        .filter(|r| only.is_empty() || only.contains(&r.name.as_str()))
+    {
         let mut rows = rows(result, &columns);
         for (_, other) in variants.iter().skip(1) {
-            let others = other.result(&result.name).map(|result| self::rows(result, &columns)).unwrap_or_default();
+            let others = other
+                .result(&result.name)
+                .map(|result| self::rows(result, &columns))
+                .unwrap_or_default();
             // A failed flight has one row for all steps: it says so on each.
             for (index, row) in rows.iter_mut().enumerate() {
                 let other = others.get(index).or_else(|| others.first());
-                row.cells.extend(other.iter().flat_map(|row| row.cells.iter().skip(2).cloned()));
+                row.cells.extend(
+                    other
+                        .iter()
+                        .flat_map(|row| row.cells.iter().skip(2).cloned()),
+                );
             }
         }
         table.rows.extend(rows);
@@ -104,16 +144,28 @@ pub(super) fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only
 /// Integrals and effort of whole flights.
 pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
     let head = [
-        "controller", "IAE, deg s", "ITAE, deg s²", "ISE, deg² s", "ITSE, deg² s²",
-        "command variation, deg", "largest command, deg", "fastest command, deg/s",
-        "samples cut by limits", "faults",
+        "controller",
+        "IAE, deg s",
+        "ITAE, deg s²",
+        "ISE, deg² s",
+        "ITSE, deg² s²",
+        "command variation, deg",
+        "largest command, deg",
+        "fastest command, deg/s",
+        "samples cut by limits",
+        "faults",
     ];
     let mut table = Table::new(caption, &head).as_cards();
     for result in &simulation.results {
-        let FlightMetrics { integrals, effort, .. } = &result.metrics;
+        let FlightMetrics {
+            integrals, effort, ..
+        } = &result.metrics;
         let mut cells = vec![Cell::text(&result.name)];
         if fails(result) {
-            cells.push(Cell::failing(format!("\u{2717} {}: no measures", result.metrics.verdict), 7));
+            cells.push(Cell::failing(
+                format!("\u{2717} {}: no measures", result.metrics.verdict),
+                7,
+            ));
             cells.extend(tail(result));
             table.push(cells);
             continue;
@@ -137,6 +189,13 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
 /// What is known of a failed flight too.
 fn tail(result: &ControllerResult) -> [Cell; 2] {
     let faults = result.trace.faults;
-    let faults = if faults.is_empty() { "none".to_owned() } else { faults.to_string() };
-    [Cell::number(result.trace.saturated_samples.to_string()), Cell::text(faults)]
+    let faults = if faults.is_empty() {
+        "none".to_owned()
+    } else {
+        faults.to_string()
+    };
+    [
+        Cell::number(result.trace.saturated_samples.to_string()),
+        Cell::text(faults),
+    ]
 }

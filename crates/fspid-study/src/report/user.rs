@@ -3,11 +3,11 @@
 use fspid_sim::Controller;
 use serde::Serialize;
 
+use super::html::{self, context};
 use super::number::{capital, exact, fixed, measured, significant, with_sign};
 use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor::{self, Marks};
 use super::traces::{Drawing, fails};
-use super::html::{self, context};
 use super::{measures, settings};
 use crate::figure::SurfaceKind;
 use crate::file::Study;
@@ -75,12 +75,21 @@ fn outcome(result: &ControllerResult) -> Outcome {
             with_unit(first.overshoot_pct, 2, "%")
         ),
     };
-    Outcome { name: result.name.clone(), class, word, detail }
+    Outcome {
+        name: result.name.clone(),
+        class,
+        word,
+        detail,
+    }
 }
 
 fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> String {
     let text = measured(value, decimals);
-    if value.is_ok() { format!("{text} {unit}") } else { format!("absent ({text})") }
+    if value.is_ok() {
+        format!("{text} {unit}")
+    } else {
+        format!("absent ({text})")
+    }
 }
 
 impl User<'_> {
@@ -99,15 +108,27 @@ impl User<'_> {
 
     fn requirements(self) -> Table {
         let head = ["controller", "requirement", "worst value", "verdict"];
-        let mut table = Table::new("Requirements: the worst of all steps counts.", &head);
+        let mut table =
+            Table::new("Requirements: the worst of all steps counts.", &head).as_cards();
         for judgement in &self.simulation.judgements {
             let requirement = &judgement.requirement;
-            let verdict = if judgement.met { ("met", "\u{2713} met") } else { ("unmet", "\u{2717} NOT MET") };
+            let verdict = if judgement.met {
+                ("met", "\u{2713} met")
+            } else {
+                ("unmet", "\u{2717} NOT MET")
+            };
             table.push(vec![
                 Cell::text(&judgement.controller),
-                Cell::text(format!("{} at most {}", requirement.measure.name(), exact(requirement.most))),
+                Cell::text(format!(
+                    "{} at most {}",
+                    requirement.measure.name(),
+                    exact(requirement.most)
+                )),
                 Cell::measured(judgement.value, 4),
-                Cell { class: verdict.0, ..Cell::text(verdict.1) },
+                Cell {
+                    class: verdict.0,
+                    ..Cell::text(verdict.1)
+                },
             ]);
         }
         table
@@ -122,14 +143,24 @@ impl User<'_> {
             detailed: true,
             width_px: 720.0,
         };
-        let failing: Vec<&str> =
-            self.simulation.results.iter().filter(|r| fails(r)).map(|r| r.name.as_str()).collect();
+        let failing: Vec<&str> = self
+            .simulation
+            .results
+            .iter()
+            .filter(|r| fails(r))
+            .map(|r| r.name.as_str())
+            .collect();
         let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
                        of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
                        self-tuning controllers.";
         let caption = format!("{caption}{}", drawing.spikes());
         let figure = Figure::new("responses-figure", drawing.render(), caption);
-        Section::of("responses", "Time responses", "user", context! { part => "responses", figure, failing })
+        Section::of(
+            "responses",
+            "Time responses",
+            "user",
+            context! { part => "responses", figure, failing },
+        )
     }
 
     fn measures(self) -> Section {
@@ -144,9 +175,18 @@ impl User<'_> {
     /// One part for each self-tuning controller; no section without one.
     fn tuning(self) -> Option<Section> {
         let controllers = &self.study.scenario.controllers;
-        let parts: Vec<Tuning> = controllers.iter().enumerate().filter_map(|(n, c)| tuning(n, c)).collect();
+        let parts: Vec<Tuning> = controllers
+            .iter()
+            .enumerate()
+            .filter_map(|(n, c)| tuning(n, c))
+            .collect();
         (!parts.is_empty()).then(|| {
-            Section::of("tuning", "Self-tuning", "user", context! { part => "tuning", parts })
+            Section::of(
+                "tuning",
+                "Self-tuning",
+                "user",
+                context! { part => "tuning", parts },
+            )
         })
     }
 
@@ -183,7 +223,9 @@ struct Tuning {
 }
 
 fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
-    let Controller::SelfTuning(fspid) = &named.controller else { return None };
+    let Controller::SelfTuning(fspid) = &named.controller else {
+        return None;
+    };
     let supervisor = fspid.tuner().supervisor();
     let prefix = |what: &str| format!("tuning-{}-{what}", index + 1);
     let law = settings::law(&named.controller).unwrap_or_default();
@@ -196,18 +238,25 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
         tables: rules.map_or_else(Vec::new, |rules| {
             supervisor::rule_tables(&prefix("rules"), &named.name, &rules, Marks::None)
         }),
-        maps: supervisor::surfaces(&prefix("surface"), &named.name, supervisor, &[SurfaceKind::Map]),
+        maps: supervisor::surfaces(
+            &prefix("surface"),
+            &named.name,
+            supervisor,
+            &[SurfaceKind::Map],
+        ),
         at_rest: at_rest(fspid, supervisor),
     })
 }
 
-fn at_rest(
-    fspid: &fspid_core::Fspid<f64>,
-    supervisor: &fspid_fuzzy::Supervisor<f64>,
-) -> Table {
+fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> Table {
     let caption = "At rest, with error and change zero. The last column is what the gains become after one second \
                    under an accumulating law, and at once under a memoryless one.";
-    let head = ["gain", "rules add, supervisor units", "nominal gain", "gain at rest"];
+    let head = [
+        "gain",
+        "rules add, supervisor units",
+        "nominal gain",
+        "gain at rest",
+    ];
     let mut table = Table::new(caption, &head);
     let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
     let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);

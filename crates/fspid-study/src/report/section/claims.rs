@@ -1,6 +1,5 @@
 //! Every number of the paper and every claim in words, with what became of it.
 
-
 use crate::report::html::context;
 use crate::report::number::fixed;
 use crate::report::page::{Cell, Row, Section, Table};
@@ -17,16 +16,27 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
 }
 
 fn numbers(claims: &[JudgedClaim]) -> Table {
-    let head = ["id", "quantity", "unit", "paper", "value", "status", "value", "status", "rests on", "note"];
+    let head = [
+        "id", "quantity", "unit", "paper", "value", "status", "value", "status", "rests on", "note",
+    ];
     let mut table = Table::new("Every number of the paper's results.", &head)
         .grouped(&[("", 4), ("own fit", 2), ("shared supervisor", 2), ("", 2)])
         .as_cards();
     for judged in claims {
         // One digit more than the paper prints.
-        let decimals = judged.claim.paper.0.split_once('.').map_or(0, |(_, decimals)| decimals.len()) + 1;
+        let decimals = judged
+            .claim
+            .paper
+            .0
+            .split_once('.')
+            .map_or(0, |(_, decimals)| decimals.len())
+            + 1;
         let value = |value: Result<f64, crate::metrics::Absent>| match value {
             Ok(value) => Cell::number(fixed(value, decimals)),
-            Err(reason) => Cell { class: "absent", ..Cell::text(reason.to_string()) },
+            Err(reason) => Cell {
+                class: "absent",
+                ..Cell::text(reason.to_string())
+            },
         };
         table.push(Row {
             id: judged.claim.id.to_owned(),
@@ -49,7 +59,14 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
 }
 
 fn statements(statements: &[JudgedStatement]) -> Table {
-    let head = ["id", "the paper says", "we find", "status", "rests on", "how it is judged"];
+    let head = [
+        "id",
+        "the paper says",
+        "we find",
+        "status",
+        "rests on",
+        "how it is judged",
+    ];
     let mut table = Table::new("Every claim in words that a flight can answer.", &head).as_cards();
     for judged in statements {
         table.push(Row {
@@ -67,4 +84,3 @@ fn statements(statements: &[JudgedStatement]) -> Table {
     }
     table
 }
-

@@ -1,6 +1,5 @@
 //! Axes, signs, and the loops as block diagrams.
 
-
 use crate::figure::diagrams;
 use crate::report::html::context;
 use crate::report::page::{Figure, Section};
@@ -31,6 +30,11 @@ pub(super) fn section(_: &Paper<'_>) -> Section {
         )
         .resting_on(&["A2", "A3", "A10"]),
     ];
-    Section::of("conventions", "Axes, signs and loops", "conventions", context! { figures })
-        .with_figures(figures)
+    Section::of(
+        "conventions",
+        "Axes, signs and loops",
+        "conventions",
+        context! { figures },
+    )
+    .with_figures(figures)
 }

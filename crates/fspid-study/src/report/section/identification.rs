@@ -26,55 +26,109 @@ struct Problem {
 /// The record of the searches.
 pub(super) fn section(paper: &Paper<'_>) -> Section {
     let record = &paper.reproduction.record;
-    let fits: Vec<Problem> = record.problems.iter().filter(|p| !p.name.contains("tuned")).map(problem).collect();
+    let fits: Vec<Problem> = record
+        .problems
+        .iter()
+        .filter(|p| !p.name.contains("tuned"))
+        .map(problem)
+        .collect();
     let tuned = record.problems.iter().filter(|p| p.name.contains("tuned"));
     let several = record.problems.iter().any(|problem| problem.runs.len() > 1);
-    let context = context! { command => record.command, fits, tuned => tuned_table(tuned), several };
-    Section::of("identification", "How the parameters were found", "identification", context)
+    let context =
+        context! { command => record.command, fits, tuned => tuned_table(tuned), several };
+    Section::of(
+        "identification",
+        "How the parameters were found",
+        "identification",
+        context,
+    )
 }
 
 fn problem(of: &ProblemRecord) -> Problem {
-    let mut runs = Table::new(format!("{}: seeds.", of.name), &["seed", "cost", "evaluations", "kept"]);
+    let mut runs = Table::new(
+        format!("{}: seeds.", of.name),
+        &["seed", "cost", "evaluations", "kept"],
+    );
     for run in &of.runs {
         runs.push(vec![
             Cell::text(run.seed.to_string()),
             Cell::number(significant(run.cost, 3)),
             Cell::number(run.evaluations.to_string()),
-            Cell::text(if run.seed == of.kept { "\u{2713} kept" } else { "" }),
+            Cell::text(if run.seed == of.kept {
+                "\u{2713} kept"
+            } else {
+                ""
+            }),
         ]);
     }
-    let caption = format!("{}: the kept parameters, and their spread over all seeds.", of.name);
+    let caption = format!(
+        "{}: the kept parameters, and their spread over all seeds.",
+        of.name
+    );
     let mut parameters = Table::new(caption, &["parameter", "kept", "lowest", "highest"]);
     let kept = of.runs.iter().find(|run| run.seed == of.kept);
     for (index, (name, (low, high))) in of.parameters.iter().zip(of.spread()).enumerate() {
-        let value = kept.and_then(|run| run.point.get(index)).copied().unwrap_or(f64::NAN);
+        let value = kept
+            .and_then(|run| run.point.get(index))
+            .copied()
+            .unwrap_or(f64::NAN);
         let mut cells = vec![Cell::text(name)];
         cells.extend([value, low, high].map(|value| Cell::number(significant(value, 4))));
         parameters.push(cells);
     }
-    Problem { name: of.name.clone(), runs, parameters, seeds: of.runs.len(), loose: loose(of) }
+    Problem {
+        name: of.name.clone(),
+        runs,
+        parameters,
+        seeds: of.runs.len(),
+        loose: loose(of),
+    }
 }
 
 /// Parameters that seeds of about equal cost put at different places.
 fn loose(of: &ProblemRecord) -> Vec<String> {
-    let best = of.runs.iter().map(|run| run.cost).fold(f64::INFINITY, f64::min);
-    let good: Vec<&SeedRecord> =
-        of.runs.iter().filter(|run| run.cost <= (best * NEARLY_EQUAL).max(AS_GOOD_AS_ZERO)).collect();
+    let best = of
+        .runs
+        .iter()
+        .map(|run| run.cost)
+        .fold(f64::INFINITY, f64::min);
+    let good: Vec<&SeedRecord> = of
+        .runs
+        .iter()
+        .filter(|run| run.cost <= (best * NEARLY_EQUAL).max(AS_GOOD_AS_ZERO))
+        .collect();
     if good.len() < 2 {
         return Vec::new();
     }
     let is_loose = |index: usize| {
         let values = || good.iter().filter_map(|run| run.point.get(index).copied());
-        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        });
         high - low > DETERMINED * low.abs().max(high.abs())
     };
-    let names = of.parameters.iter().enumerate().filter(|(index, _)| is_loose(*index));
+    let names = of
+        .parameters
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| is_loose(*index));
     names.map(|(_, name)| name.clone()).collect()
 }
 
 fn tuned_table<'a>(problems: impl Iterator<Item = &'a ProblemRecord>) -> Table {
-    let head = ["search", "seeds", "lowest cost", "highest cost", "evaluations in all", "kept seed"];
-    let mut table = Table::new("Controllers tuned against the disturbances of Fig. 7.", &head).as_cards();
+    let head = [
+        "search",
+        "seeds",
+        "lowest cost",
+        "highest cost",
+        "evaluations in all",
+        "kept seed",
+    ];
+    let mut table = Table::new(
+        "Controllers tuned against the disturbances of Fig. 7.",
+        &head,
+    )
+    .as_cards();
     for problem in problems {
         let costs = || problem.runs.iter().map(|run| run.cost);
         let spent: usize = problem.runs.iter().map(|run| run.evaluations).sum();

@@ -29,8 +29,11 @@ struct Pair<'a> {
 pub(super) fn section(paper: &Paper<'_>) -> Section {
     let mirrored = pairs(paper, MIRRORED);
     let sampled = pairs(paper, SAMPLED);
-    let figures: Vec<Figure> =
-        mirrored.iter().filter(|pair| DRAWN.contains(&pair.stored.figure.id)).map(drawing).collect();
+    let figures: Vec<Figure> = mirrored
+        .iter()
+        .filter(|pair| DRAWN.contains(&pair.stored.figure.id))
+        .map(drawing)
+        .collect();
     let context = context! {
         figures,
         mirrored => table("FSPID under its own fit when only the rule table is changed.", "mirrored", &mirrored),
@@ -40,7 +43,13 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
             &sampled,
         ),
     };
-    Section::of("variants", "Other rule table, other centroid", "variants", context).with_figures(figures)
+    Section::of(
+        "variants",
+        "Other rule table, other centroid",
+        "variants",
+        context,
+    )
+    .with_figures(figures)
 }
 
 fn pairs<'a>(paper: &Paper<'a>, change: (&str, &str)) -> Vec<Pair<'a>> {
@@ -48,9 +57,16 @@ fn pairs<'a>(paper: &Paper<'a>, change: (&str, &str)) -> Vec<Pair<'a>> {
         let stored = paper.reproduction.figure(Fit::Own, id)?;
         let changed = fly(paper, stored, change)?;
         let tuned = tuned(stored).map(|(_, name)| name).collect();
-        Some(Pair { stored, changed, tuned })
+        Some(Pair {
+            stored,
+            changed,
+            tuned,
+        })
     };
-    FIGURES.iter().filter_map(|figure| pair(figure.id)).collect()
+    FIGURES
+        .iter()
+        .filter_map(|figure| pair(figure.id))
+        .collect()
 }
 
 /// Index and name of every self-tuning controller.
@@ -74,7 +90,10 @@ fn fly(paper: &Paper<'_>, flown: &FlownFigure, (key, value): (&str, &str)) -> Op
 fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> Table {
     let mut all = Table::default();
     for pair in pairs {
-        let variants = [("as stored", &pair.stored.simulation), (changed, &pair.changed)];
+        let variants = [
+            ("as stored", &pair.stored.simulation),
+            (changed, &pair.changed),
+        ];
         let mut one = measures::side_by_side(caption, &variants, &pair.tuned);
         for row in &mut one.rows {
             if let Some(cell) = row.cells.first_mut() {
@@ -93,20 +112,45 @@ fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> Table {
 fn drawing(pair: &Pair<'_>) -> Figure {
     let id = pair.stored.figure.id;
     let line = |name: &str, style, simulation: &Simulation| {
-        let result = simulation.results.iter().find(|result| pair.tuned.contains(&result.name.as_str()))?;
-        let y = result.trace.theta_rad.iter().copied().map(degrees).collect();
-        Some(Series { name: name.to_owned(), style, x: result.trace.time_s.clone(), y, stairs: false })
+        let result = simulation
+            .results
+            .iter()
+            .find(|result| pair.tuned.contains(&result.name.as_str()))?;
+        let y = result
+            .trace
+            .theta_rad
+            .iter()
+            .copied()
+            .map(degrees)
+            .collect();
+        Some(Series {
+            name: name.to_owned(),
+            style,
+            x: result.trace.time_s.clone(),
+            y,
+            stairs: false,
+        })
     };
     let stored = &pair.stored.simulation;
     let command = stored.results.first().map(|result| Series {
         name: "set-point".to_owned(),
         style: SeriesStyle::Setpoint,
         x: result.trace.time_s.clone(),
-        y: result.trace.setpoint_rad.iter().copied().map(degrees).collect(),
+        y: result
+            .trace
+            .setpoint_rad
+            .iter()
+            .copied()
+            .map(degrees)
+            .collect(),
         stairs: true,
     });
     let printed = line("FSPID, printed table", SeriesStyle::Numbered(0), stored);
-    let mirrored = line("FSPID, mirrored table", SeriesStyle::Numbered(1), &pair.changed);
+    let mirrored = line(
+        "FSPID, mirrored table",
+        SeriesStyle::Numbered(1),
+        &pair.changed,
+    );
     let panel = LinePanel {
         y_label: "pitch angle (deg)".to_owned(),
         x_label: "time (s)".to_owned(),
@@ -114,7 +158,13 @@ fn drawing(pair: &Pair<'_>) -> Figure {
         ..LinePanel::default()
     };
     let title = format!("Fig. {id}: printed against mirrored rule table");
-    let svg = LineFigure { title, panels: vec![panel], width_px: 720.0 }.render();
-    let caption = format!("Fig. {id}, FSPID under the figure's own fit: only the rule table differs.");
+    let svg = LineFigure {
+        title,
+        panels: vec![panel],
+        width_px: 720.0,
+    }
+    .render();
+    let caption =
+        format!("Fig. {id}, FSPID under the figure's own fit: only the rule table differs.");
     Figure::new(format!("variant-{id}-mirrored"), svg, caption).resting_on(&["A14"])
 }
