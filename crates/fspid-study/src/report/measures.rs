@@ -87,7 +87,7 @@ pub(super) fn table(caption: &str, simulation: &Simulation) -> Table {
     let columns: Vec<&Column> = COLUMNS.iter().collect();
     let mut head = vec!["controller", "step of the command"];
     head.extend(columns.iter().map(|column| column.0));
-    let mut table = Table::new(caption, &head).as_cards();
+    let mut table = Table::new(caption, &head).in_cards();
     for result in &simulation.results {
         table.rows.extend(rows(result, &columns));
     }
@@ -111,7 +111,7 @@ pub(super) fn side_by_side(
         head.extend(columns.iter().map(|column| column.0));
         groups.push((name, columns.len()));
     }
-    let mut table = Table::new(caption, &head).grouped(&groups).as_cards();
+    let mut table = Table::new(caption, &head).grouped(&groups).in_cards();
     let Some((_, first)) = variants.first() else {
         return table;
     };
@@ -155,7 +155,7 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
         "samples cut by limits",
         "faults",
     ];
-    let mut table = Table::new(caption, &head).as_cards();
+    let mut table = Table::new(caption, &head).in_cards();
     for result in &simulation.results {
         let FlightMetrics {
             integrals, effort, ..

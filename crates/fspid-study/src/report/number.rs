@@ -48,10 +48,20 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
         return signed(format!("{value:.decimals$}"));
     }
     format!(
-        "{} \u{d7} 10^{}",
+        "{} \u{d7} 10{}",
         signed(mantissa.to_owned()),
-        signed(exponent.to_string())
+        raised(exponent)
     )
+}
+
+/// An exponent in raised digits.
+fn raised(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raise = |c: char| match c.to_digit(10) {
+        Some(digit) => DIGITS.get(digit as usize).copied().unwrap_or(c),
+        None => '⁻',
+    };
+    exponent.to_string().chars().map(raise).collect()
 }
 
 /// The shortest digits that read back as `value`: for settings.
@@ -90,7 +100,7 @@ mod tests {
     fn significant_digits_do_not_depend_on_the_size() {
         assert_eq!(significant(0.000_313_278, 3), "0.000313");
         assert_eq!(significant(38.402, 3), "38.4");
-        assert_eq!(significant(2.7e-10, 2), "2.7 \u{d7} 10^\u{2212}10");
+        assert_eq!(significant(2.7e-10, 2), "2.7 \u{d7} 10⁻¹⁰");
         assert_eq!(significant(16008.0, 5), "16008");
     }
 }

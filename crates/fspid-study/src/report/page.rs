@@ -266,7 +266,7 @@ impl Table {
     }
 
     /// A list of cards where the screen is narrow.
-    pub(super) fn as_cards(mut self) -> Self {
+    pub(super) fn in_cards(mut self) -> Self {
         self.cards = true;
         self
     }

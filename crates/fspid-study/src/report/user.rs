@@ -109,7 +109,7 @@ impl User<'_> {
     fn requirements(self) -> Table {
         let head = ["controller", "requirement", "worst value", "verdict"];
         let mut table =
-            Table::new("Requirements: the worst of all steps counts.", &head).as_cards();
+            Table::new("Requirements: the worst of all steps counts.", &head).in_cards();
         for judgement in &self.simulation.judgements {
             let requirement = &judgement.requirement;
             let verdict = if judgement.met {

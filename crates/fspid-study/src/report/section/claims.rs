@@ -21,7 +21,7 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
     ];
     let mut table = Table::new("Every number of the paper's results.", &head)
         .grouped(&[("", 4), ("own fit", 2), ("shared supervisor", 2), ("", 2)])
-        .as_cards();
+        .in_cards();
     for judged in claims {
         // One digit more than the paper prints.
         let decimals = judged
@@ -67,7 +67,7 @@ fn statements(statements: &[JudgedStatement]) -> Table {
         "rests on",
         "how it is judged",
     ];
-    let mut table = Table::new("Every claim in words that a flight can answer.", &head).as_cards();
+    let mut table = Table::new("Every claim in words that a flight can answer.", &head).in_cards();
     for judged in statements {
         table.push(Row {
             id: judged.id.to_owned(),

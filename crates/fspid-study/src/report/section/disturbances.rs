@@ -253,7 +253,7 @@ fn outcome(sweeps: &[Sweep]) -> Table {
         "mean",
         "highest",
     ];
-    let mut table = Table::new(caption, &head).as_cards();
+    let mut table = Table::new(caption, &head).in_cards();
     for shape in SHAPES {
         for of in &MATCHES {
             let Contest {

@@ -61,27 +61,72 @@ fn problem(of: &ProblemRecord) -> Problem {
             }),
         ]);
     }
-    let caption = format!(
-        "{}: the kept parameters, and their spread over all seeds.",
-        of.name
-    );
-    let mut parameters = Table::new(caption, &["parameter", "kept", "lowest", "highest"]);
+    Problem {
+        parameters: parameters(of),
+        name: of.name.clone(),
+        runs,
+        seeds: of.runs.len(),
+        loose: loose(of),
+    }
+}
+
+/// The kept parameters with their units, and their spread where there are several seeds.
+fn parameters(of: &ProblemRecord) -> Table {
+    let several = of.runs.len() > 1;
+    let (caption, head) = if several {
+        (
+            "the kept parameters, and their spread over all seeds",
+            &["parameter", "kept", "lowest", "highest", "unit"][..],
+        )
+    } else {
+        ("the kept parameters", &["parameter", "kept", "unit"][..])
+    };
+    let mut table = Table::new(format!("{}: {caption}.", of.name), head);
     let kept = of.runs.iter().find(|run| run.seed == of.kept);
     for (index, (name, (low, high))) in of.parameters.iter().zip(of.spread()).enumerate() {
         let value = kept
             .and_then(|run| run.point.get(index))
             .copied()
             .unwrap_or(f64::NAN);
-        let mut cells = vec![Cell::text(name)];
-        cells.extend([value, low, high].map(|value| Cell::number(significant(value, 4))));
-        parameters.push(cells);
+        let mut cells = vec![Cell::text(numbered(&of.parameters, index))];
+        let spread = if several {
+            vec![value, low, high]
+        } else {
+            vec![value]
+        };
+        cells.extend(
+            spread
+                .into_iter()
+                .map(|value| Cell::number(significant(value, 4))),
+        );
+        cells.push(Cell::text(unit(name)));
+        table.push(cells);
     }
-    Problem {
-        name: of.name.clone(),
-        runs,
-        parameters,
-        seeds: of.runs.len(),
-        loose: loose(of),
+    table
+}
+
+/// The name of a parameter; those of several figures that are searched together are numbered.
+fn numbered(names: &[String], index: usize) -> String {
+    let Some(name) = names.get(index) else {
+        return String::new();
+    };
+    let same = |names: &[String]| names.iter().filter(|other| *other == name).count();
+    match (same(names), names.get(..index).map(same)) {
+        (2.., Some(before)) => format!("{name}, figure {}", before + 1),
+        _ => name.clone(),
+    }
+}
+
+/// Units of the parameters by the beginnings and ends of their names.
+fn unit(name: &str) -> &'static str {
+    let word = |part: &str| name.split(' ').any(|word| word == part);
+    match name {
+        "error_scale" => "1/deg",
+        "change_scale" => "s/deg",
+        "rate_gain" | "half_period_s" => "s",
+        _ if word("ki") => "1/s",
+        _ if word("kd") => "s",
+        _ => "",
     }
 }
 
@@ -128,7 +173,7 @@ fn tuned_table<'a>(problems: impl Iterator<Item = &'a ProblemRecord>) -> Table {
         "Controllers tuned against the disturbances of Fig. 7.",
         &head,
     )
-    .as_cards();
+    .in_cards();
     for problem in problems {
         let costs = || problem.runs.iter().map(|run| run.cost);
         let spent: usize = problem.runs.iter().map(|run| run.evaluations).sum();

@@ -171,7 +171,7 @@ fn in_flight(paper: &Paper<'_>) -> Table {
     ];
     let mut table = Table::new(caption, &head)
         .grouped(&[("", 1), ("nominal", 3), ("at rest", 3)])
-        .as_cards();
+        .in_cards();
     for flown in &paper.reproduction.figures {
         for named in &flown.study.scenario.controllers {
             let fspid_sim::Controller::SelfTuning(fspid) = &named.controller else {

@@ -36,7 +36,7 @@ fn statuses(reproduction: &Reproduction) -> Table {
     let mut head = vec!["claims".to_owned()];
     head.extend(Status::ALL.map(|status| Cell::status(status).text));
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut table = Table::new("How many claims stand how.", &head).as_cards();
+    let mut table = Table::new("How many claims stand how.", &head).in_cards();
     let own = reproduction
         .claims
         .iter()

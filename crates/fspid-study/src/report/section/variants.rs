@@ -5,6 +5,7 @@ use fspid_sim::Controller;
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle};
 use crate::report::html::context;
 use crate::report::measures;
+use crate::report::number::fixed;
 use crate::report::page::{Figure, Section, Table};
 use crate::report::paper::Paper;
 use crate::reproduce::{FIGURES, Fit, FlownFigure};
@@ -37,6 +38,8 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
     let context = context! {
         figures,
         mirrored => table("FSPID under its own fit when only the rule table is changed.", "mirrored", &mirrored),
+        mirrored_most => most(&mirrored),
+        sampled_most => most(&sampled),
         sampled => table(
             "FSPID under its own fit when only the centroid is changed, to 101 samples with both ends.",
             "endpoints:101",
@@ -84,6 +87,38 @@ fn fly(paper: &Paper<'_>, flown: &FlownFigure, (key, value): (&str, &str)) -> Op
     let name = format!("{}/figure-{}.toml", flown.fit.name(), flown.figure.id);
     let study = paper.library.study(&name, &overrides).ok()?;
     Simulation::of(&study).ok()
+}
+
+/// The rise time that changes most, in words.
+fn most(pairs: &[Pair<'_>]) -> Option<String> {
+    let mut most: Option<(f64, String)> = None;
+    for pair in pairs {
+        for name in &pair.tuned {
+            let edges = |simulation: &Simulation| {
+                let result = simulation.result(name);
+                result.map_or_else(Vec::new, |result| result.metrics.edges.clone())
+            };
+            let both = edges(&pair.stored.simulation)
+                .into_iter()
+                .zip(edges(&pair.changed));
+            for (index, (stored, changed)) in both.enumerate() {
+                let (Ok(before), Ok(after)) = (stored.step.rise_time_s, changed.step.rise_time_s)
+                else {
+                    continue;
+                };
+                let change = libm::fabs(libm::log(after / before));
+                if most.as_ref().is_none_or(|(largest, _)| change > *largest) {
+                    let (figure, step) = (pair.stored.figure.id, index + 1);
+                    let (before, after) = (fixed(before, 3), fixed(after, 3));
+                    most = Some((
+                        change,
+                        format!("Fig. {figure}, {name}, step {step}: {before} to {after} s"),
+                    ));
+                }
+            }
+        }
+    }
+    most.map(|(_, words)| words)
 }
 
 /// All figures in one table, the figure named with the controller.
