@@ -1,4 +1,22 @@
 //! Reports: one HTML file each, without any outside reference or needed script.
+//!
+//! Sentences stand in the templates, numbers are computed here; nothing in a template knows a value
+//! of its own. What a user has named is escaped wherever it appears, in figures too.
+//!
+//! Not here: what is measured and judged (`metrics`, `reproduce`), and how a line is drawn (`figure`).
+
+mod debug;
+mod html;
+mod markdown;
+mod measures;
+mod number;
+mod page;
+mod paper;
+mod section;
+mod settings;
+mod supervisor;
+mod traces;
+mod user;
 
 use crate::file::Study;
 use crate::reproduce::{Library, Reproduction};
@@ -6,28 +24,27 @@ use crate::simulation::Simulation;
 
 /// The report of a user's scenario.
 #[must_use]
-pub fn of_simulation(_study: &Study, simulation: &Simulation) -> String {
-    format!("<pre>{}</pre>", simulation.text())
+pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
+    user::report(study, simulation)
 }
 
 /// The report of the paper.
 #[must_use]
-pub fn of_reproduction(_library: &Library, _reproduction: &Reproduction) -> String {
-    String::new()
+pub fn of_reproduction(library: &Library, reproduction: &Reproduction) -> String {
+    paper::report(&paper::Paper {
+        library,
+        reproduction,
+    })
 }
 
 /// Everything that lies beside the report: names below its folder, and texts.
 #[must_use]
 pub fn files_of_reproduction(
-    _library: &Library,
+    library: &Library,
     reproduction: &Reproduction,
 ) -> Vec<(String, String)> {
-    reproduction
-        .figures
-        .iter()
-        .map(|flown| {
-            let name = format!("traces/figure-{}-{}.csv", flown.figure.id, flown.fit.name());
-            (name, flown.simulation.csv())
-        })
-        .collect()
+    paper::files(&paper::Paper {
+        library,
+        reproduction,
+    })
 }

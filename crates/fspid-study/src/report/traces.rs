@@ -1,0 +1,278 @@
+//! Time responses as figures.
+
+use fspid_sim::{Controller, Outcome, Scenario, Trace};
+
+use crate::figure::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
+use crate::metrics::Verdict;
+use crate::simulation::{ControllerResult, Simulation};
+use crate::units::degrees;
+
+/// How a flight is drawn.
+pub(super) struct Drawing<'a> {
+    /// Above the figure.
+    pub(super) title: &'a str,
+    /// The scenario that was flown.
+    pub(super) scenario: &'a Scenario,
+    /// What happened.
+    pub(super) simulation: &'a Simulation,
+    /// Only these controllers; all of them if empty.
+    pub(super) only: &'a [&'a str],
+    /// Also the elevator, and bands of 2 % about the set-points; colours by place, not by name.
+    pub(super) detailed: bool,
+    /// Width, px: the narrower, the larger the letters where the figure is fitted to a column.
+    pub(super) width_px: f64,
+}
+
+/// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
+const SPIKE: f64 = 3.0;
+/// A pitch panel shows at most this many times the largest good excursion where a loop fails.
+const HEADROOM: f64 = 1.6;
+
+/// Colour and dashes: the same for the same kind of controller throughout the paper's figures.
+fn style(name: &str, index: usize) -> SeriesStyle {
+    SeriesStyle::Numbered(match name {
+        "FSPID" | "FSPID 1" => 0,
+        "CPID" | "CPID 1" => 1,
+        "PC" => 2,
+        "FSPID 2" | "FSPID tuned" => 3,
+        "CPID 2" | "CPID tuned" => 4,
+        _ => index,
+    })
+}
+
+impl Drawing<'_> {
+    /// Draws pitch, command and, for self-tuning controllers, the three gains.
+    pub(super) fn render(&self) -> Svg {
+        let mut panels = vec![
+            self.pitch(),
+            self.angle("command u (deg)", |r| &r.trace.command_rad),
+        ];
+        if self.detailed {
+            panels.push(self.angle("elevator (deg)", |r| &r.trace.elevator_rad));
+        }
+        if self.flown().any(|(_, result)| self.is_tuned(&result.name)) {
+            panels.push(self.gain("k_{p}", |gains| gains.kp));
+            panels.push(self.gain("k_{i} (1/s)", |gains| gains.ki));
+            panels.push(self.gain("k_{d} (s)", |gains| gains.kd));
+        }
+        LineFigure {
+            title: self.title.to_owned(),
+            panels,
+            width_px: self.width_px,
+        }
+        .render()
+    }
+
+    fn flown(&self) -> impl Iterator<Item = (usize, &ControllerResult)> {
+        let results = self.simulation.results.iter().enumerate();
+        results
+            .filter(|(_, result)| self.only.is_empty() || self.only.contains(&result.name.as_str()))
+    }
+
+    fn is_tuned(&self, name: &str) -> bool {
+        let named = self
+            .scenario
+            .controllers
+            .iter()
+            .find(|named| named.name == name);
+        named.is_some_and(|named| matches!(named.controller, Controller::SelfTuning(_)))
+    }
+
+    fn series(&self, y: impl Fn(&ControllerResult) -> Vec<f64>, stairs: bool) -> Vec<Series> {
+        let one = |(index, result): (usize, &ControllerResult)| Series {
+            name: result.name.clone(),
+            style: if self.detailed {
+                SeriesStyle::Numbered(index)
+            } else {
+                style(&result.name, index)
+            },
+            x: shown(&result.trace, &result.trace.time_s).to_vec(),
+            y: y(result),
+            stairs,
+        };
+        self.flown().map(one).collect()
+    }
+
+    fn pitch(&self) -> LinePanel {
+        let in_degrees = |values: &[f64]| values.iter().copied().map(degrees).collect::<Vec<_>>();
+        // The longest trace shows the whole set-point.
+        let longest = self
+            .flown()
+            .map(|(_, result)| &result.trace)
+            .max_by_key(|trace| trace.rows());
+        let mut series = Vec::new();
+        if let Some(trace) = longest {
+            series.push(Series {
+                name: "set-point".to_owned(),
+                style: SeriesStyle::Setpoint,
+                x: shown(trace, &trace.time_s).to_vec(),
+                y: in_degrees(shown(trace, &trace.setpoint_rad)),
+                stairs: true,
+            });
+        }
+        series.extend(self.series(|result| in_degrees(&result.trace.theta_rad), false));
+        let y_range = self.range(&series, |r| &r.trace.theta_rad);
+        LinePanel {
+            y_label: "pitch angle (deg)".to_owned(),
+            x_label: "time (s)".to_owned(),
+            series,
+            bands: if self.detailed {
+                self.bands()
+            } else {
+                Vec::new()
+            },
+            x_range: self.window(),
+            y_range,
+        }
+    }
+
+    fn angle(&self, label: &str, of: fn(&ControllerResult) -> &Vec<f64>) -> LinePanel {
+        let series = self.series(
+            |result| of(result).iter().copied().map(degrees).collect(),
+            true,
+        );
+        let y_range = self.range(&[], of).or_else(|| self.without_spikes(of));
+        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        LinePanel {
+            y_label,
+            x_label,
+            series,
+            y_range,
+            x_range: self.window(),
+            ..LinePanel::default()
+        }
+    }
+
+    /// A range without the spikes of single samples, if there are any.
+    fn without_spikes(&self, of: fn(&ControllerResult) -> &Vec<f64>) -> Option<(f64, f64)> {
+        let trace = |(_, result): (usize, &'_ ControllerResult)| {
+            shown(&result.trace, of(result))
+                .iter()
+                .copied()
+                .map(degrees)
+                .collect::<Vec<f64>>()
+        };
+        let mut values: Vec<f64> = self.flown().flat_map(trace).collect();
+        values.sort_by(f64::total_cmp);
+        let (low, high) = (
+            *values.get(values.len() / 200)?,
+            *values.get(values.len() * 199 / 200)?,
+        );
+        let (lowest, highest) = (*values.first()?, *values.last()?);
+        let usual = low.abs().max(high.abs());
+        let margin = 0.15 * (high - low);
+        let spiky = lowest.abs().max(highest.abs()) > SPIKE * usual && margin > 0.0;
+        spiky.then_some((lowest.max(low - margin), highest.min(high + margin)))
+    }
+
+    /// A sentence for the caption where the command's panel leaves spikes out.
+    pub(super) fn spikes(&self) -> String {
+        let command: fn(&ControllerResult) -> &Vec<f64> = |result| &result.trace.command_rad;
+        if self.range(&[], command).is_some() || self.without_spikes(command).is_none() {
+            return String::new();
+        }
+        let largest = self
+            .flown()
+            .flat_map(|(_, result)| shown(&result.trace, &result.trace.command_rad));
+        let largest = largest
+            .map(|command| degrees(command.abs()))
+            .fold(0.0, f64::max);
+        format!(
+            " At a step the derivative of the error moves the command by up to {} deg for a sample; the panel leaves \
+             these spikes out.",
+            super::number::significant(largest, 2)
+        )
+    }
+
+    fn gain(&self, label: &str, of: fn(&fspid_core::Gains<f64>) -> f64) -> LinePanel {
+        let mut series = self.series(|result| result.trace.gains.iter().map(of).collect(), true);
+        series.retain(|series| self.is_tuned(&series.name));
+        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        LinePanel {
+            y_label,
+            x_label,
+            series,
+            x_range: self.window(),
+            ..LinePanel::default()
+        }
+    }
+
+    /// The whole flight, also where a trace ends early.
+    fn window(&self) -> Option<(f64, f64)> {
+        let timing = self.scenario.timing;
+        let end_s = timing.time_s(timing.rows().saturating_sub(1));
+        (end_s > 0.0).then_some((0.0, end_s))
+    }
+
+    /// Where a loop fails: a range in which the good ones, or at least the set-point, can be read.
+    fn range(&self, and: &[Series], of: fn(&ControllerResult) -> &Vec<f64>) -> Option<(f64, f64)> {
+        if !self.flown().any(|(_, result)| fails(result)) {
+            return None;
+        }
+        let good = self.flown().filter(|(_, result)| !fails(result));
+        let good = good.flat_map(|(_, result)| of(result).iter().copied().map(degrees));
+        let commanded = and.iter().filter(|s| s.style == SeriesStyle::Setpoint);
+        let commanded = commanded.flat_map(|series| series.y.iter().copied());
+        let largest = good
+            .chain(commanded)
+            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let bound = if largest > 0.0 {
+            HEADROOM * largest
+        } else {
+            10.0
+        };
+        Some((-bound, bound))
+    }
+
+    /// Two per cent of the step about each level of the command.
+    fn bands(&self) -> Vec<Band> {
+        let Some((_, result)) = self.flown().next() else {
+            return Vec::new();
+        };
+        let mut bands: Vec<Band> = Vec::new();
+        for edge in &result.metrics.edges {
+            let (level, half) = (
+                degrees(edge.to_rad),
+                0.02 * degrees((edge.to_rad - edge.from_rad).abs()),
+            );
+            let band = Band {
+                label: String::new(),
+                lower: level - half,
+                upper: level + half,
+            };
+            if !bands.contains(&band) {
+                bands.push(band);
+            }
+        }
+        // More levels than these are a curve, not steps.
+        if bands.len() > 4 {
+            return Vec::new();
+        }
+        if let Some(first) = bands.first_mut() {
+            first.label = "\u{b1}2 % of the step".to_owned();
+        }
+        bands
+    }
+}
+
+/// The samples that are drawn: without the last one if the command steps there, since nothing follows.
+fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
+    let steps_at_end = match trace.setpoint_rad.as_slice() {
+        [.., before, last] => before.to_bits() != last.to_bits(),
+        _ => false,
+    };
+    let end = if steps_at_end {
+        column.len().saturating_sub(1)
+    } else {
+        column.len()
+    };
+    column.get(..end).unwrap_or(column)
+}
+
+/// True for a flight without measures.
+pub(super) fn fails(result: &ControllerResult) -> bool {
+    matches!(
+        result.metrics.verdict,
+        Verdict::Diverged { .. } | Verdict::Unstable { .. }
+    ) || result.trace.outcome != Outcome::Completed
+}

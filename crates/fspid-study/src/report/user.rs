@@ -1,0 +1,277 @@
+//! The report of a user's own scenario: verdict first.
+
+use fspid_sim::Controller;
+use serde::Serialize;
+
+use super::html::{self, context};
+use super::number::{capital, exact, fixed, measured, significant, with_sign};
+use super::page::{self, Cell, Figure, Section, Table};
+use super::supervisor::{self, Marks};
+use super::traces::{Drawing, fails};
+use super::{measures, settings};
+use crate::figure::SurfaceKind;
+use crate::file::Study;
+use crate::metrics::Verdict;
+use crate::simulation::{ControllerResult, Simulation};
+
+#[derive(Clone, Copy)]
+struct User<'a> {
+    study: &'a Study,
+    simulation: &'a Simulation,
+}
+
+/// The page.
+pub(super) fn report(study: &Study, simulation: &Simulation) -> String {
+    let user = User { study, simulation };
+    let mut sections = vec![user.verdicts(), user.responses(), user.measures()];
+    sections.extend(user.tuning());
+    sections.extend([user.settings(), user.provenance()]);
+    let context = context! {
+        title => format!("{}: flight report", simulation.scenario),
+        heading => simulation.scenario,
+        lead => html::render("user", context! { part => "lead" }),
+        style => page::style(),
+        sections,
+        verdict_first => true,
+        version => env!("CARGO_PKG_VERSION"),
+    };
+    html::render("page", context)
+}
+
+/// How a controller did, at a glance.
+#[derive(Serialize)]
+struct Outcome {
+    name: String,
+    class: &'static str,
+    word: &'static str,
+    detail: String,
+}
+
+fn outcome(result: &ControllerResult) -> Outcome {
+    let verdict = result.metrics.verdict;
+    let (class, word) = match verdict {
+        Verdict::Settled => ("good", "\u{2713} Settled"),
+        Verdict::Flown => ("good", "\u{2713} Flown"),
+        Verdict::NotSettled { .. } => ("fair", "\u{2248} Not settled"),
+        Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
+        Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE"),
+    };
+    let first = result.metrics.first_step();
+    let detail = match verdict {
+        Verdict::Diverged { at_s } => format!(
+            "The pitch angle left every reasonable range at t = {} s. Nothing can be measured in this flight.",
+            fixed(at_s, 3)
+        ),
+        Verdict::Unstable { spectral_radius } => format!(
+            "The loop is unstable, whatever the window shows: spectral radius {} (below 1 would be stable). Nothing \
+             can be measured in this flight.",
+            fixed(spectral_radius, 6)
+        ),
+        Verdict::Flown => "There was no step in the command to measure against.".to_owned(),
+        Verdict::Settled | Verdict::NotSettled { .. } => format!(
+            "{}. First step: rise time {}, overshoot {}.",
+            capital(&verdict.to_string()),
+            with_unit(first.rise_time_s, 3, "s"),
+            with_unit(first.overshoot_pct, 2, "%")
+        ),
+    };
+    Outcome {
+        name: result.name.clone(),
+        class,
+        word,
+        detail,
+    }
+}
+
+fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> String {
+    let text = measured(value, decimals);
+    if value.is_ok() {
+        format!("{text} {unit}")
+    } else {
+        format!("absent ({text})")
+    }
+}
+
+impl User<'_> {
+    fn verdicts(self) -> Section {
+        let outcomes: Vec<Outcome> = self.simulation.results.iter().map(outcome).collect();
+        let met = self.simulation.requirements_met();
+        let context = context! {
+            part => "verdicts",
+            outcomes,
+            warnings => self.study.warnings,
+            requirements => (!self.simulation.judgements.is_empty()).then(|| self.requirements()),
+            met,
+        };
+        Section::of("verdict", "Verdict", "user", context)
+    }
+
+    fn requirements(self) -> Table {
+        let head = ["controller", "requirement", "worst value", "verdict"];
+        let mut table =
+            Table::new("Requirements: the worst of all steps counts.", &head).in_cards();
+        for judgement in &self.simulation.judgements {
+            let requirement = &judgement.requirement;
+            let verdict = if judgement.met {
+                ("met", "\u{2713} met")
+            } else {
+                ("unmet", "\u{2717} NOT MET")
+            };
+            table.push(vec![
+                Cell::text(&judgement.controller),
+                Cell::text(format!(
+                    "{} at most {}",
+                    requirement.measure.name(),
+                    exact(requirement.most)
+                )),
+                Cell::measured(judgement.value, 4),
+                Cell {
+                    class: verdict.0,
+                    ..Cell::text(verdict.1)
+                },
+            ]);
+        }
+        table
+    }
+
+    fn responses(self) -> Section {
+        let drawing = Drawing {
+            title: &self.simulation.scenario,
+            scenario: &self.study.scenario,
+            simulation: self.simulation,
+            only: &[],
+            detailed: true,
+            width_px: 720.0,
+        };
+        let failing: Vec<&str> = self
+            .simulation
+            .results
+            .iter()
+            .filter(|r| fails(r))
+            .map(|r| r.name.as_str())
+            .collect();
+        let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
+                       of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
+                       self-tuning controllers.";
+        let caption = format!("{caption}{}", drawing.spikes());
+        let figure = Figure::new("responses-figure", drawing.render(), caption);
+        Section::of(
+            "responses",
+            "Time responses",
+            "user",
+            context! { part => "responses", figure, failing },
+        )
+    }
+
+    fn measures(self) -> Section {
+        let context = context! {
+            part => "measures",
+            steps => measures::table("Every step of the command, for every controller.", self.simulation),
+            integrals => measures::integrals("Whole flights: integrals of the error, and effort.", self.simulation),
+        };
+        Section::of("measures", "Measures", "user", context)
+    }
+
+    /// One part for each self-tuning controller; no section without one.
+    fn tuning(self) -> Option<Section> {
+        let controllers = &self.study.scenario.controllers;
+        let parts: Vec<Tuning> = controllers
+            .iter()
+            .enumerate()
+            .filter_map(|(n, c)| tuning(n, c))
+            .collect();
+        (!parts.is_empty()).then(|| {
+            Section::of(
+                "tuning",
+                "Self-tuning",
+                "user",
+                context! { part => "tuning", parts },
+            )
+        })
+    }
+
+    fn settings(self) -> Section {
+        let scenario = &self.study.scenario;
+        let context = context! {
+            part => "settings",
+            flight => settings::of_flight(scenario),
+            controllers => settings::of_controllers(scenario),
+        };
+        Section::of("settings", "Settings", "user", context)
+    }
+
+    fn provenance(self) -> Section {
+        let context = context! {
+            part => "provenance",
+            version => env!("CARGO_PKG_VERSION"),
+            digest => self.study.digest,
+        };
+        Section::of("provenance", "Provenance", "user", context)
+    }
+}
+
+/// What there is to say about a self-tuning controller.
+#[derive(Serialize)]
+struct Tuning {
+    name: String,
+    law: String,
+    accumulating: bool,
+    sets: Vec<Figure>,
+    tables: Vec<Figure>,
+    maps: Vec<Figure>,
+    at_rest: Table,
+}
+
+fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
+    let Controller::SelfTuning(fspid) = &named.controller else {
+        return None;
+    };
+    let supervisor = fspid.tuner().supervisor();
+    let prefix = |what: &str| format!("tuning-{}-{what}", index + 1);
+    let law = settings::law(&named.controller).unwrap_or_default();
+    let rules = settings::rules(&named.controller);
+    Some(Tuning {
+        name: named.name.clone(),
+        accumulating: law == "accumulating",
+        law,
+        sets: supervisor::sets(&prefix("sets"), supervisor),
+        tables: rules.map_or_else(Vec::new, |rules| {
+            supervisor::rule_tables(&prefix("rules"), &named.name, &rules, Marks::None)
+        }),
+        maps: supervisor::surfaces(
+            &prefix("surface"),
+            &named.name,
+            supervisor,
+            &[SurfaceKind::Map],
+        ),
+        at_rest: at_rest(fspid, supervisor),
+    })
+}
+
+fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> Table {
+    let caption = "At rest, with error and change zero. The last column is what the gains become after one second \
+                   under an accumulating law, and at once under a memoryless one.";
+    let head = [
+        "gain",
+        "rules add, supervisor units",
+        "nominal gain",
+        "gain at rest",
+    ];
+    let mut table = Table::new(caption, &head);
+    let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
+    let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);
+    let rows = [
+        ("kp", added[0], nominal.kp, rest.kp),
+        ("ki, 1/s", added[1], nominal.ki, rest.ki),
+        ("kd, s", added[2], nominal.kd, rest.kd),
+    ];
+    for (name, added, nominal, rest) in rows {
+        table.push(vec![
+            Cell::text(name),
+            Cell::number(with_sign(added, 4)),
+            Cell::number(significant(nominal, 4)),
+            Cell::number(significant(rest, 4)),
+        ]);
+    }
+    table
+}
