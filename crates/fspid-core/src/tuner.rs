@@ -151,6 +151,11 @@ impl<R: Real> SelfTuner<R> {
         self.nominal
     }
 
+    /// Everything but the rules and the nominal gains.
+    pub fn settings(&self) -> &TunerSettings<R> {
+        &self.settings
+    }
+
     /// The rules.
     pub fn supervisor(&self) -> &Supervisor<R> {
         &self.supervisor

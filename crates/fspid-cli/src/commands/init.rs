@@ -15,13 +15,19 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(path) = &arguments.file else { return print(file::starter()) };
+    let Some(path) = &arguments.file else {
+        return print(file::starter());
+    };
     if path.exists() {
         let path = path.display();
-        return Err(Failure::input(format_args!("{path} exists; choose another name")));
+        return Err(Failure::input(format_args!(
+            "{path} exists; choose another name"
+        )));
     }
     output::write(path, file::starter())?;
     let path = path.display();
-    note(format_args!("wrote {path}; fly it with: fspid simulate {path} --report report.html"));
+    note(format_args!(
+        "wrote {path}; fly it with: fspid simulate {path} --report report.html"
+    ));
     Ok(())
 }

@@ -6,9 +6,9 @@ use clap::Args;
 
 use crate::exit::{Failure, note, print};
 use fspid_study::output;
+use fspid_study::report;
 use fspid_study::reproduce::identify::{Options, identify};
 use fspid_study::reproduce::{Library, Reproduction, Status, Stored, fallen, recorded_toml};
-use fspid_study::report;
 
 /// Regenerate the paper's figures, judge every claim in it, and write one report.
 #[derive(Debug, Args)]
@@ -36,15 +36,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (library, reproduction) = if arguments.identify {
         identified(arguments)?
     } else {
-        (Library::stored(), Reproduction::stored().map_err(Failure::input)?)
+        (
+            Library::stored(),
+            Reproduction::stored().map_err(Failure::input)?,
+        )
     };
     write_all(out, &library, &reproduction)?;
     print(&summary(out, &reproduction))?;
-    if arguments.check { check(&reproduction) } else { Ok(()) }
+    if arguments.check {
+        check(&reproduction)
+    } else {
+        Ok(())
+    }
 }
 
 fn identified(arguments: &Arguments) -> Result<(Library, Reproduction), Failure> {
-    let options = Options { seed: arguments.seed, seeds: arguments.seeds };
+    let options = Options {
+        seed: arguments.seed,
+        seeds: arguments.seeds,
+    };
     let found = identify(options, |line| note(line)).map_err(Failure::input)?;
     let record = format!("{:#}\n", found.record.json());
     let folder = arguments.out.join("paper");
@@ -53,22 +63,23 @@ fn identified(arguments: &Arguments) -> Result<(Library, Reproduction), Failure>
     for Stored { name, text } in found.library.scenarios() {
         write_below(&folder, name, text)?;
     }
-    let reproduction =
-        Reproduction::of(&found.library, found.record).map_err(Failure::input)?;
+    let reproduction = Reproduction::of(&found.library, found.record).map_err(Failure::input)?;
     Ok((found.library, reproduction))
 }
 
-fn write_all(
-    out: &Path,
-    library: &Library,
-    reproduction: &Reproduction,
-) -> Result<(), Failure> {
+fn write_all(out: &Path, library: &Library, reproduction: &Reproduction) -> Result<(), Failure> {
     for (name, text) in report::files_of_reproduction(library, reproduction) {
         write_below(out, &name, &text)?;
     }
-    output::write(&out.join("claims.json"), format!("{:#}\n", reproduction.claims_json()))?;
+    output::write(
+        &out.join("claims.json"),
+        format!("{:#}\n", reproduction.claims_json()),
+    )?;
     output::write(&out.join("statuses.toml"), recorded_toml(reproduction))?;
-    output::write(&out.join("report.html"), report::of_reproduction(library, reproduction))?;
+    output::write(
+        &out.join("report.html"),
+        report::of_reproduction(library, reproduction),
+    )?;
     Ok(())
 }
 
@@ -81,9 +92,8 @@ fn write_below(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
 }
 
 fn summary(out: &Path, reproduction: &Reproduction) -> String {
-    let counts = Status::ALL.map(|status| {
-        format!("{} {}", reproduction.count(status), status.name())
-    });
+    let counts =
+        Status::ALL.map(|status| format!("{} {}", reproduction.count(status), status.name()));
     format!(
         "{} claims: {}\nreport: {}\n",
         reproduction.statuses().count(),
@@ -98,7 +108,10 @@ fn check(reproduction: &Reproduction) -> Result<(), Failure> {
         return Ok(());
     }
     let lines = fallen.iter().map(|claim| {
-        format!("{}: {} recorded, now {}", claim.id, claim.recorded, claim.now)
+        format!(
+            "{}: {} recorded, now {}",
+            claim.id, claim.recorded, claim.now
+        )
     });
     Err(Failure::not_met(lines.collect::<Vec<_>>().join("\n")))
 }

@@ -148,6 +148,7 @@ fn look_up(
 }
 
 /// Every change of a piecewise constant signal, from 0 before the first sample.
+#[allow(clippy::float_cmp, reason = "any change of a held value is a step")]
 fn edges(values: &[f64]) -> Vec<Edge> {
     let mut edges = Vec::new();
     let mut before = 0.0;

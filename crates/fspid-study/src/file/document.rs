@@ -9,8 +9,6 @@ use crate::file::report::{Place, Report};
 pub(crate) const FILE_LIMIT: u64 = 10 * 1024 * 1024;
 /// Deepest nesting of brackets, and most dots in a key.
 const DEPTH_LIMIT: usize = 64;
-/// Most syntax errors that are reported: later ones are often echoes of the first.
-const SYNTAX_ERRORS: usize = 5;
 
 /// A value and where it stands.
 #[derive(Clone, Debug)]
@@ -66,8 +64,10 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
     let text = without_mark(text);
     let source = report.add_source(origin, text);
     check_shape(report, source, text)?;
-    let (table, errors) = DeTable::parse_recoverable(text);
-    report_syntax(report, source, &errors)?;
+    let table = match DeTable::parse(text) {
+        Ok(table) => table,
+        Err(error) => return report_syntax(report, source, text, &error),
+    };
     let end = text.len().min(1);
     let place = Place {
         source,
@@ -82,10 +82,10 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
 pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Option<Item> {
     let source = report.add_source(Some(origin), text);
     check_shape(report, source, text)?;
-    let (value, errors) = DeValue::parse_recoverable(text);
-    if errors.is_empty() && !text.contains('\n') {
-        return Some(item(source, &value));
-    }
+    let error = match DeValue::parse(text) {
+        Ok(value) => return Some(item(source, &value)),
+        Err(error) => error,
+    };
     let bare = |c: char| c.is_alphanumeric() || "-_./: ".contains(c);
     if text.trim().starts_with(char::is_alphabetic) && text.chars().all(bare) {
         let place = Place {
@@ -96,23 +96,33 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
-    report_syntax(report, source, &errors)
-        .is_some()
-        .then(|| item(source, &value))
+    report_syntax(report, source, text, &error)
 }
 
-fn report_syntax(report: &mut Report, source: usize, errors: &[toml::de::Error]) -> Option<()> {
-    for error in errors.iter().take(SYNTAX_ERRORS) {
-        let span = error.span().unwrap_or(0..0);
-        let place = Place {
-            source,
-            start: span.start,
-            end: span.end,
-        };
-        let message = error.message().replace('\n', ", ");
-        report.value(place, "", format!("not TOML: {message}"), "");
-    }
-    errors.is_empty().then_some(())
+/// Reports why a text is no TOML; later errors would be echoes of the first.
+fn report_syntax<T>(
+    report: &mut Report,
+    source: usize,
+    text: &str,
+    error: &toml::de::Error,
+) -> Option<T> {
+    let span = error.span().unwrap_or(0..0);
+    let message = if error.message().starts_with("duplicate key") {
+        "this key or table is here twice".to_owned()
+    } else if is_decimal_comma(text, span.start) {
+        "not TOML: a number with a comma; its decimal sign is a point".to_owned()
+    } else {
+        format!("not TOML: {}", error.message().replace('\n', ", "))
+    };
+    report.line(place(source, span), message);
+    None
+}
+
+/// True for the comma of `10,5`, where the number should have ended.
+fn is_decimal_comma(text: &str, at: usize) -> bool {
+    let around = at.checked_sub(1).and_then(|begin| text.get(begin..at + 2));
+    matches!(around.map(str::as_bytes), Some([before, b',', after])
+        if before.is_ascii_digit() && after.is_ascii_digit())
 }
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.

@@ -121,7 +121,7 @@ fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
         found: found.unwrap_or_default(),
         allowed: "text in UTF-8".to_owned(),
     };
-    Problems::sorted(name, vec![problem])
+    Problems::new(name, vec![problem], 0)
 }
 
 /// Reads a scenario from a text called `name` in messages. Without a `folder` it cannot refer to
@@ -141,7 +141,7 @@ pub fn parse(
     let study = read(&mut report, &mut files, text, overrides);
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
-    let (scenario, requirements) = study.ok_or_else(|| Problems::sorted(name, Vec::new()))?;
+    let (scenario, requirements) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
     Ok(Study {
         scenario,
         requirements,

@@ -2,7 +2,7 @@
 
 use crate::file::document::{Item, Member, Value, read_value};
 use crate::file::problem::nearest;
-use crate::file::report::{Place, Report};
+use crate::file::report::{Place, Report, excerpt};
 
 /// A step of a path.
 #[derive(Debug, PartialEq)]
@@ -13,7 +13,7 @@ enum Step {
 
 /// Applies `path=value` to the document; what is wrong with it is reported.
 pub(crate) fn apply(report: &mut Report, document: &mut Item, text: &str) {
-    let origin = format!("--set {text}");
+    let origin = format!("--set {}", excerpt(text));
     let Some((path, value)) = text.split_once('=') else {
         let place = whole(report, &origin, text);
         let allowed = "path=value, such as loop.sample_period_s=0.02";
@@ -113,8 +113,9 @@ fn descend(report: &mut Report, at: &mut Item, steps: &[Step], path: &str, set: 
 }
 
 fn join(path: &str, name: &str) -> String {
+    let name = excerpt(name);
     if path.is_empty() {
-        name.to_owned()
+        name
     } else {
         format!("{path}.{name}")
     }
@@ -151,10 +152,11 @@ fn index(items: &[Item], step: &Step) -> Result<usize, (String, String)> {
         };
         let mut known = match items.len() {
             0 => "none, the list is empty".to_owned(),
-            count => format!("0 to {}", count - 1),
+            1 => "index 0".to_owned(),
+            count => format!("an index from 0 to {}", count - 1),
         };
-        for name in names {
-            known = format!("{known}, {name}");
+        if !names.is_empty() {
+            known = format!("{known}, or a name: {}", names.join(", "));
         }
         (message, known)
     })

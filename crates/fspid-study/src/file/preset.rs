@@ -130,7 +130,7 @@ pub fn parse_plant(text: &str, name: &str) -> Result<PlantFile, Problems> {
         .and_then(|item| check::table(&mut report, &PLANT_FILE, &item, ""))
         .and_then(|section| plant_file(&mut report, &section));
     report.finish(name)?;
-    file.ok_or_else(|| Problems::sorted(name, Vec::new()))
+    file.ok_or_else(|| Problems::new(name, Vec::new(), 0))
 }
 
 fn plant_file(report: &mut Report, section: &Section) -> Option<PlantFile> {
@@ -174,5 +174,5 @@ pub fn load_rule_table(name: &str, folder: Option<&Path>) -> Result<RuleTable, P
     let mut files = Files::new(folder.or_else(|| Some(Path::new(""))));
     let table = data::rules_named(&mut report, &mut files, name);
     report.finish(name)?;
-    table.ok_or_else(|| Problems::sorted(name, Vec::new()))
+    table.ok_or_else(|| Problems::new(name, Vec::new(), 0))
 }

@@ -38,12 +38,9 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// The problems in the order of their places; each place and message once.
-    pub(crate) fn sorted(file: &str, mut list: Vec<Problem>) -> Self {
-        let key = |p: &Problem| (p.origin.clone(), p.line, p.column);
-        list.sort_by_key(key);
-        list.dedup();
-        let omitted = list.len().saturating_sub(MOST);
+    /// As many of the problems as anybody would read.
+    pub(crate) fn new(file: &str, mut list: Vec<Problem>, omitted: usize) -> Self {
+        let omitted = omitted + list.len().saturating_sub(MOST);
         list.truncate(MOST);
         let file = file.to_owned();
         Self {
@@ -111,15 +108,15 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 64 {
         return None;
     }
-    let likeness = |candidate: &&str| {
+    let likeness = |candidate: &str| {
         let (a, b) = (word.to_lowercase(), candidate.to_lowercase());
         let whole = strsim::jaro_winkler(&a, &b);
         let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
-        // A word without its unit is meant as the word with it: `duration` for `duration_s`.
-        let unit = b
+        // The beginning is meant as the whole: `duration` for `duration_s`, `b747` for `b747-paper`.
+        let beginning = b
             .strip_prefix(a.as_str())
-            .is_some_and(|rest| rest.starts_with('_'));
-        if unit {
+            .is_some_and(|rest| rest.starts_with(['_', '-']));
+        if beginning {
             2.0
         } else if typing {
             1.0 + whole
@@ -129,7 +126,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     };
     let scored = known
         .iter()
-        .map(|candidate| (likeness(&candidate), *candidate));
+        .map(|candidate| (likeness(candidate), *candidate));
     scored
         .filter(|(score, _)| *score >= 1.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -5,6 +5,9 @@ use crate::file::problem::{Problem, Problems};
 /// Longest excerpt of a file in a message, in characters.
 const EXCERPT: usize = 60;
 
+/// Most problems that are kept while reading; the rest is only counted.
+const MOST: usize = 200;
+
 /// A stretch of one of the texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
@@ -29,7 +32,9 @@ struct Source {
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     sources: Vec<Source>,
-    problems: Vec<Problem>,
+    /// With the number of the text that each is in.
+    problems: Vec<(usize, Problem)>,
+    omitted: usize,
     warnings: Vec<String>,
 }
 
@@ -57,7 +62,12 @@ impl Report {
 
     /// How many problems there are so far.
     pub(crate) fn count(&self) -> usize {
-        self.problems.len()
+        self.problems.len() + self.omitted
+    }
+
+    /// True when further problems are only counted.
+    pub(crate) fn is_full(&self) -> bool {
+        self.problems.len() >= MOST
     }
 
     /// A problem with a value, which is quoted.
@@ -83,14 +93,31 @@ impl Report {
         self.push(place, path, message.into(), String::new(), allowed.into());
     }
 
+    /// A problem with the line in which a place lies.
+    pub(crate) fn line(&mut self, place: Place, message: String) {
+        let source = self.sources.get(place.source);
+        let text = source
+            .map(|source| source.text.as_str())
+            .unwrap_or_default();
+        let before = text.get(..place.start).unwrap_or_default();
+        let begin = before.rfind('\n').map_or(0, |at| at + 1);
+        let line = text.get(begin..).and_then(|rest| rest.lines().next());
+        let found = excerpt(line.unwrap_or_default().trim());
+        self.push(place, "", message, found, String::new());
+    }
+
     fn push(&mut self, place: Place, path: &str, message: String, found: String, allowed: String) {
+        if self.is_full() {
+            self.omitted += 1;
+            return;
+        }
         let (line, column) = self.line_and_column(place);
         let origin = self
             .sources
             .get(place.source)
             .and_then(|source| source.origin.clone());
         let path = path.to_owned();
-        self.problems.push(Problem {
+        let problem = Problem {
             origin,
             path,
             line,
@@ -98,7 +125,8 @@ impl Report {
             message,
             found,
             allowed,
-        });
+        };
+        self.problems.push((place.source, problem));
     }
 
     fn line_and_column(&self, place: Place) -> (usize, usize) {
@@ -120,13 +148,20 @@ impl Report {
         self.warnings.push(warning);
     }
 
-    /// The warnings, or the problems if there are any.
-    pub(crate) fn finish(self, file: &str) -> Result<Vec<String>, Problems> {
+    /// The warnings, or the problems if there are any: in the order of the texts, each once.
+    pub(crate) fn finish(mut self, file: &str) -> Result<Vec<String>, Problems> {
         if self.problems.is_empty() {
-            Ok(self.warnings)
-        } else {
-            Err(Problems::sorted(file, self.problems))
+            return Ok(self.warnings);
         }
+        let place = |(source, problem): &(usize, Problem)| (*source, problem.line, problem.column);
+        self.problems.sort_by_key(place);
+        let mut list: Vec<Problem> = Vec::with_capacity(self.problems.len());
+        for (_, problem) in self.problems {
+            if !list.contains(&problem) {
+                list.push(problem);
+            }
+        }
+        Err(Problems::new(file, list, self.omitted))
     }
 }
 

@@ -153,8 +153,10 @@ fn edge_metrics(
     absence: Option<Absent>,
 ) -> Vec<EdgeMetrics> {
     // A step at the very last sample has no response to measure.
-    let edges: Vec<&Edge> =
-        edges.iter().filter(|edge| edge.sample + 1 < timing.rows()).collect();
+    let edges: Vec<&Edge> = edges
+        .iter()
+        .filter(|edge| edge.sample + 1 < timing.rows())
+        .collect();
     let ends = edges
         .iter()
         .skip(1)

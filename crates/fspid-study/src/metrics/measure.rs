@@ -18,9 +18,9 @@ pub enum Measure {
 impl Measure {
     /// All of them.
     pub const ALL: [Self; 4] = [
+        Self::Overshoot,
         Self::RiseTime,
         Self::SettlingTime,
-        Self::Overshoot,
         Self::FinalError,
     ];
 

@@ -24,6 +24,25 @@ pub struct StepWindow<'a> {
     pub to: f64,
 }
 
+impl StepWindow<'_> {
+    /// Time after the step at which the response first reaches this share of the way, interpolated;
+    /// `None` if it never does or there is no step.
+    #[must_use]
+    pub fn first_crossing_s(&self, share: f64) -> Option<f64> {
+        let step = self.to - self.from;
+        let way: Vec<f64> = self
+            .response
+            .iter()
+            .map(|y| (y - self.from) / step)
+            .collect();
+        Normalised {
+            time_s: self.time_s,
+            way: &way,
+        }
+        .first_crossing_s(share)
+    }
+}
+
 /// Measures of a step response, in seconds and in per cent of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepMetrics {
@@ -146,7 +165,7 @@ impl Normalised<'_> {
         let at = |k: usize| (self.time_s[k], self.way[k]);
         let (t1, y1) = at(k);
         let time_s = match k.checked_sub(1).map(at) {
-            Some((t0, y0)) if y1 != y0 => t0 + (t1 - t0) * ((level - y0) / (y1 - y0)),
+            Some((t0, y0)) if y1 - y0 != 0.0 => t0 + (t1 - t0) * ((level - y0) / (y1 - y0)),
             _ => t1,
         };
         time_s - self.start_s()

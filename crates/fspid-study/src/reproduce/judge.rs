@@ -26,10 +26,13 @@ pub struct JudgedClaim {
 
 /// Judges every number against the flights.
 #[must_use]
-pub fn judge(figures: &[FlownFigure]) -> Vec<JudgedClaim> {
+pub(super) fn judge(figures: &[FlownFigure]) -> Vec<JudgedClaim> {
     let own = flights(Fit::Own, figures);
     let shared = flights(Fit::Shared, figures);
-    CLAIMS.iter().map(|claim| judge_claim(claim, &own, &shared)).collect()
+    CLAIMS
+        .iter()
+        .map(|claim| judge_claim(claim, &own, &shared))
+        .collect()
 }
 
 /// The flights of all figures under one fit.
@@ -61,7 +64,15 @@ fn judge_claim(
         Ok(_) => note(claim, claim.source),
     };
     let assumptions = figure.map_or(&[][..], |figure| figure.assumptions);
-    JudgedClaim { claim: *claim, ours, shared, status, shared_status, assumptions, note }
+    JudgedClaim {
+        claim: *claim,
+        ours,
+        shared,
+        status,
+        shared_status,
+        assumptions,
+        note,
+    }
 }
 
 fn note(claim: &Claim, source: Quantity) -> String {
@@ -77,18 +88,30 @@ fn note(claim: &Claim, source: Quantity) -> String {
         _ => "",
     };
     let reading = match source {
-        Quantity::Later { .. } => "third step of the command; judged with its change from the first",
-        Quantity::Percent { of_later: true, .. } => "per cent of the later value, as the paper does",
-        Quantity::Percent { of_later: false, .. } => "per cent of the first value",
+        Quantity::Later { .. } => {
+            "third step of the command; judged with its change from the first"
+        }
+        Quantity::Percent { of_later: true, .. } => {
+            "per cent of the later value, as the paper does"
+        }
+        Quantity::Percent {
+            of_later: false, ..
+        } => "per cent of the first value",
         Quantity::Value(_) => "",
     };
-    [special, reading].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ")
+    [special, reading]
+        .into_iter()
+        .filter(|text| !text.is_empty())
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 /// Number and status of a claim.
 fn judge_under(claim: &Claim, flights: &[FigureFlight<'_>]) -> (Result<f64, Absent>, Status) {
     let ours = number(claim, flights);
-    let Ok(value) = ours else { return (ours, Status::Undetermined) };
+    let Ok(value) = ours else {
+        return (ours, Status::Undetermined);
+    };
     let of_change = match claim.source {
         Quantity::Later { first, .. } => change_status(claim.paper, value, first, flights),
         Quantity::Value(_) | Quantity::Percent { .. } => Status::Reproduced,
@@ -96,13 +119,10 @@ fn judge_under(claim: &Claim, flights: &[FigureFlight<'_>]) -> (Result<f64, Abse
     (ours, claim.paper.judge(value).max(of_change))
 }
 
-fn change_status(
-    paper: Printed,
-    later: f64,
-    first: &str,
-    flights: &[FigureFlight<'_>],
-) -> Status {
-    let Some(first) = claim(first) else { return Status::Undetermined };
+fn change_status(paper: Printed, later: f64, first: &str, flights: &[FigureFlight<'_>]) -> Status {
+    let Some(first) = claim(first) else {
+        return Status::Undetermined;
+    };
     match number(first, flights) {
         Ok(before) => judge_change((first.paper, paper), (before, later)),
         Err(_) => Status::Undetermined,

@@ -70,6 +70,17 @@ impl From<SimError> for ReproduceError {
 /// How the stored parameters were found.
 const STORED_RECORD: &str = include_str!("../../../../data/paper/identification.json");
 
+/// The scenario of the long-term change.
+const LONG_TERM: &str = "long-term-change.toml";
+/// Shares of the elevator's effectiveness that claim S2 is judged with.
+const EFFECTIVENESS: [f64; 4] = [0.5, 0.7, 1.4, 2.0];
+
+/// The setting that leaves this share of the short-period model's numerator (assumption A22).
+fn weakened(share: f64) -> String {
+    let [b1, b0] = [11.7304, 22.578].map(|coefficient| share * coefficient);
+    format!("plant_change[0].numerator=[{b1:?}, {b0:?}]")
+}
+
 /// The paper, flown and judged.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
@@ -77,8 +88,10 @@ pub struct Reproduction {
     pub figures: Vec<FlownFigure>,
     /// The sweeps of Fig. 7.
     pub sweeps: Vec<Sweep>,
-    /// The flight of the long-term change.
+    /// The flight of the long-term change as it is stored.
     pub long_term: Simulation,
+    /// The same with other changes: share of the elevator's effectiveness that is left, and flight.
+    pub long_term_shares: Vec<(f64, Simulation)>,
     /// Every number of the paper.
     pub claims: Vec<JudgedClaim>,
     /// Every claim in words.
@@ -110,35 +123,63 @@ impl Reproduction {
             for figure in FIGURES {
                 let study = library.figure(fit, figure.id)?;
                 let simulation = Simulation::of(&study)?;
-                figures.push(FlownFigure { figure: *figure, fit, study, simulation });
+                figures.push(FlownFigure {
+                    figure: *figure,
+                    fit,
+                    study,
+                    simulation,
+                });
             }
         }
         let sweeps = disturbance::sweep(library)?;
-        let long_term = Simulation::of(&library.study("long-term-change.toml", &[])?)?;
+        let long_term = Simulation::of(&library.study(LONG_TERM, &[])?)?;
+        let mut long_term_shares = Vec::new();
+        for share in EFFECTIVENESS {
+            let study = library.study(LONG_TERM, &[weakened(share)])?;
+            long_term_shares.push((share, Simulation::of(&study)?));
+        }
         let printed =
             file::rule_table("printed").ok_or(ReproduceError::Missing("printed rule table"))?;
         let evidence = Evidence {
             figures: &figures,
             sweeps: &sweeps,
-            long_term: &long_term,
+            long_term: &long_term_shares,
             printed: &printed,
         };
         let statements = evidence.judge();
         let claims = judge::judge(&figures);
         let digest = digest(library);
-        Ok(Self { figures, sweeps, long_term, claims, statements, record, digest })
+        Ok(Self {
+            figures,
+            sweeps,
+            long_term,
+            long_term_shares,
+            claims,
+            statements,
+            record,
+            digest,
+        })
     }
 
     /// The figure under a fit.
     #[must_use]
     pub fn figure(&self, fit: Fit, id: &str) -> Option<&FlownFigure> {
-        self.figures.iter().find(|flown| flown.fit == fit && flown.figure.id == id)
+        self.figures
+            .iter()
+            .find(|flown| flown.fit == fit && flown.figure.id == id)
     }
 
     /// Id and status of every claim, numbers first.
     pub fn statuses(&self) -> impl Iterator<Item = (&'static str, Status)> + '_ {
-        let numbers = self.claims.iter().map(|judged| (judged.claim.id, judged.status));
-        numbers.chain(self.statements.iter().map(|judged| (judged.id, judged.status)))
+        let numbers = self
+            .claims
+            .iter()
+            .map(|judged| (judged.claim.id, judged.status));
+        numbers.chain(
+            self.statements
+                .iter()
+                .map(|judged| (judged.id, judged.status)),
+        )
     }
 
     /// How many claims have this status.
@@ -196,5 +237,8 @@ fn digest(library: &Library) -> String {
         hash.update(stored.text.as_bytes());
         hash.update([0]);
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }

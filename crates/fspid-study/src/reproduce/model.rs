@@ -9,14 +9,12 @@ use fspid_core::{
     TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
-use fspid_sim::{
-    Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Timing,
-};
+use fspid_sim::{Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Timing};
 
-use crate::units::radians;
+use crate::units::{degrees, radians};
 
 /// Sample period of all figures, s (assumption A4).
-pub const SAMPLE_PERIOD_S: f64 = 0.01;
+pub(super) const SAMPLE_PERIOD_S: f64 = 0.01;
 /// Time constant of the servo, s (the paper's 10/(s + 10)).
 const SERVO_S: f64 = 0.1;
 /// Size of all commands, degrees (assumption A20).
@@ -26,7 +24,7 @@ const SAMPLES_PER_S: f64 = 1.0 / SAMPLE_PERIOD_S;
 
 /// The command of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
+pub(super) enum Command {
     /// A step, flown for this long.
     Step {
         /// Length of the window, s.
@@ -41,7 +39,7 @@ pub enum Command {
 
 /// The scales of a supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales {
+pub(super) struct Scales {
     /// Supervisor units per degree of error.
     pub error: f64,
     /// Supervisor units per degree per second of change.
@@ -52,7 +50,7 @@ pub struct Scales {
 
 /// What is common to all controllers and figures of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub(super) struct Setting {
     /// Name of the plant.
     pub plant: &'static str,
     /// Half range of the supervisor.
@@ -62,13 +60,13 @@ pub struct Setting {
 }
 
 /// Figs 5 and 6.
-pub const FULL_MODEL: Setting = Setting {
+pub(super) const FULL_MODEL: Setting = Setting {
     plant: "b747-paper",
     range: 5.0,
     error_sign: ErrorSign::SetpointMinusMeasurement,
 };
 /// Figs 7, 8 and 9.
-pub const SHORT_PERIOD: Setting = Setting {
+pub(super) const SHORT_PERIOD: Setting = Setting {
     plant: "navion-paper",
     range: 40.0,
     error_sign: ErrorSign::MeasurementMinusSetpoint,
@@ -76,7 +74,7 @@ pub const SHORT_PERIOD: Setting = Setting {
 
 /// A controller of a figure.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ControllerModel {
+pub(super) struct ControllerModel {
     /// Its name.
     pub name: String,
     /// Fixed or nominal gains.
@@ -89,7 +87,7 @@ pub struct ControllerModel {
 
 /// A figure's flight.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FlightModel {
+pub(super) struct FlightModel {
     /// Name of the scenario.
     pub name: String,
     /// Plant and supervisor.
@@ -102,7 +100,7 @@ pub struct FlightModel {
 
 /// `half_period_s` on the sample grid.
 #[must_use]
-pub fn on_grid(half_period_s: f64) -> f64 {
+pub(super) fn on_grid(half_period_s: f64) -> f64 {
     (half_period_s * SAMPLES_PER_S).round() / SAMPLES_PER_S
 }
 
@@ -111,17 +109,28 @@ impl FlightModel {
     ///
     /// # Errors
     /// [`SimError`] for numbers that no scenario may have.
-    pub fn scenario(&self, plant: &LinearPlant, table: &RuleTable) -> Result<Scenario, SimError> {
+    pub(super) fn scenario(
+        &self,
+        plant: &LinearPlant,
+        table: &RuleTable,
+    ) -> Result<Scenario, SimError> {
         let (shape, duration_s) = match self.command {
             Command::Step { window_s } => (Shape::Step { at_s: 0.0 }, window_s),
             Command::Square { half_period_s } => (
-                Shape::Square { at_s: 0.0, half_period_s, bipolar: true },
+                Shape::Square {
+                    at_s: 0.0,
+                    half_period_s,
+                    bipolar: true,
+                },
                 square_duration_s(half_period_s),
             ),
         };
         let controllers = self.controllers.iter().map(|model| {
             let controller = self.controller(model, table)?;
-            Ok(NamedController { name: model.name.clone(), controller })
+            Ok(NamedController {
+                name: model.name.clone(),
+                controller,
+            })
         });
         Ok(Scenario {
             name: self.name.clone(),
@@ -142,24 +151,34 @@ impl FlightModel {
     ) -> Result<Controller, SimError> {
         let [kp, ki, kd] = model.gains;
         let gains = Gains { kp, ki, kd };
-        let shell = Shell { rate_gain_s: model.rate_gain, ..Shell::sampled_every(SAMPLE_PERIOD_S) };
+        let shell = Shell {
+            rate_gain_s: model.rate_gain,
+            ..Shell::sampled_every(SAMPLE_PERIOD_S)
+        };
         let Some(scales) = model.scales else {
             return Ok(Controller::Fixed(Pid::new(gains, shell)?));
         };
-        let shell = Shell { integral: IntegralForm::Literal, ..shell };
+        let shell = Shell {
+            integral: IntegralForm::Literal,
+            ..shell
+        };
         let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
         let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
         let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
-        let per_degree = 1.0 / radians(1.0);
         let [kp, ki, kd] = scales.output;
         let settings = TunerSettings {
             error_sign: self.setting.error_sign,
+            // A factor per degree is as many times larger per radian as a radian has degrees.
             input_scale: InputScale {
-                error_per_rad: scales.error * per_degree,
-                change_per_rad: scales.change * per_degree,
+                error_per_rad: degrees(scales.error),
+                change_per_rad: degrees(scales.change),
             },
             output_scale: Gains { kp, ki, kd },
-            gain_limits: Some(GainLimits { kp: floor, ki: floor, kd: floor }),
+            gain_limits: Some(GainLimits {
+                kp: floor,
+                ki: floor,
+                kd: floor,
+            }),
             ..TunerSettings::literal()
         };
         let tuner = SelfTuner::new(gains, supervisor, settings)?;
@@ -168,14 +187,23 @@ impl FlightModel {
 
     /// The scenario file, with a heading of comment lines.
     #[must_use]
-    pub fn toml(&self, heading: &[String]) -> String {
+    pub(super) fn toml(&self, heading: &[String]) -> String {
         let mut out = String::new();
         for line in heading {
             push(&mut out, format_args!("# {line}"));
         }
-        push(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
-        push(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
-        push(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
+        push(
+            &mut out,
+            format_args!("schema = 1\nname = \"{}\"", self.name),
+        );
+        push(
+            &mut out,
+            format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant),
+        );
+        push(
+            &mut out,
+            format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"),
+        );
         let (setpoint, duration_s) = match self.command {
             Command::Step { window_s } => ("kind = \"step\"".to_owned(), window_s),
             Command::Square { half_period_s } => (
@@ -183,10 +211,16 @@ impl FlightModel {
                 square_duration_s(half_period_s),
             ),
         };
-        push(&mut out, format_args!(
-            "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
-        ));
-        push(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {AMPLITUDE_DEG:?}"));
+        push(
+            &mut out,
+            format_args!(
+                "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
+            ),
+        );
+        push(
+            &mut out,
+            format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {AMPLITUDE_DEG:?}"),
+        );
         for controller in &self.controllers {
             self.push_controller(&mut out, controller);
         }
@@ -194,21 +228,32 @@ impl FlightModel {
     }
 
     fn push_controller(&self, out: &mut String, controller: &ControllerModel) {
-        let ControllerModel { name, gains: [kp, ki, kd], rate_gain, scales } = controller;
+        let ControllerModel {
+            name,
+            gains: [kp, ki, kd],
+            rate_gain,
+            scales,
+        } = controller;
         push(out, format_args!("\n[[controller]]\nname = \"{name}\""));
         match scales {
             None if *ki == 0.0 && *kd == 0.0 => {
                 push(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
             }
             None => {
-                push(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
+                push(
+                    out,
+                    format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"),
+                );
             }
             Some(_) => {
-                push(out, format_args!(
-                    "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
+                push(
+                    out,
+                    format_args!(
+                        "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
                      law = \"memoryless\"\nintegral = \"literal\"\n\
                      gain_limits = {{ kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }}"
-                ));
+                    ),
+                );
             }
         }
         if *rate_gain != 0.0 {
@@ -225,13 +270,16 @@ impl FlightModel {
             ErrorSign::MeasurementMinusSetpoint => "measurement-minus-setpoint",
         };
         let [kp, ki, kd] = scales.output;
-        push(out, format_args!(
-            "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
+        push(
+            out,
+            format_args!(
+                "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
              supervisor.error_sign = \"{sign}\"\nsupervisor.error_scale = {:?}\n\
              supervisor.change = \"rate\"\nsupervisor.change_scale = {:?}\n\
              supervisor.output_scale = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}",
-            self.setting.range, scales.error, scales.change
-        ));
+                self.setting.range, scales.error, scales.change
+            ),
+        );
     }
 }
 
@@ -243,4 +291,56 @@ fn square_duration_s(half_period_s: f64) -> f64 {
 /// A line; writing to a string cannot fail.
 fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file;
+
+    fn model(setting: Setting, command: Command, rate_gain: f64) -> FlightModel {
+        let scales = Scales {
+            error: 23.71,
+            change: 29.5,
+            output: [0.28, 0.0096, 0.034],
+        };
+        let controller = |name: &str, gains, scales| ControllerModel {
+            name: name.to_owned(),
+            gains,
+            rate_gain,
+            scales,
+        };
+        FlightModel {
+            name: "a figure".to_owned(),
+            setting,
+            command,
+            controllers: vec![
+                controller("PC", [3.531_360_275_7, 0.0, 0.0], None),
+                controller("CPID", [0.5423, 0.0354, 0.177], None),
+                controller("FSPID", [0.5423, 0.0354, 0.177], Some(scales)),
+            ],
+        }
+    }
+
+    #[test]
+    fn the_scenario_that_is_searched_is_the_one_that_is_written() {
+        let table = file::rule_table("printed").expect("shipped");
+        for (setting, command, rate_gain) in [
+            (FULL_MODEL, Command::Step { window_s: 12.0 }, 0.93),
+            (
+                SHORT_PERIOD,
+                Command::Square {
+                    half_period_s: 6.61,
+                },
+                0.0,
+            ),
+        ] {
+            let model = model(setting, command, rate_gain);
+            let plant = file::preset(setting.plant).expect("shipped").plant;
+            let built = model.scenario(&plant, &table).expect("allowed");
+            let heading = ["a heading".to_owned()];
+            let read = file::parse(&model.toml(&heading), "model", None, &[]);
+            assert_eq!(read.expect("good").scenario, built);
+        }
+    }
 }

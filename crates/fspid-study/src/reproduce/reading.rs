@@ -5,7 +5,7 @@ use crate::metrics::{Absent, FlightMetrics};
 
 /// One controller's flight in one figure.
 #[derive(Clone, Copy, Debug)]
-pub struct FigureFlight<'a> {
+pub(super) struct FigureFlight<'a> {
     /// Number of the figure.
     pub figure: &'a str,
     /// Name of the controller.
@@ -16,24 +16,26 @@ pub struct FigureFlight<'a> {
 
 /// The claim with this id.
 #[must_use]
-pub fn claim(id: &str) -> Option<&'static Claim> {
+pub(super) fn claim(id: &str) -> Option<&'static Claim> {
     CLAIMS.iter().find(|claim| claim.id == id)
 }
 
 /// Number of the figure that a claim is read off.
 #[must_use]
-pub fn figure_of(claim: &Claim) -> &'static str {
+pub(super) fn figure_of(claim: &Claim) -> &'static str {
     readings(claim).first().map_or("", |reading| reading.figure)
 }
 
 /// Everything that a claim is read off.
 #[must_use]
-pub fn readings(of: &Claim) -> Vec<Reading> {
+pub(super) fn readings(of: &Claim) -> Vec<Reading> {
     match of.source {
         Quantity::Value(reading) | Quantity::Later { reading, .. } => vec![reading],
-        Quantity::Percent { first, later, .. } => {
-            [first, later].into_iter().filter_map(claim).flat_map(readings).collect()
-        }
+        Quantity::Percent { first, later, .. } => [first, later]
+            .into_iter()
+            .filter_map(claim)
+            .flat_map(readings)
+            .collect(),
     }
 }
 
@@ -41,10 +43,14 @@ pub fn readings(of: &Claim) -> Vec<Reading> {
 ///
 /// # Errors
 /// The reason why a measure that it needs is absent.
-pub fn number(of: &Claim, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
+pub(super) fn number(of: &Claim, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
     match of.source {
         Quantity::Value(reading) | Quantity::Later { reading, .. } => read(reading, flights),
-        Quantity::Percent { first, later, of_later } => {
+        Quantity::Percent {
+            first,
+            later,
+            of_later,
+        } => {
             let named = |id| claim(id).map_or(Err(Absent::NoStep), |c| number(c, flights));
             let (first, later) = (named(first)?, named(later)?);
             Ok(100.0 * (later - first).abs() / if of_later { later } else { first })
@@ -60,7 +66,9 @@ fn read(reading: Reading, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
             .iter()
             .find(|flight| flight.figure == reading.figure && flight.controller == *name)
             .ok_or(Absent::NoStep)?;
-        let value = flight.metrics.of_step(reading.edge, |step| reading.measure.of(step))?;
+        let value = flight
+            .metrics
+            .of_step(reading.edge, |step| reading.measure.of(step))?;
         worst = worst.max(value.abs());
     }
     Ok(worst)

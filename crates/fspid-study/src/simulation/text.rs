@@ -12,29 +12,44 @@ impl Simulation {
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = format!("{}\n", self.scenario);
-        let width = self.results.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(10);
+        let width = self
+            .results
+            .iter()
+            .map(|r| r.name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(10);
         for result in &self.results {
             let metrics = &result.metrics;
-            line(&mut out, format_args!("\n{:width$}  {}", result.name, metrics.verdict));
+            line(
+                &mut out,
+                format_args!("\n{:width$}  {}", result.name, metrics.verdict),
+            );
             for (index, edge) in metrics.edges.iter().enumerate() {
-                line(&mut out, format_args!(
-                    "  step {} at {:.2} s, {:+.3} to {:+.3} deg: {}",
-                    index + 1,
-                    edge.at_s,
-                    degrees(edge.from_rad),
-                    degrees(edge.to_rad),
-                    step(&edge.step),
-                ));
+                line(
+                    &mut out,
+                    format_args!(
+                        "  step {} at {:.2} s, {:+.3} to {:+.3} deg: {}",
+                        index + 1,
+                        edge.at_s,
+                        degrees(edge.from_rad),
+                        degrees(edge.to_rad),
+                        step(&edge.step),
+                    ),
+                );
             }
             if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
-                line(&mut out, format_args!(
-                    "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, largest command {:.3} deg",
-                    degrees(integrals.iae_rad_s),
-                    degrees(integrals.itae_rad_s2),
-                    degrees(degrees(integrals.ise_rad2_s)),
-                    degrees(effort.variation_rad),
-                    degrees(effort.largest_rad),
-                ));
+                line(
+                    &mut out,
+                    format_args!(
+                        "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, largest command {:.3} deg",
+                        degrees(integrals.iae_rad_s),
+                        degrees(integrals.itae_rad_s2),
+                        degrees(degrees(integrals.ise_rad2_s)),
+                        degrees(effort.variation_rad),
+                        degrees(effort.largest_rad),
+                    ),
+                );
             }
             if !result.trace.faults.is_empty() {
                 line(&mut out, format_args!("  faults: {}", result.trace.faults));
@@ -46,8 +61,17 @@ impl Simulation {
                 Ok(value) => format!("{value:.4}"),
                 Err(reason) => reason.to_string(),
             };
-            let (name, most) = (judgement.requirement.measure.name(), judgement.requirement.most);
-            line(&mut out, format_args!("\n{met}: {} {name} {value}, at most {most}", judgement.controller));
+            let (name, most) = (
+                judgement.requirement.measure.name(),
+                judgement.requirement.most,
+            );
+            line(
+                &mut out,
+                format_args!(
+                    "\n{met}: {} {name} {value}, at most {most}",
+                    judgement.controller
+                ),
+            );
         }
         out
     }
@@ -64,15 +88,15 @@ fn step(step: &StepMetrics) -> String {
     {
         return format!("no measures ({reason})");
     }
-    let show = |measured: Measured, unit: &str| match measured {
-        Ok(value) => format!("{value:.3}{unit}"),
+    let show = |name: &str, measured: Measured, unit: &str| match measured {
+        Ok(value) => format!("{name} {value:.3} {unit}"),
         Err(reason) => reason.to_string(),
     };
-    format!(
-        "rise {}, settling {}, overshoot {}, final error {}",
-        show(step.rise_time_s, " s"),
-        show(step.settling_time_s, " s"),
-        show(step.overshoot_pct, " %"),
-        show(step.final_error_pct, " %"),
-    )
+    [
+        show("rise", step.rise_time_s, "s"),
+        show("settling", step.settling_time_s, "s"),
+        show("overshoot", step.overshoot_pct, "%"),
+        show("final error", step.final_error_pct, "%"),
+    ]
+    .join(", ")
 }

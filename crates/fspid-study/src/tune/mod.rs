@@ -52,12 +52,26 @@ pub fn search(
         Some((point, spread)) => Start::About(point, *spread),
         None => Start::Anywhere,
     };
-    let mut global =
-        LShade::new(space.dimension(), budget.population, budget.global, budget.seed, start);
+    let mut global = LShade::new(
+        space.dimension(),
+        budget.population,
+        budget.global,
+        budget.seed,
+        start,
+    );
     let spent = run(&mut global, space, budget.global, enough, &cost);
     let (best, best_cost) = global.best();
-    let polished = polish(space, (&space.point(best), best_cost), budget.polish, enough, cost);
-    Found { evaluations: spent + polished.evaluations, ..polished }
+    let polished = polish(
+        space,
+        (&space.point(best), best_cost),
+        budget.polish,
+        enough,
+        cost,
+    );
+    Found {
+        evaluations: spent + polished.evaluations,
+        ..polished
+    }
 }
 
 /// Rolls a simplex downhill from a point of known cost.
@@ -71,7 +85,11 @@ pub fn polish(
     let mut local = NelderMead::new(&space.unit(from.0), from.1);
     let evaluations = run(&mut local, space, evaluations, enough, &cost);
     let (unit, cost) = local.best();
-    Found { point: space.point(unit), cost, evaluations }
+    Found {
+        point: space.point(unit),
+        cost,
+        evaluations,
+    }
 }
 
 /// Asks, evaluates and tells until the allowance is spent or the cost is `enough`; evaluations spent.

@@ -72,7 +72,11 @@ impl Space {
     /// The coordinates of a point in the unit cube.
     #[must_use]
     pub fn unit(&self, point: &[f64]) -> Vec<f64> {
-        self.parameters.iter().zip(point).map(|(parameter, &x)| parameter.unit(x)).collect()
+        self.parameters
+            .iter()
+            .zip(point)
+            .map(|(parameter, &x)| parameter.unit(x))
+            .collect()
     }
 
     /// The point at these coordinates of the unit cube.

@@ -8,10 +8,11 @@ use fspid_core::{
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
-use super::{RAD_PER_DEG, data, judged, rad};
+use super::{data, judged, rad};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::units::degrees;
 
 /// The controller of a sound section.
 pub(super) fn controller(
@@ -86,11 +87,10 @@ fn shell(
     (dt_s, isa_filter_s): (f64, Option<f64>),
 ) -> Option<Shell<f64>> {
     let limits = match section.interval("output_limits_deg") {
-        Some((lower, upper)) => Some(Limits::new("output limits", rad(lower), rad(upper))),
-        None => None,
-    };
-    let limits = match limits {
-        Some(limits) => Some(judged(report, (section, "output_limits_deg"), limits)?),
+        Some((lower, upper)) => {
+            let limits = Limits::new("output limits", rad(lower), rad(upper));
+            Some(judged(report, (section, "output_limits_deg"), limits)?)
+        }
         None => None,
     };
     let guard = Guard::new(rad(section.number("sample_guard_deg")?));
@@ -199,10 +199,7 @@ fn tuner(
     let part = section.section("supervisor")?;
     let supervisor = supervisor(report, files, part);
     let limits = section.section("gain_limits");
-    let gain_limits = match limits {
-        Some(limits) => Some(gain_limits(report, limits)),
-        None => None,
-    };
+    let gain_limits = limits.map(|limits| gain_limits(report, limits));
     let law = law(report, section);
     let settings = TunerSettings {
         error_sign: match part.text("error_sign")? {
@@ -236,7 +233,8 @@ fn tuner(
 
 fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
     let mut per_rad = |key| {
-        let scale = part.number(key)? / RAD_PER_DEG;
+        // A factor per degree is as many times larger per radian as a radian has degrees.
+        let scale = degrees(part.number(key)?);
         if scale.is_finite() {
             return Some(scale);
         }

@@ -39,60 +39,63 @@ pub(crate) fn coefficients(
 ) -> Option<LinearPlant> {
     let numerator = section.numbers("numerator")?;
     let denominator = section.numbers("denominator")?;
-    let error = match LinearPlant::new(&numerator, &denominator, sign) {
-        Ok(plant) => return Some(plant),
-        Err(error) => error,
-    };
-    let key = match &error {
+    match LinearPlant::new(&numerator, &denominator, sign) {
+        Ok(plant) => Some(plant),
+        Err(error) => {
+            let (message, allowed) = in_words(&error);
+            let key = key_at_fault(&error);
+            report.value(section.at(key), &section.path(key), message, allowed);
+            None
+        }
+    }
+}
+
+/// The list of coefficients that an error is about.
+fn key_at_fault(error: &SimError) -> &'static str {
+    match error {
         SimError::Linear(
-            LtiError::Empty {
-                what: "denominator",
-            }
-            | LtiError::ZeroPolynomial {
-                what: "denominator",
-            }
-            | LtiError::LeadingZero {
-                what: "denominator",
-                ..
-            }
-            | LtiError::DegreeTooHigh {
-                what: "denominator",
-                ..
-            },
-        ) => "denominator",
+            LtiError::Empty { what }
+            | LtiError::ZeroPolynomial { what }
+            | LtiError::LeadingZero { what, .. }
+            | LtiError::DegreeTooHigh { what, .. },
+        ) if *what == "denominator" => "denominator",
         _ => "numerator",
-    };
-    let (message, allowed) = match &error {
+    }
+}
+
+/// What is wrong with coefficients, and what is allowed.
+fn in_words(error: &SimError) -> (String, String) {
+    const SHORTER: &str = "a list shorter than the denominator";
+    let (message, allowed) = match error {
         SimError::Linear(LtiError::ZeroPolynomial { .. }) => (
             "zero everywhere".to_owned(),
-            "at least one coefficient other than 0".to_owned(),
+            "at least one coefficient other than 0",
         ),
         SimError::Linear(LtiError::LeadingZero { zeros, .. }) => (
             format!(
                 "begins with {zeros} zero{}",
                 if *zeros == 1 { "" } else { "s" }
             ),
-            "a first coefficient other than 0, that of the highest power".to_owned(),
+            "a first coefficient other than 0, that of the highest power",
         ),
         SimError::Linear(LtiError::Improper {
             numerator_degree,
             denominator_degree,
         }) => (
             format!("degree {numerator_degree} over degree {denominator_degree} is improper"),
-            "a list shorter than the denominator".to_owned(),
+            SHORTER,
         ),
         SimError::NotStrictlyProper => (
             "as long as the denominator, so that the pitch angle would jump with the elevator"
                 .to_owned(),
-            "a list shorter than the denominator".to_owned(),
+            SHORTER,
         ),
         other => (
             other.to_string(),
-            "coefficients of more like size".to_owned(),
+            "coefficients closer to each other in size",
         ),
     };
-    report.value(section.at(key), &section.path(key), message, allowed);
-    None
+    (message, allowed.to_owned())
 }
 
 /// The rules of a supervisor's `table`.

@@ -11,14 +11,7 @@ use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::requirement::{Requirement, requirements};
 use crate::file::section::Section;
-
-/// Radians per degree.
-const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
-
-/// Radians of an angle in degrees.
-fn rad(angle_deg: f64) -> f64 {
-    angle_deg * RAD_PER_DEG
-}
+use crate::units::radians as rad;
 
 /// The scenario with its requirements; every part that the check left sound is built even where
 /// another is wrong, so that its own problems are found too.
@@ -53,6 +46,9 @@ pub(crate) fn scenario(
         (&plant, timing, servo),
     );
     let controllers = controllers(report, files, section, timing);
+    if let Some(timing) = timing {
+        timing::check_memory(report, section, timing);
+    }
     let names = names(section);
     let asked = section.sections("requirement");
     let requirements = requirements(report, asked, &names);

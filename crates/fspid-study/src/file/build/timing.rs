@@ -15,7 +15,7 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
     let duration_s = section.number("duration_s")?;
     match Timing::new(dt_s, duration_s) {
         Err(SimError::TooManySamples { found, most }) => {
-            let message = format!("{found:e} samples of {dt_s:?} s are too many");
+            let message = format!("{found:.1e} samples of {dt_s:?} s are too many");
             let allowed =
                 format!("up to {most} samples: a shorter flight or a longer sample period");
             let (place, path) = (section.at("duration_s"), section.path("duration_s"));
@@ -29,6 +29,30 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
             None
         }
         other => judged(report, (section, "duration_s"), other),
+    }
+}
+
+/// Most rows of all traces together; nine columns of this length take 1.4 GB.
+const MOST_ROWS: usize = 2 * fspid_sim::MAX_ROWS;
+
+/// Refuses a comparison whose traces would not fit into memory.
+pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timing) {
+    let controllers = section.sections("controller").len();
+    if timing.rows() * controllers <= MOST_ROWS {
+        return;
+    }
+    if let Some(part) = section.section("loop") {
+        let message = format!(
+            "{controllers} traces of {} samples are too many",
+            timing.rows()
+        );
+        let allowed = format!("up to {MOST_ROWS} samples in all traces together");
+        report.value(
+            part.at("duration_s"),
+            &part.path("duration_s"),
+            message,
+            allowed,
+        );
     }
 }
 
@@ -176,11 +200,11 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
             ));
         }
     }
-    let ramps = section
+    let mut ramps = section
         .sections("plant_change")
         .iter()
         .filter(|part| part.number("ramp_s") > Some(0.0));
-    if let Some(ramp) = ramps.last()
+    if let Some(ramp) = ramps.next_back()
         && report.count() == 0
     {
         judged(report, (ramp, "ramp_s"), scenario.prepare());

@@ -1,12 +1,18 @@
 //! Keys that exclude each other.
 
+use super::value;
 use crate::file::document::Member;
 use crate::file::report::Report;
 use crate::file::section::Section;
-use crate::file::spec::{Choice, Way};
+use crate::file::spec::{Choice, Key, Way};
 
 /// Exactly one of the ways must be used, and completely.
-pub(super) fn check(report: &mut Report, section: &Section, members: &[Member], choice: &Choice) {
+pub(super) fn check(
+    report: &mut Report,
+    (section, known): (&Section, &[&'static Key]),
+    members: &[Member],
+    choice: &Choice,
+) {
     let present = |name: &str| members.iter().find(|member| member.name == name);
     let keys = |way: &'static Way| way.required.iter().chain(way.optional);
     let used: Vec<(&'static Way, &Member)> = choice
@@ -15,20 +21,25 @@ pub(super) fn check(report: &mut Report, section: &Section, members: &[Member], 
         .filter_map(|way| keys(way).find_map(|name| present(name)).map(|m| (way, m)))
         .collect();
     match used.as_slice() {
-        [] => {
-            let allowed = words(choice);
-            let message = match choice.ways {
-                [first, ..] => format!("missing: {}", way_in_words(first)),
-                [] => return,
-            };
-            report.missing(section.place, &section.path, message, allowed);
-        }
+        [] => report.missing(
+            section.place,
+            &section.path,
+            "a key is missing",
+            words(choice),
+        ),
         [(way, _)] => {
             let given = keys(way).find(|name| present(name).is_some());
             for name in way.required.iter().filter(|name| present(name).is_none()) {
                 let partner = given.copied().unwrap_or_default();
                 let message = format!("missing key; it goes with `{partner}`");
-                report.missing(section.place, &section.path(name), message, words(choice));
+                let key = known.iter().find(|key| key.name == *name);
+                let allowed = key.map(|key| value::allowed(&key.kind));
+                report.missing(
+                    section.place,
+                    &section.path(name),
+                    message,
+                    allowed.unwrap_or_default(),
+                );
             }
         }
         [(_, first), others @ ..] => {
@@ -46,11 +57,15 @@ fn words(choice: &Choice) -> String {
     format!("one of: {}", ways.join("; or "))
 }
 
+/// `numerator` with `denominator` and `elevator_sign`.
 fn way_in_words(way: &Way) -> String {
-    let names: Vec<String> = way
-        .required
-        .iter()
-        .map(|name| format!("`{name}`"))
-        .collect();
-    names.join(" with ").replacen(" with ", " with ", 1)
+    let names = way.required.iter().map(|name| format!("`{name}`"));
+    let names: Vec<String> = names.collect();
+    match names.as_slice() {
+        [first, middle @ .., last] => {
+            let middle: String = middle.iter().map(|name| format!("{name} and ")).collect();
+            format!("{first} with {middle}{last}")
+        }
+        _ => names.concat(),
+    }
 }

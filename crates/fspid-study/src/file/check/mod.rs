@@ -1,11 +1,12 @@
 //! The check of a document against its specification; it collects every problem.
 
 mod choice;
+mod grid;
 mod value;
 
 use crate::file::document::{Item, Member, Value};
 use crate::file::problem::nearest;
-use crate::file::report::{Place, Report};
+use crate::file::report::{Place, Report, excerpt};
 use crate::file::section::{Checked, Entry, Section};
 use crate::file::spec::{Default, Key, Presence, Table, Variant};
 
@@ -18,7 +19,7 @@ pub(crate) fn table(
 ) -> Option<Section> {
     let Value::Table(members) = &item.value else {
         let found = item.value.type_name();
-        let allowed = format!("a table of {}", names(spec.keys()));
+        let allowed = in_words(spec);
         report.value(
             item.place,
             path,
@@ -51,29 +52,31 @@ struct Checker<'a> {
     section: Section,
 }
 
-impl Checker<'_> {
+impl<'a> Checker<'a> {
     fn check(&mut self, spec: &'static Table) {
         let mut keys: Vec<&'static Key> = spec.keys().collect();
         let mut choices: Vec<_> = spec.choices.iter().collect();
         if !spec.variants.is_empty() {
             let Some(variant) = self.variant(spec) else {
+                // Which other keys belong here is unknown.
+                keys.iter().for_each(|key| self.key(key, &[]));
                 return;
             };
             self.section.kind = variant.name;
             keys.extend(variant.table.keys());
             choices.extend(variant.table.choices);
         }
-        self.unknown_keys(spec, &keys);
+        let meant = self.unknown_keys(spec, &keys);
         for key in &keys {
-            self.key(key);
+            self.key(key, &meant);
         }
         for choice in choices {
             let (report, section) = (&mut *self.report, &self.section);
-            choice::check(report, section, self.members, choice);
+            choice::check(report, (section, &keys), self.members, choice);
         }
     }
 
-    fn member(&self, name: &str) -> Option<&Member> {
+    fn member(&self, name: &str) -> Option<&'a Member> {
         self.members.iter().find(|member| member.name == name)
     }
 
@@ -81,52 +84,63 @@ impl Checker<'_> {
     fn variant(&mut self, spec: &'static Table) -> Option<&'static Variant> {
         let known: Vec<&str> = spec.variants.iter().map(|v| v.name).collect();
         let path = self.section.path("kind");
-        let Some(item) = self.member("kind").map(|member| member.item.clone()) else {
+        let Some(item) = self.member("kind").map(|member| &member.item) else {
             let place = self.section.place;
             let allowed = quoted(&known);
             self.report.missing(place, &path, "missing key", allowed);
             return None;
         };
-        let word = value::word(self.report, &item, &path, &known, "kind")?;
+        let word = value::word(self.report, item, &path, &known, "kind")?;
         spec.variants.iter().find(|variant| variant.name == word)
     }
 
-    fn unknown_keys(&mut self, spec: &'static Table, keys: &[&'static Key]) {
-        let tagged = !spec.variants.is_empty();
-        let mut known: Vec<&str> = keys.iter().map(|key| key.name).collect();
-        if tagged {
+    /// Reports the keys that are not known; returns those that were probably meant.
+    fn unknown_keys(&mut self, spec: &'static Table, keys: &[&'static Key]) -> Vec<&'static str> {
+        let mut known: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
+        if !spec.variants.is_empty() {
             known.insert(0, "kind");
         }
+        let mut all_meant = Vec::new();
         for member in self.members {
             let name = member.name.as_str();
             if known.contains(&name) {
                 continue;
             }
-            let path = self.section.path(name);
-            let owners = owners(spec, name);
+            if self.report.is_full() {
+                self.report.missing(member.place, "", "", "");
+                continue;
+            }
+            let (owners, meant) = (owners(spec, name), nearest(name, &known));
             let message = if !owners.is_empty() {
+                let kind = self.section.kind;
                 format!(
-                    "a key of kind {}, not of kind \"{}\"",
-                    quoted(&owners),
-                    self.section.kind
+                    "belongs to kind {}, not to kind \"{kind}\"",
+                    quoted_or(&owners)
                 )
-            } else if let Some(meant) = nearest(name, &known) {
+            } else if let Some(meant) = meant {
+                all_meant.push(meant);
                 format!("unknown key; did you mean `{meant}`?")
             } else {
                 "unknown key".to_owned()
             };
+            let path = self.section.path(&excerpt(name));
             self.report
                 .missing(member.place, &path, message, known.join(", "));
         }
+        all_meant
     }
 
-    fn key(&mut self, key: &'static Key) {
+    /// Checks a key; one that is there under a mistyped name is not missed as well.
+    fn key(&mut self, key: &'static Key, mistyped: &[&str]) {
         let path = self.section.path(key.name);
-        let Some(member) = self.member(key.name).cloned() else {
-            return self.absent(key, &path);
+        let Some(member) = self.member(key.name) else {
+            if !mistyped.contains(&key.name) {
+                self.absent(key, &path);
+            }
+            return;
         };
         if let Some(value) = value::check(self.report, &key.kind, &member.item, &path) {
-            let place = value_place(&member);
+            let place = value_place(member);
             self.put(key, place, value, true);
         }
     }
@@ -184,9 +198,22 @@ fn owners(spec: &'static Table, name: &str) -> Vec<&'static str> {
     spec.variants.iter().filter(has).map(|v| v.name).collect()
 }
 
-/// Names of keys, joined by commas.
-pub(super) fn names(keys: impl Iterator<Item = &'static Key>) -> String {
-    keys.map(|key| key.name).collect::<Vec<_>>().join(", ")
+/// What a table holds.
+pub(super) fn in_words(spec: &Table) -> String {
+    if !spec.variants.is_empty() {
+        let kinds: Vec<&str> = spec.variants.iter().map(|v| v.name).collect();
+        return format!("a table whose `kind` is one of {}", quoted(&kinds));
+    }
+    let names: Vec<&str> = spec.keys().map(|key| key.name).collect();
+    format!("a table of {}", names.join(", "))
+}
+
+/// Words in quotes, the last after "or".
+fn quoted_or(words: &[&str]) -> String {
+    match words.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or \"{last}\"", quoted(rest)),
+        _ => quoted(words),
+    }
 }
 
 /// Words in quotes, joined by commas.

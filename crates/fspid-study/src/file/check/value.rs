@@ -1,8 +1,8 @@
 //! The check of a single value.
 
-use fspid_fuzzy::{Defuzzifier, Grid, GridError};
+use fspid_fuzzy::Defuzzifier;
 
-use crate::file::check::{names, quoted, table};
+use crate::file::check::{grid, in_words, quoted, table};
 use crate::file::document::{Item, Value};
 use crate::file::preset::rule_table_names;
 use crate::file::problem::nearest;
@@ -39,7 +39,7 @@ pub(super) fn check(
         Kind::Word(words) => word(report, item, path, words, "word").map(Checked::Text),
         Kind::Preset(list) => word(report, item, path, &list(), "preset").map(Checked::Text),
         Kind::Rules(grids) => rules(report, item, path, grids),
-        Kind::Grid => grid(report, item, path).map(Checked::Grid),
+        Kind::Grid => grid::check(report, item, path).map(Checked::Grid),
         Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
         Kind::Numbers {
             unit,
@@ -73,23 +73,29 @@ pub(super) fn allowed(kind: &Kind) -> String {
         Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
         Kind::Defuzzifier => Defuzzifier::NAMES.to_owned(),
         Kind::Numbers {
-            range, unit, least, ..
-        } => format!(
-            "a list of {least} or more numbers, each {}",
-            range.words(unit)
-        ),
+            range: Range::Finite,
+            ..
+        } => "a list of finite numbers".to_owned(),
+        Kind::Numbers { range, unit, .. } => {
+            format!("a list of numbers, each {}", range.words(unit))
+        }
         Kind::Interval { range, unit } => {
             format!(
                 "[lower, upper] with lower below upper, each {}",
                 range.words(unit)
             )
         }
-        Kind::Table(spec) => format!("a table of {}", names(spec.keys())),
+        Kind::Table(spec) => in_words(spec),
         Kind::Tables { .. } => "tables under a heading in double brackets".to_owned(),
     }
 }
 
-fn wrong_type<T>(report: &mut Report, item: &Item, path: &str, kind: &Kind) -> Option<T> {
+pub(super) fn wrong_type<T>(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    kind: &Kind,
+) -> Option<T> {
     let message = format!("wrong type: {}", item.value.type_name());
     report.value(item.place, path, message, allowed(kind));
     None
@@ -274,72 +280,4 @@ fn defuzzifier(report: &mut Report, item: &Item, path: &str) -> Option<Defuzzifi
             None
         }
     }
-}
-
-fn grid(report: &mut Report, item: &Item, path: &str) -> Option<Grid> {
-    let Value::Text(text) = &item.value else {
-        return wrong_type(report, item, path, &Kind::Grid);
-    };
-    match Grid::parse(text) {
-        Ok(grid) => Some(grid),
-        Err(error) => {
-            let place = cell_place(report, item.place, error);
-            // The message says what is allowed, after a semicolon.
-            let text = error.to_string();
-            let (message, allowed) = text.split_once("; allowed are ").unwrap_or((&text, ""));
-            report.value(place, path, message, allowed);
-            None
-        }
-    }
-}
-
-/// The place of the row or cell that is wrong, in a text of several lines.
-fn cell_place(report: &Report, place: Place, error: GridError) -> Place {
-    let (row, column) = match error {
-        GridError::UnknownLabel { row, column } => (row, Some(column)),
-        GridError::RowLength { row, .. } => (row, None),
-        _ => return place,
-    };
-    let text = report.text(place);
-    let mut start = 0;
-    let quotes = text.chars().take_while(|c| "\"'".contains(*c)).count();
-    let lines = text.split_inclusive('\n').map(|line| {
-        let begin = start;
-        start += line.len();
-        let skip = if begin == 0 {
-            quotes.min(line.len())
-        } else {
-            0
-        };
-        (begin + skip, line.get(skip..).unwrap_or_default())
-    });
-    let filled: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.trim().is_empty()).collect();
-    let Some(&(begin, line)) = filled.get(row - 1) else {
-        return place;
-    };
-    let words = line.split_whitespace();
-    let word = match column {
-        Some(column) => words.clone().nth(column - 1).unwrap_or(line.trim()),
-        None => line.trim(),
-    };
-    // Both are parts of the same line, so that their distance is the column.
-    let mut offset = line.find(word).unwrap_or(0);
-    if let Some(column) = column {
-        offset = word_offset(line, column - 1).unwrap_or(offset);
-    }
-    let start = place.start + begin + offset;
-    Place {
-        start,
-        end: start + word.len(),
-        ..place
-    }
-}
-
-/// Where the word of that number begins in a line.
-fn word_offset(line: &str, number: usize) -> Option<usize> {
-    let starts = line.char_indices().filter(|&(at, c)| {
-        let before = line.get(..at).and_then(|text| text.chars().next_back());
-        !c.is_whitespace() && before.is_none_or(char::is_whitespace)
-    });
-    starts.map(|(at, _)| at).nth(number)
 }

@@ -164,19 +164,27 @@ impl Range {
 
     /// The allowed numbers in words.
     pub(crate) fn words(self, unit: &str) -> String {
-        let unit = if unit.is_empty() {
-            String::new()
-        } else {
-            format!(" {unit}")
+        let (of, unit) = match unit {
+            "" => (String::new(), String::new()),
+            unit => (format!(", in {unit}"), format!(" {unit}")),
         };
         match self {
-            Self::Finite => "a finite number".to_owned(),
-            Self::Positive => "a finite number above 0".to_owned(),
-            Self::NotNegative => "a finite number, 0 or above".to_owned(),
-            Self::Between(least, most) => format!("{least:?} to {most:?}{unit}"),
-            Self::PositiveUpTo(most) => format!("above 0, up to {most:?}{unit}"),
-            Self::UpTo(most) => format!("0 to {most:?}{unit}"),
+            Self::Finite => format!("a finite number{of}"),
+            Self::Positive => format!("a finite number above 0{of}"),
+            Self::NotNegative => format!("a finite number, 0 or above{of}"),
+            Self::Between(least, most) => format!("{} to {}{unit}", short(least), short(most)),
+            Self::PositiveUpTo(most) => format!("above 0, up to {}{unit}", short(most)),
+            Self::UpTo(most) => format!("0 to {}{unit}", short(most)),
         }
+    }
+}
+
+/// A number for people: without a point where it is whole, with an exponent where it is long.
+fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e7).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
     }
 }
 

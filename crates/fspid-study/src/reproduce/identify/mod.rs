@@ -34,7 +34,10 @@ impl Options {
     /// The command that repeats the search.
     #[must_use]
     pub fn command(self) -> String {
-        format!("fspid reproduce --identify --seed {} --seeds {}", self.seed, self.seeds)
+        format!(
+            "fspid reproduce --identify --seed {} --seeds {}",
+            self.seed, self.seeds
+        )
     }
 }
 
@@ -63,33 +66,49 @@ impl std::error::Error for Missing {}
 ///
 /// # Errors
 /// [`Missing`] if the program was built without one of the paper's plants or tables.
-pub fn identify(
-    options: Options,
-    mut progress: impl FnMut(&str),
-) -> Result<Identified, Missing> {
+pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Identified, Missing> {
     let bench = bench()?;
-    let mut session = Session { options, bench: &bench, progress: &mut progress, record: Record::new(options) };
+    let mut session = Session {
+        options,
+        bench: &bench,
+        progress: &mut progress,
+        record: Record::new(options),
+    };
     let proportional = session.proportional();
     let mut files = Vec::new();
-    let mut shared_short = None;
+    let mut own = Vec::new();
     for figure in PROBLEMS {
+        let figures = [figure];
+        let (weighing, effort) = (Weighing::Digits, Effort::FIGURE);
         let set = Set {
-            figures: &[figure],
-            weighing: Weighing::Digits,
+            figures: &figures,
+            weighing,
             proportional,
-            effort: Effort::FIGURE,
+            effort,
         };
-        let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set);
+        let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set, None);
         files.extend(session.files(Fit::Own, &set, &found));
+        own.push((figure, found));
     }
+    let mut shared_short = None;
     for (name, setting, weighing) in [
         ("Figs 5 and 6, one supervisor", FULL_MODEL, Weighing::Digits),
-        ("Figs 8a, 8b and 9, one supervisor", SHORT_PERIOD, Weighing::Shares),
+        (
+            "Figs 8a, 8b and 9, one supervisor",
+            SHORT_PERIOD,
+            Weighing::Shares,
+        ),
     ] {
-        let figures: Vec<FigureProblem> =
-            PROBLEMS.into_iter().filter(|figure| figure.setting == setting).collect();
-        let set = Set { figures: &figures, weighing, proportional, effort: Effort::RANGE };
-        let found = session.solve(name, &set);
+        let of_range = || own.iter().filter(|(figure, _)| figure.setting == setting);
+        let figures: Vec<FigureProblem> = of_range().map(|(figure, _)| *figure).collect();
+        let points: Vec<&[f64]> = of_range().map(|(_, found)| &found.point[..]).collect();
+        let set = Set {
+            figures: &figures,
+            weighing,
+            proportional,
+            effort: Effort::RANGE,
+        };
+        let found = session.solve(name, &set, Some(&set.between(&points)));
         files.extend(session.files(Fit::Shared, &set, &found));
         if setting == SHORT_PERIOD {
             shared_short = Some(tuned::Base::of(&set, &found));
@@ -100,15 +119,24 @@ pub fn identify(
         files.push(session.long_term_change(&base));
     }
     files.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(Identified { library: Library::new(files), record: session.record })
+    Ok(Identified {
+        library: Library::new(files),
+        record: session.record,
+    })
 }
 
 fn bench() -> Result<Bench, Missing> {
     let plant = |name: &'static str| -> Result<LinearPlant, Missing> {
-        file::preset(name).map(|preset| preset.plant).ok_or(Missing(name))
+        file::preset(name)
+            .map(|preset| preset.plant)
+            .ok_or(Missing(name))
     };
     let table: RuleTable = file::rule_table("printed").ok_or(Missing("printed rule table"))?;
-    Ok(Bench { full: plant(FULL_MODEL.plant)?, short: plant(SHORT_PERIOD.plant)?, table })
+    Ok(Bench {
+        full: plant(FULL_MODEL.plant)?,
+        short: plant(SHORT_PERIOD.plant)?,
+        table,
+    })
 }
 
 struct Session<'a> {
@@ -125,30 +153,51 @@ impl Session<'_> {
 
     /// Gain and gyro gain of the proportional loop of Fig. 5.
     fn proportional(&mut self) -> [f64; 2] {
-        let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
+        let log = |name, lower, upper| Parameter {
+            name,
+            lower,
+            upper,
+            scale: Scale::Logarithmic,
+        };
         let space = Space::new(vec![log("kp", 2.0, 10.0), log("rate_gain", 0.1, 5.0)]);
         let figure = PROBLEMS[0];
         let runs: Vec<SeedResult> = self
             .seeds()
             .map(|seed| {
-                let budget = Budget { seed, population: 20, global: 1_500, polish: 500 };
+                let budget = Budget {
+                    seed,
+                    population: 20,
+                    global: 1_500,
+                    polish: 500,
+                };
                 let found = search(&space, budget, None, 1e-12, |point| {
                     let mut model = figure.flight(&[], None, Some([point[0], point[1]]));
-                    model.controllers.retain(|controller| controller.name == "PC");
-                    self.bench.cost(figure.id, &model, Weighing::Centre)
+                    model
+                        .controllers
+                        .retain(|controller| controller.name == "PC");
+                    self.bench.cost(figure.id, &model, Weighing::Centre).total()
                 });
                 let (cost, point) = (found.cost, found.point);
-                SeedResult { seed, attempts: 1, evaluations: found.evaluations, cost, point }
+                SeedResult {
+                    seed,
+                    attempts: 1,
+                    evaluations: found.evaluations,
+                    cost,
+                    point,
+                }
             })
             .collect();
         let best = self.keep("Fig. 5, proportional loop", &space, runs);
-        [best.point.first().copied().unwrap_or(0.0), best.point.get(1).copied().unwrap_or(0.0)]
+        [
+            best.point.first().copied().unwrap_or(0.0),
+            best.point.get(1).copied().unwrap_or(0.0),
+        ]
     }
 
-    fn solve(&mut self, name: &str, set: &Set<'_>) -> SeedResult {
+    fn solve(&mut self, name: &str, set: &Set<'_>, begin: Option<&[f64]>) -> SeedResult {
         let mut runs = Vec::new();
         for seed in self.seeds() {
-            let run = set.solve(self.bench, seed);
+            let run = set.solve(self.bench, seed, begin);
             (self.progress)(&format!(
                 "{name}: seed {seed}, cost {:.3e} after {} attempt(s), {} evaluations",
                 run.cost, run.attempts, run.evaluations
@@ -167,7 +216,10 @@ impl Session<'_> {
                 best = run.clone();
             }
         }
-        (self.progress)(&format!("{name}: kept seed {} with cost {:.3e}", best.seed, best.cost));
+        (self.progress)(&format!(
+            "{name}: kept seed {} with cost {:.3e}",
+            best.seed, best.cost
+        ));
         self.record.push(name, space, &runs, best.seed);
         best
     }
@@ -175,9 +227,17 @@ impl Session<'_> {
     fn heading(&self, what: &str, found: &SeedResult, assumptions: &[&str]) -> Vec<String> {
         vec![
             what.to_owned(),
-            format!("Found by: {} (kept: seed {}, {} evaluations, cost {:.3e})",
-                self.options.command(), found.seed, found.evaluations, found.cost),
-            format!("Rests on assumptions {} of docs/paper/assumptions.md.", assumptions.join(", ")),
+            format!(
+                "Found by: {} (kept: seed {}, {} evaluations, cost {:.3e})",
+                self.options.command(),
+                found.seed,
+                found.evaluations,
+                found.cost
+            ),
+            format!(
+                "Rests on assumptions {} of docs/paper/assumptions.md.",
+                assumptions.join(", ")
+            ),
         ]
     }
 
@@ -189,20 +249,34 @@ impl Session<'_> {
             let gyro = if figure.gyro { gyro_gain } else { 0.0 };
             let mut model = figure.flight(part, Some(scales), Some([gain, gyro]));
             if matches!(model.command, Command::Square { .. }) {
-                model.controllers.retain(|controller| controller.name != "PC");
+                model
+                    .controllers
+                    .retain(|controller| controller.name != "PC");
             }
-            let assumptions =
-                FIGURES.iter().find(|f| f.id == figure.id).map_or(&[][..], |f| f.assumptions);
+            let assumptions = FIGURES
+                .iter()
+                .find(|f| f.id == figure.id)
+                .map_or(&[][..], |f| f.assumptions);
             let what = match fit {
-                Fit::Own => format!("Fig. {} of the paper with scale factors of its own.", figure.id),
+                Fit::Own => format!(
+                    "Fig. {} of the paper with scale factors of its own.",
+                    figure.id
+                ),
                 Fit::Shared => format!(
                     "Fig. {} of the paper with the scale factors shared by all figures of its range.",
                     figure.id
                 ),
             };
             let text = model.toml(&self.heading(&what, found, assumptions));
-            Stored { name: format!("{}/figure-{}.toml", fit.name(), figure.id), text }
+            Stored {
+                name: format!("{}/figure-{}.toml", fit.name(), figure.id),
+                text,
+            }
         };
-        set.figures.iter().zip(set.parts(&found.point)).map(figure_file).collect()
+        set.figures
+            .iter()
+            .zip(set.parts(&found.point))
+            .map(figure_file)
+            .collect()
     }
 }

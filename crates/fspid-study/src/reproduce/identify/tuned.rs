@@ -6,12 +6,10 @@ use fspid_sim::{NamedController, Scenario, simulate};
 
 use super::super::disturbance::{ENTRIES, SHAPES, START_S, flight_cost, scenario_name};
 use super::super::figures::{DISTURBED, Stored, WEAKENED};
-use super::super::model::{
-    Command, ControllerModel, FlightModel, SHORT_PERIOD, Scales,
-};
+use super::super::model::{Command, ControllerModel, FlightModel, SHORT_PERIOD, Scales};
+use super::Session;
 use super::problem::{Bench, scale_parameters, scales};
 use super::staged::{SeedResult, Set};
-use super::Session;
 use crate::tune::{Budget, Found, Parameter, Scale, Space, search};
 use crate::units::radians;
 
@@ -24,7 +22,12 @@ const PULSE_S: f64 = 1.0;
 /// Size at which controllers are tuned, degrees.
 const TUNING_SIZE_DEG: f64 = 1.0;
 /// Evaluations that each controller may spend on each disturbance.
-const BUDGET: Budget = Budget { seed: 0, population: 30, global: 2_000, polish: 500 };
+const BUDGET: Budget = Budget {
+    seed: 0,
+    population: 30,
+    global: 2_000,
+    polish: 500,
+};
 /// The long-term change: start and length, s.
 const CHANGE_AT_HALF_PERIODS: f64 = 4.0;
 const CHANGE_RAMP_S: f64 = 10.0;
@@ -52,7 +55,12 @@ impl Base {
             Some(&[kp, ki, kd, half, ..]) => ([kp, ki, kd], super::super::model::on_grid(half)),
             _ => ([0.0; 3], 1.0),
         };
-        Self { gains, half_period_s, scales: scales(&found.point), found: found.clone() }
+        Self {
+            gains,
+            half_period_s,
+            scales: scales(&found.point),
+            found: found.clone(),
+        }
     }
 
     fn pair(&self) -> Vec<ControllerModel> {
@@ -64,13 +72,24 @@ impl Base {
 }
 
 fn controller(name: &str, gains: [f64; 3], scales: Option<Scales>) -> ControllerModel {
-    ControllerModel { name: name.to_owned(), gains, rate_gain: 0.0, scales }
+    ControllerModel {
+        name: name.to_owned(),
+        gains,
+        rate_gain: 0.0,
+        scales,
+    }
 }
 
 fn shape(name: &str) -> Shape {
     match name {
-        "continuous" => Shape::Sine { at_s: START_S, frequency_hz: FREQUENCY_HZ },
-        _ => Shape::Pulse { at_s: START_S, width_s: PULSE_S },
+        "continuous" => Shape::Sine {
+            at_s: START_S,
+            frequency_hz: FREQUENCY_HZ,
+        },
+        _ => Shape::Pulse {
+            at_s: START_S,
+            width_s: PULSE_S,
+        },
     }
 }
 
@@ -101,14 +120,21 @@ fn disturbed(
 
 fn at_rest(name: String, controllers: Vec<ControllerModel>) -> FlightModel {
     let command = Command::Step { window_s: FLIGHT_S };
-    FlightModel { name, setting: SHORT_PERIOD, command, controllers }
+    FlightModel {
+        name,
+        setting: SHORT_PERIOD,
+        command,
+        controllers,
+    }
 }
 
 /// Cost of one controller under one disturbance; infinite where the flight has none.
 fn cost(bench: &Bench, model: ControllerModel, shape_name: &str, entry: Entry) -> f64 {
     let fixed = model.scales.is_none();
     let model = at_rest(String::new(), vec![model]);
-    let Some(scenario) = disturbed(bench, &model, shape_name, entry) else { return f64::INFINITY };
+    let Some(scenario) = disturbed(bench, &model, shape_name, entry) else {
+        return f64::INFINITY;
+    };
     let Some(NamedController { controller, .. }) = scenario.controllers.first() else {
         return f64::INFINITY;
     };
@@ -117,7 +143,9 @@ fn cost(bench: &Bench, model: ControllerModel, shape_name: &str, entry: Entry) -
     if unstable {
         return f64::INFINITY;
     }
-    let Ok(flight) = simulate(&scenario) else { return f64::INFINITY };
+    let Ok(flight) = simulate(&scenario) else {
+        return f64::INFINITY;
+    };
     match flight.traces.first() {
         Some(trace) if trace.rows() == scenario.timing.rows() => {
             flight_cost(trace, TUNING_SIZE_DEG)
@@ -151,7 +179,10 @@ impl Session<'_> {
                     "amplitude_deg = 0.0\n\n[[controller]]\nname = \"CPID\"",
                 );
                 let text = text + &disturbance_toml(shape_name, entry_name);
-                files.push(Stored { name: scenario_name(shape_name, entry_name), text });
+                files.push(Stored {
+                    name: scenario_name(shape_name, entry_name),
+                    text,
+                });
             }
         }
         files
@@ -164,22 +195,42 @@ impl Session<'_> {
         (entry_name, entry): (&str, Entry),
         fuzzy: bool,
     ) -> Found {
-        let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
-        let mut parameters =
-            vec![log("kp", 0.05, 10.0), log("ki", 1e-3, 10.0), log("kd", 1e-3, 3.0)];
+        let log = |name, lower, upper| Parameter {
+            name,
+            lower,
+            upper,
+            scale: Scale::Logarithmic,
+        };
+        let mut parameters = vec![
+            log("kp", 0.05, 10.0),
+            log("ki", 1e-3, 10.0),
+            log("kd", 1e-3, 3.0),
+        ];
         let mut about = base.gains.to_vec();
         if fuzzy {
             parameters.extend(scale_parameters(SHORT_PERIOD));
-            let Scales { error, change, output } = base.scales;
+            let Scales {
+                error,
+                change,
+                output,
+            } = base.scales;
             about.extend([error, change]);
             about.extend(output);
         }
         let space = Space::new(parameters);
-        let budget = Budget { seed: self.options.seed, ..BUDGET };
+        let budget = Budget {
+            seed: self.options.seed,
+            ..BUDGET
+        };
         // Both begin from what was identified, spread over much of the box.
         let found = search(&space, budget, Some((&about, 0.3)), 0.0, |point| {
             let tuned_scales = point.get(3..).filter(|rest| !rest.is_empty()).map(scales);
-            cost(self.bench, controller("", gains(point), tuned_scales), shape_name, entry)
+            cost(
+                self.bench,
+                controller("", gains(point), tuned_scales),
+                shape_name,
+                entry,
+            )
         });
         let kind = if fuzzy { "FSPID" } else { "CPID" };
         let name = format!("Fig. 7, {kind} tuned, {shape_name} at the {entry_name}");
@@ -199,7 +250,9 @@ impl Session<'_> {
         let model = FlightModel {
             name: "S2: the elevator loses half of its effectiveness".to_owned(),
             setting: SHORT_PERIOD,
-            command: Command::Square { half_period_s: base.half_period_s },
+            command: Command::Square {
+                half_period_s: base.half_period_s,
+            },
             controllers: base.pair(),
         };
         let what = "Claim S2: CPID and FSPID as shared by Figs 8 and 9 (gains of Fig. 8b), while the \
@@ -212,7 +265,10 @@ impl Session<'_> {
             CHANGE_AT_HALF_PERIODS * base.half_period_s
         );
         let text = model.toml(&heading).replace(&four, &ten) + &change;
-        Stored { name: "long-term-change.toml".to_owned(), text }
+        Stored {
+            name: "long-term-change.toml".to_owned(),
+            text,
+        }
     }
 }
 

@@ -1,0 +1,14 @@
+//! The claims of the paper, one test each: reproduced, or our answer asserted and the reason written.
+
+mod claims;
+mod fits;
+
+use std::sync::OnceLock;
+
+use fspid_study::reproduce::Reproduction;
+
+/// The stored reproduction, flown once for all tests.
+fn paper() -> &'static Reproduction {
+    static PAPER: OnceLock<Reproduction> = OnceLock::new();
+    PAPER.get_or_init(|| Reproduction::stored().expect("the stored scenarios fly"))
+}
