@@ -163,6 +163,20 @@ fn every_assumption_and_erratum_has_its_anchor() {
 }
 
 #[test]
+fn parameters_that_the_claims_do_not_determine_are_named_where_there_are_several_seeds() {
+    let (library, mut reproduction) = paper();
+    for problem in &mut reproduction.record.problems {
+        let mut other = problem.runs[0].clone();
+        other.seed += 1;
+        other.point[0] *= 2.0;
+        problem.runs.push(other);
+    }
+    let html = report::of_reproduction(&library, &reproduction);
+    assert_sound(&html);
+    assert!(html.contains("<strong>Not determined by the claims:</strong> error_scale."));
+}
+
+#[test]
 fn two_runs_write_the_same_bytes() {
     let once = || {
         let (library, reproduction) = paper();
@@ -260,4 +274,13 @@ fn a_flight_without_a_step_has_a_report() {
     let html = of_flight(&text);
     assert_sound(&html);
     assert!(html.contains("Flown"));
+}
+
+#[test]
+fn a_flight_of_a_thousand_steps_does_not_bury_its_report() {
+    let text = HOSTILE.replace("half_period_s = 2.5", "half_period_s = 0.02");
+    let html = of_flight(&text);
+    assert_sound(&html);
+    assert!(html.contains("more steps: `fspid simulate --format json` lists them all"));
+    assert!(html.len() < 2_000_000, "{} bytes", html.len());
 }

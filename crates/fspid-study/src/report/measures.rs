@@ -20,6 +20,9 @@ const COLUMNS: &[Column] = &[
     ("time of peak, s", 2, |step| step.peak_time_s),
 ];
 
+/// More steps than these would bury the rest of a report.
+const MOST_STEPS: usize = 40;
+
 /// Columns that the paper speaks of.
 const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
 
@@ -79,7 +82,20 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
             ..Row::from(cells)
         }
     };
-    metrics.edges.iter().enumerate().map(row).collect()
+    let shown = metrics.edges.iter().enumerate().take(MOST_STEPS);
+    let mut rows: Vec<Row> = shown.map(row).collect();
+    let left_out = metrics.edges.len().saturating_sub(MOST_STEPS);
+    if left_out > 0 {
+        let reason =
+            format!("{left_out} more steps: `fspid simulate --format json` lists them all");
+        let name = Cell::text(&result.name);
+        rows.push(Row::from(vec![
+            name,
+            Cell::text("and"),
+            Cell::left_out(reason, columns.len()),
+        ]));
+    }
+    rows
 }
 
 /// Every step measure of every controller.

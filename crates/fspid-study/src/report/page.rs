@@ -167,6 +167,14 @@ impl Cell {
         }
     }
 
+    /// What is not shown here, over so many columns.
+    pub(super) fn left_out(what: impl Into<String>, span: usize) -> Self {
+        Self {
+            class: "absent",
+            ..Self::failing(what, span)
+        }
+    }
+
     /// Words in which assumptions and errata are linked.
     pub(super) fn linked(text: &str) -> Self {
         Self {

@@ -326,4 +326,15 @@ mod tests {
             "{tuned:#?}"
         );
     }
+
+    #[test]
+    fn a_disturbance_is_described_by_its_shape_and_times() {
+        let text = file::starter().to_owned()
+            + "\n[[disturbance]]\nkind = \"pulse\"\nenters_at = \"elevator\"\namplitude_deg = 2.0\nat_s = 1.0\nwidth_s = 0.5\n";
+        let study = file::parse(&text, "test.toml", None, &[]).expect("the scenario is right");
+        assert_eq!(
+            disturbance_forms(&study.scenario),
+            ["pulse (at 1 s, width 0.5 s)"]
+        );
+    }
 }
