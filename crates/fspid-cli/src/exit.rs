@@ -22,18 +22,12 @@ impl Failure {
 
     /// A requirement or claim check that was not met.
     pub(crate) fn not_met(message: impl Display) -> Self {
-        Self {
-            code: Self::NOT_MET,
-            message: message.to_string(),
-        }
+        Self { code: Self::NOT_MET, message: message.to_string() }
     }
 
     /// Input that cannot be used.
     pub(crate) fn input(message: impl Display) -> Self {
-        Self {
-            code: Self::INPUT,
-            message: message.to_string(),
-        }
+        Self { code: Self::INPUT, message: message.to_string() }
     }
 
     pub(crate) fn code(&self) -> u8 {
@@ -44,21 +38,14 @@ impl Failure {
     pub(crate) fn tell(&self) {
         let message = self.message.trim_end();
         // A list of located problems begins with its first place, so that editors can jump there.
-        let name = if message.contains('\n') {
-            ""
-        } else {
-            "fspid: "
-        };
+        let name = if message.contains('\n') { "" } else { "fspid: " };
         let _ = writeln!(io::stderr(), "{name}{message}");
     }
 }
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        Self {
-            code: Self::OUTPUT,
-            message: error.to_string(),
-        }
+        Self { code: Self::OUTPUT, message: error.to_string() }
     }
 }
 

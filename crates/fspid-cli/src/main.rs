@@ -40,11 +40,7 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are no mistakes; clap knows which stream is right.
-            let code = if error.use_stderr() {
-                Failure::INPUT
-            } else {
-                0
-            };
+            let code = if error.use_stderr() { Failure::INPUT } else { 0 };
             return match error.print() {
                 Ok(()) => ExitCode::from(code),
                 Err(_) => ExitCode::from(Failure::OUTPUT),

@@ -85,27 +85,15 @@ fn infer_answers_the_reference_point_as_json() {
 #[test]
 fn infer_answers_a_file_of_points_with_seventeen_digits_a_number() {
     let folder = folder();
-    std::fs::write(
-        folder.path().join("p.csv"),
-        "kind,e,ec\nx,1,-2\nx,0.0,0\n\n",
-    )
-    .expect("written");
-    let answer = fspid(
-        &["infer", "--range", "5", "--points", "p.csv"],
-        folder.path(),
-    );
+    std::fs::write(folder.path().join("p.csv"), "kind,e,ec\nx,1,-2\nx,0.0,0\n\n").expect("written");
+    let answer = fspid(&["infer", "--range", "5", "--points", "p.csv"], folder.path());
     assert_eq!(code(&answer), 0, "{}", stderr(&answer));
     let text = stdout(&answer);
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 3);
     assert_eq!(lines[0], "e,ec,delta_kp,delta_ki,delta_kd");
     for word in lines[1].split(',') {
-        let digits = word
-            .split('e')
-            .next()
-            .expect("mantissa")
-            .matches(char::is_numeric)
-            .count();
+        let digits = word.split('e').next().expect("mantissa").matches(char::is_numeric).count();
         assert_eq!(digits, 17, "{word}");
     }
 }
@@ -114,10 +102,7 @@ fn infer_answers_a_file_of_points_with_seventeen_digits_a_number() {
 fn infer_refuses_bad_points_with_their_lines_and_answers_none() {
     let folder = folder();
     std::fs::write(folder.path().join("p.csv"), "e,ec\n1,2\nx,3\n1,1e999\n").expect("written");
-    let answer = fspid(
-        &["infer", "--range", "5", "--points", "p.csv"],
-        folder.path(),
-    );
+    let answer = fspid(&["infer", "--range", "5", "--points", "p.csv"], folder.path());
     assert_eq!((code(&answer), stdout(&answer).len()), (2, 0));
     let message = stderr(&answer);
     assert!(message.contains("p.csv:3: e is `x`"), "{message}");
@@ -147,12 +132,7 @@ fn infer_tells_every_problem_of_a_question_at_once() {
     );
     assert_eq!(code(&answer), 2);
     let message = stderr(&answer);
-    for part in [
-        "printed, mirrored",
-        "--range is -5",
-        "endpoints:N",
-        "clamp, evaluate, error",
-    ] {
+    for part in ["printed, mirrored", "--range is -5", "endpoints:N", "clamp, evaluate, error"] {
         assert!(message.contains(part), "{part} in {message}");
     }
 }
@@ -162,17 +142,7 @@ fn infer_refuses_what_the_policy_refuses() {
     let folder = folder();
     let ask = |error: &str, policy: &str| {
         fspid(
-            &[
-                "infer",
-                "--range",
-                "5",
-                "--error",
-                error,
-                "--change",
-                "0",
-                "--out-of-range",
-                policy,
-            ],
+            &["infer", "--range", "5", "--error", error, "--change", "0", "--out-of-range", policy],
             folder.path(),
         )
     };
@@ -189,22 +159,10 @@ fn the_starter_is_good_flies_and_is_not_overwritten() {
     assert_eq!(code(&fspid(&["init", "pitch.toml"], folder.path())), 0);
     let before = std::fs::read(folder.path().join("pitch.toml")).expect("written");
     assert_eq!(code(&fspid(&["init", "pitch.toml"], folder.path())), 2);
-    assert_eq!(
-        std::fs::read(folder.path().join("pitch.toml")).expect("still there"),
-        before
-    );
+    assert_eq!(std::fs::read(folder.path().join("pitch.toml")).expect("still there"), before);
     assert_eq!(code(&fspid(&["check", "pitch.toml"], folder.path())), 0);
-    let flown = fspid(
-        &[
-            "simulate",
-            "pitch.toml",
-            "--report",
-            "r.html",
-            "--trace",
-            "t.csv",
-        ],
-        folder.path(),
-    );
+    let flown =
+        fspid(&["simulate", "pitch.toml", "--report", "r.html", "--trace", "t.csv"], folder.path());
     assert_eq!(code(&flown), 0, "{}", stderr(&flown));
     let report = std::fs::read_to_string(folder.path().join("r.html")).expect("written");
     assert!(report.contains("</html>") && !report.contains("<script"));
@@ -214,14 +172,8 @@ fn the_starter_is_good_flies_and_is_not_overwritten() {
 fn simulate_answers_metrics_and_says_why_one_is_absent() {
     let folder = folder();
     example(folder.path());
-    let answer = json(&fspid(
-        &["simulate", "a.toml", "--format", "json"],
-        folder.path(),
-    ));
-    assert_eq!(
-        (&answer["schema"], &answer["scenario"]),
-        (&1.into(), &"747 pitch step".into())
-    );
+    let answer = json(&fspid(&["simulate", "a.toml", "--format", "json"], folder.path()));
+    assert_eq!((&answer["schema"], &answer["scenario"]), (&1.into(), &"747 pitch step".into()));
     let pc = &answer["controllers"][0];
     assert_eq!(pc["name"], "PC");
     // Sampled at 10 ms; in continuous time this loop overshoots 14.6 %.
@@ -229,14 +181,7 @@ fn simulate_answers_metrics_and_says_why_one_is_absent() {
     assert!((overshoot - 15.211_245).abs() < 1e-4, "{overshoot}");
     assert_eq!(pc["absent"]["settling_time_s"], "not settled within 20 s");
     assert!(pc["metrics"]["settling_time_s"].is_null());
-    for name in [
-        "rise_time_s",
-        "final_error_pct",
-        "iae",
-        "itae",
-        "ise",
-        "command_variation",
-    ] {
+    for name in ["rise_time_s", "final_error_pct", "iae", "itae", "ise", "command_variation"] {
         assert!(pc["metrics"][name].is_number(), "{name}");
     }
 }
@@ -256,16 +201,10 @@ fn a_trace_has_a_row_for_every_sample_and_columns_by_controller() {
         "",
     );
     std::fs::write(folder.path().join("one.toml"), single).expect("written");
-    fspid(
-        &["simulate", "one.toml", "--trace", "one.csv"],
-        folder.path(),
-    );
+    fspid(&["simulate", "one.toml", "--trace", "one.csv"], folder.path());
     let text = std::fs::read_to_string(folder.path().join("one.csv")).expect("written");
     let header = text.lines().next().expect("a heading");
-    assert_eq!(
-        header,
-        "time_s,setpoint_deg,theta_deg,q_deg_s,command_deg,elevator_deg,kp,ki,kd"
-    );
+    assert_eq!(header, "time_s,setpoint_deg,theta_deg,q_deg_s,command_deg,elevator_deg,kp,ki,kd");
 }
 
 #[test]
@@ -273,27 +212,16 @@ fn an_unstable_loop_is_a_result_without_metrics() {
     let folder = folder();
     example(folder.path());
     let fly = |set: &str| {
-        let output = fspid(
-            &["simulate", "a.toml", "--format", "json", "--set", set],
-            folder.path(),
-        );
+        let output =
+            fspid(&["simulate", "a.toml", "--format", "json", "--set", set], folder.path());
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         json(&output)["controllers"][0].clone()
     };
     let wild = fly("controller.PC.kp=100");
-    assert!(
-        wild["verdict"]
-            .as_str()
-            .expect("text")
-            .starts_with("diverged at t = "),
-        "{wild}"
-    );
+    assert!(wild["verdict"].as_str().expect("text").starts_with("diverged at t = "), "{wild}");
     // Above the neutral gain with the gyro switched off it grows too slowly to be seen.
     let slow = fly("controller.PC.rate_gain=0.0");
-    assert!(
-        !slow["verdict"].as_str().expect("text").contains("unstable"),
-        "{slow}"
-    );
+    assert!(!slow["verdict"].as_str().expect("text").contains("unstable"), "{slow}");
     let output = fspid(
         &[
             "simulate",
@@ -308,20 +236,11 @@ fn an_unstable_loop_is_a_result_without_metrics() {
         folder.path(),
     );
     let grows = json(&output)["controllers"][0].clone();
-    assert!(
-        grows["verdict"]
-            .as_str()
-            .expect("text")
-            .starts_with("unstable"),
-        "{grows}"
-    );
+    assert!(grows["verdict"].as_str().expect("text").starts_with("unstable"), "{grows}");
     for result in [&wild, &grows] {
         let metrics = result["metrics"].as_object().expect("an object");
         assert!(metrics.values().all(Value::is_null), "{result}");
-        assert_eq!(
-            metrics.len(),
-            result["absent"].as_object().expect("an object").len()
-        );
+        assert_eq!(metrics.len(), result["absent"].as_object().expect("an object").len());
     }
 }
 
@@ -329,23 +248,13 @@ fn an_unstable_loop_is_a_result_without_metrics() {
 fn a_requirement_that_is_not_met_ends_with_one() {
     let folder = folder();
     let requirement = "[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 12.0\n";
-    std::fs::write(
-        folder.path().join("a.toml"),
-        format!("{EXAMPLE}\n{requirement}"),
-    )
-    .expect("written");
+    std::fs::write(folder.path().join("a.toml"), format!("{EXAMPLE}\n{requirement}"))
+        .expect("written");
     let both = fspid(&["simulate", "a.toml"], folder.path());
     assert_eq!(code(&both), 1);
     assert!(stdout(&both).contains("NOT MET: PC") && stdout(&both).contains("met: FSPID"));
-    let one = fspid(
-        &[
-            "simulate",
-            "a.toml",
-            "--set",
-            "requirement[0].controller=FSPID",
-        ],
-        folder.path(),
-    );
+    let one =
+        fspid(&["simulate", "a.toml", "--set", "requirement[0].controller=FSPID"], folder.path());
     assert_eq!(code(&one), 0, "{}", stderr(&one));
 }
 
@@ -357,19 +266,11 @@ fn every_problem_of_a_file_is_told_with_its_line_and_nothing_is_written() {
         .replace("time_constant_s = 0.1", "time_constant_s = -1")
         .replace("preset = \"b747-paper\"", "preset = \"b747-papr\"");
     std::fs::write(folder.path().join("bad.toml"), bad).expect("written");
-    for command in [
-        &["check", "bad.toml"][..],
-        &["simulate", "bad.toml", "--trace", "t.csv"],
-    ] {
+    for command in [&["check", "bad.toml"][..], &["simulate", "bad.toml", "--trace", "t.csv"]] {
         let output = fspid(command, folder.path());
         assert_eq!((code(&output), stdout(&output).len()), (2, 0));
         let message = stderr(&output);
-        for part in [
-            "bad.toml:5:",
-            "bad.toml:7:",
-            "bad.toml:17:",
-            "did you mean \"b747-paper\"?",
-        ] {
+        for part in ["bad.toml:5:", "bad.toml:7:", "bad.toml:17:", "did you mean \"b747-paper\"?"] {
             assert!(message.contains(part), "{part} in {message}");
         }
     }
@@ -380,14 +281,8 @@ fn every_problem_of_a_file_is_told_with_its_line_and_nothing_is_written() {
 fn a_missing_file_and_a_huge_flight_end_with_two() {
     let folder = folder();
     example(folder.path());
-    assert_eq!(
-        code(&fspid(&["simulate", "nowhere.toml"], folder.path())),
-        2
-    );
-    let huge = fspid(
-        &["simulate", "a.toml", "--set", "loop.duration_s=1e10"],
-        folder.path(),
-    );
+    assert_eq!(code(&fspid(&["simulate", "nowhere.toml"], folder.path())), 2);
+    let huge = fspid(&["simulate", "a.toml", "--set", "loop.duration_s=1e10"], folder.path());
     assert_eq!(code(&huge), 2);
     assert!(stderr(&huge).contains("samples"), "{}", stderr(&huge));
     assert_eq!(code(&fspid(&["fly"], folder.path())), 2);
@@ -400,24 +295,15 @@ fn an_output_that_cannot_be_written_ends_with_four_and_keeps_the_old_file() {
     let folder = folder();
     example(folder.path());
     std::fs::create_dir(folder.path().join("in-the-way")).expect("made");
-    let output = fspid(
-        &["simulate", "a.toml", "--trace", "in-the-way"],
-        folder.path(),
-    );
+    let output = fspid(&["simulate", "a.toml", "--trace", "in-the-way"], folder.path());
     assert_eq!(code(&output), 4, "{}", stderr(&output));
-    let output = fspid(
-        &["simulate", "a.toml", "--trace", "missing/t.csv"],
-        folder.path(),
-    );
+    let output = fspid(&["simulate", "a.toml", "--trace", "missing/t.csv"], folder.path());
     assert_eq!(code(&output), 4, "{}", stderr(&output));
     assert!(stderr(&output).contains("nothing there was changed"));
     std::fs::write(folder.path().join("file"), "old").expect("written");
     let output = fspid(&["reproduce", "--out", "file"], folder.path());
     assert_eq!(code(&output), 4, "{}", stderr(&output));
-    assert_eq!(
-        std::fs::read_to_string(folder.path().join("file")).expect("there"),
-        "old"
-    );
+    assert_eq!(std::fs::read_to_string(folder.path().join("file")).expect("there"), "old");
 }
 
 #[cfg(target_os = "linux")]
@@ -425,10 +311,7 @@ fn an_output_that_cannot_be_written_ends_with_four_and_keeps_the_old_file() {
 fn a_full_standard_output_ends_with_four() {
     let folder = folder();
     example(folder.path());
-    let full = std::fs::File::options()
-        .write(true)
-        .open("/dev/full")
-        .expect("a full device");
+    let full = std::fs::File::options().write(true).open("/dev/full").expect("a full device");
     let status = Command::new(env!("CARGO_BIN_EXE_fspid"))
         .args(["simulate", "a.toml"])
         .current_dir(folder.path())
@@ -446,20 +329,15 @@ fn two_runs_of_everything_write_the_same_bytes() {
     for run in ["one", "two"] {
         std::fs::create_dir(folder.path().join(run)).expect("made");
         let (trace, report) = (format!("{run}/t.csv"), format!("{run}/r.html"));
-        let flown = fspid(
-            &["simulate", "a.toml", "--trace", &trace, "--report", &report],
-            folder.path(),
-        );
+        let flown =
+            fspid(&["simulate", "a.toml", "--trace", &trace, "--report", &report], folder.path());
         std::fs::write(folder.path().join(run).join("answer.txt"), stdout(&flown))
             .expect("written");
         let out = format!("{run}/paper");
         let paper = fspid(&["reproduce", "--check", "--out", &out], folder.path());
         assert_eq!(code(&paper), 0, "{}", stderr(&paper));
     }
-    let (one, two) = (
-        files(&folder.path().join("one")),
-        files(&folder.path().join("two")),
-    );
+    let (one, two) = (files(&folder.path().join("one")), files(&folder.path().join("two")));
     assert!(one.len() > 20, "{} files", one.len());
     assert_eq!(
         one.iter().map(|(name, _)| name).collect::<Vec<_>>(),
@@ -480,11 +358,7 @@ fn files(root: &Path) -> Vec<(String, Vec<u8>)> {
             if path.is_dir() {
                 folders.push(path);
             } else {
-                let name = path
-                    .strip_prefix(root)
-                    .expect("below")
-                    .display()
-                    .to_string();
+                let name = path.strip_prefix(root).expect("below").display().to_string();
                 found.push((name, std::fs::read(path).expect("read")));
             }
         }

@@ -47,27 +47,15 @@ pub enum ConfigError {
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Number {
-                what,
-                found,
-                allowed,
-            } => {
+            Self::Number { what, found, allowed } => {
                 write!(f, "{what} is {found:?}; allowed is {allowed}")
             }
             Self::EmptyRange { what, lower, upper } => write!(
                 f,
                 "{what} are {lower:?} to {upper:?}; the lower must be below the upper, and neither NaN"
             ),
-            Self::OutsideLimits {
-                what,
-                found,
-                lower,
-                upper,
-            } => {
-                write!(
-                    f,
-                    "{what} is {found:?}, outside its limits {lower:?} to {upper:?}"
-                )
+            Self::OutsideLimits { what, found, lower, upper } => {
+                write!(f, "{what} is {found:?}, outside its limits {lower:?} to {upper:?}")
             }
             Self::Conflict { what } => f.write_str(what),
         }
@@ -113,9 +101,5 @@ pub(crate) fn allowed_if<R: Real>(
         return Ok(value);
     }
     let found = value.to_f64();
-    Err(ConfigError::Number {
-        what,
-        found,
-        allowed,
-    })
+    Err(ConfigError::Number { what, found, allowed })
 }

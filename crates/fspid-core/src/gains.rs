@@ -20,11 +20,7 @@ pub struct Gains<R> {
 
 impl<R: Real> Gains<R> {
     /// No gains.
-    pub const ZERO: Self = Self {
-        kp: R::ZERO,
-        ki: R::ZERO,
-        kd: R::ZERO,
-    };
+    pub const ZERO: Self = Self { kp: R::ZERO, ki: R::ZERO, kd: R::ZERO };
 
     /// From the ISA form $u = K (e + \frac{1}{T_i} \int e \, dt + T_d \dot e)$; an infinite `ti_s`
     /// means no integral action. A filter is [`Derivative::from_isa`](crate::Derivative::from_isa).
@@ -37,12 +33,7 @@ impl<R: Real> Gains<R> {
         // Infinity passes, NaN does not.
         let ti_s = allowed_if(ti_s > R::ZERO, "Ti, s", ti_s, "a number above 0")?;
         let td_s = not_negative("Td, s", td_s)?;
-        Self {
-            kp: gain,
-            ki: gain / ti_s,
-            kd: gain * td_s,
-        }
-        .checked()
+        Self { kp: gain, ki: gain / ti_s, kd: gain * td_s }.checked()
     }
 
     /// The gains if each is finite.
@@ -63,11 +54,7 @@ impl<R: Real> Gains<R> {
 
     /// Gain by gain, `f(self, other)`.
     pub(crate) fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {
-        Self {
-            kp: f(self.kp, other.kp),
-            ki: f(self.ki, other.ki),
-            kd: f(self.kd, other.kd),
-        }
+        Self { kp: f(self.kp, other.kp), ki: f(self.ki, other.ki), kd: f(self.kd, other.kd) }
     }
 }
 

@@ -64,9 +64,7 @@ impl Faults {
 
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut names = Self::NAMES
-            .iter()
-            .filter(|(fault, _)| self.contains(*fault));
+        let mut names = Self::NAMES.iter().filter(|(fault, _)| self.contains(*fault));
         f.write_str(names.next().map_or("none", |(_, name)| name))?;
         names.try_for_each(|(_, name)| write!(f, ", {name}"))
     }
@@ -84,33 +82,22 @@ impl<R: Real> Guard<R> {
     /// # Errors
     /// [`ConfigError::Number`] unless the limit is finite and positive.
     pub fn new(limit_rad: R) -> Result<Self, ConfigError> {
-        Ok(Self {
-            limit: positive("sample guard, rad", limit_rad)?,
-        })
+        Ok(Self { limit: positive("sample guard, rad", limit_rad)? })
     }
 
     /// The fault of a sample, if it has one.
     pub(crate) fn fault(&self, sample: Sample<R>) -> Option<Faults> {
-        let values = [
-            sample.setpoint_rad,
-            sample.measurement_rad,
-            sample.rate_rad_s,
-        ];
+        let values = [sample.setpoint_rad, sample.measurement_rad, sample.rate_rad_s];
         if values.iter().any(|value| !value.is_finite()) {
             return Some(Faults::NOT_FINITE);
         }
-        values
-            .iter()
-            .any(|value| value.abs() > self.limit)
-            .then_some(Faults::ABSURD)
+        values.iter().any(|value| value.abs() > self.limit).then_some(Faults::ABSURD)
     }
 }
 
 impl<R: Real> Default for Guard<R> {
     /// 10⁹ degrees: no aircraft, but far from overflow.
     fn default() -> Self {
-        Self {
-            limit: R::from_f64(1e9 * core::f64::consts::PI / 180.0),
-        }
+        Self { limit: R::from_f64(1e9 * core::f64::consts::PI / 180.0) }
     }
 }

@@ -32,10 +32,7 @@
 #![no_std]
 #![cfg_attr(
     test,
-    allow(
-        clippy::float_cmp,
-        reason = "tests ask for exact bits where they compare floats"
-    )
+    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
 #[cfg(test)]

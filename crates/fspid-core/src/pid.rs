@@ -22,10 +22,7 @@ impl<R: Real> Pid<R> {
     /// [`ConfigError`] names the first setting that is not allowed.
     pub fn new(gains: Gains<R>, shell: Shell<R>) -> Result<Self, ConfigError> {
         shell.check()?;
-        Ok(Self {
-            gains: gains.checked()?,
-            shell,
-        })
+        Ok(Self { gains: gains.checked()?, shell })
     }
 
     /// The gains.
@@ -91,9 +88,7 @@ impl<R: Real> Fspid<R> {
         };
         let error_rad = sample.setpoint_rad - sample.measurement_rad;
         let delta_rad = state.error_delta(error_rad);
-        let answer = self
-            .tuner
-            .gains(state.gains(), error_rad, delta_rad, self.shell.dt_s);
+        let answer = self.tuner.gains(state.gains(), error_rad, delta_rad, self.shell.dt_s);
         match answer {
             Ok((gains, fault)) => {
                 state.latch(fault);

@@ -85,10 +85,7 @@ impl<R: Real> Shell<R> {
         Self {
             dt_s,
             rate_gain_s: R::ZERO,
-            setpoint_weights: SetpointWeights {
-                proportional: R::ONE,
-                derivative: R::ONE,
-            },
+            setpoint_weights: SetpointWeights { proportional: R::ONE, derivative: R::ONE },
             derivative: Derivative { filter_s: R::ZERO },
             integral: IntegralForm::default(),
             anti_windup: AntiWindup::None,
@@ -108,14 +105,8 @@ impl<R: Real> Shell<R> {
     pub(crate) fn check(&self) -> Result<(), ConfigError> {
         positive("sample period, s", self.dt_s)?;
         finite("rate_gain, s", self.rate_gain_s)?;
-        finite(
-            "set-point weight of the proportional term",
-            self.setpoint_weights.proportional,
-        )?;
-        finite(
-            "set-point weight of the derivative term",
-            self.setpoint_weights.derivative,
-        )?;
+        finite("set-point weight of the proportional term", self.setpoint_weights.proportional)?;
+        finite("set-point weight of the derivative term", self.setpoint_weights.derivative)?;
         not_negative("derivative filter, s", self.derivative.filter_s)?;
         self.anti_windup.check(self.dt_s)?;
         if let Some(slew) = self.slew_rad_s {
@@ -146,9 +137,7 @@ impl<R: Real> Shell<R> {
         let last_rad = state.command_rad;
         Step {
             // Only a memory that this controller has not written can lie outside the limits.
-            command_rad: self
-                .limits
-                .map_or(last_rad, |limits| limits.clamp(last_rad)),
+            command_rad: self.limits.map_or(last_rad, |limits| limits.clamp(last_rad)),
             gains: state.gains().unwrap_or(gains),
             saturated: false,
             faults: state.faults,
@@ -160,11 +149,7 @@ impl<R: Real> Shell<R> {
     /// Either the whole memory moves on, or none of it (overflow: held and latched).
     #[inline]
     pub(crate) fn step(&self, state: &mut State<R>, sample: Sample<R>, gains: Gains<R>) -> Step<R> {
-        let Sample {
-            setpoint_rad,
-            measurement_rad,
-            rate_rad_s,
-        } = sample;
+        let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
         let weights = self.setpoint_weights;
         let error_rad = setpoint_rad - measurement_rad;
         let proportional_rad = gains.kp * (weights.proportional * setpoint_rad - measurement_rad);
@@ -189,11 +174,7 @@ impl<R: Real> Shell<R> {
         if !(clear && free_rad.is_finite()) {
             return self.hold(state, Faults::OVERFLOW, gains);
         }
-        let previous = Previous {
-            error_rad,
-            derivative_input_rad,
-            gains,
-        };
+        let previous = Previous { error_rad, derivative_input_rad, gains };
         *state = State {
             command_rad,
             integral,
@@ -201,21 +182,11 @@ impl<R: Real> Shell<R> {
             previous: Some(previous),
             faults: state.faults,
         };
-        Step {
-            command_rad,
-            gains,
-            saturated: excess_rad != R::ZERO,
-            faults: state.faults,
-        }
+        Step { command_rad, gains, saturated: excess_rad != R::ZERO, faults: state.faults }
     }
 
     fn integrator(&self, ki: R) -> Integrator<R> {
-        Integrator {
-            form: self.integral,
-            anti_windup: self.anti_windup,
-            dt_s: self.dt_s,
-            ki,
-        }
+        Integrator { form: self.integral, anti_windup: self.anti_windup, dt_s: self.dt_s, ki }
     }
 
     fn derivative_of(&self, state: &State<R>, input_rad: R) -> R {

@@ -74,8 +74,7 @@ impl<R: Real> State<R> {
 
     /// $e_k - e_{k-1}$, zero at the first sample.
     pub(crate) fn error_delta(&self, error_rad: R) -> R {
-        self.previous
-            .map_or(R::ZERO, |previous| error_rad - previous.error_rad)
+        self.previous.map_or(R::ZERO, |previous| error_rad - previous.error_rad)
     }
 
     pub(crate) fn latch(&mut self, fault: Faults) {

@@ -83,15 +83,8 @@ impl<R: Real> TunerSettings<R> {
         Self {
             error_sign: ErrorSign::default(),
             change: Change::default(),
-            input_scale: InputScale {
-                error_per_rad: R::ONE,
-                change_per_rad: R::ONE,
-            },
-            output_scale: Gains {
-                kp: R::ONE,
-                ki: R::ONE,
-                kd: R::ONE,
-            },
+            input_scale: InputScale { error_per_rad: R::ONE, change_per_rad: R::ONE },
+            output_scale: Gains { kp: R::ONE, ki: R::ONE, kd: R::ONE },
             law: Law::Memoryless,
             gain_limits: None,
             dead_zone: None,
@@ -139,11 +132,7 @@ impl<R: Real> SelfTuner<R> {
         if let Some(limits) = settings.gain_limits {
             limits.check(nominal)?;
         }
-        Ok(Self {
-            nominal,
-            supervisor,
-            settings,
-        })
+        Ok(Self { nominal, supervisor, settings })
     }
 
     /// The nominal gains $k'$.
@@ -192,11 +181,7 @@ impl<R: Real> SelfTuner<R> {
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
-        let fault = if inference.underflowed {
-            Faults::UNDERFLOW
-        } else {
-            Faults::NONE
-        };
+        let fault = if inference.underflowed { Faults::UNDERFLOW } else { Faults::NONE };
         let delta = Gains::from(inference.delta);
         Ok((settings.output_scale.zip(delta, |s, d| s * d), fault))
     }
@@ -242,9 +227,7 @@ impl<R: Real> SelfTuner<R> {
     /// leaks; with a leakage they settle at $k' + s \Delta k / \lambda$.
     pub fn gains_at_rest(&self) -> Gains<R> {
         // The origin is within every range, so there always is an answer.
-        let (added, _) = self
-            .increments(R::ZERO, R::ZERO)
-            .unwrap_or((Gains::ZERO, Faults::NONE));
+        let (added, _) = self.increments(R::ZERO, R::ZERO).unwrap_or((Gains::ZERO, Faults::NONE));
         self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
     }
 

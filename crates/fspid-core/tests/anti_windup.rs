@@ -1,9 +1,6 @@
 //! What each anti-windup promises, in both forms of the integral.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod common;
 
@@ -12,11 +9,7 @@ use fspid_core::{AntiWindup, Gains, IntegralForm, Limits, Shell, State, Step};
 use proptest::prelude::*;
 
 const FORMS: [IntegralForm; 2] = [IntegralForm::Bumpless, IntegralForm::Literal];
-const ONLY_KI: Gains<f64> = Gains {
-    kp: 0.0,
-    ki: 0.5,
-    kd: 0.0,
-};
+const ONLY_KI: Gains<f64> = Gains { kp: 0.0, ki: 0.5, kd: 0.0 };
 
 fn limits(lower: f64, upper: f64) -> Limits<f64> {
     Limits::new("limits", lower, upper).expect("lower is below upper")
@@ -24,20 +17,12 @@ fn limits(lower: f64, upper: f64) -> Limits<f64> {
 
 /// Command limits of one rad to both sides.
 fn shell(integral: IntegralForm, anti_windup: AntiWindup<f64>) -> Shell<f64> {
-    Shell {
-        integral,
-        anti_windup,
-        limits: Some(limits(-1.0, 1.0)),
-        ..Shell::sampled_every(T)
-    }
+    Shell { integral, anti_windup, limits: Some(limits(-1.0, 1.0)), ..Shell::sampled_every(T) }
 }
 
 /// A memory whose integral term under [`ONLY_KI`] is `term_rad`, at a zero error.
 fn wound_to(term_rad: f64, integral: IntegralForm) -> State<f64> {
-    let bare = Shell {
-        integral,
-        ..Shell::sampled_every(T)
-    };
+    let bare = Shell { integral, ..Shell::sampled_every(T) };
     let (controller, mut state) = (pid(ONLY_KI, bare), State::new());
     controller.step(&mut state, error(term_rad / (ONLY_KI.ki * T)));
     controller.step(&mut state, error(0.0));
@@ -60,22 +45,14 @@ fn without_anti_windup_the_integral_winds_up_behind_the_limit() {
 
 #[test]
 fn a_command_is_saturated_where_an_output_or_slew_limit_cut_it_to_either_side() {
-    let (limited, mut slewed) = (
-        shell(IntegralForm::Bumpless, AntiWindup::None),
-        Shell::sampled_every(T),
-    );
+    let (limited, mut slewed) =
+        (shell(IntegralForm::Bumpless, AntiWindup::None), Shell::sampled_every(T));
     slewed.slew_rad_s = Some(100.0);
-    let only_kp = Gains {
-        kp: 2.0,
-        ..Gains::ZERO
-    };
+    let only_kp = Gains { kp: 2.0, ..Gains::ZERO };
     for shell in [limited, slewed] {
-        for (error_rad, command_rad, saturated) in [
-            (0.5, 1.0, false),
-            (0.6, 1.0, true),
-            (-0.5, -1.0, false),
-            (-0.6, -1.0, true),
-        ] {
+        for (error_rad, command_rad, saturated) in
+            [(0.5, 1.0, false), (0.6, 1.0, true), (-0.5, -1.0, false), (-0.6, -1.0, true)]
+        {
             let step = pid(only_kp, shell).step(&mut State::new(), error(error_rad));
             assert_eq!((step.command_rad, step.saturated), (command_rad, saturated));
         }
@@ -96,17 +73,11 @@ fn back_calculation_returns_to_the_limit_with_the_tracking_time_constant() {
             beyond_rad *= 1.0 - T / tracking_s;
             let found = integral_term(&state, ONLY_KI.ki, shell) - 1.0;
             // A thousand samples, each with a few roundings of a number below 5.
-            assert!(
-                (found - beyond_rad).abs() < 1e-12,
-                "{form:?} {k}: {found} {beyond_rad}"
-            );
+            assert!((found - beyond_rad).abs() < 1e-12, "{form:?} {k}: {found} {beyond_rad}");
             if k == 100 {
                 // One time constant; (1 - T/Tt)^(Tt/T) is below e^-1 by about T/(2 Tt) of it.
                 let continuous = 4.0 / std::f64::consts::E;
-                assert!(
-                    (found / continuous - 1.0).abs() < 0.6 * T / tracking_s,
-                    "{found}"
-                );
+                assert!((found / continuous - 1.0).abs() < 0.6 * T / tracking_s, "{found}");
             }
         }
     }
@@ -125,10 +96,7 @@ fn back_calculation_rests_where_error_and_correction_balance() {
         let beyond_rad = integral_term(&state, ONLY_KI.ki, shell) - 1.0;
         let expected = ONLY_KI.ki * 0.8 * tracking_s * (1.0 - T / tracking_s);
         // (1 - T/Tt)^4000 is below 1e-35: only roundings are left.
-        assert!(
-            (beyond_rad - expected).abs() < 1e-13,
-            "{form:?}: {beyond_rad}"
-        );
+        assert!((beyond_rad - expected).abs() < 1e-13, "{form:?}: {beyond_rad}");
     }
 }
 
@@ -149,17 +117,8 @@ fn back_calculation_within_one_period_takes_all_of_the_excess_back() {
 fn back_calculation_leaves_a_controller_without_integral_action_alone() {
     for form in FORMS {
         let shell = shell(form, AntiWindup::BackCalculation { tracking_s: 0.1 });
-        let (controller, mut state) = (
-            pid(
-                Gains {
-                    ki: 0.0,
-                    kd: 0.0,
-                    ..NOMINAL
-                },
-                shell,
-            ),
-            State::new(),
-        );
+        let (controller, mut state) =
+            (pid(Gains { ki: 0.0, kd: 0.0, ..NOMINAL }, shell), State::new());
         for _ in 0..100 {
             assert_eq!(controller.step(&mut state, error(3.0)).command_rad, 1.0);
         }
@@ -171,20 +130,8 @@ fn back_calculation_leaves_a_controller_without_integral_action_alone() {
 /// the command with it for as long as it was cut.
 #[test]
 fn back_calculation_of_a_sum_with_a_tiny_gain_still_answers() {
-    let shell = shell(
-        IntegralForm::Literal,
-        AntiWindup::BackCalculation { tracking_s: 0.1 },
-    );
-    let (controller, mut state) = (
-        pid(
-            Gains {
-                ki: 1e-310,
-                ..NOMINAL
-            },
-            shell,
-        ),
-        State::new(),
-    );
+    let shell = shell(IntegralForm::Literal, AntiWindup::BackCalculation { tracking_s: 0.1 });
+    let (controller, mut state) = (pid(Gains { ki: 1e-310, ..NOMINAL }, shell), State::new());
     let step = controller.step(&mut state, error(3.0));
     assert_eq!(step.command_rad, 1.0);
     assert!(step.saturated && step.faults.is_empty(), "{step:?}");
@@ -200,15 +147,9 @@ fn conditional_integration_stops_at_the_limit_and_turns_back_at_once() {
         }
         let term_rad = integral_term(&state, ONLY_KI.ki, shell);
         // The last whole increment of 0.005 below the limit.
-        assert!(
-            term_rad <= 1.0 && term_rad > 0.995 - 1e-12,
-            "{form:?}: {term_rad}"
-        );
+        assert!(term_rad <= 1.0 && term_rad > 0.995 - 1e-12, "{form:?}: {term_rad}");
         let step = controller.step(&mut state, error(-1.0));
-        assert!(
-            !step.saturated && step.command_rad < 1.0,
-            "{form:?}: {step:?}"
-        );
+        assert!(!step.saturated && step.command_rad < 1.0, "{form:?}: {step:?}");
     }
 }
 
@@ -221,10 +162,7 @@ fn conditional_integration_stops_for_the_smallest_excess() {
         limits: Some(Limits::new("limits", -1.0, 1e-30).expect("lower is below upper")),
         ..Shell::sampled_every(0.01_f32)
     };
-    let only_ki = Gains {
-        ki: 1.0,
-        ..Gains::ZERO
-    };
+    let only_ki = Gains { ki: 1.0, ..Gains::ZERO };
     let (controller, mut state) = (pid(only_ki, shell), State::new());
     assert!(controller.step(&mut state, error(1e-23)).saturated);
     assert_eq!(integral_term(&state, 1.0, shell), 0.0);
@@ -258,10 +196,7 @@ fn a_command_that_clamping_keeps_within_its_limits_is_not_saturated() {
 /// its limit, far beside after a large error: 50 + (0.1 - 50) is 0.1 + 1.5e-15.
 #[test]
 fn a_clamped_integral_is_exactly_its_limit() {
-    let shell = shell(
-        IntegralForm::Bumpless,
-        AntiWindup::Clamping(limits(-0.1, 0.1)),
-    );
+    let shell = shell(IntegralForm::Bumpless, AntiWindup::Clamping(limits(-0.1, 0.1)));
     let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
     controller.step(&mut state, error(1e4));
     assert_eq!(integral_term(&state, ONLY_KI.ki, shell), 0.1);

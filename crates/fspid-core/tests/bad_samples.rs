@@ -1,14 +1,8 @@
 //! One bad sample does no harm: the output is held, the fault latched, the next good sample is
 //! answered as if the bad one had not been.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
-#![allow(
-    clippy::disallowed_methods,
-    reason = "powers of two are exact everywhere"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+#![allow(clippy::disallowed_methods, reason = "powers of two are exact everywhere")]
 
 mod common;
 
@@ -26,9 +20,7 @@ fn full_shell<R: Real>(integral: IntegralForm) -> Shell<R> {
     shell.rate_gain_s = number(0.3);
     shell.derivative.filter_s = number(0.05);
     shell.integral = integral;
-    shell.anti_windup = AntiWindup::BackCalculation {
-        tracking_s: number(1.0),
-    };
+    shell.anti_windup = AntiWindup::BackCalculation { tracking_s: number(1.0) };
     shell.limits = Limits::new("limits", number(-0.5), number(0.5)).ok();
     shell.slew_rad_s = Some(number(20.0));
     shell
@@ -36,10 +28,7 @@ fn full_shell<R: Real>(integral: IntegralForm) -> Shell<R> {
 
 fn accumulating<R: Real>() -> TunerSettings<R> {
     let leakage_per_s = R::from_f64(0.1);
-    TunerSettings {
-        law: Law::Accumulating { leakage_per_s },
-        ..TunerSettings::literal()
-    }
+    TunerSettings { law: Law::Accumulating { leakage_per_s }, ..TunerSettings::literal() }
 }
 
 /// Either controller, to run the same test on both.
@@ -68,18 +57,9 @@ impl<R: Real> Controller<R> {
 /// The sample with `value` in its set-point, measurement or rate.
 fn with<R>(sample: Sample<R>, place: usize, value: R) -> Sample<R> {
     match place {
-        0 => Sample {
-            setpoint_rad: value,
-            ..sample
-        },
-        1 => Sample {
-            measurement_rad: value,
-            ..sample
-        },
-        _ => Sample {
-            rate_rad_s: value,
-            ..sample
-        },
+        0 => Sample { setpoint_rad: value, ..sample },
+        1 => Sample { measurement_rad: value, ..sample },
+        _ => Sample { rate_rad_s: value, ..sample },
     }
 }
 
@@ -177,13 +157,7 @@ fn a_rate_that_is_not_used_cannot_be_at_fault() {
 fn an_overflow_is_held_even_where_a_limit_would_hide_it() {
     let mut shell = full_shell::<f32>(IntegralForm::Bumpless);
     shell.guard = Guard::new(3e38).expect("finite");
-    let huge = pid(
-        Gains {
-            kp: 2e37,
-            ..gains(NOMINAL)
-        },
-        shell,
-    );
+    let huge = pid(Gains { kp: 2e37, ..gains(NOMINAL) }, shell);
     let mut state = State::new();
     let last = huge.step(&mut state, error(1e-38));
     let before = state;
@@ -207,19 +181,9 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
         fast.setpoint_weights.derivative = 0.0;
         for mut shell in [plain, full_shell(form), dead_beat, fast] {
             (shell.integral, shell.guard) = (form, Guard::new(3e38).expect("finite"));
-            let strong = Gains {
-                kp: 1e9,
-                ki: 1e9,
-                kd: 1e9,
-            };
-            let input_scale = InputScale {
-                error_per_rad: 1e9,
-                change_per_rad: 1e9,
-            };
-            let keen = TunerSettings {
-                input_scale,
-                ..TunerSettings::literal()
-            };
+            let strong = Gains { kp: 1e9, ki: 1e9, kd: 1e9 };
+            let input_scale = InputScale { error_per_rad: 1e9, change_per_rad: 1e9 };
+            let keen = TunerSettings { input_scale, ..TunerSettings::literal() };
             let extreme = [
                 Controller::Fixed(pid(strong, shell)),
                 Controller::Tuned(Box::new(fspid(keen, shell))),
@@ -230,12 +194,9 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
                 for n in 0..128_u32 {
                     let huge = 2_f32.powi(n.cast_signed());
                     let attitude = with(error(huge), 1, huge);
-                    for (sample, before) in [
-                        (error(huge), 0),
-                        (error(huge), 1),
-                        (attitude, 0),
-                        (attitude, 1),
-                    ] {
+                    for (sample, before) in
+                        [(error(huge), 0), (error(huge), 1), (attitude, 0), (attitude, 1)]
+                    {
                         let mut state = State::new();
                         for _ in 0..before {
                             controller.step(&mut state, error(0.1));
@@ -256,16 +217,8 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
 fn gains_that_overflow_are_held_even_where_their_limits_would_hide_it() {
     let wide = Limits::new("gain", -10.0, 10.0).expect("lower is below upper");
     let settings = TunerSettings {
-        output_scale: Gains {
-            kp: f64::MAX,
-            ki: 0.0,
-            kd: 0.0,
-        },
-        gain_limits: Some(GainLimits {
-            kp: wide,
-            ki: wide,
-            kd: wide,
-        }),
+        output_scale: Gains { kp: f64::MAX, ki: 0.0, kd: 0.0 },
+        gain_limits: Some(GainLimits { kp: wide, ki: wide, kd: wide }),
         ..TunerSettings::literal()
     };
     let (controller, mut state) = (fspid(settings, Shell::sampled_every(T)), State::new());
@@ -279,10 +232,7 @@ fn gains_that_overflow_are_held_even_where_their_limits_would_hide_it() {
 #[test]
 fn a_supervisor_input_that_overflows_holds_the_output() {
     let settings = TunerSettings {
-        input_scale: InputScale {
-            error_per_rad: f64::MAX,
-            change_per_rad: 1.0,
-        },
+        input_scale: InputScale { error_per_rad: f64::MAX, change_per_rad: 1.0 },
         ..TunerSettings::literal()
     };
     let (controller, mut state) = (fspid(settings, Shell::sampled_every(T)), State::new());
@@ -293,11 +243,7 @@ fn a_supervisor_input_that_overflows_holds_the_output() {
 
 #[test]
 fn a_supervisor_that_refuses_an_input_keeps_the_gains_and_the_loop_closed() {
-    let tuner = SelfTuner::new(
-        NOMINAL,
-        supervisor(OutOfRange::Error),
-        TunerSettings::literal(),
-    );
+    let tuner = SelfTuner::new(NOMINAL, supervisor(OutOfRange::Error), TunerSettings::literal());
     let shell = Shell::sampled_every(T);
     let controller = Fspid::new(tuner.expect("allowed"), shell).expect("allowed");
     let mut state = State::new();
@@ -338,10 +284,7 @@ fn faults_add_up_and_name_themselves() {
     controller.step(&mut state, error(f64::NAN));
     let step = controller.step(&mut state, error(3e38));
     assert!(step.faults.contains(Faults::NOT_FINITE) && step.faults.contains(Faults::ABSURD));
-    assert_eq!(
-        step.faults.to_string(),
-        "sample not finite, sample beyond the guard"
-    );
+    assert_eq!(step.faults.to_string(), "sample not finite, sample beyond the guard");
     assert_eq!(step.faults.bits(), 3);
     assert_eq!(state.take_faults(), step.faults);
     assert_eq!(state.take_faults().to_string(), "none");
@@ -355,20 +298,14 @@ fn random_bits<R: Real>(guard: R, runs: u32, from_bits: impl Fn(u64) -> R) {
         let mut unlimited = shell;
         (unlimited.limits, unlimited.slew_rad_s) = (None, None);
         unlimited.anti_windup = AntiWindup::None;
-        for (n, controller) in Controller::all(shell)
-            .iter()
-            .chain(&Controller::all(unlimited))
-            .enumerate()
+        for (n, controller) in
+            Controller::all(shell).iter().chain(&Controller::all(unlimited)).enumerate()
         {
             let (mut state, mut random) = (State::new(), Random(5));
             let mut answered = 0;
             for k in 0..runs {
                 let mut number = || {
-                    if k % 4 == 0 {
-                        R::from_f64(random.signed())
-                    } else {
-                        from_bits(random.bits())
-                    }
+                    if k % 4 == 0 { R::from_f64(random.signed()) } else { from_bits(random.bits()) }
                 };
                 let sample = Sample {
                     setpoint_rad: number(),
@@ -402,11 +339,7 @@ const RUNS: u32 = 180_000;
 
 #[test]
 fn no_bit_pattern_makes_a_command_that_is_not_finite() {
-    random_bits(
-        Guard::<f64>::new(1e300).map(|_| 1e300).expect("finite"),
-        RUNS,
-        f64::from_bits,
-    );
+    random_bits(Guard::<f64>::new(1e300).map(|_| 1e300).expect("finite"), RUNS, f64::from_bits);
 }
 
 #[test]

@@ -33,11 +33,7 @@ fn table<S: Copy, B>(
     for &value in NOT_FINITE.iter().chain(bad) {
         let mut settings = good;
         set(&mut settings, value);
-        assert_eq!(
-            refused(build(settings)),
-            (name, value.to_bits()),
-            "{name} {value}"
-        );
+        assert_eq!(refused(build(settings)), (name, value.to_bits()), "{name} {value}");
     }
     for &value in fine {
         let mut settings = good;
@@ -50,21 +46,12 @@ fn table<S: Copy, B>(
 fn every_bad_gain_is_refused_by_name_in_both_controllers() {
     let shell = Shell::sampled_every(T);
     type Set = fn(&mut Gains<f64>, f64);
-    let sets: [(&str, Set); 3] = [
-        ("kp", |g, v| g.kp = v),
-        ("ki", |g, v| g.ki = v),
-        ("kd", |g, v| g.kd = v),
-    ];
+    let sets: [(&str, Set); 3] =
+        [("kp", |g, v| g.kp = v), ("ki", |g, v| g.ki = v), ("kd", |g, v| g.kd = v)];
     for (name, set) in sets {
-        table(name, NOMINAL, set, &[], &[0.0, -1.0], |gains| {
-            Pid::new(gains, shell)
-        });
+        table(name, NOMINAL, set, &[], &[0.0, -1.0], |gains| Pid::new(gains, shell));
         table(name, NOMINAL, set, &[], &[0.0, -1.0], |nominal| {
-            SelfTuner::new(
-                nominal,
-                supervisor(OutOfRange::Clamp),
-                TunerSettings::literal(),
-            )
+            SelfTuner::new(nominal, supervisor(OutOfRange::Clamp), TunerSettings::literal())
         });
     }
 }
@@ -78,12 +65,7 @@ fn every_bad_setting_of_the_shell_is_refused_by_name_in_both_controllers() {
     type Row = (&'static str, Set, &'static [f64], &'static [f64]);
     let not_positive: &[f64] = &[0.0, -0.0, -1.0, 5e-324];
     let rows: [Row; 7] = [
-        (
-            "sample period, s",
-            |s, v| s.dt_s = v,
-            not_positive,
-            &[1e-6, 1.0],
-        ),
+        ("sample period, s", |s, v| s.dt_s = v, not_positive, &[1e-6, 1.0]),
         ("rate_gain, s", |s, v| s.rate_gain_s = v, &[], &[0.0, -1.0]),
         (
             "set-point weight of the proportional term",
@@ -97,24 +79,14 @@ fn every_bad_setting_of_the_shell_is_refused_by_name_in_both_controllers() {
             &[],
             &[0.0, -1.0, 2.0],
         ),
-        (
-            "derivative filter, s",
-            |s, v| s.derivative.filter_s = v,
-            &[-1e-9],
-            &[0.0, 1.0],
-        ),
+        ("derivative filter, s", |s, v| s.derivative.filter_s = v, &[-1e-9], &[0.0, 1.0]),
         (
             "anti-windup tracking time, s",
             |s, v| s.anti_windup = AntiWindup::BackCalculation { tracking_s: v },
             &[0.0, -1.0, 5e-324, 0.999 * T],
             &[T, 1.0],
         ),
-        (
-            "slew limit, rad/s",
-            |s, v| s.slew_rad_s = Some(v),
-            not_positive,
-            &[1e-6, 1.0],
-        ),
+        ("slew limit, rad/s", |s, v| s.slew_rad_s = Some(v), not_positive, &[1e-6, 1.0]),
     ];
     let mut good = Shell::sampled_every(T);
     good.limits = Limits::new("limits", -1.0, 1.0).ok();
@@ -132,10 +104,7 @@ fn every_bad_setting_of_the_tuner_is_refused_by_name() {
     /// Name, how to set it, and what is refused.
     type Row = (&'static str, Set, &'static [f64]);
     fn zone(settings: &mut TunerSettings<f64>) -> &mut DeadZone<f64> {
-        settings.dead_zone.get_or_insert(DeadZone {
-            error_rad: 0.0,
-            change_rad: 0.0,
-        })
+        settings.dead_zone.get_or_insert(DeadZone { error_rad: 0.0, change_rad: 0.0 })
     }
     let rows: [Row; 8] = [
         ("error_scale", |s, v| s.input_scale.error_per_rad = v, &[]),
@@ -143,31 +112,14 @@ fn every_bad_setting_of_the_tuner_is_refused_by_name() {
         ("output_scale kp", |s, v| s.output_scale.kp = v, &[]),
         ("output_scale ki", |s, v| s.output_scale.ki = v, &[]),
         ("output_scale kd", |s, v| s.output_scale.kd = v, &[]),
-        (
-            "leakage, 1/s",
-            |s, v| s.law = Law::Accumulating { leakage_per_s: v },
-            &[-1e-9],
-        ),
-        (
-            "dead zone of the error",
-            |s, v| zone(s).error_rad = v,
-            &[-1e-9],
-        ),
-        (
-            "dead zone of the change",
-            |s, v| zone(s).change_rad = v,
-            &[-1e-9],
-        ),
+        ("leakage, 1/s", |s, v| s.law = Law::Accumulating { leakage_per_s: v }, &[-1e-9]),
+        ("dead zone of the error", |s, v| zone(s).error_rad = v, &[-1e-9]),
+        ("dead zone of the change", |s, v| zone(s).change_rad = v, &[-1e-9]),
     ];
     for (name, set, bad) in rows {
-        table(
-            name,
-            TunerSettings::literal(),
-            set,
-            bad,
-            &[0.0, 1.0],
-            |settings| SelfTuner::new(NOMINAL, supervisor(OutOfRange::Clamp), settings),
-        );
+        table(name, TunerSettings::literal(), set, bad, &[0.0, 1.0], |settings| {
+            SelfTuner::new(NOMINAL, supervisor(OutOfRange::Clamp), settings)
+        });
     }
 }
 
@@ -175,18 +127,12 @@ fn every_bad_setting_of_the_tuner_is_refused_by_name() {
 /// values, above two ever further.
 #[test]
 fn a_leakage_above_one_per_period_is_refused() {
-    for (leakage_per_s, accepted) in [
-        (0.0, true),
-        (1.0 / T, true),
-        (1.01 / T, false),
-        (1e300, false),
-    ] {
+    for (leakage_per_s, accepted) in
+        [(0.0, true), (1.0 / T, true), (1.01 / T, false), (1e300, false)]
+    {
         let law = Law::Accumulating { leakage_per_s };
         let built = Fspid::new(
-            tuner(TunerSettings {
-                law,
-                ..TunerSettings::literal()
-            }),
+            tuner(TunerSettings { law, ..TunerSettings::literal() }),
             Shell::sampled_every(T),
         );
         assert_eq!(built.is_ok(), accepted, "{leakage_per_s}");
@@ -198,14 +144,7 @@ fn a_leakage_above_one_per_period_is_refused() {
 
 #[test]
 fn every_bad_guard_is_refused_by_name() {
-    table(
-        "sample guard, rad",
-        1.0,
-        |g, v| *g = v,
-        &[0.0, -1.0],
-        &[1.0, 1e308],
-        Guard::new,
-    );
+    table("sample guard, rad", 1.0, |g, v| *g = v, &[0.0, -1.0], &[1.0, 1e308], Guard::new);
 }
 
 /// Parallel gains that overflow used to be handed out, and only the controller refused them.
@@ -215,14 +154,7 @@ fn every_bad_number_of_the_isa_form_is_refused_by_name() {
     let good = [2.0, 4.0, 0.5];
     table("gain K", good, |v, x| v[0] = x, &[], &[-1.0], isa);
     table("Td, s", good, |v, x| v[2] = x, &[-1.0], &[0.0], isa);
-    table(
-        "Td, s",
-        0.5,
-        |v, x| *v = x,
-        &[-1.0],
-        &[0.0],
-        |td| Derivative::from_isa(td, 8.0),
-    );
+    table("Td, s", 0.5, |v, x| *v = x, &[-1.0], &[0.0], |td| Derivative::from_isa(td, 8.0));
     for bad in [f64::NAN, 0.0, -1.0, f64::NEG_INFINITY] {
         assert_eq!(refused(isa([2.0, bad, 0.5])).0, "Ti, s");
         assert_eq!(refused(Derivative::from_isa(0.5, bad)).0, "N");
@@ -234,22 +166,12 @@ fn every_bad_number_of_the_isa_form_is_refused_by_name() {
 
 #[test]
 fn an_empty_range_is_refused_by_name() {
-    for (lower, upper) in [
-        (1.0, 1.0),
-        (2.0, 1.0),
-        (f64::NAN, 1.0),
-        (0.0, f64::NAN),
-        (f64::INFINITY, f64::INFINITY),
-    ] {
+    for (lower, upper) in
+        [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN), (f64::INFINITY, f64::INFINITY)]
+    {
         let error = Limits::new("command limits, rad", lower, upper).expect_err("empty");
         assert!(
-            matches!(
-                error,
-                ConfigError::EmptyRange {
-                    what: "command limits, rad",
-                    ..
-                }
-            ),
+            matches!(error, ConfigError::EmptyRange { what: "command limits, rad", .. }),
             "{error}"
         );
     }
@@ -260,20 +182,13 @@ fn an_empty_range_is_refused_by_name() {
 fn nominal_gains_outside_their_limits_are_refused_by_name() {
     let wide = Limits::new("gain", -10.0, 10.0).expect("lower is below upper");
     let narrow = Limits::new("gain", 100.0, 101.0).expect("lower is below upper");
-    let all = GainLimits {
-        kp: wide,
-        ki: wide,
-        kd: wide,
-    };
+    let all = GainLimits { kp: wide, ki: wide, kd: wide };
     for (name, limits) in [
         ("nominal kp", GainLimits { kp: narrow, ..all }),
         ("nominal ki", GainLimits { ki: narrow, ..all }),
         ("nominal kd", GainLimits { kd: narrow, ..all }),
     ] {
-        let settings = TunerSettings {
-            gain_limits: Some(limits),
-            ..TunerSettings::literal()
-        };
+        let settings = TunerSettings { gain_limits: Some(limits), ..TunerSettings::literal() };
         let error =
             SelfTuner::new(NOMINAL, supervisor(OutOfRange::Clamp), settings).expect_err("outside");
         assert!(
@@ -284,18 +199,9 @@ fn nominal_gains_outside_their_limits_are_refused_by_name() {
 
 #[test]
 fn an_anti_windup_without_a_limit_to_act_at_is_refused() {
-    for anti_windup in [
-        AntiWindup::Conditional,
-        AntiWindup::BackCalculation { tracking_s: 1.0 },
-    ] {
-        let mut shell = Shell {
-            anti_windup,
-            ..Shell::sampled_every(T)
-        };
-        assert!(matches!(
-            Pid::new(NOMINAL, shell),
-            Err(ConfigError::Conflict { .. })
-        ));
+    for anti_windup in [AntiWindup::Conditional, AntiWindup::BackCalculation { tracking_s: 1.0 }] {
+        let mut shell = Shell { anti_windup, ..Shell::sampled_every(T) };
+        assert!(matches!(Pid::new(NOMINAL, shell), Err(ConfigError::Conflict { .. })));
         shell.slew_rad_s = Some(1.0);
         assert!(Pid::new(NOMINAL, shell).is_ok());
         shell.slew_rad_s = None;
@@ -307,14 +213,7 @@ fn an_anti_windup_without_a_limit_to_act_at_is_refused() {
 #[test]
 fn a_refusal_reads_as_a_sentence() {
     let refusals = [
-        Pid::new(
-            Gains {
-                kp: f64::NAN,
-                ..NOMINAL
-            },
-            Shell::sampled_every(T),
-        )
-        .err(),
+        Pid::new(Gains { kp: f64::NAN, ..NOMINAL }, Shell::sampled_every(T)).err(),
         Pid::new(NOMINAL, Shell::sampled_every(-0.5)).err(),
         Limits::new("limits", 2.0, 1.0).err(),
     ];

@@ -1,9 +1,6 @@
 //! Runs of the controllers recomputed by a plain loop of their definitions: equal bits.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod common;
 
@@ -14,11 +11,7 @@ use fspid_core::{
     Shell, State, TunerSettings,
 };
 
-const OUTPUT_SCALE: Gains<f64> = Gains {
-    kp: 0.2,
-    ki: 0.05,
-    kd: 0.1,
-};
+const OUTPUT_SCALE: Gains<f64> = Gains { kp: 0.2, ki: 0.05, kd: 0.1 };
 /// Supervisor units per rad: degrees, and a fifth of degrees per second.
 const INPUT_SCALE: InputScale<f64> = InputScale {
     error_per_rad: 180.0 / std::f64::consts::PI,
@@ -34,49 +27,23 @@ fn by_hand(
     tuning: Option<(Law<f64>, Change, f64)>,
 ) -> Vec<f64> {
     let supervisor = supervisor::<f64>(OutOfRange::Clamp);
-    let Gains {
-        mut kp,
-        mut ki,
-        mut kd,
-    } = nominal;
+    let Gains { mut kp, mut ki, mut kd } = nominal;
     let (mut sum, mut integral, mut d) = (0.0, 0.0, 0.0);
     let (mut e_prev, mut x_prev) = (f64::NAN, f64::NAN);
-    let SetpointWeights {
-        proportional: b,
-        derivative: c,
-    } = shell.setpoint_weights;
+    let SetpointWeights { proportional: b, derivative: c } = shell.setpoint_weights;
     let tf = shell.derivative.filter_s;
     let mut commands = Vec::new();
-    for (
-        k,
-        &Sample {
-            setpoint_rad: r,
-            measurement_rad: y,
-            rate_rad_s: q,
-        },
-    ) in samples.iter().enumerate()
+    for (k, &Sample { setpoint_rad: r, measurement_rad: y, rate_rad_s: q }) in
+        samples.iter().enumerate()
     {
         let e = r - y;
         if let Some((law, change, sign)) = tuning {
             let delta = if k == 0 { 0.0 } else { e - e_prev };
-            let change = if change == Change::Rate {
-                delta / T
-            } else {
-                delta
-            };
-            let seen = (
-                INPUT_SCALE.error_per_rad * e,
-                INPUT_SCALE.change_per_rad * change,
-            );
-            let add = supervisor
-                .infer(sign * seen.0, sign * seen.1)
-                .expect("finite")
-                .delta;
-            let add = (
-                OUTPUT_SCALE.kp * add.kp,
-                OUTPUT_SCALE.ki * add.ki,
-                OUTPUT_SCALE.kd * add.kd,
-            );
+            let change = if change == Change::Rate { delta / T } else { delta };
+            let seen = (INPUT_SCALE.error_per_rad * e, INPUT_SCALE.change_per_rad * change);
+            let add = supervisor.infer(sign * seen.0, sign * seen.1).expect("finite").delta;
+            let add =
+                (OUTPUT_SCALE.kp * add.kp, OUTPUT_SCALE.ki * add.ki, OUTPUT_SCALE.kd * add.kd);
             if law == Law::Memoryless {
                 (kp, ki, kd) = (nominal.kp + add.0, nominal.ki + add.1, nominal.kd + add.2);
             } else {
@@ -91,11 +58,7 @@ fn by_hand(
         };
         let x = c * r - y;
         if k > 0 {
-            d = if tf > 0.0 {
-                (tf * d + (x - x_prev)) / (tf + T)
-            } else {
-                (x - x_prev) / T
-            };
+            d = if tf > 0.0 { (tf * d + (x - x_prev)) / (tf + T) } else { (x - x_prev) / T };
         }
         commands.push(kp * (b * r - y) + integral + kd * d - shell.rate_gain_s * q);
         (e_prev, x_prev) = (e, x);
@@ -110,14 +73,8 @@ fn bits(commands: impl IntoIterator<Item = f64>) -> Vec<u64> {
 fn assert_pid_as_by_hand(gains: Gains<f64>, shell: Shell<f64>) {
     let samples = Random(1).samples(400);
     let (controller, mut state) = (pid(gains, shell), State::new());
-    let ours = samples
-        .iter()
-        .map(|&s| controller.step(&mut state, s).command_rad);
-    assert_eq!(
-        bits(ours),
-        bits(by_hand(&samples, gains, &shell, None)),
-        "{shell:?}"
-    );
+    let ours = samples.iter().map(|&s| controller.step(&mut state, s).command_rad);
+    assert_eq!(bits(ours), bits(by_hand(&samples, gains, &shell, None)), "{shell:?}");
 }
 
 #[test]
@@ -131,10 +88,7 @@ fn a_proportional_controller_with_a_rate_loop_is_its_definition() {
 #[test]
 fn a_pid_is_its_definition_with_either_integral() {
     for integral in [IntegralForm::Bumpless, IntegralForm::Literal] {
-        let shell = Shell {
-            integral,
-            ..Shell::sampled_every(T)
-        };
+        let shell = Shell { integral, ..Shell::sampled_every(T) };
         assert_pid_as_by_hand(NOMINAL, shell);
     }
 }
@@ -144,10 +98,7 @@ fn set_point_weights_and_derivative_filter_are_their_definitions() {
     for (proportional, derivative) in [(1.0, 1.0), (0.6, 0.0), (0.0, 0.3)] {
         for filter_s in [0.0, 0.05] {
             let shell = Shell {
-                setpoint_weights: SetpointWeights {
-                    proportional,
-                    derivative,
-                },
+                setpoint_weights: SetpointWeights { proportional, derivative },
                 derivative: Derivative { filter_s },
                 rate_gain_s: 0.3,
                 ..Shell::sampled_every(T)
@@ -175,15 +126,9 @@ fn a_self_tuning_controller_is_its_definition_under_every_law_sign_and_change() 
                         law,
                         ..TunerSettings::literal()
                     };
-                    let shell = Shell {
-                        integral,
-                        rate_gain_s: 0.2,
-                        ..Shell::sampled_every(T)
-                    };
+                    let shell = Shell { integral, rate_gain_s: 0.2, ..Shell::sampled_every(T) };
                     let (controller, mut state) = (fspid(settings, shell), State::new());
-                    let ours = samples
-                        .iter()
-                        .map(|&s| controller.step(&mut state, s).command_rad);
+                    let ours = samples.iter().map(|&s| controller.step(&mut state, s).command_rad);
                     let tuning = Some((law, change, sign));
                     let theirs = by_hand(&samples, NOMINAL, &shell, tuning);
                     assert_eq!(bits(ours), bits(theirs), "{settings:?} {integral:?}");
@@ -196,19 +141,13 @@ fn a_self_tuning_controller_is_its_definition_under_every_law_sign_and_change() 
 #[test]
 fn a_self_tuner_without_output_scale_is_the_fixed_controller_bit_for_bit() {
     for law in [Law::Memoryless, Law::Accumulating { leakage_per_s: 0.5 }] {
-        let settings = TunerSettings {
-            output_scale: Gains::ZERO,
-            law,
-            ..TunerSettings::literal()
-        };
+        let settings = TunerSettings { output_scale: Gains::ZERO, law, ..TunerSettings::literal() };
         let shell = Shell::sampled_every(T);
         let (tuned, fixed) = (fspid(settings, shell), pid(NOMINAL, shell));
         let (mut state_tuned, mut state_fixed) = (State::new(), State::new());
         for sample in Random(3).samples(400) {
-            let (tuned, fixed) = (
-                tuned.step(&mut state_tuned, sample),
-                fixed.step(&mut state_fixed, sample),
-            );
+            let (tuned, fixed) =
+                (tuned.step(&mut state_tuned, sample), fixed.step(&mut state_fixed, sample));
             assert_eq!(tuned.command_rad.to_bits(), fixed.command_rad.to_bits());
             assert_eq!(tuned, fixed);
         }
@@ -219,10 +158,7 @@ fn a_self_tuner_without_output_scale_is_the_fixed_controller_bit_for_bit() {
 /// The commands of two controllers that differ in `ki` alone, at a zero error and with the memory
 /// of a hundred samples at an error of 0.1 rad.
 fn commands_before_and_after_a_change_of_ki(integral: IntegralForm) -> [f64; 2] {
-    let shell = Shell {
-        integral,
-        ..Shell::sampled_every(T)
-    };
+    let shell = Shell { integral, ..Shell::sampled_every(T) };
     let before = pid(NOMINAL, shell);
     let after = pid(Gains { ki: 1.5, ..NOMINAL }, shell);
     let mut state = State::new();
@@ -266,10 +202,7 @@ fn the_isa_form_is_the_parallel_form_with_a_filter() {
 /// ki·Σe·T in the last digits: nobody could recompute a run to the bit.
 #[test]
 fn the_literal_integral_multiplies_in_the_order_of_its_definition() {
-    let shell = Shell {
-        integral: IntegralForm::Literal,
-        ..Shell::sampled_every(T)
-    };
+    let shell = Shell { integral: IntegralForm::Literal, ..Shell::sampled_every(T) };
     let ki = 0.3;
     let controller = pid(Gains { ki, ..Gains::ZERO }, shell);
     let (mut state, mut sum) = (State::new(), 0.0);
@@ -277,10 +210,6 @@ fn the_literal_integral_multiplies_in_the_order_of_its_definition() {
         let r = 0.1 + f64::from(k) * 1e-3;
         sum += r;
         let step = controller.step(&mut state, sample(r, 0.0, 0.0));
-        assert_eq!(
-            step.command_rad.to_bits(),
-            (ki * sum * T).to_bits(),
-            "sample {k}"
-        );
+        assert_eq!(step.command_rad.to_bits(), (ki * sum * T).to_bits(), "sample {k}");
     }
 }

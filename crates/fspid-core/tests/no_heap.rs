@@ -11,10 +11,8 @@ use fspid_core::{AntiWindup, Law, Limits, Shell, State, TunerSettings};
 #[test]
 fn building_a_controller_and_stepping_it_allocates_nothing() {
     let samples = Random(7).samples::<f64>(1000);
-    let settings = TunerSettings {
-        law: Law::Accumulating { leakage_per_s: 0.1 },
-        ..TunerSettings::literal()
-    };
+    let settings =
+        TunerSettings { law: Law::Accumulating { leakage_per_s: 0.1 }, ..TunerSettings::literal() };
     let mut shell = Shell::sampled_every(T);
     shell.limits = Limits::new("limits", -0.5, 0.5).ok();
     shell.slew_rad_s = Some(1.0);

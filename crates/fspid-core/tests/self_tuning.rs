@@ -1,9 +1,6 @@
 //! What the self-tuning laws do at rest and near it.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 #![allow(
     clippy::disallowed_methods,
     reason = "formulas to compare with, within a tolerance; nothing that flies"
@@ -15,25 +12,13 @@ use common::{NOMINAL, T, error, fspid, tuner};
 use fspid_core::{DeadZone, GainLimits, Gains, Law, Limits, Shell, State, TunerSettings};
 
 /// What the printed table adds at the origin over a range of 5 (handbook; 40-digit polygons).
-const AT_REST: Gains<f64> = Gains {
-    kp: 0.216_500_696_638,
-    ki: 0.0,
-    kd: -1.666_610_153_842,
-};
+const AT_REST: Gains<f64> = Gains { kp: 0.216_500_696_638, ki: 0.0, kd: -1.666_610_153_842 };
 /// Half a unit of the last printed digit.
 const PRINTED_TOL: f64 = 5e-13;
-const OUTPUT_SCALE: Gains<f64> = Gains {
-    kp: 0.2,
-    ki: 0.05,
-    kd: 0.1,
-};
+const OUTPUT_SCALE: Gains<f64> = Gains { kp: 0.2, ki: 0.05, kd: 0.1 };
 
 fn settings(law: Law<f64>) -> TunerSettings<f64> {
-    TunerSettings {
-        output_scale: OUTPUT_SCALE,
-        law,
-        ..TunerSettings::literal()
-    }
+    TunerSettings { output_scale: OUTPUT_SCALE, law, ..TunerSettings::literal() }
 }
 
 /// Nominal plus `times` the scaled increments at rest.
@@ -46,11 +31,8 @@ fn nominal_and(times: f64) -> Gains<f64> {
 }
 
 fn assert_near(ours: Gains<f64>, expected: Gains<f64>, tolerance: f64) {
-    for (ours, expected) in [
-        (ours.kp, expected.kp),
-        (ours.ki, expected.ki),
-        (ours.kd, expected.kd),
-    ] {
+    for (ours, expected) in [(ours.kp, expected.kp), (ours.ki, expected.ki), (ours.kd, expected.kd)]
+    {
         assert!((ours - expected).abs() < tolerance, "{ours} {expected}");
     }
 }
@@ -69,11 +51,7 @@ fn rested(settings: TunerSettings<f64>, samples: u32) -> Gains<f64> {
 
 #[test]
 fn the_gains_at_rest_are_the_nominal_ones_and_what_the_printed_table_adds() {
-    assert_near(
-        tuner(settings(Law::Memoryless)).gains_at_rest(),
-        nominal_and(1.0),
-        PRINTED_TOL,
-    );
+    assert_near(tuner(settings(Law::Memoryless)).gains_at_rest(), nominal_and(1.0), PRINTED_TOL);
     let literal = tuner(TunerSettings::literal()).gains_at_rest();
     let expected = Gains {
         kp: NOMINAL.kp + AT_REST.kp,
@@ -100,11 +78,7 @@ fn the_accumulating_law_drifts_linearly_at_rest_from_the_first_sample_on() {
         let tolerance = PRINTED_TOL * (1.0 + f64::from(samples) * T) + f64::from(samples) * 4.5e-16;
         assert_near(rested(settings, samples), expected, tolerance);
     }
-    assert_near(
-        rested(settings, 100),
-        tuner(settings).gains_at_rest(),
-        PRINTED_TOL,
-    );
+    assert_near(rested(settings, 100), tuner(settings).gains_at_rest(), PRINTED_TOL);
 }
 
 /// $g_k - k' = \frac{s \Delta}{\lambda} \left( 1 - (1 - \lambda T)^k \right)$, k counted from 1.
@@ -126,15 +100,9 @@ fn leakage_stops_the_drift_of_the_accumulating_law() {
 
 #[test]
 fn the_dead_zone_silences_both_laws() {
-    let dead_zone = Some(DeadZone {
-        error_rad: 0.01,
-        change_rad: 0.1,
-    });
+    let dead_zone = Some(DeadZone { error_rad: 0.01, change_rad: 0.1 });
     for law in [Law::Memoryless, Law::Accumulating { leakage_per_s: 0.0 }] {
-        let silent = TunerSettings {
-            dead_zone,
-            ..settings(law)
-        };
+        let silent = TunerSettings { dead_zone, ..settings(law) };
         assert_eq!(rested(silent, 1000), NOMINAL);
         assert_eq!(tuner(silent).gains_at_rest(), NOMINAL);
         let (controller, mut state) = (fspid(silent, Shell::sampled_every(T)), State::new());
@@ -153,21 +121,13 @@ fn the_dead_zone_silences_both_laws() {
 #[test]
 fn gain_limits_stop_the_drift_where_they_stand() {
     let limits = |lower, upper| Limits::new("gain", lower, upper).expect("lower is below upper");
-    let gain_limits = Some(GainLimits {
-        kp: limits(1.9, 2.1),
-        ki: limits(0.0, 1.0),
-        kd: limits(0.75, 1.5),
-    });
-    let limited = TunerSettings {
-        gain_limits,
-        ..settings(Law::Accumulating { leakage_per_s: 0.0 })
-    };
+    let gain_limits =
+        Some(GainLimits { kp: limits(1.9, 2.1), ki: limits(0.0, 1.0), kd: limits(0.75, 1.5) });
+    let limited =
+        TunerSettings { gain_limits, ..settings(Law::Accumulating { leakage_per_s: 0.0 }) };
     let gains = rested(limited, 1000);
     assert_eq!((gains.kp, gains.kd), (2.1, 0.75));
-    let literal = TunerSettings {
-        gain_limits,
-        ..TunerSettings::literal()
-    };
+    let literal = TunerSettings { gain_limits, ..TunerSettings::literal() };
     let at_rest = tuner(literal).gains_at_rest();
     assert_eq!((at_rest.kp, at_rest.kd), (2.1, 0.75));
 }

@@ -1,9 +1,6 @@
 //! The discrete controllers against formulas, and single precision against double.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 #![allow(
     clippy::disallowed_methods,
     reason = "formulas to compare with, within a tolerance; nothing that flies"
@@ -18,10 +15,7 @@ use fspid_core::fuzzy::Real;
 use fspid_core::{Derivative, Gains, InputScale, IntegralForm, Law, Shell, State, TunerSettings};
 
 fn shell(filter_s: f64) -> Shell<f64> {
-    Shell {
-        derivative: Derivative { filter_s },
-        ..Shell::sampled_every(T)
-    }
+    Shell { derivative: Derivative { filter_s }, ..Shell::sampled_every(T) }
 }
 
 /// A complex number, as much of one as this needs.
@@ -31,10 +25,7 @@ struct Complex(f64, f64);
 impl Complex {
     fn over(self, other: Self) -> Self {
         let size = other.0 * other.0 + other.1 * other.1;
-        let (re, im) = (
-            self.0 * other.0 + self.1 * other.1,
-            self.1 * other.0 - self.0 * other.1,
-        );
+        let (re, im) = (self.0 * other.0 + self.1 * other.1, self.1 * other.0 - self.0 * other.1);
         Self(re / size, im / size)
     }
 }
@@ -47,10 +38,7 @@ fn transfer_function(n: u32, filter_s: f64) -> Complex {
     let filter = Complex((filter_s + T) * re - filter_s, (filter_s + T) * im);
     let derivative = Complex(re - 1.0, im).over(filter);
     let Gains { kp, ki, kd } = NOMINAL;
-    Complex(
-        kp + ki * T * integral.0 + kd * derivative.0,
-        ki * T * integral.1 + kd * derivative.1,
-    )
+    Complex(kp + ki * T * integral.0 + kd * derivative.0, ki * T * integral.1 + kd * derivative.1)
 }
 
 /// The gain and phase of the controller at `n` samples a period, from its answer to a cosine: its
@@ -62,9 +50,7 @@ fn measured(n: u32, filter_s: f64) -> Complex {
     let mut sum = Complex(0.0, 0.0);
     let settled = 3000 / n * n;
     for k in 0..settled + n {
-        let command_rad = controller
-            .step(&mut state, error(angle(k).cos()))
-            .command_rad;
+        let command_rad = controller.step(&mut state, error(angle(k).cos())).command_rad;
         if k >= settled {
             sum.0 += command_rad * angle(k).cos();
             sum.1 -= command_rad * angle(k).sin();
@@ -82,10 +68,7 @@ fn the_frequency_response_is_that_of_the_z_transfer_function() {
             // The slower filter has died away to (20/21)^3000, below 1e-63: what remains is the
             // rounding of a few thousand samples of a number below 200, averaged.
             let distance = (ours.0 - theirs.0).hypot(ours.1 - theirs.1);
-            assert!(
-                distance < 1e-12,
-                "{n} samples, Tf {filter_s}: {ours:?} {theirs:?}"
-            );
+            assert!(distance < 1e-12, "{n} samples, Tf {filter_s}: {ours:?} {theirs:?}");
         }
     }
 }
@@ -108,10 +91,7 @@ fn the_answer_to_a_pulse_is_the_closed_form() {
         };
         let expected = kp * pulse + ki * T + kd * derivative;
         // A few roundings of numbers below 20.
-        assert!(
-            (command_rad - expected).abs() < 1e-14,
-            "{j}: {command_rad} {expected}"
-        );
+        assert!((command_rad - expected).abs() < 1e-14, "{j}: {command_rad} {expected}");
     }
 }
 
@@ -126,10 +106,7 @@ fn the_answer_to_a_ramp_is_the_closed_form() {
         let derivative = if k > 0.0 { kd } else { 0.0 };
         let expected = kp * k * T + ki * T * T * k * (k + 1.0) / 2.0 + derivative;
         // Differences of numbers below 5, each rounded to 9e-16, over T; and 500 additions.
-        assert!(
-            (command_rad - expected).abs() < 1e-12,
-            "{k}: {command_rad} {expected}"
-        );
+        assert!((command_rad - expected).abs() < 1e-12, "{k}: {command_rad} {expected}");
     }
 }
 
@@ -141,19 +118,12 @@ fn distance_of_precisions(law: Option<Law<f64>>) -> f64 {
         shell.derivative.filter_s = number(0.05);
         shell.integral = IntegralForm::Bumpless;
         let settings = TunerSettings {
-            input_scale: InputScale {
-                error_per_rad: number(10.0),
-                change_per_rad: number(2.0),
-            },
-            output_scale: gains(Gains {
-                kp: 0.2,
-                ki: 0.05,
-                kd: 0.1,
-            }),
+            input_scale: InputScale { error_per_rad: number(10.0), change_per_rad: number(2.0) },
+            output_scale: gains(Gains { kp: 0.2, ki: 0.05, kd: 0.1 }),
             law: match law {
-                Some(Law::Accumulating { leakage_per_s }) => Law::Accumulating {
-                    leakage_per_s: number(leakage_per_s),
-                },
+                Some(Law::Accumulating { leakage_per_s }) => {
+                    Law::Accumulating { leakage_per_s: number(leakage_per_s) }
+                }
                 _ => Law::Memoryless,
             },
             ..TunerSettings::literal()
@@ -184,15 +154,8 @@ fn single_precision_is_near_double_precision() {
     // samples, mostly cancelling. The drifting gains and the integral add less.
     let tolerance = 50.0 * unit;
     let leakage_per_s = 0.1;
-    for law in [
-        None,
-        Some(Law::Memoryless),
-        Some(Law::Accumulating { leakage_per_s }),
-    ] {
+    for law in [None, Some(Law::Memoryless), Some(Law::Accumulating { leakage_per_s })] {
         let distance = distance_of_precisions(law);
-        assert!(
-            distance > 0.0 && distance < tolerance,
-            "{law:?}: {distance:e}"
-        );
+        assert!(distance > 0.0 && distance < tolerance, "{law:?}: {distance:e}");
     }
 }

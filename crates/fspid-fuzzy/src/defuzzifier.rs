@@ -42,11 +42,7 @@ impl Defuzzifier {
         if (least..=MAX_SAMPLES).contains(&found) {
             Ok(self)
         } else {
-            Err(FuzzyError::SampleCount {
-                found,
-                least,
-                most: MAX_SAMPLES,
-            })
+            Err(FuzzyError::SampleCount { found, least, most: MAX_SAMPLES })
         }
     }
 }
@@ -70,9 +66,7 @@ impl FromStr for Defuzzifier {
             return Ok(Self::Exact);
         }
         let (kind, samples) = text.split_once(':').ok_or(FuzzyError::UnknownDefuzzifier)?;
-        let samples: u32 = samples
-            .parse()
-            .map_err(|_| FuzzyError::UnknownDefuzzifier)?;
+        let samples: u32 = samples.parse().map_err(|_| FuzzyError::UnknownDefuzzifier)?;
         match kind {
             "endpoints" => Self::Endpoints(samples),
             "midpoint" => Self::Midpoint(samples),
@@ -98,14 +92,9 @@ mod tests {
 
     #[test]
     fn a_sampled_rule_without_a_usable_number_of_samples_is_refused() {
-        for name in [
-            "endpoints:1",
-            "midpoint:0",
-            "trapezoid:4000000000",
-            "endpoints",
-            "midpoint:-5",
-            "cog",
-        ] {
+        for name in
+            ["endpoints:1", "midpoint:0", "trapezoid:4000000000", "endpoints", "midpoint:-5", "cog"]
+        {
             assert!(name.parse::<Defuzzifier>().is_err(), "{name}");
         }
     }

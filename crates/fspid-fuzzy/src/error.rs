@@ -52,18 +52,11 @@ impl fmt::Display for FuzzyError {
                 f,
                 "range is {found:?}; allowed is a finite number above 0, at least 1e-100 and at most 1e100"
             ),
-            Self::Parameter {
-                name,
-                found,
-                allowed,
-            } => {
+            Self::Parameter { name, found, allowed } => {
                 write!(f, "{name} is {found:?}; allowed is {allowed}")
             }
             Self::SampleCount { found, least, most } => {
-                write!(
-                    f,
-                    "{found} samples for a centroid; allowed are {least} to {most}"
-                )
+                write!(f, "{found} samples for a centroid; allowed are {least} to {most}")
             }
             Self::UnknownDefuzzifier => {
                 write!(f, "unknown defuzzifier; known are {}", Defuzzifier::NAMES)

@@ -26,15 +26,8 @@ pub enum Label {
 
 impl Label {
     /// All labels in ascending order.
-    pub const ALL: [Self; LABEL_COUNT] = [
-        Self::NB,
-        Self::NM,
-        Self::NS,
-        Self::ZO,
-        Self::PS,
-        Self::PM,
-        Self::PB,
-    ];
+    pub const ALL: [Self; LABEL_COUNT] =
+        [Self::NB, Self::NM, Self::NS, Self::ZO, Self::PS, Self::PM, Self::PB];
 
     /// Position from 0 (`NB`) to 6 (`PB`).
     #[must_use]

@@ -145,10 +145,8 @@ fn parse_row(row: usize, line: &str) -> Result<[Label; LABEL_COUNT], GridError> 
         return Err(GridError::RowLength { row, found });
     }
     for (index, word) in line.split_whitespace().enumerate() {
-        labels[index] = Label::from_name(word).ok_or(GridError::UnknownLabel {
-            row,
-            column: index + 1,
-        })?;
+        labels[index] =
+            Label::from_name(word).ok_or(GridError::UnknownLabel { row, column: index + 1 })?;
     }
     Ok(labels)
 }
@@ -192,9 +190,7 @@ impl RuleTable {
     /// The rule base with every grid [mirrored](Grid::mirrored).
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        Self {
-            grids: self.grids.map(|grid| grid.mirrored()),
-        }
+        Self { grids: self.grids.map(|grid| grid.mirrored()) }
     }
 }
 
@@ -208,10 +204,7 @@ mod tests {
     #[test]
     fn a_hole_in_a_grid_is_refused_with_its_row() {
         let text = [ROW, ROW, "NB NM NS PS PM PB\n", ROW, ROW, ROW, ROW].concat();
-        assert_eq!(
-            Grid::parse(&text),
-            Err(GridError::RowLength { row: 3, found: 6 })
-        );
+        assert_eq!(Grid::parse(&text), Err(GridError::RowLength { row: 3, found: 6 }));
     }
 
     #[test]
@@ -219,20 +212,13 @@ mod tests {
         let text = [ROW, "NB NM NS ZO PS XX PB\n", ROW, ROW, ROW, ROW, ROW].concat();
         let error = Grid::parse(&text).expect_err("XX is no label");
         assert_eq!(error, GridError::UnknownLabel { row: 2, column: 6 });
-        assert!(
-            error
-                .to_string()
-                .contains("(error NM), column 6 (change PM)")
-        );
+        assert!(error.to_string().contains("(error NM), column 6 (change PM)"));
     }
 
     #[test]
     fn too_few_and_too_many_rows_are_refused_with_their_number() {
         assert_eq!(Grid::parse(""), Err(GridError::RowCount { found: 0 }));
-        assert_eq!(
-            Grid::parse(&ROW.repeat(9)),
-            Err(GridError::RowCount { found: 9 })
-        );
+        assert_eq!(Grid::parse(&ROW.repeat(9)), Err(GridError::RowCount { found: 9 }));
     }
 
     #[test]

@@ -83,16 +83,9 @@ pub struct InferenceError {
 
 impl fmt::Display for InferenceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            input,
-            found,
-            range,
-        } = self;
+        let Self { input, found, range } = self;
         if found.is_finite() {
-            write!(
-                f,
-                "{input} is {found:?}; allowed is -{range:?} to {range:?}"
-            )
+            write!(f, "{input} is {found:?}; allowed is -{range:?} to {range:?}")
         } else {
             write!(f, "{input} is {found:?}; allowed is a finite number")
         }
@@ -111,10 +104,7 @@ struct Consequents {
 impl Consequents {
     fn new(table: &RuleTable, output: Output) -> Self {
         let grid = table.grid(output);
-        let mut sorted = Self {
-            cells: [0; RULE_COUNT],
-            ends: [0; LABEL_COUNT],
-        };
+        let mut sorted = Self { cells: [0; RULE_COUNT], ends: [0; LABEL_COUNT] };
         let mut filled = 0_u8;
         for label in Label::ALL {
             for (cell, (error, change)) in (0_u8..).zip(pairs()) {
@@ -176,11 +166,8 @@ impl<R: Real> Supervisor<R> {
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {
         let found = range.to_f64();
-        let limits = if R::MIN_POSITIVE.to_f64() > 1e-100 {
-            RANGE_LIMITS_F32
-        } else {
-            RANGE_LIMITS
-        };
+        let limits =
+            if R::MIN_POSITIVE.to_f64() > 1e-100 { RANGE_LIMITS_F32 } else { RANGE_LIMITS };
         if !limits.contains(&found) {
             return Err(FuzzyError::Range { found });
         }
@@ -218,9 +205,7 @@ impl<R: Real> Supervisor<R> {
     pub fn infer(&self, error: R, change: R) -> Result<Inference<R>, InferenceError> {
         let inside = error.abs() <= self.range && change.abs() <= self.range;
         if inside {
-            return Ok(self
-                .evaluate(error, change)
-                .unwrap_or_else(|| self.at_rest()));
+            return Ok(self.evaluate(error, change).unwrap_or_else(|| self.at_rest()));
         }
         self.infer_outside(error, change)
     }
@@ -235,15 +220,9 @@ impl<R: Real> Supervisor<R> {
             return Ok(inference);
         }
         let ends = |input: R| input.limited(-self.range, self.range);
-        let inference = self
-            .evaluate(ends(error), ends(change))
-            .unwrap_or_else(|| self.at_rest());
+        let inference = self.evaluate(ends(error), ends(change)).unwrap_or_else(|| self.at_rest());
         let underflowed = self.out_of_range == OutOfRange::Evaluate;
-        Ok(Inference {
-            clamped: !underflowed,
-            underflowed,
-            ..inference
-        })
+        Ok(Inference { clamped: !underflowed, underflowed, ..inference })
     }
 
     fn refuse(&self, input: &'static str, value: R) -> Result<(), InferenceError> {
@@ -252,11 +231,7 @@ impl<R: Real> Supervisor<R> {
         if allowed {
             return Ok(());
         }
-        Err(InferenceError {
-            input,
-            found: value.to_f64(),
-            range: self.range.to_f64(),
-        })
+        Err(InferenceError { input, found: value.to_f64(), range: self.range.to_f64() })
     }
 
     /// The answer at finite inputs, unless every rule has underflowed.
@@ -284,25 +259,13 @@ impl<R: Real> Supervisor<R> {
             centroid(self.defuzzifier, &strengths) * self.spacing
         });
         let delta = Increments { kp, ki, kd };
-        Some(Inference {
-            delta,
-            clamped: false,
-            underflowed: false,
-        })
+        Some(Inference { delta, clamped: false, underflowed: false })
     }
 
     /// No increments. Inside the range some rule always fires at 0.5 or more, so this never answers
     /// a question; it is here so that an inference cannot panic.
     fn at_rest(&self) -> Inference<R> {
-        let delta = Increments {
-            kp: R::ZERO,
-            ki: R::ZERO,
-            kd: R::ZERO,
-        };
-        Inference {
-            delta,
-            clamped: false,
-            underflowed: true,
-        }
+        let delta = Increments { kp: R::ZERO, ki: R::ZERO, kd: R::ZERO };
+        Inference { delta, clamped: false, underflowed: true }
     }
 }

@@ -1,9 +1,6 @@
 //! The supervisor and its exponential against high-precision values made by `oracles/`.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use fspid_fuzzy::{
     Defuzzifier, LABEL_COUNT, Label, OutOfRange, Output, Real, RuleTable, Supervisor,
@@ -39,11 +36,7 @@ fn the_supervisor_agrees_with_forty_digit_polygons_under_every_rule() {
     let mut compared = 0;
     for row in rows {
         let number = |index: usize| row[index].parse::<f64>().expect("a number");
-        let file = if row[0] == "printed" {
-            PRINTED
-        } else {
-            MIRRORED
-        };
+        let file = if row[0] == "printed" { PRINTED } else { MIRRORED };
         let (range, error, change) = (number(1), number(3), number(4));
         for (name, rule) in [
             ("exact", "exact"),
@@ -60,10 +53,7 @@ fn the_supervisor_agrees_with_forty_digit_polygons_under_every_rule() {
                 let column = header.iter().position(|h| *h == format!("{gain}_{name}"));
                 let theirs = number(column.expect("a column for each gain and rule"));
                 let tolerance = TOLERANCE * range / 5.0;
-                assert!(
-                    (ours - theirs).abs() <= tolerance,
-                    "{row:?} {gain} {name}: {ours}"
-                );
+                assert!((ours - theirs).abs() <= tolerance, "{row:?} {gain} {name}: {ours}");
                 compared += 1;
             }
         }
@@ -76,43 +66,16 @@ fn the_supervisor_answers_the_handbook_s_spot_values() {
     let supervisor = supervisor(PRINTED, 5.0, "exact", OutOfRange::Error);
     for (error, change, kp, ki, kd) in [
         (0.0, 0.0, 0.216_500_696_638, 0.0, -1.666_610_153_842),
-        (
-            5.0,
-            5.0,
-            -4.234_089_847_555,
-            4.444_274_913_314,
-            3.902_748_775_224,
-        ),
-        (
-            -5.0,
-            -5.0,
-            4.444_385_106_649,
-            -4.444_274_913_314,
-            1.020_352_034_411,
-        ),
+        (5.0, 5.0, -4.234_089_847_555, 4.444_274_913_314, 3.902_748_775_224),
+        (-5.0, -5.0, 4.444_385_106_649, -4.444_274_913_314, 1.020_352_034_411),
         (5.0, -5.0, -0.144_014_896_878, 0.0, 3.188_836_309_895),
-        (
-            1.0,
-            -2.0,
-            0.995_958_158_631,
-            -0.608_034_418_811,
-            -0.642_500_373_380,
-        ),
-        (
-            -3.3,
-            0.7,
-            1.628_328_059_925,
-            -1.628_352_085_306,
-            -3.151_303_923_865,
-        ),
+        (1.0, -2.0, 0.995_958_158_631, -0.608_034_418_811, -0.642_500_373_380),
+        (-3.3, 0.7, 1.628_328_059_925, -1.628_352_085_306, -3.151_303_923_865),
     ] {
         let delta = supervisor.infer(error, change).expect("inside").delta;
         // Half a unit of the last printed digit.
         for (ours, theirs) in [(delta.kp, kp), (delta.ki, ki), (delta.kd, kd)] {
-            assert!(
-                (ours - theirs).abs() < 6e-13,
-                "{error} {change}: {ours} {theirs}"
-            );
+            assert!((ours - theirs).abs() < 6e-13, "{error} {change}: {ours} {theirs}");
         }
     }
 }
@@ -165,14 +128,8 @@ fn exp_is_within_one_unit_in_the_last_place_in_single_precision() {
 #[test]
 fn exp_of_what_is_no_number_is_no_number() {
     assert!(Real::exp(f64::NAN).is_nan() && Real::exp(f32::NAN).is_nan());
-    assert_eq!(
-        (Real::exp(f64::INFINITY), Real::exp(f64::NEG_INFINITY)),
-        (f64::INFINITY, 0.0)
-    );
-    assert_eq!(
-        (Real::exp(f32::INFINITY), Real::exp(f32::NEG_INFINITY)),
-        (f32::INFINITY, 0.0)
-    );
+    assert_eq!((Real::exp(f64::INFINITY), Real::exp(f64::NEG_INFINITY)), (f64::INFINITY, 0.0));
+    assert_eq!((Real::exp(f32::INFINITY), Real::exp(f32::NEG_INFINITY)), (f32::INFINITY, 0.0));
 }
 
 #[test]
@@ -208,13 +165,7 @@ fn a_refusing_supervisor_names_the_input_and_its_range() {
     let refusing = supervisor(PRINTED, 5.0, "exact", OutOfRange::Error);
     let message = refusing.infer(5.5, 0.0).expect_err("outside").to_string();
     assert_eq!(message, "error is 5.5; allowed is -5.0 to 5.0");
-    assert!(
-        refusing
-            .infer(0.0, -5.1)
-            .expect_err("outside")
-            .to_string()
-            .starts_with("change")
-    );
+    assert!(refusing.infer(0.0, -5.1).expect_err("outside").to_string().starts_with("change"));
     assert!(refusing.infer(5.0, -5.0).is_ok());
 }
 
@@ -231,20 +182,10 @@ fn no_policy_answers_an_input_that_is_not_finite() {
 #[test]
 fn a_range_that_is_no_range_is_refused() {
     for range in [0.0, -5.0, f64::NAN, f64::INFINITY, 1e-300, 1e300] {
-        let built = Supervisor::new(
-            &table(PRINTED),
-            range,
-            Defuzzifier::Exact,
-            OutOfRange::Clamp,
-        );
+        let built = Supervisor::new(&table(PRINTED), range, Defuzzifier::Exact, OutOfRange::Clamp);
         assert!(built.is_err(), "{range}");
     }
-    let single = Supervisor::new(
-        &table(PRINTED),
-        1e-30_f32,
-        Defuzzifier::Exact,
-        OutOfRange::Clamp,
-    );
+    let single = Supervisor::new(&table(PRINTED), 1e-30_f32, Defuzzifier::Exact, OutOfRange::Clamp);
     assert!(single.is_err());
 }
 
@@ -287,11 +228,7 @@ fn with_label(
         for e in Label::ALL {
             for c in Label::ALL {
                 let changed = (o, e, c) == (output, error, change);
-                rows[e.index()][c.index()] = if changed {
-                    label
-                } else {
-                    table.grid(o).at(e, c)
-                };
+                rows[e.index()][c.index()] = if changed { label } else { table.grid(o).at(e, c) };
             }
         }
         fspid_fuzzy::Grid::new(rows)
@@ -309,15 +246,9 @@ fn scaling_all_ranges_by_eight_scales_the_answer_bit_for_bit() {
     let small = supervisor(PRINTED, 5.0, "exact", OutOfRange::Clamp);
     let large = supervisor(PRINTED, 40.0, "exact", OutOfRange::Clamp);
     for k in 0..1000 {
-        let (error, change) = (
-            f64::from(k % 41) * 0.23 - 4.6,
-            f64::from(k % 37) * 0.27 - 4.9,
-        );
+        let (error, change) = (f64::from(k % 41) * 0.23 - 4.6, f64::from(k % 37) * 0.27 - 4.9);
         let a = small.infer(error, change).expect("inside").delta;
-        let b = large
-            .infer(8.0 * error, 8.0 * change)
-            .expect("inside")
-            .delta;
+        let b = large.infer(8.0 * error, 8.0 * change).expect("inside").delta;
         assert_eq!((8.0 * a.kp, 8.0 * a.ki, 8.0 * a.kd), (b.kp, b.ki, b.kd));
     }
 }

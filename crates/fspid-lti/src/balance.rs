@@ -43,11 +43,7 @@ fn worthwhile_exponent(matrix: &Matrix, i: usize) -> i32 {
     }
     let exponent = (libm::frexp(row).1 - libm::frexp(column).1) / 2;
     let balanced = libm::scalbn(column, exponent) + libm::scalbn(row, -exponent);
-    if balanced < WORTHWHILE * (column + row) {
-        exponent
-    } else {
-        0
-    }
+    if balanced < WORTHWHILE * (column + row) { exponent } else { 0 }
 }
 
 /// Column i times 2^exponent, row i divided by it.

@@ -55,9 +55,7 @@ pub(crate) fn sort(values: &mut [Complex]) {
 }
 
 fn order(left: &Complex, right: &Complex) -> Ordering {
-    left.re
-        .total_cmp(&right.re)
-        .then(left.im.total_cmp(&right.im))
+    left.re.total_cmp(&right.re).then(left.im.total_cmp(&right.im))
 }
 
 #[cfg(test)]
@@ -74,19 +72,12 @@ mod tests {
 
     #[test]
     fn sorting_puts_conjugates_side_by_side_with_the_lower_one_first() {
-        let mut values = [
-            Complex::new(0.0, 2.0),
-            Complex::new(-0.0, -2.0),
-            Complex::new(-1.0, 5.0),
-        ];
+        let mut values =
+            [Complex::new(0.0, 2.0), Complex::new(-0.0, -2.0), Complex::new(-1.0, 5.0)];
         sort(&mut values);
         assert_eq!(
             values,
-            [
-                Complex::new(-1.0, 5.0),
-                Complex::new(0.0, -2.0),
-                Complex::new(0.0, 2.0)
-            ]
+            [Complex::new(-1.0, 5.0), Complex::new(0.0, -2.0), Complex::new(0.0, 2.0)]
         );
         assert!(values[1].re.is_sign_positive());
     }

@@ -16,10 +16,7 @@ pub(crate) struct Doubled {
 const SPLITTER: f64 = 134_217_729.0;
 
 impl Doubled {
-    pub(crate) const ZERO: Self = Self {
-        high: 0.0,
-        low: 0.0,
-    };
+    pub(crate) const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
     /// Exact sum of two numbers.
     ///
@@ -28,10 +25,7 @@ impl Doubled {
     fn exact_sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let part = high - left;
-        Self {
-            high,
-            low: (left - (high - part)) + (right - part),
-        }
+        Self { high, low: (left - (high - part)) + (right - part) }
     }
 
     /// Exact product of two numbers below 2^996.
@@ -42,10 +36,7 @@ impl Doubled {
         let high = left * right;
         let (a, b) = split(left);
         let (c, d) = split(right);
-        Self {
-            high,
-            low: ((a * c - high) + a * d + b * c) + b * d,
-        }
+        Self { high, low: ((a * c - high) + a * d + b * c) + b * d }
     }
 
     /// Sum, to about 2^-104 of the larger term.
@@ -57,10 +48,7 @@ impl Doubled {
     /// Product, to about 2^-103 of itself.
     pub(crate) fn product(self, other: Self) -> Self {
         let product = Self::exact_product(self.high, other.high);
-        Self::exact_sum(
-            product.high,
-            product.low + (self.high * other.low + self.low * other.high),
-        )
+        Self::exact_sum(product.high, product.low + (self.high * other.low + self.low * other.high))
     }
 
     /// Product with a plain number, to about 2^-104 of itself.
@@ -83,12 +71,7 @@ impl DoubledMatrix {
         let size = matrix.rows();
         let one = |i: usize| if i.is_multiple_of(size + 1) { 1.0 } else { 0.0 };
         let data = matrix.data().iter().enumerate();
-        Self {
-            size,
-            data: data
-                .map(|(i, &value)| Doubled::exact_sum(one(i), value))
-                .collect(),
-        }
+        Self { size, data: data.map(|(i, &value)| Doubled::exact_sum(one(i), value)).collect() }
     }
 
     /// Product with itself.
@@ -100,10 +83,7 @@ impl DoubledMatrix {
                 sum.plus(self.data[left].product(self.data[right]))
             })
         };
-        Self {
-            size: self.size,
-            data: (0..self.data.len()).map(entry).collect(),
-        }
+        Self { size: self.size, data: (0..self.data.len()).map(entry).collect() }
     }
 
     /// Nearest plain matrix.
@@ -134,10 +114,7 @@ pub(crate) struct DoubledComplex {
 }
 
 impl DoubledComplex {
-    pub(crate) const ZERO: Self = Self {
-        re: Doubled::ZERO,
-        im: Doubled::ZERO,
-    };
+    pub(crate) const ZERO: Self = Self { re: Doubled::ZERO, im: Doubled::ZERO };
 
     /// Product with a plain complex number.
     pub(crate) fn times(self, z: Complex) -> Self {
@@ -148,17 +125,11 @@ impl DoubledComplex {
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            re: self.re.plus(other.re),
-            im: self.im.plus(other.im),
-        }
+        Self { re: self.re.plus(other.re), im: self.im.plus(other.im) }
     }
 
     pub(crate) fn plus_real(self, value: f64) -> Self {
-        Self {
-            re: self.re.plus(value.into()),
-            im: self.im,
-        }
+        Self { re: self.re.plus(value.into()), im: self.im }
     }
 
     /// Nearest plain complex number.
@@ -175,9 +146,7 @@ mod tests {
     fn a_product_keeps_the_digits_that_working_precision_drops() {
         // (1 + 2^-30)^2 = 1 + 2^-29 + 2^-60.
         let factor = 1.0 + libm::exp2(-30.0);
-        let square = Doubled::from(factor)
-            .times(factor)
-            .plus((-1.0 - libm::exp2(-29.0)).into());
+        let square = Doubled::from(factor).times(factor).plus((-1.0 - libm::exp2(-29.0)).into());
         assert_eq!(square.high.to_bits(), libm::exp2(-60.0).to_bits());
     }
 

@@ -28,19 +28,13 @@ pub fn eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LtiError> {
     matrix.require_square_and_finite(WHAT)?;
     let mut work = matrix.clone();
     balance(&mut work);
-    let largest = work
-        .data()
-        .iter()
-        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = work.data().iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     let (_, exponent) = libm::frexp(largest);
     work = work.map(|value| libm::scalbn(value, -exponent));
     to_hessenberg(&mut work);
     let mut values = hessenberg_eigenvalues(work)?;
     for value in &mut values {
-        *value = Complex::new(
-            libm::scalbn(value.re, exponent),
-            libm::scalbn(value.im, exponent),
-        );
+        *value = Complex::new(libm::scalbn(value.re, exponent), libm::scalbn(value.im, exponent));
     }
     if !values.iter().all(|value| value.is_finite()) {
         return Err(LtiError::OutOfRange { what: "eigenvalue" });
@@ -54,10 +48,7 @@ pub fn eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LtiError> {
 /// # Errors
 /// As [`eigenvalues`].
 pub fn spectral_radius(matrix: &Matrix) -> Result<f64, LtiError> {
-    Ok(eigenvalues(matrix)?
-        .into_iter()
-        .map(modulus)
-        .fold(0.0, f64::max))
+    Ok(eigenvalues(matrix)?.into_iter().map(modulus).fold(0.0, f64::max))
 }
 
 /// I - tau v v', which turns a vector into a multiple of the first unit vector.
@@ -72,23 +63,15 @@ struct Reflector {
 impl Reflector {
     /// `None` when the vector is already such a multiple.
     fn of(x: &[f64]) -> Option<Self> {
-        let tail = x[1..]
-            .iter()
-            .fold(0.0, |norm, &value| libm::hypot(norm, value));
+        let tail = x[1..].iter().fold(0.0, |norm, &value| libm::hypot(norm, value));
         if tail == 0.0 {
             return None;
         }
         let norm = libm::hypot(x[0], tail);
         let signed = if x[0] < 0.0 { -norm } else { norm };
         let pivot = x[0] + signed;
-        let v = core::iter::once(1.0)
-            .chain(x[1..].iter().map(|value| value / pivot))
-            .collect();
-        Some(Self {
-            v,
-            tau: pivot / signed,
-            first: -signed,
-        })
+        let v = core::iter::once(1.0).chain(x[1..].iter().map(|value| value / pivot)).collect();
+        Some(Self { v, tau: pivot / signed, first: -signed })
     }
 
     /// From the left on rows from `row`, in the columns given.
@@ -124,9 +107,7 @@ impl Reflector {
 fn to_hessenberg(matrix: &mut Matrix) {
     let size = matrix.rows();
     for column in 0..size.saturating_sub(2) {
-        let below: Vec<f64> = (column + 1..size)
-            .map(|row| matrix.at(row, column))
-            .collect();
+        let below: Vec<f64> = (column + 1..size).map(|row| matrix.at(row, column)).collect();
         if let Some(reflector) = Reflector::of(&below) {
             reflector.reflect_rows(matrix, column + 1, column + 1..size);
             reflector.reflect_columns(matrix, column + 1, 0..size);
@@ -156,10 +137,7 @@ fn hessenberg_eigenvalues(mut h: Matrix) -> Result<Vec<Complex>, LtiError> {
             steps += 1;
             qr_step(&mut h, start, end, steps.is_multiple_of(EXCEPTIONAL_EVERY));
         } else {
-            return Err(LtiError::NotConverged {
-                what: "eigenvalue",
-                iterations: steps,
-            });
+            return Err(LtiError::NotConverged { what: "eigenvalue", iterations: steps });
         }
     }
     Ok(values)
@@ -229,9 +207,7 @@ fn qr_step(h: &mut Matrix, start: usize, end: usize, exceptional: bool) {
                 set_column(h, row, row - 1, &reflector);
             }
         }
-        column = (row + 1..end.min(row + 4))
-            .map(|below| h.at(below, row))
-            .collect();
+        column = (row + 1..end.min(row + 4)).map(|below| h.at(below, row)).collect();
     }
 }
 
@@ -243,11 +219,7 @@ fn shifts(h: &Matrix, end: usize, exceptional: bool) -> (f64, f64, f64) {
         let diagonal = 0.75 * size + h.at(last, last);
         return (diagonal, diagonal, -0.4375 * size * size);
     }
-    (
-        h.at(last - 1, last - 1),
-        h.at(last, last),
-        h.at(last, last - 1) * h.at(last - 1, last),
-    )
+    (h.at(last - 1, last - 1), h.at(last, last), h.at(last, last - 1) * h.at(last - 1, last))
 }
 
 /// First column of (H - s1 I)(H - s2 I), up to a factor.

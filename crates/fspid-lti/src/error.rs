@@ -152,11 +152,7 @@ impl LtiError {
     /// `Ok` when every value is finite; otherwise the first that is not, with its position.
     pub(crate) fn unless_finite(what: &'static str, values: &[f64]) -> Result<(), Self> {
         match values.iter().position(|value| !value.is_finite()) {
-            Some(index) => Err(Self::NotFinite {
-                what,
-                index,
-                value: values[index],
-            }),
+            Some(index) => Err(Self::NotFinite { what, index, value: values[index] }),
             None => Ok(()),
         }
     }
@@ -168,32 +164,15 @@ mod tests {
 
     #[test]
     fn a_message_says_what_was_found_and_what_is_allowed() {
-        let improper = LtiError::Improper {
-            numerator_degree: 3,
-            denominator_degree: 2,
-        };
+        let improper = LtiError::Improper { numerator_degree: 3, denominator_degree: 2 };
         assert_eq!(
             improper.to_string(),
             "the numerator has degree 3 and the denominator 2; the numerator's degree must not be the higher one"
         );
-        let shape = LtiError::Shape {
-            what: "input matrix",
-            found: (2, 1),
-            allowed: (3, 1),
-        };
-        assert_eq!(
-            shape.to_string(),
-            "the input matrix is 2 by 1; it must be 3 by 1 here"
-        );
-        let no_mode = LtiError::NoMode {
-            real: 0.0,
-            imaginary: -1.5,
-        };
-        assert!(
-            no_mode
-                .to_string()
-                .starts_with("the pole 0 -1.5j has no natural frequency")
-        );
+        let shape = LtiError::Shape { what: "input matrix", found: (2, 1), allowed: (3, 1) };
+        assert_eq!(shape.to_string(), "the input matrix is 2 by 1; it must be 3 by 1 here");
+        let no_mode = LtiError::NoMode { real: 0.0, imaginary: -1.5 };
+        assert!(no_mode.to_string().starts_with("the pole 0 -1.5j has no natural frequency"));
     }
 
     #[test]
@@ -201,11 +180,7 @@ mod tests {
         let found = LtiError::unless_finite("numerator", &[1.0, f64::INFINITY, f64::NEG_INFINITY]);
         assert_eq!(
             found,
-            Err(LtiError::NotFinite {
-                what: "numerator",
-                index: 1,
-                value: f64::INFINITY
-            })
+            Err(LtiError::NotFinite { what: "numerator", index: 1, value: f64::INFINITY })
         );
         assert!(LtiError::unless_finite("numerator", &[f64::NAN]).is_err());
         assert!(LtiError::unless_finite("numerator", &[]).is_ok());

@@ -64,9 +64,7 @@ fn squarings(norm: f64) -> Result<i32, LtiError> {
         let (_, exponent) = libm::frexp(norm / THETA);
         Ok(exponent.max(0))
     } else {
-        Err(LtiError::OutOfRange {
-            what: "norm of the matrix of the exponential",
-        })
+        Err(LtiError::OutOfRange { what: "norm of the matrix of the exponential" })
     }
 }
 
@@ -85,14 +83,8 @@ fn pade_less_identity(a: &Matrix) -> Result<Matrix, LtiError> {
 fn sum_of_powers(powers: [&Matrix; 4], first: usize) -> Result<Matrix, LtiError> {
     let [one, a2, a4, a6] = powers;
     let c = |k: usize| PADE[first + 2 * k];
-    let high = a6
-        .scaled(c(6))
-        .sum(&a4.scaled(c(5)))?
-        .sum(&a2.scaled(c(4)))?;
-    let low = a6
-        .scaled(c(3))
-        .sum(&a4.scaled(c(2)))?
-        .sum(&a2.scaled(c(1)))?
-        .sum(&one.scaled(c(0)))?;
+    let high = a6.scaled(c(6)).sum(&a4.scaled(c(5)))?.sum(&a2.scaled(c(4)))?;
+    let low =
+        a6.scaled(c(3)).sum(&a4.scaled(c(2)))?.sum(&a2.scaled(c(1)))?.sum(&one.scaled(c(0)))?;
     a6.product(&high)?.sum(&low)
 }

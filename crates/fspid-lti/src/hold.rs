@@ -26,24 +26,19 @@ pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Mat
     b.require_shape("input matrix", a.rows(), b.columns())?;
     LtiError::unless_finite("input matrix", b.data())?;
     if !(dt_s > 0.0 && dt_s.is_finite()) {
-        return Err(LtiError::NotPositive {
-            what: "sample period in seconds",
-            value: dt_s,
-        });
+        return Err(LtiError::NotPositive { what: "sample period in seconds", value: dt_s });
     }
     let (states, inputs) = (a.rows(), b.columns());
     let b_dt = b.scaled(dt_s);
-    let shifts: Vec<i32> = (0..inputs)
-        .map(|input| INPUT_EXPONENT - libm::frexp(b_dt.column_norm(input)).1)
-        .collect();
-    let augmented =
-        Matrix::from_function(states + inputs, states + inputs, |row, column| match column
-            .checked_sub(states)
-        {
+    let shifts: Vec<i32> =
+        (0..inputs).map(|input| INPUT_EXPONENT - libm::frexp(b_dt.column_norm(input)).1).collect();
+    let augmented = Matrix::from_function(states + inputs, states + inputs, |row, column| {
+        match column.checked_sub(states) {
             _ if row >= states => 0.0,
             Some(input) => libm::scalbn(b_dt.at(row, input), shifts[input]),
             None => a.at(row, column) * dt_s,
-        });
+        }
+    });
     let sampled = exponential(&augmented)?;
     let a_sampled = Matrix::from_function(states, states, |row, column| sampled.at(row, column));
     let b_sampled = Matrix::from_function(states, inputs, |row, input| {

@@ -17,21 +17,13 @@ impl Matrix {
     /// Matrix of zeros.
     #[must_use]
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self {
-            rows,
-            columns,
-            data: vec![0.0; rows * columns],
-        }
+        Self { rows, columns, data: vec![0.0; rows * columns] }
     }
 
     /// Square matrix with ones on the diagonal.
     #[must_use]
     pub fn identity(size: usize) -> Self {
-        Self::from_function(
-            size,
-            size,
-            |row, column| if row == column { 1.0 } else { 0.0 },
-        )
+        Self::from_function(size, size, |row, column| if row == column { 1.0 } else { 0.0 })
     }
 
     /// Matrix with these rows.
@@ -43,20 +35,12 @@ impl Matrix {
         let mut data = Vec::with_capacity(rows.len() * columns);
         for (row, entries) in rows.iter().map(AsRef::as_ref).enumerate() {
             if entries.len() != columns {
-                return Err(LtiError::RaggedRows {
-                    row,
-                    found: entries.len(),
-                    allowed: columns,
-                });
+                return Err(LtiError::RaggedRows { row, found: entries.len(), allowed: columns });
             }
             data.extend_from_slice(entries);
         }
         LtiError::unless_finite("matrix", &data)?;
-        Ok(Self {
-            rows: rows.len(),
-            columns,
-            data,
-        })
+        Ok(Self { rows: rows.len(), columns, data })
     }
 
     /// Matrix whose entry at (row, column) is what the function returns there.
@@ -66,11 +50,7 @@ impl Matrix {
         entry: impl Fn(usize, usize) -> f64,
     ) -> Self {
         let entries = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-        Self {
-            rows,
-            columns,
-            data: entries.map(|(row, column)| entry(row, column)).collect(),
-        }
+        Self { rows, columns, data: entries.map(|(row, column)| entry(row, column)).collect() }
     }
 
     /// Number of rows.
@@ -135,10 +115,7 @@ impl Matrix {
 
     pub(crate) fn swap_rows(&mut self, first: usize, second: usize) {
         for column in 0..self.columns {
-            self.data.swap(
-                first * self.columns + column,
-                second * self.columns + column,
-            );
+            self.data.swap(first * self.columns + column, second * self.columns + column);
         }
     }
 
@@ -148,16 +125,12 @@ impl Matrix {
     /// A right factor whose rows are not as many as this one's columns.
     pub fn product(&self, right: &Self) -> Result<Self, LtiError> {
         right.require_shape("right factor", self.columns, right.columns)?;
-        Ok(Self::from_function(
-            self.rows,
-            right.columns,
-            |row, column| {
-                self.row(row)
-                    .iter()
-                    .enumerate()
-                    .fold(0.0, |sum, (k, value)| sum + value * right.at(k, column))
-            },
-        ))
+        Ok(Self::from_function(self.rows, right.columns, |row, column| {
+            self.row(row)
+                .iter()
+                .enumerate()
+                .fold(0.0, |sum, (k, value)| sum + value * right.at(k, column))
+        }))
     }
 
     /// Sum of two matrices.
@@ -166,17 +139,8 @@ impl Matrix {
     /// A second term of another shape.
     pub fn sum(&self, right: &Self) -> Result<Self, LtiError> {
         right.require_shape("second term", self.rows, self.columns)?;
-        let data = self
-            .data
-            .iter()
-            .zip(&right.data)
-            .map(|(left, right)| left + right)
-            .collect();
-        Ok(Self {
-            rows: self.rows,
-            columns: self.columns,
-            data,
-        })
+        let data = self.data.iter().zip(&right.data).map(|(left, right)| left + right).collect();
+        Ok(Self { rows: self.rows, columns: self.columns, data })
     }
 
     /// Every entry times a factor.
@@ -206,13 +170,7 @@ impl Matrix {
     #[must_use]
     pub fn norm_one(&self) -> f64 {
         let sums = (0..self.columns).map(|column| self.column_norm(column));
-        sums.fold(0.0, |norm, sum| {
-            if norm > sum || norm.is_nan() {
-                norm
-            } else {
-                sum
-            }
-        })
+        sums.fold(0.0, |norm, sum| if norm > sum || norm.is_nan() { norm } else { sum })
     }
 
     /// Sum of the absolute values of one column.
@@ -228,11 +186,7 @@ impl Matrix {
         require_length("vector", x.len(), self.columns)?;
         require_length("result vector", out.len(), self.rows)?;
         for (row, value) in out.iter_mut().enumerate() {
-            *value = self
-                .row(row)
-                .iter()
-                .zip(x)
-                .fold(0.0, |sum, (entry, x)| sum + entry * x);
+            *value = self.row(row).iter().zip(x).fold(0.0, |sum, (entry, x)| sum + entry * x);
         }
         Ok(())
     }
@@ -245,15 +199,7 @@ impl Matrix {
         columns: usize,
     ) -> Result<(), LtiError> {
         let (found, allowed) = ((self.rows, self.columns), (rows, columns));
-        if found == allowed {
-            Ok(())
-        } else {
-            Err(LtiError::Shape {
-                what,
-                found,
-                allowed,
-            })
-        }
+        if found == allowed { Ok(()) } else { Err(LtiError::Shape { what, found, allowed }) }
     }
 
     /// `Ok` when the matrix is square and all its entries are finite.
@@ -267,11 +213,7 @@ fn require_length(what: &'static str, found: usize, allowed: usize) -> Result<()
     if found == allowed {
         Ok(())
     } else {
-        Err(LtiError::Shape {
-            what,
-            found: (found, 1),
-            allowed: (allowed, 1),
-        })
+        Err(LtiError::Shape { what, found: (found, 1), allowed: (allowed, 1) })
     }
 }
 
@@ -286,23 +228,9 @@ mod tests {
     #[test]
     fn ragged_rows_and_entries_that_are_not_finite_are_refused() {
         let ragged = Matrix::from_rows(&[vec![1.0, 2.0], vec![3.0]]);
-        assert_eq!(
-            ragged,
-            Err(LtiError::RaggedRows {
-                row: 1,
-                found: 1,
-                allowed: 2
-            })
-        );
+        assert_eq!(ragged, Err(LtiError::RaggedRows { row: 1, found: 1, allowed: 2 }));
         let broken = Matrix::from_rows(&[[1.0, 2.0], [3.0, f64::NAN]]);
-        assert!(matches!(
-            broken,
-            Err(LtiError::NotFinite {
-                what: "matrix",
-                index: 3,
-                ..
-            })
-        ));
+        assert!(matches!(broken, Err(LtiError::NotFinite { what: "matrix", index: 3, .. })));
     }
 
     #[test]
@@ -316,10 +244,7 @@ mod tests {
             Matrix::from_rows(&[[-1.0, 4.0], [-1.0, 8.0], [-1.0, 12.0]])
         );
         assert_eq!(left.sum(&left), Ok(left.scaled(2.0)));
-        assert_eq!(
-            left.transpose(),
-            matrix(&[&[1.0, 3.0, 5.0], &[2.0, 4.0, 6.0]])
-        );
+        assert_eq!(left.transpose(), matrix(&[&[1.0, 3.0, 5.0], &[2.0, 4.0, 6.0]]));
         assert_eq!(left.norm_one().to_bits(), 12.0_f64.to_bits());
         let mut out = [0.0; 3];
         assert_eq!(left.apply(&[1.0, -1.0], &mut out), Ok(()));
@@ -329,11 +254,7 @@ mod tests {
     #[test]
     fn shapes_that_do_not_fit_are_refused() {
         let (tall, wide) = (Matrix::zeros(3, 2), Matrix::zeros(2, 3));
-        let expected = LtiError::Shape {
-            what: "right factor",
-            found: (3, 2),
-            allowed: (2, 2),
-        };
+        let expected = LtiError::Shape { what: "right factor", found: (3, 2), allowed: (2, 2) };
         assert_eq!(tall.product(&tall), Err(expected));
         assert!(tall.sum(&wide).is_err());
         assert!(tall.apply(&[0.0; 3], &mut [0.0; 3]).is_err());
@@ -344,18 +265,10 @@ mod tests {
     fn entries_outside_are_none_to_read_and_an_error_to_write() {
         let mut matrix = Matrix::zeros(2, 3);
         assert_eq!(matrix.set(1, 2, 7.0), Ok(()));
-        assert_eq!(
-            (matrix.get(1, 2), matrix.get(2, 0), matrix.get(0, 3)),
-            (Some(7.0), None, None)
-        );
+        assert_eq!((matrix.get(1, 2), matrix.get(2, 0), matrix.get(0, 3)), (Some(7.0), None, None));
         assert_eq!(
             matrix.set(0, 3, 1.0),
-            Err(LtiError::OutOfBounds {
-                row: 0,
-                column: 3,
-                rows: 2,
-                columns: 3
-            })
+            Err(LtiError::OutOfBounds { row: 0, column: 3, rows: 2, columns: 3 })
         );
     }
 

@@ -39,11 +39,7 @@ impl Polynomial {
         }
         let degree = coefficients.len() - 1;
         if degree > DEGREE_LIMIT {
-            return Err(LtiError::DegreeTooHigh {
-                what,
-                degree,
-                limit: DEGREE_LIMIT,
-            });
+            return Err(LtiError::DegreeTooHigh { what, degree, limit: DEGREE_LIMIT });
         }
         Ok(Self { coefficients })
     }
@@ -80,19 +76,13 @@ impl Polynomial {
     /// How many roots lie exactly at the origin: the zeros at the end of the coefficients.
     #[must_use]
     pub fn roots_at_origin(&self) -> usize {
-        self.coefficients
-            .iter()
-            .rev()
-            .take_while(|&&value| value == 0.0)
-            .count()
+        self.coefficients.iter().rev().take_while(|&&value| value == 0.0).count()
     }
 
     /// Value at a real point, by Horner's rule; infinite or NaN where the powers overflow.
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
-        self.coefficients
-            .iter()
-            .fold(0.0, |value, coefficient| value * x + coefficient)
+        self.coefficients.iter().fold(0.0, |value, coefficient| value * x + coefficient)
     }
 
     /// Value at a complex point, by Horner's rule; infinite or NaN where the powers overflow.
@@ -100,9 +90,7 @@ impl Polynomial {
     pub fn at_complex(&self, z: Complex) -> Complex {
         self.coefficients
             .iter()
-            .fold(Complex::new(0.0, 0.0), |value, coefficient| {
-                value * z + coefficient
-            })
+            .fold(Complex::new(0.0, 0.0), |value, coefficient| value * z + coefficient)
     }
 
     /// All roots with their multiplicity, sorted by real part, then imaginary part.
@@ -142,11 +130,8 @@ impl Polynomial {
     /// # Errors
     /// A sum that is zero everywhere, a coefficient that overflows.
     pub fn sum(&self, other: &Self) -> Result<Self, LtiError> {
-        let (long, short) = if self.degree() >= other.degree() {
-            (self, other)
-        } else {
-            (other, self)
-        };
+        let (long, short) =
+            if self.degree() >= other.degree() { (self, other) } else { (other, self) };
         let mut coefficients = long.coefficients.clone();
         let offset = long.degree() - short.degree();
         for (value, term) in coefficients[offset..].iter_mut().zip(&short.coefficients) {
@@ -162,19 +147,14 @@ impl Polynomial {
     pub fn scaled(&self, factor: f64) -> Result<Self, LtiError> {
         Self::named(
             "scaled polynomial",
-            self.coefficients
-                .iter()
-                .map(|value| factor * value)
-                .collect(),
+            self.coefficients.iter().map(|value| factor * value).collect(),
         )
     }
 
     /// Polynomial with the opposite sign.
     #[must_use]
     pub fn negated(&self) -> Self {
-        Self {
-            coefficients: self.coefficients.iter().map(|value| -value).collect(),
-        }
+        Self { coefficients: self.coefficients.iter().map(|value| -value).collect() }
     }
 
     /// Derivative with respect to the variable.
@@ -184,20 +164,12 @@ impl Polynomial {
     pub fn derivative(&self) -> Result<Self, LtiError> {
         let degree = self.degree();
         let terms = self.coefficients[..degree].iter().enumerate();
-        Self::trimmed(
-            "derivative",
-            terms
-                .map(|(i, value)| value * (degree - i) as f64)
-                .collect(),
-        )
+        Self::trimmed("derivative", terms.map(|(i, value)| value * (degree - i) as f64).collect())
     }
 }
 
 fn leading_zeros(coefficients: &[f64]) -> usize {
-    coefficients
-        .iter()
-        .take_while(|&&value| value == 0.0)
-        .count()
+    coefficients.iter().take_while(|&&value| value == 0.0).count()
 }
 
 #[cfg(test)]
@@ -212,10 +184,7 @@ mod tests {
     fn malformed_coefficients_are_refused_with_what_was_found() {
         let what = "polynomial";
         assert_eq!(Polynomial::new(&[]), Err(LtiError::Empty { what }));
-        assert_eq!(
-            Polynomial::new(&[0.0, -0.0]),
-            Err(LtiError::ZeroPolynomial { what })
-        );
+        assert_eq!(Polynomial::new(&[0.0, -0.0]), Err(LtiError::ZeroPolynomial { what }));
         assert_eq!(
             Polynomial::new(&[0.0, 0.0, 1.0]),
             Err(LtiError::LeadingZero { what, zeros: 2 })
@@ -236,36 +205,23 @@ mod tests {
         let beyond = Polynomial::new(&[1.0; DEGREE_LIMIT + 2]);
         assert_eq!(
             beyond,
-            Err(LtiError::DegreeTooHigh {
-                what: "polynomial",
-                degree: 101,
-                limit: 100
-            })
+            Err(LtiError::DegreeTooHigh { what: "polynomial", degree: 101, limit: 100 })
         );
         let square = polynomial(&[1.0; 52]).product(&polynomial(&[1.0; 52]));
-        assert!(matches!(
-            square,
-            Err(LtiError::DegreeTooHigh { degree: 102, .. })
-        ));
+        assert!(matches!(square, Err(LtiError::DegreeTooHigh { degree: 102, .. })));
     }
 
     #[test]
     fn arithmetic_agrees_with_hand_calculation() {
         let (left, right) = (polynomial(&[1.0, 2.0, 3.0]), polynomial(&[4.0, 5.0]));
-        assert_eq!(
-            left.product(&right),
-            Polynomial::new(&[4.0, 13.0, 22.0, 15.0])
-        );
+        assert_eq!(left.product(&right), Polynomial::new(&[4.0, 13.0, 22.0, 15.0]));
         assert_eq!(left.sum(&right), Polynomial::new(&[1.0, 6.0, 8.0]));
         assert_eq!(right.sum(&left), left.sum(&right));
         assert_eq!(left.scaled(-2.0), Polynomial::new(&[-2.0, -4.0, -6.0]));
         assert_eq!(left.negated(), polynomial(&[-1.0, -2.0, -3.0]));
         assert_eq!(left.derivative(), Polynomial::new(&[2.0, 2.0]));
         assert_eq!(left.at(2.0).to_bits(), 11.0_f64.to_bits());
-        assert_eq!(
-            left.at_complex(Complex::new(0.0, 1.0)),
-            Complex::new(2.0, 2.0)
-        );
+        assert_eq!(left.at_complex(Complex::new(0.0, 1.0)), Complex::new(2.0, 2.0));
     }
 
     #[test]
@@ -281,26 +237,11 @@ mod tests {
             line.sum(&polynomial(&[-1.0, -2.0])),
             Err(LtiError::ZeroPolynomial { .. })
         ));
-        assert!(matches!(
-            polynomial(&[3.0]).derivative(),
-            Err(LtiError::ZeroPolynomial { .. })
-        ));
-        assert!(matches!(
-            line.scaled(0.0),
-            Err(LtiError::ZeroPolynomial { .. })
-        ));
-        assert!(matches!(
-            line.scaled(f64::NAN),
-            Err(LtiError::NotFinite { .. })
-        ));
-        assert!(matches!(
-            line.scaled(f64::MAX),
-            Err(LtiError::NotFinite { .. })
-        ));
+        assert!(matches!(polynomial(&[3.0]).derivative(), Err(LtiError::ZeroPolynomial { .. })));
+        assert!(matches!(line.scaled(0.0), Err(LtiError::ZeroPolynomial { .. })));
+        assert!(matches!(line.scaled(f64::NAN), Err(LtiError::NotFinite { .. })));
+        assert!(matches!(line.scaled(f64::MAX), Err(LtiError::NotFinite { .. })));
         let huge = polynomial(&[1e200, 1.0]);
-        assert!(matches!(
-            huge.product(&huge),
-            Err(LtiError::NotFinite { .. })
-        ));
+        assert!(matches!(huge.product(&huge), Err(LtiError::NotFinite { .. })));
     }
 }

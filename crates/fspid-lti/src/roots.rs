@@ -26,25 +26,16 @@ const WHAT: &str = "root of the polynomial";
 
 /// Roots for coefficients from the highest power down, of which the first is not zero and all are finite.
 pub(crate) fn roots(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
-    let at_origin = coefficients
-        .iter()
-        .rev()
-        .take_while(|&&value| value == 0.0)
-        .count();
+    let at_origin = coefficients.iter().rev().take_while(|&&value| value == 0.0).count();
     let polynomial = TwoSided::new(&coefficients[..coefficients.len() - at_origin])?;
     let mut roots = starting_points(&polynomial.inner)?;
     if !polynomial.iterate(&mut roots, horner, PLAIN_SWEEPS) {
-        return Err(LtiError::NotConverged {
-            what: WHAT,
-            iterations: PLAIN_SWEEPS,
-        });
+        return Err(LtiError::NotConverged { what: WHAT, iterations: PLAIN_SWEEPS });
     }
     // Whatever the refinement reaches within its sweeps is at least as good, so its verdict does not matter.
     polynomial.iterate(&mut roots, horner_doubled, REFINING_SWEEPS);
-    let mut roots: Vec<Complex> = conjugated(roots)
-        .into_iter()
-        .map(|root| polynomial.restored(root))
-        .collect();
+    let mut roots: Vec<Complex> =
+        conjugated(roots).into_iter().map(|root| polynomial.restored(root)).collect();
     if !roots.iter().all(|root| modulus(*root).is_normal()) {
         return Err(LtiError::OutOfRange { what: WHAT });
     }
@@ -80,20 +71,9 @@ impl TwoSided {
     fn new(coefficients: &[f64]) -> Result<Self, LtiError> {
         let degree = coefficients.len() as i32 - 1;
         let exponent = |i: usize| libm::frexp(coefficients[i]).1;
-        let unit = if degree == 0 {
-            0
-        } else {
-            (exponent(degree as usize) - exponent(0)) / degree
-        };
-        let terms = || {
-            (0_i32..)
-                .zip(coefficients)
-                .filter(|(_, value)| **value != 0.0)
-        };
-        let largest = terms()
-            .map(|(i, value)| libm::frexp(*value).1 - i * unit)
-            .max()
-            .unwrap_or(0);
+        let unit = if degree == 0 { 0 } else { (exponent(degree as usize) - exponent(0)) / degree };
+        let terms = || (0_i32..).zip(coefficients).filter(|(_, value)| **value != 0.0);
+        let largest = terms().map(|(i, value)| libm::frexp(*value).1 - i * unit).max().unwrap_or(0);
         let scaled = |(i, &value)| libm::scalbn(value, EXPONENT - largest - i * unit);
         let inner: Vec<f64> = (0..).zip(coefficients).map(scaled).collect();
         if !(inner[0].is_normal() && inner[degree as usize].is_normal()) {
@@ -105,10 +85,7 @@ impl TwoSided {
 
     /// Root in the units of the coefficients as given.
     fn restored(&self, root: Complex) -> Complex {
-        Complex::new(
-            libm::scalbn(root.re, self.unit),
-            libm::scalbn(root.im, self.unit),
-        )
+        Complex::new(libm::scalbn(root.re, self.unit), libm::scalbn(root.im, self.unit))
     }
 
     /// Improves all roots in turn; true when each has settled within the sweeps.
@@ -163,13 +140,8 @@ impl Value {
 }
 
 fn repulsion(roots: &[Complex], i: usize) -> Complex {
-    let others = roots
-        .iter()
-        .enumerate()
-        .filter(|&(j, other)| j != i && *other != roots[i]);
-    others.fold(Complex::new(0.0, 0.0), |sum, (_, &other)| {
-        sum + reciprocal(roots[i] - other)
-    })
+    let others = roots.iter().enumerate().filter(|&(j, other)| j != i && *other != roots[i]);
+    others.fold(Complex::new(0.0, 0.0), |sum, (_, &other)| sum + reciprocal(roots[i] - other))
 }
 
 /// Horner's rule in working precision.
@@ -181,11 +153,7 @@ fn horner(coefficients: &[f64], z: Complex) -> Value {
         value = value * z + coefficient;
     }
     let noise = f64::EPSILON * rounding(coefficients, z);
-    Value {
-        value,
-        derivative,
-        noise,
-    }
+    Value { value, derivative, noise }
 }
 
 /// Horner's rule in twice the working precision, rounded at the end.
@@ -197,11 +165,7 @@ fn horner_doubled(coefficients: &[f64], z: Complex) -> Value {
         value = value.times(z).plus_real(coefficient);
     }
     let noise = DOUBLED_EPSILON * rounding(coefficients, z);
-    Value {
-        value: value.rounded(),
-        derivative: derivative.rounded(),
-        noise,
-    }
+    Value { value: value.rounded(), derivative: derivative.rounded(), noise }
 }
 
 /// Bound for the rounding error of Horner's rule in a complex point, as a multiple of the working precision.
@@ -211,9 +175,7 @@ fn horner_doubled(coefficients: &[f64], z: Complex) -> Value {
 /// products.
 fn rounding(coefficients: &[f64], z: Complex) -> f64 {
     let size = modulus(z);
-    let sum = coefficients
-        .iter()
-        .fold(0.0, |sum, coefficient| sum * size + coefficient.abs());
+    let sum = coefficients.iter().fold(0.0, |sum, coefficient| sum * size + coefficient.abs());
     3.0 * coefficients.len() as f64 * sum
 }
 
@@ -231,10 +193,7 @@ fn starting_points(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
         for i in 0..count {
             let turns = i as f64 / count as f64 + power as f64 / degree as f64;
             let angle_rad = TAU * turns + FIRST_ANGLE_RAD;
-            points.push(Complex::new(
-                radius * libm::cos(angle_rad),
-                radius * libm::sin(angle_rad),
-            ));
+            points.push(Complex::new(radius * libm::cos(angle_rad), radius * libm::sin(angle_rad)));
         }
     }
     Ok(points)
@@ -243,11 +202,7 @@ fn starting_points(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
 /// Corners (power, log2 |coefficient|) of the upper convex hull, by rising power.
 fn newton_polygon(coefficients: &[f64]) -> Vec<(usize, f64)> {
     let mut hull: Vec<(usize, f64)> = Vec::new();
-    let terms = coefficients
-        .iter()
-        .rev()
-        .enumerate()
-        .filter(|(_, value)| **value != 0.0);
+    let terms = coefficients.iter().rev().enumerate().filter(|(_, value)| **value != 0.0);
     for point in terms.map(|(power, value)| (power, libm::log2(value.abs()))) {
         while hull.len() >= 2 && !turns_down(hull[hull.len() - 2], hull[hull.len() - 1], point) {
             hull.pop();
@@ -273,10 +228,8 @@ fn conjugated(mut rest: Vec<Complex>) -> Vec<Complex> {
         match mirror_image(root, &rest) {
             Some(j) => {
                 let partner = rest.remove(j);
-                let (re, im) = (
-                    0.5 * (root.re + partner.re),
-                    0.5 * (root.im.abs() + partner.im.abs()),
-                );
+                let (re, im) =
+                    (0.5 * (root.re + partner.re), 0.5 * (root.im.abs() + partner.im.abs()));
                 done.extend([Complex::new(re, -im), Complex::new(re, im)]);
             }
             None => done.push(Complex::new(root.re, 0.0)),

@@ -21,9 +21,8 @@ impl Matrix {
         LtiError::unless_finite("right side", right.data())?;
         let (mut left, mut right) = (self.clone(), right.clone());
         scale_rows(&mut left, &mut right);
-        let columns: Vec<f64> = (0..left.columns())
-            .map(|column| left.column_norm(column))
-            .collect();
+        let columns: Vec<f64> =
+            (0..left.columns()).map(|column| left.column_norm(column)).collect();
         for (column, &size) in columns.iter().enumerate() {
             bring_pivot(&mut left, &mut right, column, size)?;
             eliminate_below(&mut left, &mut right, column);
@@ -37,10 +36,8 @@ impl Matrix {
 /// Multiplies each row of both sides by the power of two that brings its largest entry on the left to [1/2, 1).
 fn scale_rows(left: &mut Matrix, right: &mut Matrix) {
     for row in 0..left.rows() {
-        let largest = left
-            .row(row)
-            .iter()
-            .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let largest =
+            left.row(row).iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let (_, exponent) = libm::frexp(largest);
         scale_row(left, row, -exponent);
         scale_row(right, row, -exponent);
@@ -112,18 +109,13 @@ mod tests {
     #[test]
     fn a_system_that_needs_a_row_exchange_is_solved() {
         let left = matrix(&[[0.0, 2.0], [4.0, 1.0]]);
-        assert_eq!(
-            left.solve(&matrix(&[[6.0], [7.0]])),
-            Matrix::from_rows(&[[1.0], [3.0]])
-        );
+        assert_eq!(left.solve(&matrix(&[[6.0], [7.0]])), Matrix::from_rows(&[[1.0], [3.0]]));
     }
 
     #[test]
     fn rows_and_columns_of_very_different_size_are_no_reason_to_refuse() {
         let left = matrix(&[[1e150, 1e150], [1e-150, 2e-150]]);
-        let x = left
-            .solve(&matrix(&[[3e150], [5e-150]]))
-            .expect("the rows are independent");
+        let x = left.solve(&matrix(&[[3e150], [5e-150]])).expect("the rows are independent");
         assert!((x.at(0, 0) - 1.0).abs() < 1e-14 && (x.at(1, 0) - 2.0).abs() < 1e-14);
         let left = matrix(&[[1.0, 0.0], [0.0, 1e-200]]);
         assert!(left.solve(&Matrix::identity(2)).is_ok());
@@ -144,22 +136,15 @@ mod tests {
         assert!(Matrix::zeros(2, 3).solve(&Matrix::zeros(2, 1)).is_err());
         assert!(Matrix::identity(2).solve(&Matrix::zeros(3, 1)).is_err());
         let broken = Matrix::identity(2).scaled(f64::NAN);
-        assert!(matches!(
-            broken.solve(&Matrix::identity(2)),
-            Err(LtiError::NotFinite { .. })
-        ));
-        assert!(matches!(
-            Matrix::identity(2).solve(&broken),
-            Err(LtiError::NotFinite { .. })
-        ));
+        assert!(matches!(broken.solve(&Matrix::identity(2)), Err(LtiError::NotFinite { .. })));
+        assert!(matches!(Matrix::identity(2).solve(&broken), Err(LtiError::NotFinite { .. })));
     }
 
     #[test]
     fn the_inverse_of_a_hilbert_matrix_is_the_integer_matrix_of_the_textbooks() {
         let hilbert = Matrix::from_function(4, 4, |i, j| 1.0 / (i + j + 1) as f64);
-        let inverse = hilbert
-            .solve(&Matrix::identity(4))
-            .expect("a Hilbert matrix of order 4 is regular");
+        let inverse =
+            hilbert.solve(&Matrix::identity(4)).expect("a Hilbert matrix of order 4 is regular");
         let corner = inverse.at(3, 3);
         assert!((corner - 2800.0).abs() < 1e-9 * 2800.0, "{corner}");
     }

@@ -105,11 +105,7 @@ mod tests {
 
     #[test]
     fn matrices_that_do_not_fit_are_refused_by_name() {
-        let (two, column, row) = (
-            Matrix::identity(2),
-            Matrix::zeros(2, 1),
-            Matrix::zeros(1, 2),
-        );
+        let (two, column, row) = (Matrix::identity(2), Matrix::zeros(2, 1), Matrix::zeros(1, 2));
         let build = |a: &Matrix, b: &Matrix, c: &Matrix, d: &Matrix| {
             StateSpace::new(a.clone(), b.clone(), c.clone(), d.clone()).map_err(|error| match error
             {
@@ -123,14 +119,8 @@ mod tests {
         assert_eq!(build(&two, &row, &row, &gain), Err("input matrix"));
         assert_eq!(build(&two, &column, &column, &gain), Err("output matrix"));
         assert_eq!(build(&two, &column, &row, &row), Err("feedthrough matrix"));
-        assert_eq!(
-            build(&two, &column, &row, &gain.map(|_| f64::NAN)),
-            Err("feedthrough matrix")
-        );
-        assert_eq!(
-            build(&two, &column.map(|_| f64::INFINITY), &row, &gain),
-            Err("input matrix")
-        );
+        assert_eq!(build(&two, &column, &row, &gain.map(|_| f64::NAN)), Err("feedthrough matrix"));
+        assert_eq!(build(&two, &column.map(|_| f64::INFINITY), &row, &gain), Err("input matrix"));
     }
 
     #[test]

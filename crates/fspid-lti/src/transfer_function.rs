@@ -38,15 +38,9 @@ impl TransferFunction {
     ) -> Result<Self, LtiError> {
         let (numerator_degree, denominator_degree) = (numerator.degree(), denominator.degree());
         if numerator_degree > denominator_degree {
-            return Err(LtiError::Improper {
-                numerator_degree,
-                denominator_degree,
-            });
+            return Err(LtiError::Improper { numerator_degree, denominator_degree });
         }
-        let system = Self {
-            numerator,
-            denominator,
-        };
+        let system = Self { numerator, denominator };
         LtiError::unless_finite("monic denominator", &system.monic_denominator())?;
         LtiError::unless_finite(
             "Markov parameters",
@@ -82,10 +76,7 @@ impl TransferFunction {
             return quotient(self.numerator.at_complex(s), self.denominator.at_complex(s));
         }
         let w = reciprocal(s);
-        let ratio = quotient(
-            reversed_at(&self.numerator, w),
-            reversed_at(&self.denominator, w),
-        );
+        let ratio = quotient(reversed_at(&self.numerator, w), reversed_at(&self.denominator, w));
         (0..self.relative_degree()).fold(ratio, |value, _| value * w)
     }
 
@@ -112,26 +103,15 @@ impl TransferFunction {
     /// # Errors
     /// More poles than zeros at the origin, a ratio that overflows.
     pub fn dc_gain(&self) -> Result<f64, LtiError> {
-        let (zeros, poles) = (
-            self.numerator.roots_at_origin(),
-            self.denominator.roots_at_origin(),
-        );
+        let (zeros, poles) = (self.numerator.roots_at_origin(), self.denominator.roots_at_origin());
         if poles > zeros {
-            return Err(LtiError::InfiniteDcGain {
-                integrators: poles - zeros,
-            });
+            return Err(LtiError::InfiniteDcGain { integrators: poles - zeros });
         }
         if zeros > poles {
             return Ok(0.0);
         }
         let gain = lowest_term(&self.numerator) / lowest_term(&self.denominator);
-        if gain.is_finite() {
-            Ok(gain)
-        } else {
-            Err(LtiError::OutOfRange {
-                what: "gain at rest",
-            })
-        }
+        if gain.is_finite() { Ok(gain) } else { Err(LtiError::OutOfRange { what: "gain at rest" }) }
     }
 
     /// Series connection: the product of two transfer functions, without cancellation.
@@ -146,10 +126,7 @@ impl TransferFunction {
     /// Transfer function with the opposite sign; the denominator stays.
     #[must_use]
     pub fn negated(&self) -> Self {
-        Self {
-            numerator: self.numerator.negated(),
-            denominator: self.denominator.clone(),
-        }
+        Self { numerator: self.numerator.negated(), denominator: self.denominator.clone() }
     }
 
     /// The first Markov parameters $h_0, h_1, \dots$: the feedthrough, then the impulse response and its derivatives
@@ -165,9 +142,7 @@ impl TransferFunction {
         let offset = self.relative_degree();
         let mut markov = Vec::with_capacity(count);
         for k in 0..count {
-            let given = k
-                .checked_sub(offset)
-                .and_then(|i| self.numerator.coefficients().get(i));
+            let given = k.checked_sub(offset).and_then(|i| self.numerator.coefficients().get(i));
             let beta = given.map_or(0.0, |value| value / self.denominator.leading());
             let past = alpha
                 .iter()
@@ -208,10 +183,7 @@ impl TransferFunction {
     /// Denominator over its leading coefficient, without the leading 1.
     fn monic_denominator(&self) -> Vec<f64> {
         let leading = self.denominator.leading();
-        self.denominator.coefficients()[1..]
-            .iter()
-            .map(|value| value / leading)
-            .collect()
+        self.denominator.coefficients()[1..].iter().map(|value| value / leading).collect()
     }
 }
 
@@ -221,9 +193,7 @@ fn reversed_at(polynomial: &Polynomial, w: Complex) -> Complex {
         .coefficients()
         .iter()
         .rev()
-        .fold(Complex::new(0.0, 0.0), |value, coefficient| {
-            value * w + coefficient
-        })
+        .fold(Complex::new(0.0, 0.0), |value, coefficient| value * w + coefficient)
 }
 
 /// Coefficient of the lowest power that occurs.
@@ -247,88 +217,49 @@ mod tests {
         let refused = |numerator: &[f64], denominator: &[f64]| {
             TransferFunction::new(numerator, denominator).err()
         };
-        assert_eq!(
-            refused(&[], &[1.0]),
-            Some(LtiError::Empty { what: "numerator" })
-        );
-        assert_eq!(
-            refused(&[1.0], &[]),
-            Some(LtiError::Empty {
-                what: "denominator"
-            })
-        );
-        assert_eq!(
-            refused(&[0.0], &[1.0]),
-            Some(LtiError::ZeroPolynomial { what: "numerator" })
-        );
+        assert_eq!(refused(&[], &[1.0]), Some(LtiError::Empty { what: "numerator" }));
+        assert_eq!(refused(&[1.0], &[]), Some(LtiError::Empty { what: "denominator" }));
+        assert_eq!(refused(&[0.0], &[1.0]), Some(LtiError::ZeroPolynomial { what: "numerator" }));
         assert_eq!(
             refused(&[1.0], &[0.0, 0.0]),
-            Some(LtiError::ZeroPolynomial {
-                what: "denominator"
-            })
+            Some(LtiError::ZeroPolynomial { what: "denominator" })
         );
         assert_eq!(
             refused(&[1.0], &[0.0, 1.0]),
-            Some(LtiError::LeadingZero {
-                what: "denominator",
-                zeros: 1
-            })
+            Some(LtiError::LeadingZero { what: "denominator", zeros: 1 })
         );
-        let improper = LtiError::Improper {
-            numerator_degree: 2,
-            denominator_degree: 1,
-        };
+        let improper = LtiError::Improper { numerator_degree: 2, denominator_degree: 1 };
         assert_eq!(refused(&[1.0, 0.0, 0.0], &[1.0, 1.0]), Some(improper));
         assert!(matches!(
             refused(&[f64::NAN], &[1.0]),
-            Some(LtiError::NotFinite {
-                what: "numerator",
-                ..
-            })
+            Some(LtiError::NotFinite { what: "numerator", .. })
         ));
         assert!(matches!(
             refused(&[1.0], &[1e-300, 1e300]),
-            Some(LtiError::NotFinite {
-                what: "monic denominator",
-                ..
-            })
+            Some(LtiError::NotFinite { what: "monic denominator", .. })
         ));
         assert!(matches!(
             refused(&[1e300], &[1e-300]),
-            Some(LtiError::NotFinite {
-                what: "Markov parameters",
-                ..
-            })
+            Some(LtiError::NotFinite { what: "Markov parameters", .. })
         ));
     }
 
     #[test]
     fn the_gain_at_rest_is_a_limit() {
         assert_eq!(system(&[3.0, 6.0], &[1.0, 4.0]).dc_gain(), Ok(1.5));
-        assert_eq!(
-            system(&[3.0, 6.0, 0.0], &[1.0, 4.0, 0.0]).dc_gain(),
-            Ok(1.5)
-        );
+        assert_eq!(system(&[3.0, 6.0, 0.0], &[1.0, 4.0, 0.0]).dc_gain(), Ok(1.5));
         assert_eq!(system(&[3.0, 0.0], &[1.0, 4.0]).dc_gain(), Ok(0.0));
         let doubly = system(&[3.0, 6.0], &[1.0, 4.0, 0.0, 0.0]).dc_gain();
         assert_eq!(doubly, Err(LtiError::InfiniteDcGain { integrators: 2 }));
         let huge = system(&[1.0, 1e200], &[1.0, 1e-200]).dc_gain();
-        assert_eq!(
-            huge,
-            Err(LtiError::OutOfRange {
-                what: "gain at rest"
-            })
-        );
+        assert_eq!(huge, Err(LtiError::OutOfRange { what: "gain at rest" }));
     }
 
     #[test]
     fn the_response_far_from_the_origin_does_not_overflow() {
         let plant = system(&[2.0, 1.0], &[1.0, 1.0, 1.0, 1.0]);
         let value = plant.at(Complex::new(0.0, 1e120));
-        assert!(
-            modulus(value - Complex::new(-2e-240, 0.0)) < 1e-254,
-            "{value}"
-        );
+        assert!(modulus(value - Complex::new(-2e-240, 0.0)) < 1e-254, "{value}");
         assert!(!plant.at(Complex::new(-1.0, 0.0)).is_finite());
     }
 
@@ -354,21 +285,13 @@ mod tests {
         assert_eq!(expected, Ok(model.a().clone()));
         // h1 = 0, h2 = 5, h3 = 6 - 2 * 5.
         assert_eq!(model.b().data(), [0.0, 5.0, -4.0]);
-        assert_eq!(
-            (model.c().data(), model.d().data()),
-            (&[1.0, 0.0, 0.0][..], &[0.0][..])
-        );
+        assert_eq!((model.c().data(), model.d().data()), (&[1.0, 0.0, 0.0][..], &[0.0][..]));
     }
 
     /// C (s I - A)^-1 B + D at a real frequency.
     fn response(model: &StateSpace, s: f64) -> Result<f64, LtiError> {
-        let resolvent = Matrix::identity(model.states())
-            .scaled(s)
-            .sum(&model.a().scaled(-1.0))?;
-        let value = model
-            .c()
-            .product(&resolvent.solve(model.b())?)?
-            .sum(model.d())?;
+        let resolvent = Matrix::identity(model.states()).scaled(s).sum(&model.a().scaled(-1.0))?;
+        let value = model.c().product(&resolvent.solve(model.b())?)?.sum(model.d())?;
         Ok(value.at(0, 0))
     }
 

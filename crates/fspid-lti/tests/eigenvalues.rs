@@ -15,9 +15,7 @@ fn companion(coefficients: &[f64]) -> Matrix {
     let size = coefficients.len() - 1;
     let mut matrix = Matrix::zeros(size, size);
     for k in 0..size {
-        matrix
-            .set(0, k, -coefficients[k + 1] / coefficients[0])
-            .expect("the entry exists");
+        matrix.set(0, k, -coefficients[k + 1] / coefficients[0]).expect("the entry exists");
         if k + 1 < size {
             matrix.set(k + 1, k, 1.0).expect("the entry exists");
         }
@@ -32,16 +30,8 @@ fn eigenvalues_are_as_good_as_their_condition_allows_and_agree_with_scipy() -> O
         let condition = numbers(row[5])[0];
         let (scipy, exact) = (complex_numbers(row[3]), complex_numbers(row[4]));
         let ours = worst_relative(&found, &exact);
-        assert!(
-            ours < BACKWARD_TOL * condition,
-            "{}: {ours:e}, condition {condition:e}",
-            row[0]
-        );
-        assert!(
-            worst_relative(&found, &scipy) < BACKWARD_TOL * condition,
-            "{}",
-            row[0]
-        );
+        assert!(ours < BACKWARD_TOL * condition, "{}: {ours:e}, condition {condition:e}", row[0]);
+        assert!(worst_relative(&found, &scipy) < BACKWARD_TOL * condition, "{}", row[0]);
     }
     Ok(())
 }
@@ -54,10 +44,7 @@ fn the_companion_matrix_of_the_sixth_roots_of_one_does_not_stall() -> Outcome {
     for size in 3..40 {
         let mut coefficients = vec![0.0; size + 1];
         (coefficients[0], coefficients[size]) = (1.0, -1.0);
-        assert!(
-            (spectral_radius(&companion(&coefficients))? - 1.0).abs() < 1e-13,
-            "{size}"
-        );
+        assert!((spectral_radius(&companion(&coefficients))? - 1.0).abs() < 1e-13, "{size}");
     }
     Ok(())
 }
@@ -73,10 +60,7 @@ fn a_triangular_matrix_has_its_diagonal_as_eigenvalues_to_the_bit() -> Outcome {
 fn jordan_blocks_and_zeros_are_within_reach() -> Outcome {
     let jordan = Matrix::from_rows(&[[2.0, 1.0, 0.0], [0.0, 2.0, 1.0], [0.0, 0.0, 2.0]])?;
     assert_eq!(eigenvalues(&jordan)?, [Complex::new(2.0, 0.0); 3]);
-    assert_eq!(
-        eigenvalues(&Matrix::zeros(5, 5))?,
-        [Complex::new(0.0, 0.0); 5]
-    );
+    assert_eq!(eigenvalues(&Matrix::zeros(5, 5))?, [Complex::new(0.0, 0.0); 5]);
     assert_eq!(eigenvalues(&Matrix::zeros(0, 0))?, []);
     assert_eq!(spectral_radius(&Matrix::zeros(0, 0)), Ok(0.0));
     Ok(())
@@ -85,21 +69,12 @@ fn jordan_blocks_and_zeros_are_within_reach() -> Outcome {
 #[test]
 fn equal_eigenvalues_in_different_blocks_do_not_stall_the_iteration() -> Outcome {
     // Used to run into the limit of steps: two blocks with eigenvalues 0 and 1 whose coupling never quite vanished.
-    let rows = [
-        "0001100", "0110000", "0000000", "0111000", "1100000", "0000000", "1010010",
-    ];
-    let entries: Vec<f64> = rows
-        .concat()
-        .bytes()
-        .map(|byte| f64::from(byte - b'0'))
-        .collect();
+    let rows = ["0001100", "0110000", "0000000", "0111000", "1100000", "0000000", "1010010"];
+    let entries: Vec<f64> = rows.concat().bytes().map(|byte| f64::from(byte - b'0')).collect();
     let found = eigenvalues(&matrix(7, &entries))?;
     // Zero and one are multiple, hence the root of the rounding error.
     for (value, expected) in found.iter().zip([-1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) {
-        assert!(
-            modulus(value - Complex::new(expected, 0.0)) < 1e-5,
-            "{found:?}"
-        );
+        assert!(modulus(value - Complex::new(expected, 0.0)) < 1e-5, "{found:?}");
     }
     Ok(())
 }
@@ -130,18 +105,11 @@ fn entries_at_the_ends_of_the_range_are_no_obstacle() -> Outcome {
 fn what_has_no_eigenvalues_is_refused() -> Outcome {
     assert!(matches!(
         eigenvalues(&Matrix::zeros(2, 3)),
-        Err(LtiError::Shape {
-            found: (2, 3),
-            allowed: (2, 2),
-            ..
-        })
+        Err(LtiError::Shape { found: (2, 3), allowed: (2, 2), .. })
     ));
     let mut broken = Matrix::identity(2);
     broken.set(0, 1, f64::NAN)?;
-    assert!(matches!(
-        eigenvalues(&broken),
-        Err(LtiError::NotFinite { index: 1, .. })
-    ));
+    assert!(matches!(eigenvalues(&broken), Err(LtiError::NotFinite { index: 1, .. })));
     assert!(spectral_radius(&broken).is_err());
     Ok(())
 }

@@ -43,11 +43,7 @@ fn the_747_has_the_poles_zeros_and_gain_of_the_handbook() -> Outcome {
         (-0.00227987, 0.06861410),
     ];
     assert_roots(&plant.poles()?, &poles, PRINTED);
-    assert_roots(
-        &plant.zeros()?,
-        &[(-0.48659413, 0.0), (-0.01204017, 0.0)],
-        PRINTED,
-    );
+    assert_roots(&plant.zeros()?, &[(-0.48659413, 0.0), (-0.01204017, 0.0)], PRINTED);
     assert!((plant.dc_gain()? + 1.36175125).abs() < PRINTED);
     Ok(())
 }
@@ -72,10 +68,7 @@ fn the_navion_short_period_is_the_one_of_the_handbook_beside_a_free_integrator()
     assert!((mode.damping_ratio - 0.6905).abs() < 5e-5);
     assert_eq!(poles[2], Complex::new(0.0, 0.0));
     assert!((plant.zeros()?[0].re + 1.9247).abs() < 5e-5);
-    assert_eq!(
-        plant.dc_gain(),
-        Err(LtiError::InfiniteDcGain { integrators: 1 })
-    );
+    assert_eq!(plant.dc_gain(), Err(LtiError::InfiniteDcGain { integrators: 1 }));
     Ok(())
 }
 
@@ -90,25 +83,16 @@ fn the_complete_navion_has_the_modes_that_nelson_prints() -> Outcome {
         (-0.017049, 0.213405),
     ];
     assert_roots(&plant.poles()?, &poles, 5.1e-7);
-    assert_roots(
-        &plant.zeros()?,
-        &[(-1.917554, 0.0), (-0.052181, 0.0)],
-        5.1e-7,
-    );
+    assert_roots(&plant.zeros()?, &[(-1.917554, 0.0), (-0.052181, 0.0)], 5.1e-7);
     Ok(())
 }
 
 /// Largest real part of a closed-loop pole of gain times loop under unit feedback.
 fn rightmost(open_loop: &TransferFunction, gain: f64) -> Result<Complex, LtiError> {
-    let closed = open_loop
-        .denominator()
-        .sum(&open_loop.numerator().scaled(gain)?)?;
-    Ok(closed
-        .roots()?
-        .into_iter()
-        .fold(Complex::new(f64::NEG_INFINITY, 0.0), |best, root| {
-            if root.re >= best.re { root } else { best }
-        }))
+    let closed = open_loop.denominator().sum(&open_loop.numerator().scaled(gain)?)?;
+    Ok(closed.roots()?.into_iter().fold(Complex::new(f64::NEG_INFINITY, 0.0), |best, root| {
+        if root.re >= best.re { root } else { best }
+    }))
 }
 
 /// Gain in 1 to 10 at which the fast pair crosses the axis, by bisection, and its frequency in rad/s.
@@ -116,11 +100,7 @@ fn neutral_gain(open_loop: &TransferFunction) -> Result<(f64, f64), LtiError> {
     let (mut stable, mut unstable) = (1.0, 10.0);
     for _ in 0..60 {
         let middle = 0.5 * (stable + unstable);
-        if rightmost(open_loop, middle)?.re < 0.0 {
-            stable = middle
-        } else {
-            unstable = middle
-        }
+        if rightmost(open_loop, middle)?.re < 0.0 { stable = middle } else { unstable = middle }
     }
     Ok((stable, rightmost(open_loop, unstable)?.im))
 }
@@ -154,10 +134,7 @@ fn without_the_sign_reversal_no_positive_gain_stabilises_the_747() -> Outcome {
     let open_loop = b747()?.series(&servo()?)?;
     for (gain, re, im) in [(0.1, 0.0265, 0.060), (0.5, 0.320, 0.0), (5.0, 2.13, 0.0)] {
         let root = rightmost(&open_loop, gain)?;
-        assert!(
-            (root.re - re).abs() < 5e-3 && (root.im - im).abs() < 5e-4,
-            "{gain} {root}"
-        );
+        assert!((root.re - re).abs() < 5e-3 && (root.im - im).abs() < 5e-4, "{gain} {root}");
     }
     Ok(())
 }
@@ -189,10 +166,7 @@ fn the_state_space_form_has_the_poles_and_the_frequency_response_of_the_transfer
         // The Laurent series, summed far outside the poles.
         let markov = plant.markov_parameters(60);
         let s = Complex::new(0.0, 100.0);
-        let series = markov
-            .iter()
-            .rev()
-            .fold(Complex::new(0.0, 0.0), |sum, h| sum / s + h);
+        let series = markov.iter().rev().fold(Complex::new(0.0, 0.0), |sum, h| sum / s + h);
         assert!(
             modulus(series - plant.at(s)) < 1e-13 * modulus(series),
             "{series} {}",

@@ -16,9 +16,7 @@ fn roots(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
 
 /// Everything that is promised of the order and the symmetry of roots.
 fn is_tidy(roots: &[Complex]) -> bool {
-    let ordered = roots
-        .windows(2)
-        .all(|pair| (pair[0].re, pair[0].im) <= (pair[1].re, pair[1].im));
+    let ordered = roots.windows(2).all(|pair| (pair[0].re, pair[0].im) <= (pair[1].re, pair[1].im));
     let paired = roots.iter().all(|root| {
         let count = |wanted: Complex| roots.iter().filter(|&&other| other == wanted).count();
         count(*root) == count(root.conj())
@@ -65,17 +63,11 @@ fn roots_at_the_origin_are_exactly_zero() -> Outcome {
 #[test]
 fn a_line_and_a_parabola_have_the_roots_of_the_school_book() -> Outcome {
     assert_eq!(roots(&[2.0, -3.0])?, [Complex::new(1.5, 0.0)]);
-    assert_eq!(
-        roots(&[1.0, 2.0, 5.0])?,
-        [Complex::new(-1.0, -2.0), Complex::new(-1.0, 2.0)]
-    );
+    assert_eq!(roots(&[1.0, 2.0, 5.0])?, [Complex::new(-1.0, -2.0), Complex::new(-1.0, 2.0)]);
     // The textbook formula loses the small root altogether.
     let found = roots(&[1.0, 1e12, 1.0])?;
     assert!(
-        worst_relative(
-            &found,
-            &[Complex::new(-1e12, 0.0), Complex::new(-1e-12, 0.0)]
-        ) < SIMPLE_TOL
+        worst_relative(&found, &[Complex::new(-1e12, 0.0), Complex::new(-1e-12, 0.0)]) < SIMPLE_TOL
     );
     Ok(())
 }
@@ -106,23 +98,14 @@ fn coefficients_at_the_ends_of_the_range_are_no_obstacle() -> Outcome {
     let mut coefficients = [0.0; 11];
     (coefficients[0], coefficients[10]) = (1e-250, -1e250);
     let found = roots(&coefficients)?;
-    assert!(
-        found
-            .iter()
-            .all(|&root| (modulus(root) / 1e50 - 1.0).abs() < 1e-14),
-        "{found:?}"
-    );
+    assert!(found.iter().all(|&root| (modulus(root) / 1e50 - 1.0).abs() < 1e-14), "{found:?}");
     assert_eq!(
         roots(&[1e-300, 1e300]),
-        Err(LtiError::OutOfRange {
-            what: "root of the polynomial"
-        })
+        Err(LtiError::OutOfRange { what: "root of the polynomial" })
     );
     assert_eq!(
         roots(&[1e300, 1e-300]),
-        Err(LtiError::OutOfRange {
-            what: "root of the polynomial"
-        })
+        Err(LtiError::OutOfRange { what: "root of the polynomial" })
     );
     Ok(())
 }
@@ -133,11 +116,7 @@ fn a_polynomial_of_the_highest_degree_is_solved() -> Outcome {
     (coefficients[0], coefficients[fspid_lti::DEGREE_LIMIT]) = (1.0, -1e20);
     let found = roots(&coefficients)?;
     let radius = libm::pow(10.0, 0.2);
-    assert!(
-        found
-            .iter()
-            .all(|&root| (modulus(root) / radius - 1.0).abs() < SIMPLE_TOL)
-    );
+    assert!(found.iter().all(|&root| (modulus(root) / radius - 1.0).abs() < SIMPLE_TOL));
     assert!(is_tidy(&found));
     Ok(())
 }

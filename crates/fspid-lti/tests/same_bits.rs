@@ -25,11 +25,9 @@ impl Digest {
     }
 
     fn add_all(&mut self, values: &[Complex]) {
-        values.iter().for_each(|value| {
-            [value.re, value.im]
-                .into_iter()
-                .for_each(|part| self.add(part))
-        });
+        values
+            .iter()
+            .for_each(|value| [value.re, value.im].into_iter().for_each(|part| self.add(part)));
     }
 }
 
@@ -54,10 +52,7 @@ fn roots_and_modes_have_the_same_bits_everywhere() -> Result<(), LtiError> {
 fn eigenvalues_have_the_same_bits_everywhere() -> Result<(), LtiError> {
     let mut digest = Digest::new();
     for row in rows(include_str!("data/eigenvalues.csv")) {
-        digest.add_all(&eigenvalues(&matrix(
-            row[1].parse().expect("a number"),
-            &numbers(row[2]),
-        ))?);
+        digest.add_all(&eigenvalues(&matrix(row[1].parse().expect("a number"), &numbers(row[2])))?);
     }
     assert_eq!(digest.0, 0xb91d_6e11_8c6d_a99f, "{:#x}", digest.0);
     Ok(())
@@ -68,15 +63,9 @@ fn sampled_systems_have_the_same_bits_everywhere() -> Result<(), LtiError> {
     let mut digest = Digest::new();
     for row in rows(include_str!("data/sampled.csv")) {
         let states = row[1].parse().expect("a number");
-        let (a, b) = (
-            matrix(states, &numbers(row[3])),
-            matrix(states, &numbers(row[4])),
-        );
+        let (a, b) = (matrix(states, &numbers(row[3])), matrix(states, &numbers(row[4])));
         let (a, b) = zero_order_hold(&a, &b, numbers(row[2])[0])?;
-        a.data()
-            .iter()
-            .chain(b.data())
-            .for_each(|&value| digest.add(value));
+        a.data().iter().chain(b.data()).for_each(|&value| digest.add(value));
     }
     assert_eq!(digest.0, 0x632e_bc02_4719_ff38, "{:#x}", digest.0);
     Ok(())

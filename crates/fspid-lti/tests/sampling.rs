@@ -12,32 +12,22 @@ type Outcome = Result<(), LtiError>;
 
 /// Largest entry error, as a part of the largest entry expected.
 fn norm_error(found: &[f64], expected: &[f64]) -> f64 {
-    let largest = expected
-        .iter()
-        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = expected.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     found
         .iter()
         .zip(expected)
-        .fold(0.0, |worst: f64, (found, expected)| {
-            worst.max((found - expected).abs() / largest)
-        })
+        .fold(0.0, |worst: f64, (found, expected)| worst.max((found - expected).abs() / largest))
 }
 
 /// Largest relative entry error; entries that are zero must be zero.
 fn entry_error(found: &[f64], expected: &[f64]) -> f64 {
     let error = |found: f64, expected: f64| {
-        if expected == 0.0 {
-            found.abs()
-        } else {
-            ((found - expected) / expected).abs()
-        }
+        if expected == 0.0 { found.abs() } else { ((found - expected) / expected).abs() }
     };
     found
         .iter()
         .zip(expected)
-        .fold(0.0, |worst, (&found, &expected)| {
-            f64::max(worst, error(found, expected))
-        })
+        .fold(0.0, |worst, (&found, &expected)| f64::max(worst, error(found, expected)))
 }
 
 #[test]
@@ -49,15 +39,8 @@ fn the_exponential_of_zero_is_the_identity_to_the_bit() -> Outcome {
 
 #[test]
 fn the_exponential_of_a_nilpotent_matrix_is_its_short_series() -> Outcome {
-    let nilpotent = matrix(
-        4,
-        &[
-            0., 6., 0., 0., 0., 0., 6., 0., 0., 0., 0., 6., 0., 0., 0., 0.,
-        ],
-    );
-    let expected = [
-        1., 6., 18., 36., 0., 1., 6., 18., 0., 0., 1., 6., 0., 0., 0., 1.,
-    ];
+    let nilpotent = matrix(4, &[0., 6., 0., 0., 0., 0., 6., 0., 0., 0., 0., 6., 0., 0., 0., 0.]);
+    let expected = [1., 6., 18., 36., 0., 1., 6., 18., 0., 0., 1., 6., 0., 0., 0., 1.];
     assert!(entry_error(exponential(&nilpotent)?.data(), &expected) < 1e-15);
     Ok(())
 }
@@ -68,10 +51,7 @@ fn the_exponential_of_a_rotation_rate_is_a_rotation() -> Outcome {
         let (s, c) = (libm::sin(angle), libm::cos(angle));
         let found = exponential(&matrix(2, &[0.0, -angle, angle, 0.0]))?;
         // Squaring doubles the relative error each time: about angle * 1e-16.
-        assert!(
-            norm_error(found.data(), &[c, -s, s, c]) < 1e-15 * (1.0 + angle),
-            "{angle}"
-        );
+        assert!(norm_error(found.data(), &[c, -s, s, c]) < 1e-15 * (1.0 + angle), "{angle}");
     }
     Ok(())
 }
@@ -94,10 +74,8 @@ fn the_exponential_agrees_with_the_decomposition_into_eigenvectors() -> Outcome 
 #[test]
 fn units_that_lie_twelve_decades_apart_cost_no_digits() -> Outcome {
     let even = exponential(&matrix(2, &[-1.0, 1.0, -1.0, -2.0]))?;
-    let uneven = exponential(&matrix(
-        2,
-        &[-1.0, 4096.0 * 1048576.0, -1.0 / (4096.0 * 1048576.0), -2.0],
-    ))?;
+    let uneven =
+        exponential(&matrix(2, &[-1.0, 4096.0 * 1048576.0, -1.0 / (4096.0 * 1048576.0), -2.0]))?;
     let expected = [
         even.data()[0],
         even.data()[1] * 4294967296.0,
@@ -110,27 +88,18 @@ fn units_that_lie_twelve_decades_apart_cost_no_digits() -> Outcome {
 
 #[test]
 fn what_has_no_exponential_is_refused() -> Outcome {
-    assert!(matches!(
-        exponential(&Matrix::zeros(2, 3)),
-        Err(LtiError::Shape { .. })
-    ));
+    assert!(matches!(exponential(&Matrix::zeros(2, 3)), Err(LtiError::Shape { .. })));
     for value in [f64::NAN, f64::INFINITY] {
         let mut broken = Matrix::identity(2);
         broken.set(1, 0, value)?;
-        assert!(matches!(
-            exponential(&broken),
-            Err(LtiError::NotFinite { .. })
-        ));
+        assert!(matches!(exponential(&broken), Err(LtiError::NotFinite { .. })));
     }
     assert!(matches!(
         exponential(&Matrix::identity(2).scaled(1e3)),
         Err(LtiError::NotFinite { .. })
     ));
     assert!(exponential(&matrix(2, &[1e308, 1e308, 1e308, 1e308])).is_err());
-    assert_eq!(
-        exponential(&Matrix::identity(2).scaled(-1e300))?,
-        Matrix::zeros(2, 2)
-    );
+    assert_eq!(exponential(&Matrix::identity(2).scaled(-1e300))?, Matrix::zeros(2, 2));
     Ok(())
 }
 
@@ -140,11 +109,7 @@ fn a_lag_and_a_double_integrator_are_sampled_as_in_the_textbook() -> Outcome {
     let (a, b) = zero_order_hold(&matrix(1, &[-10.0]), &matrix(1, &[10.0]), dt_s)?;
     assert!(entry_error(a.data(), &[libm::exp(-0.2)]) < 1e-15);
     assert!(entry_error(b.data(), &[-libm::expm1(-0.2)]) < 1e-15);
-    let (a, b) = zero_order_hold(
-        &matrix(2, &[0.0, 1.0, 0.0, 0.0]),
-        &matrix(2, &[0.0, 1.0]),
-        dt_s,
-    )?;
+    let (a, b) = zero_order_hold(&matrix(2, &[0.0, 1.0, 0.0, 0.0]), &matrix(2, &[0.0, 1.0]), dt_s)?;
     assert!(entry_error(a.data(), &[1.0, dt_s, 0.0, 1.0]) < 1e-15);
     assert!(entry_error(b.data(), &[0.5 * dt_s * dt_s, dt_s]) < 1e-15);
     Ok(())
@@ -154,11 +119,8 @@ fn a_lag_and_a_double_integrator_are_sampled_as_in_the_textbook() -> Outcome {
 fn an_oscillator_is_sampled_as_in_the_textbook() -> Outcome {
     let (rate, dt_s) = (3.0, 0.1);
     let (s, c) = (libm::sin(rate * dt_s), libm::cos(rate * dt_s));
-    let (a, b) = zero_order_hold(
-        &matrix(2, &[0.0, 1.0, -rate * rate, 0.0]),
-        &matrix(2, &[0.0, 1.0]),
-        dt_s,
-    )?;
+    let (a, b) =
+        zero_order_hold(&matrix(2, &[0.0, 1.0, -rate * rate, 0.0]), &matrix(2, &[0.0, 1.0]), dt_s)?;
     assert!(entry_error(a.data(), &[c, s / rate, -rate * s, c]) < 2e-15);
     assert!(entry_error(b.data(), &[(1.0 - c) / (rate * rate), s / rate]) < 2e-15);
     Ok(())
@@ -181,13 +143,7 @@ fn sampled_table() -> Result<Vec<Sampled>, LtiError> {
         let (a, b) = zero_order_hold(&a, &b, dt_s)?;
         let pair = |first: usize| [numbers(row[first]), numbers(row[first + 1])];
         let found = [a.data().to_vec(), b.data().to_vec()];
-        Ok(Sampled {
-            name: row[0].to_owned(),
-            dt_s,
-            found,
-            exact: pair(5),
-            scipy: pair(7),
-        })
+        Ok(Sampled { name: row[0].to_owned(), dt_s, found, exact: pair(5), scipy: pair(7) })
     };
     rows(include_str!("data/sampled.csv")).map(read).collect()
 }
@@ -203,11 +159,7 @@ fn the_zero_order_hold_is_exact_to_fourteen_digits() -> Outcome {
         for (found, exact) in row.found.iter().zip(&row.exact) {
             let (entries, norm) = (entry_error(found, exact), norm_error(found, exact));
             assert!(norm < NORM_TOL, "{}: {norm:e}", row.name);
-            assert!(
-                entries < SAMPLED_TOL || row.dt_s >= 1.0,
-                "{}: {entries:e}",
-                row.name
-            );
+            assert!(entries < SAMPLED_TOL || row.dt_s >= 1.0, "{}: {entries:e}", row.name);
         }
     }
     Ok(())
@@ -231,9 +183,7 @@ fn a_sampled_system_responds_as_the_continuous_one() -> Outcome {
         &[-1.69144, -0.84341, -0.0099096],
         &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
     )?;
-    let model = TransferFunction::new(&[10.0], &[1.0, 10.0])?
-        .series(&plant)?
-        .to_state_space();
+    let model = TransferFunction::new(&[10.0], &[1.0, 10.0])?.series(&plant)?.to_state_space();
     let (a, b) = zero_order_hold(model.a(), model.b(), 0.01)?;
     let (mut x, mut next) = (vec![0.0; 5], vec![0.0; 5]);
     let expected = [
@@ -245,11 +195,7 @@ fn a_sampled_system_responds_as_the_continuous_one() -> Outcome {
     ];
     for k in 1..=10_000 {
         a.apply(&x, &mut next)?;
-        x = next
-            .iter()
-            .zip(b.data())
-            .map(|(next, b)| next + b)
-            .collect();
+        x = next.iter().zip(b.data()).map(|(next, b)| next + b).collect();
         if let Some((_, theta)) = expected.iter().find(|(at, _)| *at == k) {
             assert!((x[0] - theta).abs() < 6e-8, "{k} {} {theta}", x[0]);
         }
@@ -262,26 +208,17 @@ fn sampling_refuses_periods_and_shapes_that_mean_nothing() {
     let (a, b) = (Matrix::identity(2), Matrix::zeros(2, 1));
     for dt_s in [0.0, -0.02, f64::NAN, f64::INFINITY] {
         assert!(
-            matches!(
-                zero_order_hold(&a, &b, dt_s),
-                Err(LtiError::NotPositive { .. })
-            ),
+            matches!(zero_order_hold(&a, &b, dt_s), Err(LtiError::NotPositive { .. })),
             "{dt_s}"
         );
     }
     assert!(matches!(
         zero_order_hold(&b, &b, 0.02),
-        Err(LtiError::Shape {
-            what: "state matrix",
-            ..
-        })
+        Err(LtiError::Shape { what: "state matrix", .. })
     ));
     assert!(matches!(
         zero_order_hold(&a, &Matrix::zeros(3, 1), 0.02),
-        Err(LtiError::Shape {
-            what: "input matrix",
-            ..
-        })
+        Err(LtiError::Shape { what: "input matrix", .. })
     ));
 }
 

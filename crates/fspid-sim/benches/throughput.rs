@@ -50,11 +50,7 @@ fn report(what: &str, asked: f64, work: impl Fn() -> f64) -> f64 {
         let start = Instant::now();
         let again = black_box(work());
         let rate = INPUTS as f64 / start.elapsed().as_secs_f64() / 1e6;
-        assert_eq!(
-            again.to_bits(),
-            checksum.to_bits(),
-            "a round gave another answer"
-        );
+        assert_eq!(again.to_bits(), checksum.to_bits(), "a round gave another answer");
         best = best.max(rate);
     }
     println!("{what}: {best:.2} million/s (asked: {asked:.0}), checksum {checksum:?}");
@@ -92,12 +88,7 @@ fn table() -> RuleTable {
     let file = include_str!("../../../data/rule-tables/printed.toml");
     let parts: Vec<&str> = file.split("\"\"\"").collect();
     let table = RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table");
-    assert_eq!(
-        table
-            .grid(fspid_core::fuzzy::Output::DeltaKp)
-            .at(Label::NB, Label::NB),
-        Label::PB
-    );
+    assert_eq!(table.grid(fspid_core::fuzzy::Output::DeltaKp).at(Label::NB, Label::NB), Label::PB);
     table
 }
 
@@ -113,30 +104,16 @@ fn scenario() -> Scenario {
         ElevatorSign::NoseDownPositive,
     );
     let shell = Shell::sampled_every(0.01);
-    let gains = Gains {
-        kp: 2.0,
-        ki: 0.05,
-        kd: 0.5,
-    };
+    let gains = Gains { kp: 2.0, ki: 0.05, kd: 0.5 };
     let settings = TunerSettings {
-        input_scale: InputScale {
-            error_per_rad: 1.0,
-            change_per_rad: 0.02,
-        },
-        output_scale: Gains {
-            kp: 0.1,
-            ki: 0.001,
-            kd: 0.05,
-        },
+        input_scale: InputScale { error_per_rad: 1.0, change_per_rad: 0.02 },
+        output_scale: Gains { kp: 0.1, ki: 0.001, kd: 0.05 },
         ..TunerSettings::literal()
     };
     let tuner = SelfTuner::new(gains, supervisor(), settings).expect("allowed");
     let fspid = Fspid::new(tuner, shell).expect("allowed");
     let pid = Pid::new(gains, shell).expect("allowed");
-    let named = |name: &str, controller| NamedController {
-        name: name.to_owned(),
-        controller,
-    };
+    let named = |name: &str, controller| NamedController { name: name.to_owned(), controller };
     Scenario {
         name: "throughput".to_owned(),
         plant: plant.expect("the paper's plant"),

@@ -47,14 +47,8 @@ pub struct Flight {
 /// a trace that ends with [`Outcome::Diverged`].
 pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
     let prepared = scenario.prepare()?;
-    let traces = scenario
-        .controllers
-        .iter()
-        .map(|named| record(&prepared, &named.controller));
-    Ok(Flight {
-        traces: traces.collect::<Result<_, _>>()?,
-        edges: prepared.edges,
-    })
+    let traces = scenario.controllers.iter().map(|named| record(&prepared, &named.controller));
+    Ok(Flight { traces: traces.collect::<Result<_, _>>()?, edges: prepared.edges })
 }
 
 fn record(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
@@ -98,19 +92,13 @@ pub fn fly(
             stage = next;
         }
         let at = |column: &Option<Vec<f64>>| {
-            column
-                .as_ref()
-                .and_then(|values| values.get(k))
-                .copied()
-                .unwrap_or(0.0)
+            column.as_ref().and_then(|values| values.get(k)).copied().unwrap_or(0.0)
         };
         let disturbance_rad = at(&prepared.at_elevator);
         let theta_rad = plant.theta_rad();
         // Written so that NaN fails.
         if !(theta_rad.abs() <= DIVERGED_RAD) {
-            return Ok(Outcome::Diverged {
-                at_s: prepared.timing.time_s(k),
-            });
+            return Ok(Outcome::Diverged { at_s: prepared.timing.time_s(k) });
         }
         let q_rad_s = stage.propagator.rate_rad_s(&plant, disturbance_rad);
         let step = controller.step(
@@ -125,20 +113,11 @@ pub fn fly(
         let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
         stage.propagator.settle_ideal_servo(&mut plant, command_rad);
         let elevator_rad = stage.propagator.elevator_rad(&plant, disturbance_rad);
-        let instant = Instant {
-            k,
-            setpoint_rad,
-            theta_rad,
-            q_rad_s,
-            elevator_rad,
-            step,
-        };
+        let instant = Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, step };
         if observer(instant).is_break() {
             return Ok(Outcome::Completed);
         }
-        stage
-            .propagator
-            .advance(&mut plant, command_rad, disturbance_rad)?;
+        stage.propagator.advance(&mut plant, command_rad, disturbance_rad)?;
     }
     Ok(Outcome::Completed)
 }

@@ -100,11 +100,7 @@ pub(crate) fn positive(what: &'static str, value: f64) -> Result<f64, SimError> 
     if value.is_finite() && value > 0.0 {
         return Ok(value);
     }
-    Err(SimError::Number {
-        what,
-        found: value,
-        allowed: "a finite number above 0",
-    })
+    Err(SimError::Number { what, found: value, allowed: "a finite number above 0" })
 }
 
 /// `value` if it is finite and not below zero.
@@ -112,11 +108,7 @@ pub(crate) fn not_negative(what: &'static str, value: f64) -> Result<f64, SimErr
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
     }
-    Err(SimError::Number {
-        what,
-        found: value,
-        allowed: "a finite number, 0 or above",
-    })
+    Err(SimError::Number { what, found: value, allowed: "a finite number, 0 or above" })
 }
 
 /// `value` if it is finite.
@@ -124,9 +116,5 @@ pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, SimError> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(SimError::Number {
-        what,
-        found: value,
-        allowed: "a finite number",
-    })
+    Err(SimError::Number { what, found: value, allowed: "a finite number" })
 }

@@ -9,10 +9,7 @@
 //! exception that the loop itself must answer: whether fixed gains hold the plant at all.
 #![cfg_attr(
     test,
-    allow(
-        clippy::float_cmp,
-        reason = "tests ask for exact bits where they compare floats"
-    )
+    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
 mod closed_loop;

@@ -46,10 +46,7 @@ impl LinearPlant {
         if transfer_function.relative_degree() == 0 {
             return Err(SimError::NotStrictlyProper);
         }
-        Ok(Self {
-            transfer_function,
-            elevator_sign,
-        })
+        Ok(Self { transfer_function, elevator_sign })
     }
 
     /// From elevator to pitch angle, in the plant's own elevator sign.
@@ -105,11 +102,7 @@ impl PlantChange {
     pub fn new(at_s: f64, ramp_s: f64, target: LinearPlant) -> Result<Self, SimError> {
         let at_s = not_negative("at_s", at_s)?;
         let ramp_s = not_negative("ramp_s", ramp_s)?;
-        Ok(Self {
-            at_s,
-            ramp_s,
-            target,
-        })
+        Ok(Self { at_s, ramp_s, target })
     }
 
     /// Start of the change, s.
@@ -141,10 +134,7 @@ impl PlantChange {
     ) -> Result<LinearPlant, SimError> {
         let (before_order, after_order) = (before.order(), self.target.order());
         if before_order != after_order {
-            return Err(SimError::OrderChanges {
-                before: before_order,
-                after: after_order,
-            });
+            return Err(SimError::OrderChanges { before: before_order, after: after_order });
         }
         if fraction >= 1.0 {
             return Ok(self.target.clone());
@@ -153,10 +143,7 @@ impl PlantChange {
         let (from_numerator, from_denominator) = before.normalised();
         let (to_numerator, to_denominator) = self.target.normalised();
         let blend = |from: &[f64], to: &[f64], sign: f64| -> Vec<f64> {
-            from.iter()
-                .zip(to)
-                .map(|(a, b)| sign * a + fraction * (b - sign * a))
-                .collect()
+            from.iter().zip(to).map(|(a, b)| sign * a + fraction * (b - sign * a)).collect()
         };
         let numerator: Vec<f64> = blend(&from_numerator, &to_numerator, sign)
             .into_iter()

@@ -43,10 +43,7 @@ pub(crate) struct PlantState {
 
 impl PlantState {
     pub(crate) fn at_rest(order: usize) -> Self {
-        Self {
-            values: vec![0.0; order + 1],
-            scratch: vec![0.0; order + 1],
-        }
+        Self { values: vec![0.0; order + 1], scratch: vec![0.0; order + 1] }
     }
 
     /// State of the plant followed by the servo's deflection.
@@ -72,17 +69,9 @@ impl PlantState {
     /// x ← M [x; input; disturbance]
     fn advance(&mut self, rows: &[f64], input: f64, disturbance_rad: f64) {
         let width = self.values.len();
-        for (next, row) in self
-            .scratch
-            .iter_mut()
-            .zip(rows.chunks_exact(width + INPUTS))
-        {
+        for (next, row) in self.scratch.iter_mut().zip(rows.chunks_exact(width + INPUTS)) {
             let (state_part, input_part) = row.split_at(width);
-            let free: f64 = state_part
-                .iter()
-                .zip(&self.values)
-                .map(|(a, x)| a * x)
-                .sum();
+            let free: f64 = state_part.iter().zip(&self.values).map(|(a, x)| a * x).sum();
             let &[by_input, by_disturbance] = input_part else {
                 continue;
             };
@@ -100,9 +89,7 @@ impl Propagator {
         let ramp = generator(&model, elevator_per_command, &ServoMotion::Ramp)?;
         let order = plant.order();
         let markov = plant.transfer_function().markov_parameters(2);
-        let rate_output = (0..order)
-            .map(|column| if column == 1 { 1.0 } else { 0.0 })
-            .collect();
+        let rate_output = (0..order).map(|column| if column == 1 { 1.0 } else { 0.0 }).collect();
         let mut propagator = Self {
             servo,
             dt_s,
@@ -128,12 +115,7 @@ impl Propagator {
 
     /// Pitch rate $q = \dot \theta$ just before a sample, rad/s.
     pub(crate) fn rate_rad_s(&self, state: &PlantState, disturbance_rad: f64) -> f64 {
-        let by_state: f64 = self
-            .rate_output
-            .iter()
-            .zip(state.values())
-            .map(|(c, x)| c * x)
-            .sum();
+        let by_state: f64 = self.rate_output.iter().zip(state.values()).map(|(c, x)| c * x).sum();
         by_state + self.rate_feedthrough * self.elevator_rad(state, disturbance_rad)
     }
 
@@ -211,10 +193,8 @@ fn generator(model: &StateSpace, sign: f64, motion: &ServoMotion) -> Result<Matr
         _ => servo,
     };
     let by_elevator = model.b().data();
-    for ((row, by_state), by_elevator) in rows
-        .iter_mut()
-        .zip(model.a().data().chunks_exact(order))
-        .zip(by_elevator)
+    for ((row, by_state), by_elevator) in
+        rows.iter_mut().zip(model.a().data().chunks_exact(order)).zip(by_elevator)
     {
         row[..order].copy_from_slice(by_state);
         row[elevator] = sign * by_elevator;
@@ -237,9 +217,8 @@ fn step_rows(generator: &Matrix, duration_s: f64) -> Result<Vec<f64>, SimError> 
     let width = generator.columns();
     let servo = width - INPUTS - 1;
     let mut rows = step.data()[..(servo + 1) * width].to_vec();
-    let servo_moves = generator.data()[servo * width..(servo + 1) * width]
-        .iter()
-        .any(|g| *g != 0.0);
+    let servo_moves =
+        generator.data()[servo * width..(servo + 1) * width].iter().any(|g| *g != 0.0);
     if !servo_moves {
         // The remembered deflection of an ideal servo is its last command.
         rows[servo * width..].fill(0.0);

@@ -71,10 +71,7 @@ impl Scenario {
     fn stages(&self) -> Result<Vec<Stage>, SimError> {
         let dt_s = self.timing.dt_s();
         let new_stage = |from, plant: &LinearPlant| {
-            Ok::<_, SimError>(Stage {
-                from,
-                propagator: Propagator::new(plant, self.servo, dt_s)?,
-            })
+            Ok::<_, SimError>(Stage { from, propagator: Propagator::new(plant, self.servo, dt_s)? })
         };
         let mut stages = vec![new_stage(0, &self.plant)?];
         let mut before = self.plant.clone();
@@ -82,9 +79,9 @@ impl Scenario {
         while let Some(change) = changes.next() {
             let begin = self.timing.first_sample_at(change.at_s());
             let end = self.timing.first_sample_at(change.at_s() + change.ramp_s());
-            let next_begin = changes.peek().map_or(self.timing.rows(), |next| {
-                self.timing.first_sample_at(next.at_s())
-            });
+            let next_begin = changes
+                .peek()
+                .map_or(self.timing.rows(), |next| self.timing.first_sample_at(next.at_s()));
             // Within a ramp the coefficients are those of each sample's own time, held through it.
             for k in begin..=end.min(next_begin.saturating_sub(1)) {
                 let plant = change.between(&before, fraction(change, self.timing.time_s(k)))?;
@@ -99,10 +96,7 @@ impl Scenario {
     /// Every plant that lasts: the first, and the one after each change.
     pub(crate) fn lasting_plants(&self) -> Vec<(f64, &LinearPlant)> {
         let first = std::iter::once((0.0, &self.plant));
-        let later = self
-            .plant_changes
-            .iter()
-            .map(|change| (change.at_s(), change.target()));
+        let later = self.plant_changes.iter().map(|change| (change.at_s(), change.target()));
         first.chain(later).collect()
     }
 }
@@ -111,11 +105,7 @@ fn fraction(change: &PlantChange, time_s: f64) -> f64 {
     if change.ramp_s() > 0.0 {
         // The same allowance for rounding as everywhere: a millionth of the ramp.
         let fraction = (time_s - change.at_s()) / change.ramp_s();
-        if fraction > 1.0 - 1e-6 {
-            1.0
-        } else {
-            fraction.max(0.0)
-        }
+        if fraction > 1.0 - 1e-6 { 1.0 } else { fraction.max(0.0) }
     } else {
         1.0
     }

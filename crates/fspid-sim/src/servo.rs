@@ -37,10 +37,7 @@ impl Servo {
     /// [`SimError::Number`] for a time constant that is negative or not finite.
     pub fn first_order(time_constant_s: f64) -> Result<Self, SimError> {
         let time_constant_s = not_negative("time_constant_s", time_constant_s)?;
-        Ok(Self {
-            time_constant_s,
-            ..Self::ideal()
-        })
+        Ok(Self { time_constant_s, ..Self::ideal() })
     }
 
     /// With the deflection kept within ± `limit_rad`.
@@ -49,10 +46,7 @@ impl Servo {
     /// [`SimError::Number`] unless the limit is finite and positive.
     pub fn with_position_limit(self, limit_rad: f64) -> Result<Self, SimError> {
         let limit_rad = positive("position limit, rad", limit_rad)?;
-        Ok(Self {
-            position_limit_rad: Some(limit_rad),
-            ..self
-        })
+        Ok(Self { position_limit_rad: Some(limit_rad), ..self })
     }
 
     /// With the deflection's rate kept within ± `limit_rad_s`.
@@ -61,10 +55,7 @@ impl Servo {
     /// [`SimError::Number`] unless the limit is finite and positive.
     pub fn with_rate_limit(self, limit_rad_s: f64) -> Result<Self, SimError> {
         let limit_rad_s = positive("rate limit, rad/s", limit_rad_s)?;
-        Ok(Self {
-            rate_limit_rad_s: Some(limit_rad_s),
-            ..self
-        })
+        Ok(Self { rate_limit_rad_s: Some(limit_rad_s), ..self })
     }
 
     /// With commands that arrive `samples` periods late.
@@ -74,16 +65,9 @@ impl Servo {
     pub fn with_delay(self, samples: usize) -> Result<Self, SimError> {
         if samples > MAX_DELAY_SAMPLES {
             let (found, allowed) = (samples as f64, "0 to 10000");
-            return Err(SimError::Number {
-                what: "delay_samples",
-                found,
-                allowed,
-            });
+            return Err(SimError::Number { what: "delay_samples", found, allowed });
         }
-        Ok(Self {
-            delay_samples: samples,
-            ..self
-        })
+        Ok(Self { delay_samples: samples, ..self })
     }
 
     /// Time constant, s; 0 for an ideal servo.

@@ -49,10 +49,7 @@ pub fn instability(
         let radius = spectral_radius(&closed_loop(&propagator, pid.gains(), pid.shell())?)?;
         // Written so that NaN counts as unstable.
         if !(radius < 1.0 - MARGIN) {
-            return Ok(Some(Unstable {
-                spectral_radius: radius,
-                from_s,
-            }));
+            return Ok(Some(Unstable { spectral_radius: radius, from_s }));
         }
     }
     Ok(None)
@@ -112,10 +109,7 @@ fn closed_loop(
     shell: &Shell<f64>,
 ) -> Result<Matrix, SimError> {
     let plant = propagator.order() + 1;
-    let layout = Layout {
-        plant,
-        delay: propagator.servo().delay_samples(),
-    };
+    let layout = Layout { plant, delay: propagator.servo().delay_samples() };
     let controller = controller_rows(propagator, gains, shell, &layout);
 
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(layout.size());
@@ -180,18 +174,10 @@ fn controller_rows(
     derivative[0] = -1.0 / (filter_s + dt_s);
     derivative[layout.previous()] = 1.0 / (filter_s + dt_s);
 
-    let mut command: Vec<f64> = integral
-        .iter()
-        .zip(&derivative)
-        .map(|(i, d)| i + kd * d)
-        .collect();
+    let mut command: Vec<f64> = integral.iter().zip(&derivative).map(|(i, d)| i + kd * d).collect();
     command[0] -= kp;
     for (value, q) in command.iter_mut().zip(propagator.rate_row()) {
         *value -= shell.rate_gain_s * q;
     }
-    ControllerRows {
-        command,
-        integral,
-        derivative,
-    }
+    ControllerRows { command, integral, derivative }
 }

@@ -28,18 +28,11 @@ impl Timing {
         let samples = (duration_s / dt_s).round();
         // Written so that NaN fails.
         if !(samples + 1.0 <= MAX_ROWS as f64) {
-            return Err(SimError::TooManySamples {
-                found: samples + 1.0,
-                most: MAX_ROWS,
-            });
+            return Err(SimError::TooManySamples { found: samples + 1.0, most: MAX_ROWS });
         }
         if samples < 1.0 {
             let allowed = "at least one sample period";
-            return Err(SimError::Number {
-                what: "duration, s",
-                found: duration_s,
-                allowed,
-            });
+            return Err(SimError::Number { what: "duration, s", found: duration_s, allowed });
         }
         #[allow(
             clippy::cast_possible_truncation,
@@ -111,21 +104,11 @@ mod tests {
 
     #[test]
     fn a_flight_beyond_memory_is_refused_before_it_starts() {
-        assert!(matches!(
-            Timing::new(1e-9, 1e3),
-            Err(SimError::TooManySamples { .. })
-        ));
-        for (dt_s, duration_s) in [
-            (0.0, 1.0),
-            (f64::NAN, 1.0),
-            (1.0, f64::INFINITY),
-            (-1.0, 1.0),
-            (1.0, 0.1),
-        ] {
-            assert!(
-                Timing::new(dt_s, duration_s).is_err(),
-                "{dt_s} {duration_s}"
-            );
+        assert!(matches!(Timing::new(1e-9, 1e3), Err(SimError::TooManySamples { .. })));
+        for (dt_s, duration_s) in
+            [(0.0, 1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY), (-1.0, 1.0), (1.0, 0.1)]
+        {
+            assert!(Timing::new(dt_s, duration_s).is_err(), "{dt_s} {duration_s}");
         }
     }
 }

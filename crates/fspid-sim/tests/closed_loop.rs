@@ -1,9 +1,6 @@
 //! Laws that every closed loop obeys, whatever its numbers.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use fspid_core::{Gains, Pid, Shell};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -41,10 +38,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         timing: Timing::new(0.01, 5.0).expect("allowed"),
         setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
         disturbances: Vec::new(),
-        controllers: vec![NamedController {
-            name: "C".into(),
-            controller,
-        }],
+        controllers: vec![NamedController { name: "C".into(), controller }],
     }
 }
 
@@ -117,13 +111,9 @@ fn a_disturbance_of_the_measurement_is_not_in_the_pitch_of_the_trace() {
 fn a_delay_shifts_the_first_motion_by_its_samples() {
     let first_motion = |delay: usize| {
         let mut scenario = scenario(b747(), pid(1.0, 0.0, 0.0), 0.1);
-        scenario.servo = Servo::first_order(0.1)
-            .and_then(|s| s.with_delay(delay))
-            .expect("allowed");
-        flown(&scenario)
-            .theta_rad
-            .iter()
-            .position(|&theta| theta != 0.0)
+        scenario.servo =
+            Servo::first_order(0.1).and_then(|s| s.with_delay(delay)).expect("allowed");
+        flown(&scenario).theta_rad.iter().position(|&theta| theta != 0.0)
     };
     assert_eq!(first_motion(0), Some(1));
     assert_eq!(first_motion(7), Some(8));
@@ -155,11 +145,7 @@ fn a_change_to_the_same_plant_changes_nothing() {
     let still = scenario(navion(1.0), pid(0.7, 0.07, 0.05), 1.0);
     let mut changing = still.clone();
     changing.plant_changes = vec![PlantChange::new(1.0, 2.0, navion(1.0)).expect("allowed")];
-    for (a, b) in flown(&still)
-        .theta_rad
-        .iter()
-        .zip(flown(&changing).theta_rad)
-    {
+    for (a, b) in flown(&still).theta_rad.iter().zip(flown(&changing).theta_rad) {
         assert!((a - b).abs() < 1e-13, "{a} {b}");
     }
 }
@@ -195,13 +181,7 @@ fn a_plant_of_another_order_cannot_follow_in_flight() {
     let mut scenario = scenario(navion(1.0), pid(0.7, 0.0, 0.0), 1.0);
     scenario.plant_changes = vec![PlantChange::new(1.0, 0.0, b747()).expect("allowed")];
     let answer = simulate(&scenario);
-    assert_eq!(
-        answer,
-        Err(SimError::OrderChanges {
-            before: 3,
-            after: 4
-        })
-    );
+    assert_eq!(answer, Err(SimError::OrderChanges { before: 3, after: 4 }));
 }
 
 #[test]
@@ -214,10 +194,7 @@ fn an_added_noise_leaves_the_first_as_it_was() {
     };
     // Of one seed, so that only the stream keeps them apart.
     let (both, first) = (fly(vec![noise(5), noise(5)]), fly(vec![noise(5)]));
-    let differ = both
-        .iter()
-        .zip(&first)
-        .any(|(a, b)| (a - 2.0 * b).abs() > 1e-6);
+    let differ = both.iter().zip(&first).any(|(a, b)| (a - 2.0 * b).abs() > 1e-6);
     assert!(differ, "the two noises are one");
     let silent = disturbance(Entry::Elevator, 0.0, Shape::Noise { at_s: 0.0, seed: 9 });
     assert_eq!(fly(vec![noise(5), silent]), first);
@@ -227,10 +204,7 @@ fn an_added_noise_leaves_the_first_as_it_was() {
 fn the_same_scenario_gives_the_same_bits_beside_any_other_controller() {
     let alone = scenario(b747(), pid(2.0, 0.5, 1.0), 1.0);
     let mut beside = alone.clone();
-    let other = NamedController {
-        name: "D".into(),
-        controller: pid(50.0, 0.0, 0.0),
-    };
+    let other = NamedController { name: "D".into(), controller: pid(50.0, 0.0, 0.0) };
     beside.controllers.insert(0, other);
     let traces = simulate(&beside).expect("flies").traces;
     assert_eq!(traces[1], flown(&alone));
@@ -244,13 +218,7 @@ fn a_first_order_plant_answers_as_its_formula() {
     scenario.servo = Servo::ideal();
     scenario.disturbances = vec![disturbance(Entry::Servo, 0.2, STEP)];
     let trace = flown(&scenario);
-    for (k, (theta, q)) in trace
-        .theta_rad
-        .iter()
-        .zip(&trace.q_rad_s)
-        .enumerate()
-        .skip(1)
-    {
+    for (k, (theta, q)) in trace.theta_rad.iter().zip(&trace.q_rad_s).enumerate().skip(1) {
         let decay = libm::exp(-2.0 * k as f64 * 0.01);
         assert!((theta - 0.3 * (1.0 - decay)).abs() < 1e-13, "{k}: {theta}");
         assert!((q - 0.6 * decay).abs() < 1e-12, "{k}: {q}");

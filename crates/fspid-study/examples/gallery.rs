@@ -8,11 +8,7 @@ use fspid_study::figure::{
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = PathBuf::from(
-        std::env::args()
-            .nth(1)
-            .ok_or("the folder to write to is missing")?,
-    );
+    let folder = PathBuf::from(std::env::args().nth(1).ok_or("the folder to write to is missing")?);
     std::fs::create_dir_all(&folder)?;
     std::fs::write(folder.join("page.css"), page_style())?;
     let figures = [
@@ -66,24 +62,16 @@ fn response() -> Svg {
         vec![
             line("set-point", SeriesStyle::Setpoint, &|_| 1.0),
             line("FSPID", fspid, &|t| 1.0 - settle(t, 1.2, 0.6)),
-            line("CPID, same nominal gains", cpid, &|t| {
-                1.0 - settle(t, 0.5, 1.4)
-            }),
+            line("CPID, same nominal gains", cpid, &|t| 1.0 - settle(t, 0.5, 1.4)),
             line("PC", pc, &|t| 1.0 - settle(t, 0.12, 1.9)),
         ],
     );
-    pitch.bands.push(Band {
-        label: "\u{b1}2 % band".to_owned(),
-        lower: 0.98,
-        upper: 1.02,
-    });
+    pitch.bands.push(Band { label: "\u{b1}2 % band".to_owned(), lower: 0.98, upper: 1.02 });
     let command = panel(
         "elevator command [deg]",
         vec![
             line("FSPID", fspid, &|t| 2.0 * settle(t, 1.2, 0.6) + 0.1),
-            line("CPID, same nominal gains", cpid, &|t| {
-                1.5 * settle(t, 0.5, 1.4) + 0.1
-            }),
+            line("CPID, same nominal gains", cpid, &|t| 1.5 * settle(t, 0.5, 1.4) + 0.1),
         ],
     );
     let gains = panel(
@@ -95,34 +83,21 @@ fn response() -> Svg {
         ],
     );
     let title = "Step response of the 747 with rate-gyro loop".to_owned();
-    LineFigure {
-        title,
-        panels: vec![pitch, command, gains],
-        width_px: 720.0,
-    }
-    .render()
+    LineFigure { title, panels: vec![pitch, command, gains], width_px: 720.0 }.render()
 }
 
 fn centres() -> impl Iterator<Item = (String, f64)> {
-    SEVEN
-        .iter()
-        .enumerate()
-        .map(|(n, label)| ((*label).to_owned(), (n as f64 - 3.0) * 5.0 / 3.0))
+    SEVEN.iter().enumerate().map(|(n, label)| ((*label).to_owned(), (n as f64 - 3.0) * 5.0 / 3.0))
 }
 
 fn values(from: f64, to: f64, n: u32) -> Vec<f64> {
-    (0..=n)
-        .map(|k| from + (to - from) * f64::from(k) / f64::from(n))
-        .collect()
+    (0..=n).map(|k| from + (to - from) * f64::from(k) / f64::from(n)).collect()
 }
 
 fn inputs() -> Svg {
     let gaussian = |x: f64, centre: f64| (-(x - centre).powi(2) / (2.0 * 0.7078_f64.powi(2))).exp();
     let points = |centre: f64| {
-        values(-5.0, 5.0, 400)
-            .into_iter()
-            .map(|x| (x, gaussian(x, centre)))
-            .collect()
+        values(-5.0, 5.0, 400).into_iter().map(|x| (x, gaussian(x, centre))).collect()
     };
     memberships(
         "Inputs of the supervisor",
@@ -153,10 +128,7 @@ fn surface() -> Surface {
         x_label: "error e [deg]".to_owned(),
         y_label: "change ec [deg/s]".to_owned(),
         z_label: "\u{394}k_{p}".to_owned(),
-        values: nodes
-            .iter()
-            .map(|ec| nodes.iter().map(|e| value(*e, *ec)).collect())
-            .collect(),
+        values: nodes.iter().map(|ec| nodes.iter().map(|e| value(*e, *ec)).collect()).collect(),
         xs: nodes.clone(),
         ys: nodes,
         limit: None,
@@ -173,31 +145,16 @@ fn rules() -> Svg {
         "PB NS PS PS PS PS PB",
         "PB PM PM PM PS PS PB",
     ];
-    let mark = |row, column, reason: &str| Mark {
-        row,
-        column,
-        reason: reason.to_owned(),
-    };
+    let mark = |row, column, reason: &str| Mark { row, column, reason: reason.to_owned() };
     RuleTable {
         title: "Rules for \u{394}k_{d} (Table 3)".to_owned(),
         row_header: "error e".to_owned(),
         column_header: "change of error ec".to_owned(),
         labels: SEVEN.map(str::to_owned).to_vec(),
-        cells: rows
-            .iter()
-            .map(|row| row.split(' ').map(str::to_owned).collect())
-            .collect(),
+        cells: rows.iter().map(|row| row.split(' ').map(str::to_owned).collect()).collect(),
         marked: vec![
-            mark(
-                5,
-                1,
-                "breaks the symmetry of its row: the mirrored cell says PS",
-            ),
-            mark(
-                4,
-                1,
-                "breaks the symmetry of its row: the mirrored cell says PS",
-            ),
+            mark(5, 1, "breaks the symmetry of its row: the mirrored cell says PS"),
+            mark(4, 1, "breaks the symmetry of its row: the mirrored cell says PS"),
             mark(0, 6, "printed with a doubled slash"),
         ],
     }
@@ -212,13 +169,9 @@ fn ratio() -> Svg {
         x_label: "size of the disturbance [deg]".to_owned(),
         y_label: "ratio of IAE (below 1: FSPID better)".to_owned(),
         series: vec![
-            line("same nominal gains, at the elevator", 0, |x| {
-                0.62 + 0.1 * x.ln().sin()
-            }),
+            line("same nominal gains, at the elevator", 0, |x| 0.62 + 0.1 * x.ln().sin()),
             line("re-tuned, at the elevator", 1, |x| 1.04 + 0.05 * x.ln()),
-            line("same nominal gains, at the servo", 2, |x| {
-                0.8 - 0.04 * x.ln()
-            }),
+            line("same nominal gains, at the servo", 2, |x| 0.8 - 0.04 * x.ln()),
             line("re-tuned, at the servo", 3, |x| 1.2 + 0.1 * x.ln()),
         ],
         log_x: true,

@@ -42,29 +42,20 @@ impl Question<'_> {
         let mut problems = Vec::new();
         let table = file::load_rule_table(self.table, None).map_err(|found| {
             let known = file::rule_table_names().join(", ");
-            problems.push(format!(
-                "--table: known are {known}, or a readable .toml file\n{found}"
-            ));
+            problems.push(format!("--table: known are {known}, or a readable .toml file\n{found}"));
         });
         let defuzzifier = self.defuzzifier.parse::<Defuzzifier>().map_err(|problem| {
             problems.push(format!("--defuzzifier {}: {problem}", self.defuzzifier));
         });
-        let policy = OutOfRange::ALL
-            .into_iter()
-            .find(|p| p.name() == self.out_of_range);
+        let policy = OutOfRange::ALL.into_iter().find(|p| p.name() == self.out_of_range);
         if policy.is_none() {
             let known = OutOfRange::ALL.map(OutOfRange::name).join(", ");
-            problems.push(format!(
-                "--out-of-range {}: known are {known}",
-                self.out_of_range
-            ));
+            problems.push(format!("--out-of-range {}: known are {known}", self.out_of_range));
         }
         let usable_range = self.range.is_finite() && self.range > 0.0;
         if !usable_range {
-            problems.push(format!(
-                "--range is {:?}; allowed is a finite number above 0",
-                self.range
-            ));
+            problems
+                .push(format!("--range is {:?}; allowed is a finite number above 0", self.range));
         }
         let (Ok(table), Ok(defuzzifier), Some(policy), true) =
             (table, defuzzifier, policy, usable_range)
@@ -118,22 +109,13 @@ const MOST_PROBLEMS: usize = 20;
 /// row is answered then.
 pub fn answer_file(supervisor: &Supervisor<f64>, path: &Path) -> Result<String, Refused> {
     let refused = |problem: String| Refused(vec![format!("{}: {problem}", path.display())]);
-    let size = std::fs::metadata(path)
-        .map_err(|error| refused(error.to_string()))?
-        .len();
+    let size = std::fs::metadata(path).map_err(|error| refused(error.to_string()))?.len();
     if size > LARGEST_FILE {
-        return Err(refused(format!(
-            "{size} bytes; allowed are at most {LARGEST_FILE}"
-        )));
+        return Err(refused(format!("{size} bytes; allowed are at most {LARGEST_FILE}")));
     }
     let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
     answer_rows(supervisor, &text).map_err(|problems| {
-        Refused(
-            problems
-                .iter()
-                .map(|p| format!("{}:{p}", path.display()))
-                .collect(),
-        )
+        Refused(problems.iter().map(|p| format!("{}:{p}", path.display())).collect())
     })
 }
 
@@ -157,19 +139,15 @@ fn answer_rows(supervisor: &Supervisor<f64>, text: &str) -> Result<String, Vec<S
         };
         let answer = read(error_column, "e").and_then(|e| {
             let ec = read(change_column, "ec")?;
-            let answer = supervisor
-                .infer(e, ec)
-                .map_err(|problem| format!("{number}: {problem}"))?;
+            let answer =
+                supervisor.infer(e, ec).map_err(|problem| format!("{number}: {problem}"))?;
             Ok((e, ec, answer.delta))
         });
         match answer {
             Ok((e, ec, d)) => {
                 // Writing to a string cannot fail.
-                let _ = writeln!(
-                    out,
-                    "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}",
-                    d.kp, d.ki, d.kd
-                );
+                let _ =
+                    writeln!(out, "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd);
             }
             Err(problem) if problems.len() < MOST_PROBLEMS => problems.push(problem),
             Err(_) => {
@@ -178,9 +156,5 @@ fn answer_rows(supervisor: &Supervisor<f64>, text: &str) -> Result<String, Vec<S
             }
         }
     }
-    if problems.is_empty() {
-        Ok(out)
-    } else {
-        Err(problems)
-    }
+    if problems.is_empty() { Ok(out) } else { Err(problems) }
 }

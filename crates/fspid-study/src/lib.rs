@@ -9,10 +9,7 @@
 
 #![cfg_attr(
     test,
-    allow(
-        clippy::float_cmp,
-        reason = "tests ask for exact bits where they compare floats"
-    )
+    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
 pub mod figure;

@@ -32,19 +32,13 @@ impl std::error::Error for OutputError {}
 /// # Errors
 /// [`OutputError`] with the path; an existing file is then as it was.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
-    let failed = |reason| OutputError {
-        path: path.to_owned(),
-        reason,
-    };
+    let failed = |reason| OutputError { path: path.to_owned(), reason };
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
     if path.is_dir() {
-        return Err(failed(io::Error::new(
-            io::ErrorKind::IsADirectory,
-            "it is a folder",
-        )));
+        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
     }
     // A device or pipe is written as it is: it has nothing that could be lost.
     if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
@@ -83,10 +77,7 @@ fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
 /// # Errors
 /// [`OutputError`] with the path.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
-    fs::create_dir_all(path).map_err(|reason| OutputError {
-        path: path.to_owned(),
-        reason,
-    })
+    fs::create_dir_all(path).map_err(|reason| OutputError { path: path.to_owned(), reason })
 }
 
 #[cfg(test)]

@@ -69,14 +69,11 @@ fn tags(html: &str) -> Vec<(String, String)> {
 fn attributes<'a>(tags: &'a [(String, String)], name: &str) -> Vec<&'a str> {
     let start = format!("{name}=\"");
     let of = |attributes: &'a str| {
-        let padded = attributes
-            .find(&start)
-            .filter(|at| *at == 0 || attributes[..*at].ends_with(' '))?;
+        let padded =
+            attributes.find(&start).filter(|at| *at == 0 || attributes[..*at].ends_with(' '))?;
         attributes[padded + start.len()..].split('"').next()
     };
-    tags.iter()
-        .filter_map(|(_, attributes)| of(attributes))
-        .collect()
+    tags.iter().filter_map(|(_, attributes)| of(attributes)).collect()
 }
 
 const VOID: [&str; 4] = ["meta", "br", "hr", "!doctype"];
@@ -96,15 +93,10 @@ fn assert_sound(html: &str) {
     let unique: BTreeSet<&str> = ids.iter().copied().collect();
     assert_eq!(ids.len(), unique.len(), "an id is given twice");
     for reference in attributes(&tags, "href") {
-        let id = reference
-            .strip_prefix('#')
-            .expect("references stay in the page");
+        let id = reference.strip_prefix('#').expect("references stay in the page");
         assert!(unique.contains(id), "nothing has the id {id}");
     }
-    for name in attributes(&tags, "aria-labelledby")
-        .iter()
-        .flat_map(|names| names.split(' '))
-    {
+    for name in attributes(&tags, "aria-labelledby").iter().flat_map(|names| names.split(' ')) {
         assert!(unique.contains(name), "nothing has the id {name}");
     }
     assert!(attributes(&tags, "src").is_empty(), "something is loaded");
@@ -114,9 +106,7 @@ fn assert_sound(html: &str) {
         )
     );
     assert!(!html.contains("@import") && !html.contains("class=\"failed\""));
-    let urls = html
-        .match_indices("url(")
-        .filter(|(at, _)| !html[at + 4..].starts_with('#'));
+    let urls = html.match_indices("url(").filter(|(at, _)| !html[at + 4..].starts_with('#'));
     assert_eq!(urls.count(), 0, "a style refers to something outside");
     // Name spaces of SVG are names, not references.
     let outside = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
@@ -130,18 +120,10 @@ fn the_report_of_the_paper_is_sound_and_holds_every_claim() {
     let html = report::of_reproduction(&library, &reproduction);
     assert_sound(&html);
     for claim in CLAIMS {
-        assert!(
-            html.contains(&format!("<tr id=\"{}\">", claim.id)),
-            "{}",
-            claim.id
-        );
+        assert!(html.contains(&format!("<tr id=\"{}\">", claim.id)), "{}", claim.id);
     }
     for statement in &reproduction.statements {
-        assert!(
-            html.contains(&format!("<tr id=\"{}\">", statement.id)),
-            "{}",
-            statement.id
-        );
+        assert!(html.contains(&format!("<tr id=\"{}\">", statement.id)), "{}", statement.id);
     }
     assert!(html.contains(&reproduction.digest) && html.contains(env!("CARGO_PKG_VERSION")));
     assert!(html.len() < 6_000_000, "{} bytes", html.len());
@@ -152,14 +134,25 @@ fn every_assumption_and_erratum_has_its_anchor() {
     let (library, reproduction) = paper();
     let html = report::of_reproduction(&library, &reproduction);
     for number in 1..=23 {
-        assert!(
-            html.contains(&format!("<h3 id=\"A{number}\">")),
-            "A{number}"
-        );
+        assert!(html.contains(&format!("<h3 id=\"A{number}\">")), "A{number}");
     }
     for number in 1..=19 {
         assert!(html.contains(&format!("id=\"E{number}\">")), "E{number}");
     }
+}
+
+#[test]
+fn parameters_that_the_claims_do_not_determine_are_named_where_there_are_several_seeds() {
+    let (library, mut reproduction) = paper();
+    for problem in &mut reproduction.record.problems {
+        let mut other = problem.runs[0].clone();
+        other.seed += 1;
+        other.point[0] *= 2.0;
+        problem.runs.push(other);
+    }
+    let html = report::of_reproduction(&library, &reproduction);
+    assert_sound(&html);
+    assert!(html.contains("<strong>Not determined by the claims:</strong> error_scale."));
 }
 
 #[test]
@@ -183,10 +176,9 @@ fn what_lies_beside_the_report_has_names_of_its_own_and_can_be_flown_again() {
     assert_eq!(names.len(), files.len(), "a name is given twice");
     for (name, text) in &files {
         match name.split('/').next() {
-            Some("figures") => assert!(
-                text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"),
-                "{name}"
-            ),
+            Some("figures") => {
+                assert!(text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"), "{name}")
+            }
             Some("traces") => assert!(text.starts_with("time_s,"), "{name}"),
             Some("scenarios") => {
                 let again = file::parse(text, name, None, &[]);
@@ -214,13 +206,9 @@ fn names_stay_text_wherever_they_appear() {
 fn a_flight_that_diverged_shows_that_and_no_measure() {
     let html = of_flight(HOSTILE);
     let verdict = html.find("DIVERGED").expect("said in capitals");
-    assert!(
-        verdict < html.find("Time responses").expect("later"),
-        "the verdict comes first"
-    );
-    let (_, row) = html
-        .split_once("<th scope=\"row\">&lt;img")
-        .expect("a row of the failed controller");
+    assert!(verdict < html.find("Time responses").expect("later"), "the verdict comes first");
+    let (_, row) =
+        html.split_once("<th scope=\"row\">&lt;img").expect("a row of the failed controller");
     let (row, _) = row.split_once("</tr>").expect("closed");
     assert!(row.contains("diverged at t ="), "{row}");
     assert!(!row.contains("class=\"number\""), "{row}");
@@ -231,26 +219,15 @@ fn a_flight_that_diverged_shows_that_and_no_measure() {
 fn an_accumulating_law_without_limits_is_warned_of() {
     let html = of_flight(HOSTILE);
     assert!(html.contains("This law adds increments up."));
-    assert!(
-        html.contains("at rest the accumulating law moves"),
-        "the warning of the file"
-    );
+    assert!(html.contains("at rest the accumulating law moves"), "the warning of the file");
 }
 
 #[test]
 fn the_starter_s_report_is_sound_and_shows_the_defaults() {
     let html = of_flight(file::starter());
     assert_sound(&html);
-    for setting in [
-        "guard limit",
-        "anti-windup",
-        "supervisor defuzzifier",
-        "servo delay samples",
-    ] {
-        assert!(
-            html.contains(&format!("<th scope=\"row\">{setting}</th>")),
-            "{setting}"
-        );
+    for setting in ["guard limit", "anti-windup", "supervisor defuzzifier", "servo delay samples"] {
+        assert!(html.contains(&format!("<th scope=\"row\">{setting}</th>")), "{setting}");
     }
 }
 
@@ -260,4 +237,13 @@ fn a_flight_without_a_step_has_a_report() {
     let html = of_flight(&text);
     assert_sound(&html);
     assert!(html.contains("Flown"));
+}
+
+#[test]
+fn a_flight_of_a_thousand_steps_does_not_bury_its_report() {
+    let text = HOSTILE.replace("half_period_s = 2.5", "half_period_s = 0.02");
+    let html = of_flight(&text);
+    assert_sound(&html);
+    assert!(html.contains("more steps: `fspid simulate --format json` lists them all"));
+    assert!(html.len() < 2_000_000, "{} bytes", html.len());
 }

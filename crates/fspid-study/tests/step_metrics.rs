@@ -1,26 +1,18 @@
 //! Step metrics against event-located values made by `oracles/make_step_metrics.py`.
 
-#![allow(
-    clippy::float_cmp,
-    reason = "tests ask for exact bits where they compare floats"
-)]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use std::path::Path;
 
 use fspid_study::metrics::{Measured, StepMetrics, StepWindow};
 
 fn read(file: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file);
     std::fs::read_to_string(path).expect("a reference file")
 }
 
 fn numbers(line: &str) -> Vec<Option<f64>> {
-    line.split(',')
-        .skip(1)
-        .map(|word| word.parse().ok())
-        .collect()
+    line.split(',').skip(1).map(|word| word.parse().ok()).collect()
 }
 
 #[test]
@@ -36,18 +28,10 @@ fn step_metrics_agree_with_located_events() {
             .skip(1)
             .map(|row| {
                 let (t, y) = row.split_once(',').expect("two columns");
-                (
-                    t.parse::<f64>().expect("time"),
-                    y.parse::<f64>().expect("response"),
-                )
+                (t.parse::<f64>().expect("time"), y.parse::<f64>().expect("response"))
             })
             .unzip();
-        let window = StepWindow {
-            time_s: &time_s,
-            response: &response,
-            from,
-            to,
-        };
+        let window = StepWindow { time_s: &time_s, response: &response, from, to };
         let metrics = StepMetrics::of(window);
         let extreme = |fraction: Measured| fraction.map(|way| from + way * (to - from));
         let (low, high) = (extreme(metrics.settling_min), extreme(metrics.settling_max));
@@ -72,10 +56,7 @@ fn step_metrics_agree_with_located_events() {
                 // Straight lines between samples 1 to 20 ms apart leave this much.
                 (Ok(ours), Some(theirs)) => {
                     let tolerance = 2e-4 * theirs.abs().max(1.0);
-                    assert!(
-                        (ours - theirs).abs() < tolerance,
-                        "{name} {what}: {ours} {theirs}"
-                    );
+                    assert!((ours - theirs).abs() < tolerance, "{name} {what}: {ours} {theirs}");
                 }
                 (Err(_), None) => {}
                 (ours, theirs) => panic!("{name} {what}: {ours:?} {theirs:?}"),

@@ -49,10 +49,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.points {
         return print(&inference::answer_file(&supervisor, path).map_err(Failure::input)?);
     }
-    let (error, change) = (
-        arguments.error.unwrap_or(0.0),
-        arguments.change.unwrap_or(0.0),
-    );
+    let (error, change) = (arguments.error.unwrap_or(0.0), arguments.change.unwrap_or(0.0));
     let answer = supervisor.infer(error, change).map_err(Failure::input)?;
     match arguments.format {
         Format::Json => print(&json_text(&inference::json(&answer))),

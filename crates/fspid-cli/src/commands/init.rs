@@ -20,14 +20,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if path.exists() {
         let path = path.display();
-        return Err(Failure::input(format_args!(
-            "{path} exists; choose another name"
-        )));
+        return Err(Failure::input(format_args!("{path} exists; choose another name")));
     }
     output::write(path, file::starter())?;
     let path = path.display();
-    note(format_args!(
-        "wrote {path}; fly it with: fspid simulate {path} --report report.html"
-    ));
+    note(format_args!("wrote {path}; fly it with: fspid simulate {path} --report report.html"));
     Ok(())
 }

@@ -36,25 +36,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (library, reproduction) = if arguments.identify {
         identified(arguments)?
     } else {
-        (
-            Library::stored(),
-            Reproduction::stored().map_err(Failure::input)?,
-        )
+        (Library::stored(), Reproduction::stored().map_err(Failure::input)?)
     };
     write_all(out, &library, &reproduction)?;
     print(&summary(out, &reproduction))?;
-    if arguments.check {
-        check(&reproduction)
-    } else {
-        Ok(())
-    }
+    if arguments.check { check(&reproduction) } else { Ok(()) }
 }
 
 fn identified(arguments: &Arguments) -> Result<(Library, Reproduction), Failure> {
-    let options = Options {
-        seed: arguments.seed,
-        seeds: arguments.seeds,
-    };
+    let options = Options { seed: arguments.seed, seeds: arguments.seeds };
     let found = identify(options, |line| note(line)).map_err(Failure::input)?;
     let record = format!("{:#}\n", found.record.json());
     let folder = arguments.out.join("paper");
@@ -71,15 +61,9 @@ fn write_all(out: &Path, library: &Library, reproduction: &Reproduction) -> Resu
     for (name, text) in report::files_of_reproduction(library, reproduction) {
         write_below(out, &name, &text)?;
     }
-    output::write(
-        &out.join("claims.json"),
-        format!("{:#}\n", reproduction.claims_json()),
-    )?;
+    output::write(&out.join("claims.json"), format!("{:#}\n", reproduction.claims_json()))?;
     output::write(&out.join("statuses.toml"), recorded_toml(reproduction))?;
-    output::write(
-        &out.join("report.html"),
-        report::of_reproduction(library, reproduction),
-    )?;
+    output::write(&out.join("report.html"), report::of_reproduction(library, reproduction))?;
     Ok(())
 }
 
@@ -107,11 +91,8 @@ fn check(reproduction: &Reproduction) -> Result<(), Failure> {
     if fallen.is_empty() {
         return Ok(());
     }
-    let lines = fallen.iter().map(|claim| {
-        format!(
-            "{}: {} recorded, now {}",
-            claim.id, claim.recorded, claim.now
-        )
-    });
+    let lines = fallen
+        .iter()
+        .map(|claim| format!("{}: {} recorded, now {}", claim.id, claim.recorded, claim.now));
     Err(Failure::not_met(lines.collect::<Vec<_>>().join("\n")))
 }

@@ -47,12 +47,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if simulation.requirements_met() {
         return Ok(());
     }
-    let failed = simulation
-        .judgements
-        .iter()
-        .filter(|judgement| !judgement.met)
-        .count();
-    Err(Failure::not_met(format_args!(
-        "{failed} requirement(s) not met"
-    )))
+    let failed = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
+    Err(Failure::not_met(format_args!("{failed} requirement(s) not met")))
 }

@@ -9,11 +9,7 @@ const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
 
 /// Sample period of most tests, s.
 pub(crate) const T: f64 = 0.01;
-pub(crate) const NOMINAL: Gains<f64> = Gains {
-    kp: 2.0,
-    ki: 0.5,
-    kd: 1.0,
-};
+pub(crate) const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
 
 /// The paper's Table 3 as printed: the texts between triple quotes.
 pub(crate) fn printed() -> RuleTable {
@@ -34,11 +30,7 @@ pub(crate) fn tuner<R: Real>(settings: TunerSettings<R>) -> SelfTuner<R> {
 
 /// The same gains in another precision.
 pub(crate) fn gains<R: Real>(of: Gains<f64>) -> Gains<R> {
-    Gains {
-        kp: R::from_f64(of.kp),
-        ki: R::from_f64(of.ki),
-        kd: R::from_f64(of.kd),
-    }
+    Gains { kp: R::from_f64(of.kp), ki: R::from_f64(of.ki), kd: R::from_f64(of.kd) }
 }
 
 /// A sample of set-point, measurement and rate.
@@ -52,11 +44,7 @@ pub(crate) fn sample<R: Real>(setpoint: f64, measurement: f64, rate: f64) -> Sam
 
 /// A sample at which the error is `error`.
 pub(crate) fn error<R: Real>(error: R) -> Sample<R> {
-    Sample {
-        setpoint_rad: error,
-        measurement_rad: R::ZERO,
-        rate_rad_s: R::ZERO,
-    }
+    Sample { setpoint_rad: error, measurement_rad: R::ZERO, rate_rad_s: R::ZERO }
 }
 
 pub(crate) fn pid<R: Real>(gains: Gains<R>, shell: Shell<R>) -> Pid<R> {
@@ -74,9 +62,7 @@ pub(crate) fn integral_term<R: Real>(state: &State<R>, ki: R, shell: Shell<R>) -
     bare.integral = shell.integral;
     let only_ki = Gains { ki, ..Gains::ZERO };
     let mut copy = *state;
-    pid(only_ki, bare)
-        .step(&mut copy, error(R::ZERO))
-        .command_rad
+    pid(only_ki, bare).step(&mut copy, error(R::ZERO)).command_rad
 }
 
 /// SplitMix64 (Steele, Lea and Flood, 2014): the same numbers on every machine.

@@ -18,26 +18,15 @@ pub struct Gaussian<R> {
 impl<R: Real> Gaussian<R> {
     /// The set whose equal neighbours, `spacing` away on each side, cross it at a grade of 0.5.
     pub(crate) fn spaced(centre: R, spacing: R) -> Self {
-        Self {
-            centre,
-            sigma: spacing * R::from_f64(SIGMA_PER_SPACING),
-        }
+        Self { centre, sigma: spacing * R::from_f64(SIGMA_PER_SPACING) }
     }
 }
 
 impl<R: Real> Shape<R> for Gaussian<R> {
     const NAME: &'static str = "gaussian";
     const PARAMS: &'static [Param] = &[
-        Param {
-            name: "centre",
-            unit: "variable",
-            range: Range::Finite,
-        },
-        Param {
-            name: "sigma",
-            unit: "variable",
-            range: Range::Positive,
-        },
+        Param { name: "centre", unit: "variable", range: Range::Finite },
+        Param { name: "sigma", unit: "variable", range: Range::Positive },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0];
     const C: &'static str = "exp(-0.5 * ((x - centre) / sigma) * ((x - centre) / sigma))";

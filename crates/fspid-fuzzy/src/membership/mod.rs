@@ -78,11 +78,7 @@ fn checked<R: Real, S: Shape<R>, const N: usize>(params: &[f64]) -> Result<[R; N
         *value = R::from_f64(found);
         if !(param.range.allows(found) && param.range.allows(value.to_f64())) {
             let allowed = param.range.text();
-            return Err(FuzzyError::Parameter {
-                name: param.name,
-                found,
-                allowed,
-            });
+            return Err(FuzzyError::Parameter { name: param.name, found, allowed });
         }
     }
     Ok(values)
@@ -148,11 +144,7 @@ mod tests {
                     assert_eq!(refused, !param.range.allows(bad), "{} {bad}", member.name);
                 }
             }
-            assert!(
-                (member.grade)(&[], 0.0).is_err(),
-                "{} without parameters",
-                member.name
-            );
+            assert!((member.grade)(&[], 0.0).is_err(), "{} without parameters", member.name);
         }
     }
 
@@ -160,12 +152,7 @@ mod tests {
     fn every_member_names_its_parameters_in_its_c_expression() {
         for member in FAMILY {
             for param in member.params {
-                assert!(
-                    member.c.contains(param.name),
-                    "{}: {}",
-                    member.name,
-                    param.name
-                );
+                assert!(member.c.contains(param.name), "{}: {}", member.name, param.name);
             }
         }
     }

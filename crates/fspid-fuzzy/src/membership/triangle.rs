@@ -14,16 +14,8 @@ pub struct Triangle<R> {
 impl<R: Real> Shape<R> for Triangle<R> {
     const NAME: &'static str = "triangle";
     const PARAMS: &'static [Param] = &[
-        Param {
-            name: "centre",
-            unit: "variable",
-            range: Range::Finite,
-        },
-        Param {
-            name: "half_width",
-            unit: "variable",
-            range: Range::Positive,
-        },
+        Param { name: "centre", unit: "variable", range: Range::Finite },
+        Param { name: "half_width", unit: "variable", range: Range::Positive },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0];
     const C: &'static str = "fmax(0.0, 1.0 - fabs(x - centre) / half_width)";

@@ -7,26 +7,16 @@ use proptest::test_runner::{Config, RngSeed};
 
 /// Properties are tried on the same cases in each run; a case that fails belongs into a test of its own.
 pub(crate) fn repeatable() -> Config {
-    Config {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(2026),
-        ..Config::default()
-    }
+    Config { failure_persistence: None, rng_seed: RngSeed::Fixed(2026), ..Config::default() }
 }
 
 /// Rows of a table, split into their fields.
 pub(crate) fn rows(table: &str) -> impl Iterator<Item = Vec<&str>> {
-    table
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .map(|line| line.split(';').collect())
+    table.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(';').collect())
 }
 
 pub(crate) fn numbers(field: &str) -> Vec<f64> {
-    field
-        .split_whitespace()
-        .map(|word| word.parse().expect("the table holds numbers"))
-        .collect()
+    field.split_whitespace().map(|word| word.parse().expect("the table holds numbers")).collect()
 }
 
 pub(crate) fn complex_numbers(field: &str) -> Vec<Complex> {

@@ -45,11 +45,7 @@ impl Disturbance {
     /// [`SimError::Number`] for an amplitude that is not finite or a shape out of its range.
     pub fn new(entry: Entry, amplitude_rad: f64, shape: Shape) -> Result<Self, SimError> {
         let amplitude_rad = amplitude("amplitude", amplitude_rad)?;
-        Ok(Self {
-            entry,
-            amplitude_rad,
-            shape: shape.checked()?,
-        })
+        Ok(Self { entry, amplitude_rad, shape: shape.checked()? })
     }
 
     /// Where it enters.
@@ -59,7 +55,6 @@ impl Disturbance {
     }
 
     pub(crate) fn add_to(&self, values: &mut [f64], timing: Timing, stream: u64) {
-        self.shape
-            .add_to(values, self.amplitude_rad, timing, stream);
+        self.shape.add_to(values, self.amplitude_rad, timing, stream);
     }
 }

@@ -47,11 +47,8 @@ mod tests {
     fn a_sample_of_noise_depends_on_seed_stream_and_sample_only() {
         let a = standard_normal(1, 2, 3);
         assert_eq!(a.to_bits(), standard_normal(1, 2, 3).to_bits());
-        for other in [
-            standard_normal(2, 2, 3),
-            standard_normal(1, 3, 3),
-            standard_normal(1, 2, 4),
-        ] {
+        for other in [standard_normal(2, 2, 3), standard_normal(1, 3, 3), standard_normal(1, 2, 4)]
+        {
             assert_ne!(a.to_bits(), other.to_bits());
         }
     }

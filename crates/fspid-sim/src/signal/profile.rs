@@ -19,15 +19,8 @@ pub struct Profile(Kind);
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    Shape {
-        amplitude_rad: f64,
-        shape: Shape,
-    },
-    Table {
-        time_s: Vec<f64>,
-        setpoint_rad: Vec<f64>,
-        interpolation: Interpolation,
-    },
+    Shape { amplitude_rad: f64, shape: Shape },
+    Table { time_s: Vec<f64>, setpoint_rad: Vec<f64>, interpolation: Interpolation },
 }
 
 /// A step in the command.
@@ -48,10 +41,7 @@ impl Profile {
     /// [`SimError::Number`] for an amplitude that is not finite or a shape out of its range.
     pub fn new(amplitude_rad: f64, shape: Shape) -> Result<Self, SimError> {
         let amplitude_rad = amplitude("amplitude", amplitude_rad)?;
-        Ok(Self(Kind::Shape {
-            amplitude_rad,
-            shape: shape.checked()?,
-        }))
+        Ok(Self(Kind::Shape { amplitude_rad, shape: shape.checked()? }))
     }
 
     /// Rows of time and set-point; 0 before the first, the last value after the last.
@@ -72,27 +62,17 @@ impl Profile {
         }
         if time_s.len() != setpoint_rad.len() {
             let row = time_s.len().min(setpoint_rad.len()) + 1;
-            return Err(SimError::Table {
-                problem: "a time or a set-point is missing",
-                row,
-            });
+            return Err(SimError::Table { problem: "a time or a set-point is missing", row });
         }
         for (row, (&time, &setpoint)) in time_s.iter().zip(&setpoint_rad).enumerate() {
             finite("set-point table, time", time)?;
             finite("set-point table, set-point", setpoint)?;
             if row > 0 && time_s.get(row - 1).is_some_and(|&before| before >= time) {
                 let problem = "the time is not after that of the row before";
-                return Err(SimError::Table {
-                    problem,
-                    row: row + 1,
-                });
+                return Err(SimError::Table { problem, row: row + 1 });
             }
         }
-        Ok(Self(Kind::Table {
-            time_s,
-            setpoint_rad,
-            interpolation,
-        }))
+        Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
     }
 
     /// Set-point at each sample [rad], and the steps in it.
@@ -100,29 +80,18 @@ impl Profile {
     pub fn sampled(&self, timing: Timing) -> (Vec<f64>, Vec<Edge>) {
         let mut values = vec![0.0; timing.rows()];
         let has_steps = match &self.0 {
-            Kind::Shape {
-                amplitude_rad,
-                shape,
-            } => {
+            Kind::Shape { amplitude_rad, shape } => {
                 shape.add_to(&mut values, *amplitude_rad, timing, 0);
                 !shape.levels(timing).is_empty()
             }
-            Kind::Table {
-                time_s,
-                setpoint_rad,
-                interpolation,
-            } => {
+            Kind::Table { time_s, setpoint_rad, interpolation } => {
                 for (k, value) in values.iter_mut().enumerate() {
                     *value = look_up(time_s, setpoint_rad, *interpolation, timing, k);
                 }
                 *interpolation == Interpolation::Hold
             }
         };
-        let edges = if has_steps {
-            edges(&values)
-        } else {
-            Vec::new()
-        };
+        let edges = if has_steps { edges(&values) } else { Vec::new() };
         (values, edges)
     }
 }
@@ -154,11 +123,7 @@ fn edges(values: &[f64]) -> Vec<Edge> {
     let mut before = 0.0;
     for (sample, &value) in values.iter().enumerate() {
         if value != before {
-            edges.push(Edge {
-                sample,
-                from_rad: before,
-                to_rad: value,
-            });
+            edges.push(Edge { sample, from_rad: before, to_rad: value });
             before = value;
         }
     }
@@ -175,49 +140,24 @@ mod tests {
 
     #[test]
     fn a_bipolar_square_wave_rises_from_zero_and_then_swings_by_twice_its_amplitude() {
-        let shape = Shape::Square {
-            at_s: 0.0,
-            half_period_s: 1.0,
-            bipolar: true,
-        };
+        let shape = Shape::Square { at_s: 0.0, half_period_s: 1.0, bipolar: true };
         let (values, edges) = Profile::new(2.0, shape).expect("allowed").sampled(timing());
         assert_eq!(&values[8..12], &[2.0, 2.0, -2.0, -2.0]);
-        let jumps: Vec<_> = edges
-            .iter()
-            .map(|e| (e.sample, e.from_rad, e.to_rad))
-            .collect();
-        assert_eq!(
-            jumps,
-            [
-                (0, 0.0, 2.0),
-                (10, 2.0, -2.0),
-                (20, -2.0, 2.0),
-                (30, 2.0, -2.0)
-            ]
-        );
+        let jumps: Vec<_> = edges.iter().map(|e| (e.sample, e.from_rad, e.to_rad)).collect();
+        assert_eq!(jumps, [(0, 0.0, 2.0), (10, 2.0, -2.0), (20, -2.0, 2.0), (30, 2.0, -2.0)]);
     }
 
     #[test]
     fn a_unipolar_square_wave_returns_to_zero() {
-        let shape = Shape::Square {
-            at_s: 0.5,
-            half_period_s: 1.0,
-            bipolar: false,
-        };
+        let shape = Shape::Square { at_s: 0.5, half_period_s: 1.0, bipolar: false };
         let (values, edges) = Profile::new(1.0, shape).expect("allowed").sampled(timing());
-        assert_eq!(
-            (values[4], values[5], values[15], values[25]),
-            (0.0, 1.0, 0.0, 1.0)
-        );
+        assert_eq!((values[4], values[5], values[15], values[25]), (0.0, 1.0, 0.0, 1.0));
         assert_eq!(edges.len(), 3);
     }
 
     #[test]
     fn a_doublet_ends_where_it_began() {
-        let shape = Shape::Doublet {
-            at_s: 0.5,
-            width_s: 0.5,
-        };
+        let shape = Shape::Doublet { at_s: 0.5, width_s: 0.5 };
         let (values, edges) = Profile::new(1.0, shape).expect("allowed").sampled(timing());
         assert_eq!((values[5], values[10], values[15]), (1.0, -1.0, 0.0));
         assert_eq!(edges.len(), 3);
@@ -225,16 +165,9 @@ mod tests {
 
     #[test]
     fn a_ramp_and_a_sine_have_no_edges() {
-        for shape in [
-            Shape::Ramp {
-                at_s: 0.0,
-                width_s: 1.0,
-            },
-            Shape::Sine {
-                at_s: 0.0,
-                frequency_hz: 0.5,
-            },
-        ] {
+        for shape in
+            [Shape::Ramp { at_s: 0.0, width_s: 1.0 }, Shape::Sine { at_s: 0.0, frequency_hz: 0.5 }]
+        {
             let (values, edges) = Profile::new(1.0, shape).expect("allowed").sampled(timing());
             assert!(edges.is_empty());
             assert!((values[10] - values[10].round()).abs() < 1e-12);
@@ -244,9 +177,7 @@ mod tests {
     #[test]
     fn a_table_holds_or_interpolates_as_asked() {
         let table = |kind| {
-            Profile::table(vec![0.5, 1.5], vec![1.0, 3.0], kind)
-                .expect("allowed")
-                .sampled(timing())
+            Profile::table(vec![0.5, 1.5], vec![1.0, 3.0], kind).expect("allowed").sampled(timing())
         };
         let (held, edges) = table(Interpolation::Hold);
         assert_eq!((held[4], held[5], held[14], held[15]), (0.0, 1.0, 1.0, 3.0));
@@ -258,10 +189,7 @@ mod tests {
     #[test]
     fn a_table_out_of_order_is_refused_with_its_row() {
         let error = Profile::table(vec![0.0, 2.0, 1.0], vec![0.0; 3], Interpolation::Hold);
-        assert!(
-            matches!(error, Err(SimError::Table { row: 3, .. })),
-            "{error:?}"
-        );
+        assert!(matches!(error, Err(SimError::Table { row: 3, .. })), "{error:?}");
         assert!(Profile::table(vec![], vec![], Interpolation::Hold).is_err());
         assert!(Profile::table(vec![0.0], vec![f64::NAN], Interpolation::Hold).is_err());
         assert!(Profile::table(vec![0.0, 1.0], vec![1.0], Interpolation::Hold).is_err());

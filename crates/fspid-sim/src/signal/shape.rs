@@ -76,11 +76,7 @@ impl Shape {
                 not_negative("at_s", at_s)?;
                 positive("width_s", width_s)?;
             }
-            Self::Square {
-                at_s,
-                half_period_s,
-                ..
-            } => {
+            Self::Square { at_s, half_period_s, .. } => {
                 not_negative("at_s", at_s)?;
                 positive("half_period_s", half_period_s)?;
             }
@@ -134,11 +130,7 @@ impl Shape {
                 (sample(at_s + width_s), -2.0),
                 (sample(at_s + 2.0 * width_s), 1.0),
             ],
-            Self::Square {
-                at_s,
-                half_period_s,
-                bipolar,
-            } => {
+            Self::Square { at_s, half_period_s, bipolar } => {
                 let fall = if bipolar { -2.0 } else { -1.0 };
                 let mut levels = vec![(sample(at_s), 1.0)];
                 // A period below the sample period could not be seen; one change a sample is most.

@@ -29,13 +29,10 @@ pub(super) struct Tick {
 
 /// Smallest and largest finite value; `None` when there is none.
 pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values
-        .into_iter()
-        .filter(|v| v.is_finite())
-        .fold(None, |range, v| {
-            let v = v.clamp(-LIMIT, LIMIT);
-            Some(range.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v))))
-        })
+    values.into_iter().filter(|v| v.is_finite()).fold(None, |range, v| {
+        let v = v.clamp(-LIMIT, LIMIT);
+        Some(range.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v))))
+    })
 }
 
 impl Axis {
@@ -59,22 +56,14 @@ impl Axis {
 
     /// A logarithmic axis over the positive part of `range`.
     pub(super) fn logarithmic(range: Option<(f64, f64)>, margin: f64) -> Self {
-        let (lo, hi) = range
-            .filter(|(lo, hi)| *lo > 0.0 && hi >= lo)
-            .unwrap_or((0.5, 2.0));
+        let (lo, hi) = range.filter(|(lo, hi)| *lo > 0.0 && hi >= lo).unwrap_or((0.5, 2.0));
         let (mut lo, mut hi) = (lo.log10(), hi.log10());
         if hi - lo < 0.2 {
             let middle = (lo + hi) / 2.0;
             (lo, hi) = (middle - 0.2, middle + 0.2);
         }
         let pad = (hi - lo) * margin;
-        Self {
-            lo: lo - pad,
-            hi: hi + pad,
-            mantissa: 1.0,
-            exponent: 0,
-            log: true,
-        }
+        Self { lo: lo - pad, hi: hi + pad, mantissa: 1.0, exponent: 0, log: true }
     }
 
     fn exact(lo: f64, hi: f64, ticks: usize) -> Self {
@@ -91,13 +80,7 @@ impl Axis {
                 1.0
             }
         };
-        Self {
-            lo,
-            hi,
-            mantissa,
-            exponent,
-            log: false,
-        }
+        Self { lo, hi, mantissa, exponent, log: false }
     }
 
     /// Distance between two ticks, in axis positions.
@@ -115,11 +98,7 @@ impl Axis {
         if !value.is_finite() {
             return f64::NAN;
         }
-        let position = if self.log {
-            value.log10()
-        } else {
-            value.clamp(-LIMIT, LIMIT)
-        };
+        let position = if self.log { value.log10() } else { value.clamp(-LIMIT, LIMIT) };
         self.position_to_unit(position)
     }
 
@@ -129,10 +108,7 @@ impl Axis {
 
     /// Lower and upper end in tick units.
     pub(super) fn unit_range(&self) -> (f64, f64) {
-        (
-            self.position_to_unit(self.lo),
-            self.position_to_unit(self.hi),
-        )
+        (self.position_to_unit(self.lo), self.position_to_unit(self.hi))
     }
 
     /// Part of the way from the lower to the upper end, 0 to 1 inside.
@@ -177,26 +153,16 @@ impl Axis {
         for index in (lo.floor() as i64)..=(hi.ceil() as i64) {
             let unit = index as f64;
             if within(&unit) {
-                ticks.push(Tick {
-                    at: at(unit),
-                    label: self.label(unit),
-                });
+                ticks.push(Tick { at: at(unit), label: self.label(unit) });
             }
             if self.log && hi - lo <= 4.0 {
                 let decade = (unit + self.origin()).round() as i32;
                 for lead in [2_u8, 3, 4, 5, 6, 7, 8, 9] {
                     let unit = unit + f64::from(lead).log10();
                     let named = all_named || lead == 2 || lead == 5;
-                    let label = if named {
-                        times_power(lead, decade)
-                    } else {
-                        String::new()
-                    };
+                    let label = if named { times_power(lead, decade) } else { String::new() };
                     if within(&unit) {
-                        ticks.push(Tick {
-                            at: at(unit),
-                            label,
-                        });
+                        ticks.push(Tick { at: at(unit), label });
                     }
                 }
             }
@@ -234,10 +200,7 @@ fn plain(exponent: i32) -> String {
 fn times_power(lead: u8, exponent: i32) -> String {
     match exponent {
         0..=4 => format!("{lead}{}", "0".repeat(exponent.unsigned_abs() as usize)),
-        -4..=-1 => format!(
-            "0.{}{lead}",
-            "0".repeat(exponent.unsigned_abs() as usize - 1)
-        ),
+        -4..=-1 => format!("0.{}{lead}", "0".repeat(exponent.unsigned_abs() as usize - 1)),
         _ if lead == 1 => format!("10{}", superscript(exponent)),
         _ => format!("{lead}\u{d7}10{}", superscript(exponent)),
     }
@@ -249,10 +212,7 @@ fn superscript(exponent: i32) -> String {
         '1' => '\u{b9}',
         '2' => '\u{b2}',
         '3' => '\u{b3}',
-        c => c
-            .to_digit(10)
-            .and_then(|d| char::from_u32(0x2070 + d))
-            .unwrap_or(c),
+        c => c.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(c),
     };
     exponent.to_string().chars().map(raised).collect()
 }
@@ -280,11 +240,8 @@ pub(super) fn short_number(value: f64) -> String {
     }
     let decimals = usize::try_from(2 - value.abs().log10().floor() as i32).unwrap_or(0);
     let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     with_minus(text)
 }
 
@@ -293,35 +250,17 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis) -> Vec<String> {
-        axis.ticks()
-            .into_iter()
-            .map(|tick| tick.label)
-            .filter(|label| !label.is_empty())
-            .collect()
+        axis.ticks().into_iter().map(|tick| tick.label).filter(|label| !label.is_empty()).collect()
     }
 
     #[test]
     fn ticks_stand_at_one_two_five_steps_without_float_noise() {
         assert_eq!(
             labels(&Axis::linear(Some((-0.3, 0.3)), 0.0, 6)),
-            [
-                "\u{2212}0.3",
-                "\u{2212}0.2",
-                "\u{2212}0.1",
-                "0",
-                "0.1",
-                "0.2",
-                "0.3"
-            ]
+            ["\u{2212}0.3", "\u{2212}0.2", "\u{2212}0.1", "0", "0.1", "0.2", "0.3"]
         );
-        assert_eq!(
-            labels(&Axis::linear(Some((0.0, 20.0)), 0.0, 5)),
-            ["0", "5", "10", "15", "20"]
-        );
-        assert_eq!(
-            labels(&Axis::linear(Some((0.0, 1.6)), 0.0, 4)),
-            ["0", "0.5", "1.0", "1.5"]
-        );
+        assert_eq!(labels(&Axis::linear(Some((0.0, 20.0)), 0.0, 5)), ["0", "5", "10", "15", "20"]);
+        assert_eq!(labels(&Axis::linear(Some((0.0, 1.6)), 0.0, 4)), ["0", "0.5", "1.0", "1.5"]);
     }
 
     #[test]
@@ -338,19 +277,8 @@ mod tests {
 
     #[test]
     fn every_range_becomes_one_with_a_few_ticks() {
-        let ends = [
-            0.0,
-            -0.0,
-            1.0,
-            -1.0,
-            1e-300,
-            1e300,
-            -1e300,
-            1.0 + 1e-15,
-            1e15,
-            5e-324,
-            f64::MAX,
-        ];
+        let ends =
+            [0.0, -0.0, 1.0, -1.0, 1e-300, 1e300, -1e300, 1.0 + 1e-15, 1e15, 5e-324, f64::MAX];
         for lo in ends {
             for hi in ends {
                 for axis in [
@@ -361,9 +289,7 @@ mod tests {
                     assert!(labels.len() <= 400, "{lo} {hi}: {labels:?}");
                     assert!(axis.log || labels.len() >= 2, "{lo} {hi}: {labels:?}");
                     assert!(
-                        !labels
-                            .iter()
-                            .any(|label| label.contains("NaN") || label == "\u{2212}0")
+                        !labels.iter().any(|label| label.contains("NaN") || label == "\u{2212}0")
                     );
                 }
             }

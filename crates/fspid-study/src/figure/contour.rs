@@ -35,10 +35,7 @@ impl Grid {
 
     /// Number of cells down and across.
     pub(super) fn cells(&self) -> (usize, usize) {
-        (
-            self.ys.len().saturating_sub(1),
-            self.xs.len().saturating_sub(1),
-        )
+        (self.ys.len().saturating_sub(1), self.xs.len().saturating_sub(1))
     }
 
     /// Polygons that cover where the value is at least `level`.
@@ -55,10 +52,7 @@ impl Grid {
                 if !whole {
                     polygons.extend(run.take().map(block));
                     polygons.extend(
-                        triangles(&cell)
-                            .iter()
-                            .map(|t| above(t, level))
-                            .filter(|p| p.len() > 2),
+                        triangles(&cell).iter().map(|t| above(t, level)).filter(|p| p.len() > 2),
                     );
                     continue;
                 }
@@ -96,21 +90,12 @@ fn triangles(cell: &[Corner; 4]) -> [[Corner; 3]; 2] {
 }
 
 fn block((start, end): (Corner, Corner)) -> Vec<(f64, f64)> {
-    vec![
-        (start.0, start.1),
-        (end.0, start.1),
-        (end.0, end.1),
-        (start.0, end.1),
-    ]
+    vec![(start.0, start.1), (end.0, start.1), (end.0, end.1), (start.0, end.1)]
 }
 
 /// Where the edge between two corners crosses `level`; the same for both directions.
 fn cut(a: Corner, b: Corner, level: f64) -> (f64, f64) {
-    let (a, b) = if (a.0, a.1) <= (b.0, b.1) {
-        (a, b)
-    } else {
-        (b, a)
-    };
+    let (a, b) = if (a.0, a.1) <= (b.0, b.1) { (a, b) } else { (b, a) };
     let part = ((level - a.2) / (b.2 - a.2)).clamp(0.0, 1.0);
     (a.0 + (b.0 - a.0) * part, a.1 + (b.1 - a.1) * part)
 }
@@ -144,20 +129,13 @@ fn edges([a, b, c]: &[Corner; 3]) -> [(Corner, Corner); 3] {
 
 /// A place to a thousandth of a pixel, by which ends are recognised.
 fn key(point: (f64, f64)) -> (i64, i64) {
-    (
-        (point.0 * 1e3).round() as i64,
-        (point.1 * 1e3).round() as i64,
-    )
+    ((point.0 * 1e3).round() as i64, (point.1 * 1e3).round() as i64)
 }
 
 /// Joins segments that share ends.
 fn chains(segments: &[[(f64, f64); 2]]) -> Vec<Vec<(f64, f64)>> {
     let mut at: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
-    for (n, ends) in segments
-        .iter()
-        .enumerate()
-        .filter(|(_, ends)| key(ends[0]) != key(ends[1]))
-    {
+    for (n, ends) in segments.iter().enumerate().filter(|(_, ends)| key(ends[0]) != key(ends[1])) {
         for end in ends {
             at.entry(key(*end)).or_default().push(n);
         }
@@ -165,18 +143,12 @@ fn chains(segments: &[[(f64, f64); 2]]) -> Vec<Vec<(f64, f64)>> {
     let mut used = vec![false; segments.len()];
     let mut chains = Vec::new();
     // Open chains first, from their ends; what is left are loops.
-    let open = at
-        .iter()
-        .filter(|(_, found)| found.len() == 1)
-        .map(|(key, _)| *key);
+    let open = at.iter().filter(|(_, found)| found.len() == 1).map(|(key, _)| *key);
     let starts: Vec<(i64, i64)> = open.chain(at.keys().copied()).collect();
     for start in starts {
         let mut chain: Vec<(f64, f64)> = Vec::new();
         let mut here = start;
-        while let Some(&n) = at
-            .get(&here)
-            .and_then(|found| found.iter().find(|n| !used[**n]))
-        {
+        while let Some(&n) = at.get(&here).and_then(|found| found.iter().find(|n| !used[**n])) {
             used[n] = true;
             let [a, b] = segments[n];
             let (from, to) = if key(a) == here { (a, b) } else { (b, a) };
@@ -199,15 +171,9 @@ mod tests {
 
     fn cone() -> Grid {
         let nodes: Vec<f64> = (-10..=10).map(f64::from).collect();
-        let values = nodes
-            .iter()
-            .map(|y| nodes.iter().map(|x| -(x * x + y * y).sqrt()).collect())
-            .collect();
-        Grid {
-            xs: nodes.clone(),
-            ys: nodes,
-            values,
-        }
+        let values =
+            nodes.iter().map(|y| nodes.iter().map(|x| -(x * x + y * y).sqrt()).collect()).collect();
+        Grid { xs: nodes.clone(), ys: nodes, values }
     }
 
     #[test]
@@ -215,30 +181,17 @@ mod tests {
         let lines = cone().lines(-5.5);
         assert_eq!(lines.len(), 1);
         assert_eq!(key(lines[0][0]), key(lines[0][lines[0].len() - 1]));
-        assert!(
-            lines[0]
-                .iter()
-                .all(|p| ((p.0 * p.0 + p.1 * p.1).sqrt() - 5.5).abs() < 0.1)
-        );
+        assert!(lines[0].iter().all(|p| ((p.0 * p.0 + p.1 * p.1).sqrt() - 5.5).abs() < 0.1));
     }
 
     #[test]
     fn the_region_above_a_level_has_the_area_of_a_disc() {
         let area = |polygon: &Vec<(f64, f64)>| {
             let next = polygon.iter().cycle().skip(1);
-            polygon
-                .iter()
-                .zip(next)
-                .map(|(a, b)| a.0 * b.1 - b.0 * a.1)
-                .sum::<f64>()
-                .abs()
-                / 2.0
+            polygon.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>().abs() / 2.0
         };
         let total: f64 = cone().region(-5.5).iter().map(area).sum();
-        assert!(
-            (total - std::f64::consts::PI * 5.5 * 5.5).abs() < 1.5,
-            "{total}"
-        );
+        assert!((total - std::f64::consts::PI * 5.5 * 5.5).abs() < 1.5, "{total}");
     }
 
     #[test]
@@ -247,13 +200,7 @@ mod tests {
         grid.values[10][10] = f64::NAN;
         assert!(grid.cell(10, 10).is_none());
         assert_eq!(
-            Grid {
-                xs: Vec::new(),
-                ys: Vec::new(),
-                values: Vec::new()
-            }
-            .region(0.0)
-            .len(),
+            Grid { xs: Vec::new(), ys: Vec::new(), values: Vec::new() }.region(0.0).len(),
             0
         );
     }

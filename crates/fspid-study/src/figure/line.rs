@@ -98,10 +98,7 @@ impl LineFigure {
 
     fn place(&self, width: f64) -> (Vec<Placed<'_>>, f64) {
         let shared = extent(
-            self.panels
-                .iter()
-                .filter(|p| p.x_range.is_none())
-                .flat_map(LinePanel::abscissas),
+            self.panels.iter().filter(|p| p.x_range.is_none()).flat_map(LinePanel::abscissas),
         );
         let axes: Vec<(Axis, Axis)> = self
             .panels
@@ -112,10 +109,7 @@ impl LineFigure {
         let labels: Vec<Vec<String>> = (self.panels.iter().enumerate())
             .map(|(n, p)| page::wrap(&p.y_label, LABEL_PX, self.panel_height(n) + 8.0))
             .collect();
-        let ticks = axes
-            .iter()
-            .map(|(_, y)| page::tick_room(y))
-            .fold(0.0, f64::max);
+        let ticks = axes.iter().map(|(_, y)| page::tick_room(y)).fold(0.0, f64::max);
         let lines = labels.iter().map(Vec::len).max().unwrap_or(0);
         let left = EDGE + page::upright_room(lines) + ticks;
         let plot_width = width - left - EDGE - 6.0;
@@ -127,22 +121,12 @@ impl LineFigure {
             let legend = Legend::set(panel.new_entries(&mut shown), plot_width);
             let legend_top = top;
             top += legend.height();
-            let area = Rect {
-                x: left,
-                y: top,
-                width: plot_width,
-                height: self.panel_height(n),
-            };
+            let area = Rect { x: left, y: top, width: plot_width, height: self.panel_height(n) };
             let x_labels = self.names_abscissa(n);
             top += area.height + if x_labels { 44.0 } else { 16.0 };
             placed.push(Placed {
                 panel,
-                frame: Frame {
-                    area,
-                    x,
-                    y,
-                    x_labels,
-                },
+                frame: Frame { area, x, y, x_labels },
                 legend,
                 legend_top,
                 y_label,
@@ -180,19 +164,14 @@ impl LineFigure {
 
 impl LinePanel {
     fn abscissas(&self) -> impl Iterator<Item = f64> + '_ {
-        self.series
-            .iter()
-            .flat_map(|series| series.points().map(|point| point.0))
+        self.series.iter().flat_map(|series| series.points().map(|point| point.0))
     }
 
     fn axes(&self, shared: Option<(f64, f64)>, width: f64, height: f64) -> (Axis, Axis) {
         let (x_ticks, y_ticks) = ((width / 90.0) as usize, (height / 30.0) as usize);
         let x = Axis::fixed(self.x_range, x_ticks)
             .unwrap_or_else(|| Axis::linear(shared, 0.0, x_ticks));
-        let data = self
-            .series
-            .iter()
-            .flat_map(|series| series.points().map(|point| point.1));
+        let data = self.series.iter().flat_map(|series| series.points().map(|point| point.1));
         let bands = self.bands.iter().flat_map(|band| [band.lower, band.upper]);
         let y = Axis::fixed(self.y_range, y_ticks)
             .unwrap_or_else(|| Axis::linear(extent(data.chain(bands)), 0.06, y_ticks));
@@ -203,15 +182,10 @@ impl LinePanel {
     fn new_entries(&self, shown: &mut Vec<Entry>) -> Vec<Entry> {
         let lines = self.series.iter().map(|series| Entry {
             name: series.name.clone(),
-            swatch: Swatch::Line {
-                style: series.style,
-                marked: false,
-            },
+            swatch: Swatch::Line { style: series.style, marked: false },
         });
-        let bands = self.bands.iter().map(|band| Entry {
-            name: band.label.clone(),
-            swatch: Swatch::Band,
-        });
+        let bands =
+            self.bands.iter().map(|band| Entry { name: band.label.clone(), swatch: Swatch::Band });
         let mut fresh: Vec<Entry> = Vec::new();
         for entry in lines.chain(bands) {
             if !shown.contains(&entry) {
@@ -245,12 +219,7 @@ fn draw(canvas: &mut Canvas, placed: &Placed<'_>, named: bool) {
     };
     plot::draw(canvas, &placed.frame, &content);
     let label_right = EDGE + page::upright_room(placed.y_label.len()) - 3.0;
-    page::upright_label(
-        canvas,
-        label_right,
-        area.y + area.height / 2.0,
-        &placed.y_label,
-    );
+    page::upright_label(canvas, label_right, area.y + area.height / 2.0, &placed.y_label);
     if named {
         let y = area.y + area.height + 36.0;
         canvas.text(
@@ -266,12 +235,7 @@ fn draw(canvas: &mut Canvas, placed: &Placed<'_>, named: bool) {
 fn merged(bands: &[Band]) -> Vec<(f64, f64)> {
     let keyed: BTreeMap<(u64, u64), (f64, f64)> = bands
         .iter()
-        .map(|band| {
-            (
-                (band.lower.to_bits(), band.upper.to_bits()),
-                (band.lower, band.upper),
-            )
-        })
+        .map(|band| ((band.lower.to_bits(), band.upper.to_bits()), (band.lower, band.upper)))
         .collect();
     keyed.into_values().collect()
 }

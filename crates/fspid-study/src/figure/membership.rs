@@ -15,10 +15,7 @@ const HEIGHT: f64 = 150.0;
 /// one in the middle is dotted and those right of it are full lines, so neighbours stay apart in print.
 #[must_use]
 pub fn memberships(title: &str, x_label: &str, sets: Vec<(String, Vec<(f64, f64)>)>) -> Svg {
-    let range = extent(
-        sets.iter()
-            .flat_map(|set| set.1.iter().map(|point| point.0)),
-    );
+    let range = extent(sets.iter().flat_map(|set| set.1.iter().map(|point| point.0)));
     let frame = frame(title, range);
     let area = frame.area;
     let mut canvas = Canvas::new(WIDTH, area.y + HEIGHT + 48.0);
@@ -33,34 +30,17 @@ pub fn memberships(title: &str, x_label: &str, sets: Vec<(String, Vec<(f64, f64)
         described.push_str(&format!(" {label} peaks at {at};"));
         labels.extend(peak.map(|x| (x, label, style)));
         let points = without_tails(points);
-        content.curves.push(Curve {
-            style,
-            points,
-            stairs: false,
-            marked: false,
-        });
+        content.curves.push(Curve { style, points, stairs: false, marked: false });
     }
     plot::draw(&mut canvas, &frame, &content);
     for (x, label, style) in labels {
-        let font = Font::new(LABEL_PX, Anchor::Middle)
-            .bold()
-            .role(style.role());
+        let font = Font::new(LABEL_PX, Anchor::Middle).bold().role(style.role());
         canvas.text(frame.place(x, 0.0).0, area.y - 5.0, &label, font);
     }
     let label_right = EDGE + page::upright_room(1) - 3.0;
-    page::upright_label(
-        &mut canvas,
-        label_right,
-        area.y + HEIGHT / 2.0,
-        &["grade".to_owned()],
-    );
+    page::upright_label(&mut canvas, label_right, area.y + HEIGHT / 2.0, &["grade".to_owned()]);
     let below = (area.x + area.width / 2.0, area.y + HEIGHT + 36.0);
-    canvas.text(
-        below.0,
-        below.1,
-        x_label,
-        Font::new(LABEL_PX, Anchor::Middle),
-    );
+    canvas.text(below.0, below.1, x_label, Font::new(LABEL_PX, Anchor::Middle));
     canvas.finish(title, &described)
 }
 
@@ -68,26 +48,14 @@ fn frame(title: &str, range: Option<(f64, f64)>) -> Frame {
     let y = Axis::fixed(Some((0.0, 1.05)), 3).unwrap_or_else(|| Axis::linear(None, 0.0, 3));
     let left = EDGE + page::upright_room(1) + page::tick_room(&y);
     let top = page::title_height(title, WIDTH) + 16.0;
-    let area = Rect {
-        x: left,
-        y: top,
-        width: WIDTH - left - EDGE - 12.0,
-        height: HEIGHT,
-    };
-    Frame {
-        area,
-        x: Axis::linear(range, 0.0, 11),
-        y,
-        x_labels: true,
-    }
+    let area = Rect { x: left, y: top, width: WIDTH - left - EDGE - 12.0, height: HEIGHT };
+    Frame { area, x: Axis::linear(range, 0.0, 11), y, x_labels: true }
 }
 
 /// The style of a set by the side on which it peaks.
 fn style(peak: Option<f64>, range: Option<(f64, f64)>) -> SeriesStyle {
     let (lo, hi) = range.unwrap_or((-1.0, 1.0));
-    let side = peak.map_or(0.0, |x| {
-        (x - (lo / 2.0 + hi / 2.0)) / (hi - lo).max(f64::MIN_POSITIVE)
-    });
+    let side = peak.map_or(0.0, |x| (x - (lo / 2.0 + hi / 2.0)) / (hi - lo).max(f64::MIN_POSITIVE));
     SeriesStyle::Numbered(match side {
         side if side < -0.02 => 1,
         side if side > 0.02 => 0,
@@ -108,18 +76,8 @@ fn without_tails(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 
 /// The middle of where the set has its largest grade.
 fn peak(points: &[(f64, f64)]) -> Option<f64> {
-    let finite = || {
-        points
-            .iter()
-            .filter(|point| point.0.is_finite() && point.1.is_finite())
-    };
-    let highest = finite()
-        .map(|point| point.1)
-        .fold(f64::NEG_INFINITY, f64::max);
-    let (lo, hi) = extent(
-        finite()
-            .filter(|point| point.1 >= highest)
-            .map(|point| point.0),
-    )?;
+    let finite = || points.iter().filter(|point| point.0.is_finite() && point.1.is_finite());
+    let highest = finite().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
+    let (lo, hi) = extent(finite().filter(|point| point.1 >= highest).map(|point| point.0))?;
     Some((lo + hi) / 2.0)
 }

@@ -17,11 +17,7 @@ const SWATCH: f64 = 30.0;
 
 /// A figure's width within sane bounds (px).
 pub(super) fn sane_width(width_px: f64) -> f64 {
-    if width_px.is_finite() {
-        width_px.clamp(320.0, 2400.0)
-    } else {
-        720.0
-    }
+    if width_px.is_finite() { width_px.clamp(320.0, 2400.0) } else { 720.0 }
 }
 
 /// Lines of `text` at `size` that are at most `width` px wide where spaces allow it.
@@ -42,11 +38,7 @@ pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
 /// Height that the title needs at the top of a figure (px).
 pub(super) fn title_height(title: &str, width: f64) -> f64 {
     let lines = wrap(title, TITLE_PX, width - 2.0 * EDGE).len();
-    if lines == 0 {
-        EDGE
-    } else {
-        EDGE + lines as f64 * (TITLE_PX + 4.0) + 6.0
-    }
+    if lines == 0 { EDGE } else { EDGE + lines as f64 * (TITLE_PX + 4.0) + 6.0 }
 }
 
 /// Writes the title at the upper left corner.
@@ -100,11 +92,7 @@ impl Legend {
 
     /// Height of the legend with the gap below it (px).
     pub(super) fn height(&self) -> f64 {
-        if self.rows.is_empty() {
-            0.0
-        } else {
-            self.rows.len() as f64 * LEGEND_ROW + 4.0
-        }
+        if self.rows.is_empty() { 0.0 } else { self.rows.len() as f64 * LEGEND_ROW + 4.0 }
     }
 
     /// Draws the legend with its upper left corner at (`left`, `top`).
@@ -134,13 +122,9 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, swatch: Swatch) {
                 marker(canvas, (x + SWATCH / 2.0, y), style);
             }
         }
-        Swatch::Band => canvas.rect(
-            x,
-            y - 4.0,
-            SWATCH,
-            8.0,
-            &Paint::face(Role::Band).opacity(0.45),
-        ),
+        Swatch::Band => {
+            canvas.rect(x, y - 4.0, SWATCH, 8.0, &Paint::face(Role::Band).opacity(0.45))
+        }
         Swatch::Reference => {
             canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 1.0).dashed("6 3"))
         }
@@ -153,21 +137,12 @@ fn marker(canvas: &mut Canvas, (x, y): (f64, f64), style: SeriesStyle) {
     match style.marker() {
         1 => canvas.rect(x - s, y - s, 2.0 * s, 2.0 * s, &paint),
         2 => canvas.polyline(
-            &[
-                (x, y - 1.02 * s),
-                (x - s, y + 0.68 * s),
-                (x + s, y + 0.68 * s),
-            ],
+            &[(x, y - 1.02 * s), (x - s, y + 0.68 * s), (x + s, y + 0.68 * s)],
             true,
             &paint,
         ),
         3 => canvas.polyline(
-            &[
-                (x, y - 1.3 * s),
-                (x + 1.3 * s, y),
-                (x, y + 1.3 * s),
-                (x - 1.3 * s, y),
-            ],
+            &[(x, y - 1.3 * s), (x + 1.3 * s, y), (x, y + 1.3 * s), (x - 1.3 * s, y)],
             true,
             &paint,
         ),
@@ -204,10 +179,7 @@ mod tests {
 
     #[test]
     fn a_legend_breaks_into_rows_instead_of_leaving_the_figure() {
-        let entry = |n| Entry {
-            name: format!("controller number {n}"),
-            swatch: Swatch::Band,
-        };
+        let entry = |n| Entry { name: format!("controller number {n}"), swatch: Swatch::Band };
         let legend = Legend::set((0..7).map(entry).collect(), 400.0);
         assert!(legend.rows.len() >= 3);
         assert!(Legend::set(Vec::new(), 400.0).height() < 1e-9);
@@ -215,10 +187,7 @@ mod tests {
 
     #[test]
     fn long_labels_are_wrapped_at_spaces() {
-        assert_eq!(
-            wrap("pitch angle [deg]", 12.0, 70.0),
-            ["pitch angle", "[deg]"]
-        );
+        assert_eq!(wrap("pitch angle [deg]", 12.0, 70.0), ["pitch angle", "[deg]"]);
         assert!(wrap("", 12.0, 70.0).is_empty());
     }
 }

@@ -58,19 +58,13 @@ impl Frame {
     /// Position of `x`, `y` on the canvas.
     pub(super) fn place(&self, x: f64, y: f64) -> (f64, f64) {
         let a = &self.area;
-        (
-            a.x + self.x.fraction(x) * a.width,
-            a.y + (1.0 - self.y.fraction(y)) * a.height,
-        )
+        (a.x + self.x.fraction(x) * a.width, a.y + (1.0 - self.y.fraction(y)) * a.height)
     }
 
     /// px per tick unit in x and y.
     fn scale(&self) -> (f64, f64) {
         let (x, y) = (self.x.unit_range(), self.y.unit_range());
-        (
-            self.area.width / (x.1 - x.0),
-            self.area.height / (y.1 - y.0),
-        )
+        (self.area.width / (x.1 - x.0), self.area.height / (y.1 - y.0))
     }
 }
 
@@ -92,26 +86,16 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
     }
     let scene = render_multiple(plots, layout(canvas.width(), frame, content));
     canvas.begin_shift(0.0, area.y - ROOM_ABOVE);
-    let clip = Rect {
-        x: area.x,
-        y: ROOM_ABOVE,
-        width: area.width,
-        height: area.height,
-    };
+    let clip = Rect { x: area.x, y: ROOM_ABOVE, width: area.width, height: area.height };
     replay(canvas, &scene, clip);
     canvas.end();
 }
 
 fn push_curve(plots: &mut Vec<Plot>, frame: &Frame, curve: &Curve) {
     let style = curve.style;
-    let units = curve
-        .points
-        .iter()
-        .map(|&(x, y)| (frame.x.unit(x), frame.y.unit(y)));
-    let marks: Vec<(f64, f64)> = units
-        .clone()
-        .filter(|(x, y)| x.is_finite() && y.is_finite())
-        .collect();
+    let units = curve.points.iter().map(|&(x, y)| (frame.x.unit(x), frame.y.unit(y)));
+    let marks: Vec<(f64, f64)> =
+        units.clone().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
     for mut run in thin::runs(units, frame.scale(), curve.stairs) {
         if let [only] = *run.as_slice() {
             run.push(only);
@@ -126,15 +110,11 @@ fn push_curve(plots: &mut Vec<Plot>, frame: &Frame, curve: &Curve) {
         plots.push(Plot::Line(line));
     }
     if curve.marked {
-        let shape = [
-            MarkerShape::Circle,
-            MarkerShape::Square,
-            MarkerShape::Triangle,
-            MarkerShape::Diamond,
-        ]
-        .get(style.marker())
-        .copied()
-        .unwrap_or(MarkerShape::Circle);
+        let shape =
+            [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond]
+                .get(style.marker())
+                .copied()
+                .unwrap_or(MarkerShape::Circle);
         let dots = ScatterPlot::new()
             .with_data(marks)
             .with_color(style.role().token())
@@ -147,11 +127,7 @@ fn push_curve(plots: &mut Vec<Plot>, frame: &Frame, curve: &Curve) {
 fn layout(canvas_width: f64, frame: &Frame, content: &Content) -> Layout {
     let (area, x, y) = (&frame.area, frame.x.unit_range(), frame.y.unit_range());
     let (x_axis, y_axis) = (frame.x, frame.y);
-    let below = if frame.x_labels {
-        ROOM_BELOW
-    } else {
-        ROOM_ABOVE
-    };
+    let below = if frame.x_labels { ROOM_BELOW } else { ROOM_ABOVE };
     let named = frame.x_labels && !x_axis.log;
     let layout = Layout::new(x, y)
         .with_width(canvas_width)
@@ -165,18 +141,10 @@ fn layout(canvas_width: f64, frame: &Frame, content: &Content) -> Layout {
         .with_x_tick_step(1.0)
         .with_y_tick_step(1.0)
         .with_x_tick_format(TickFormat::Custom(std::sync::Arc::new(move |unit| {
-            if named {
-                x_axis.label(unit)
-            } else {
-                String::new()
-            }
+            if named { x_axis.label(unit) } else { String::new() }
         })))
         .with_y_tick_format(TickFormat::Custom(std::sync::Arc::new(move |unit| {
-            if y_axis.log {
-                String::new()
-            } else {
-                y_axis.label(unit)
-            }
+            if y_axis.log { String::new() } else { y_axis.label(unit) }
         })))
         .with_tick_size(TICK_PX as u32)
         .with_tick_length(TICK_LENGTH)
@@ -239,11 +207,7 @@ fn log_ticks(canvas: &mut Canvas, frame: &Frame, axis: &Axis, is_x: bool) {
     let (bottom, left) = (area.y + area.height, area.x);
     for tick in axis.ticks() {
         let minor = tick.label.is_empty();
-        let length = if minor {
-            TICK_LENGTH * 0.6
-        } else {
-            TICK_LENGTH
-        };
+        let length = if minor { TICK_LENGTH * 0.6 } else { TICK_LENGTH };
         let paint = Paint::line(Role::Ink, 1.0);
         let grid = Paint::line(Role::Grid, if minor { 0.35 } else { 0.7 });
         if is_x {
@@ -276,25 +240,12 @@ fn log_ticks(canvas: &mut Canvas, frame: &Frame, axis: &Axis, is_x: bool) {
 fn replay(canvas: &mut Canvas, scene: &Scene, clip: Rect) {
     for primitive in &scene.elements {
         match primitive {
-            Primitive::Line {
-                x1,
-                y1,
-                x2,
-                y2,
-                stroke,
-                stroke_width,
-                stroke_dasharray,
-            } => {
+            Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray } => {
                 let paint = Paint::line(role(stroke), *stroke_width)
                     .dashed(stroke_dasharray.as_deref().unwrap_or(""));
                 canvas.line((*x1, *y1), (*x2, *y2), &paint);
             }
-            Primitive::PolyLine {
-                points,
-                stroke,
-                stroke_width,
-                stroke_dasharray,
-            } => {
+            Primitive::PolyLine { points, stroke, stroke_width, stroke_dasharray } => {
                 let paint = Paint::line(role(stroke), *stroke_width)
                     .dashed(stroke_dasharray.as_deref().unwrap_or(""));
                 canvas.polyline(points, false, &paint);
@@ -310,40 +261,18 @@ fn replay(canvas: &mut Canvas, scene: &Scene, clip: Rect) {
 /// Draws texts, rectangles and circles.
 fn replay_shape(canvas: &mut Canvas, primitive: &Primitive) {
     match primitive {
-        Primitive::Text {
-            x,
-            y,
-            content,
-            size,
-            anchor,
-            ..
-        } if !content.is_empty() => {
+        Primitive::Text { x, y, content, size, anchor, .. } if !content.is_empty() => {
             let font = Font::new(f64::from(*size), anchor_of(*anchor));
             canvas.text(*x, *y, content, font);
         }
-        Primitive::Rect {
-            x,
-            y,
-            width,
-            height,
-            fill,
-            opacity,
-            ..
-        } => {
-            let paint = Paint {
-                opacity: *opacity,
-                ..Paint::face(role(fill))
-            };
+        Primitive::Rect { x, y, width, height, fill, opacity, .. } => {
+            let paint = Paint { opacity: *opacity, ..Paint::face(role(fill)) };
             canvas.rect(*x, *y, *width, *height, &paint);
         }
-        Primitive::Circle {
-            cx, cy, r, fill, ..
-        } => {
+        Primitive::Circle { cx, cy, r, fill, .. } => {
             canvas.circle((*cx, *cy), *r, &Paint::face(role(fill)));
         }
-        Primitive::CircleBatch {
-            cx, cy, r, fill, ..
-        } => {
+        Primitive::CircleBatch { cx, cy, r, fill, .. } => {
             for centre in cx.iter().copied().zip(cy.iter().copied()) {
                 canvas.circle(centre, *r, &Paint::face(role(fill)));
             }
@@ -354,10 +283,7 @@ fn replay_shape(canvas: &mut Canvas, primitive: &Primitive) {
 
 fn replay_path(canvas: &mut Canvas, path: &PathData) {
     let fill = path.fill.as_ref().map_or(Role::None, role);
-    canvas.path(
-        &path.d,
-        &Paint::line(role(&path.stroke), path.stroke_width).filled(fill),
-    );
+    canvas.path(&path.d, &Paint::line(role(&path.stroke), path.stroke_width).filled(fill));
 }
 
 fn anchor_of(anchor: TextAnchor) -> Anchor {

@@ -60,16 +60,7 @@ impl RatioFigure {
             references: self.reference.iter().map(|reference| reference.0).collect(),
             curves: self.series.iter().map(curve).collect(),
         };
-        plot::draw(
-            &mut canvas,
-            &Frame {
-                area,
-                x,
-                y,
-                x_labels: true,
-            },
-            &content,
-        );
+        plot::draw(&mut canvas, &Frame { area, x, y, x_labels: true }, &content);
         let label_right = EDGE + page::upright_room(y_label.len()) - 3.0;
         page::upright_label(&mut canvas, label_right, area.y + HEIGHT / 2.0, &y_label);
         let below = area.y + HEIGHT + 36.0;
@@ -85,43 +76,26 @@ impl RatioFigure {
     fn axes(&self, width: f64) -> (Axis, Axis) {
         let points = || self.series.iter().flat_map(Series::points);
         let visible = |value: &f64, log: bool| !log || *value > 0.0;
-        let xs = extent(
-            points()
-                .map(|point| point.0)
-                .filter(|v| visible(v, self.log_x)),
-        );
+        let xs = extent(points().map(|point| point.0).filter(|v| visible(v, self.log_x)));
         let reference = self.reference.iter().map(|reference| reference.0);
         let ys = extent(
-            points()
-                .map(|point| point.1)
-                .chain(reference)
-                .filter(|v| visible(v, self.log_y)),
+            points().map(|point| point.1).chain(reference).filter(|v| visible(v, self.log_y)),
         );
         let axis = |range, log, ticks| {
-            if log {
-                Axis::logarithmic(range, 0.06)
-            } else {
-                Axis::linear(range, 0.06, ticks)
-            }
+            if log { Axis::logarithmic(range, 0.06) } else { Axis::linear(range, 0.06, ticks) }
         };
-        (
-            axis(xs, self.log_x, (width / 90.0) as usize),
-            axis(ys, self.log_y, 6),
-        )
+        (axis(xs, self.log_x, (width / 90.0) as usize), axis(ys, self.log_y, 6))
     }
 
     fn entries(&self) -> Vec<Entry> {
         let lines = self.series.iter().map(|series| Entry {
             name: series.name.clone(),
-            swatch: Swatch::Line {
-                style: series.style,
-                marked: true,
-            },
+            swatch: Swatch::Line { style: series.style, marked: true },
         });
-        let reference = self.reference.iter().map(|(_, name)| Entry {
-            name: name.clone(),
-            swatch: Swatch::Reference,
-        });
+        let reference = self
+            .reference
+            .iter()
+            .map(|(_, name)| Entry { name: name.clone(), swatch: Swatch::Reference });
         lines.chain(reference).collect()
     }
 

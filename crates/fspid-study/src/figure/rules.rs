@@ -53,22 +53,13 @@ impl RuleTable {
         let bottom = top + count as f64 * CELL_HEIGHT;
         let mut canvas = Canvas::new(
             width,
-            bottom
-                + EDGE
-                + if note_lines > 0 {
-                    note_lines as f64 * NOTE_ROW + 6.0
-                } else {
-                    0.0
-                },
+            bottom + EDGE + if note_lines > 0 { note_lines as f64 * NOTE_ROW + 6.0 } else { 0.0 },
         );
         page::title(&mut canvas, &self.title);
         self.heads(&mut canvas, side, top, count);
         for row in 0..count {
             for column in 0..count {
-                let corner = (
-                    side + column as f64 * CELL_WIDTH,
-                    top + row as f64 * CELL_HEIGHT,
-                );
+                let corner = (side + column as f64 * CELL_WIDTH, top + row as f64 * CELL_HEIGHT);
                 self.cell(&mut canvas, corner, (row, column), &notes);
             }
         }
@@ -90,30 +81,13 @@ impl RuleTable {
 
     fn heads(&self, canvas: &mut Canvas, side: f64, top: f64, count: usize) {
         let font = Font::new(LABEL_PX, Anchor::Middle).bold();
-        let middle = (
-            side + count as f64 * CELL_WIDTH / 2.0,
-            top + count as f64 * CELL_HEIGHT / 2.0,
-        );
-        canvas.text(
-            middle.0,
-            top - 26.0,
-            &self.column_header,
-            Font::new(LABEL_PX, Anchor::Middle),
-        );
-        page::upright_label(
-            canvas,
-            EDGE + 12.0,
-            middle.1,
-            std::slice::from_ref(&self.row_header),
-        );
+        let middle =
+            (side + count as f64 * CELL_WIDTH / 2.0, top + count as f64 * CELL_HEIGHT / 2.0);
+        canvas.text(middle.0, top - 26.0, &self.column_header, Font::new(LABEL_PX, Anchor::Middle));
+        page::upright_label(canvas, EDGE + 12.0, middle.1, std::slice::from_ref(&self.row_header));
         for (n, label) in self.labels.iter().take(count).enumerate() {
             canvas.text(side + (n as f64 + 0.5) * CELL_WIDTH, top - 8.0, label, font);
-            canvas.text(
-                side - HEAD / 2.0,
-                top + (n as f64 + 0.5) * CELL_HEIGHT + 4.3,
-                label,
-                font,
-            );
+            canvas.text(side - HEAD / 2.0, top + (n as f64 + 0.5) * CELL_HEIGHT + 4.3, label, font);
         }
     }
 
@@ -124,22 +98,13 @@ impl RuleTable {
         (row, column): (usize, usize),
         notes: &[(char, Vec<String>)],
     ) {
-        let label = self
-            .cells
-            .get(row)
-            .and_then(|cells| cells.get(column))
-            .map_or("", String::as_str);
+        let label =
+            self.cells.get(row).and_then(|cells| cells.get(column)).map_or("", String::as_str);
         let middle = (self.labels.len().saturating_sub(1)) as f64 / 2.0;
         let place = self.labels.iter().position(|known| known == label);
         let fill = place.map(|n| diverging((n as f64 - middle) * 0.8, middle));
         let face = Paint::face(fill.map_or(Role::None, Role::Fixed));
-        canvas.rect(
-            x + 0.75,
-            y + 0.75,
-            CELL_WIDTH - 1.5,
-            CELL_HEIGHT - 1.5,
-            &face,
-        );
+        canvas.rect(x + 0.75, y + 0.75, CELL_WIDTH - 1.5, CELL_HEIGHT - 1.5, &face);
         let ink = match fill {
             Some(colour) if wants_dark_text(colour) => Role::Fixed([20, 20, 20]),
             Some(_) => Role::Fixed([255, 255, 255]),
@@ -151,10 +116,8 @@ impl RuleTable {
                 .any(|mark| (mark.row, mark.column) == (row, column) && mark.reason == *reason)
         });
         let mark = note.and_then(|n| notes.get(n));
-        let shown = mark.map_or_else(
-            || label.to_owned(),
-            |(letter, _)| format!("{label}^{{{letter}}}"),
-        );
+        let shown =
+            mark.map_or_else(|| label.to_owned(), |(letter, _)| format!("{label}^{{{letter}}}"));
         let font = Font::new(LABEL_PX, Anchor::Middle).role(ink);
         canvas.text(
             x + CELL_WIDTH / 2.0,
@@ -193,10 +156,8 @@ impl RuleTable {
     }
 
     fn describe(&self) -> String {
-        let mut text = format!(
-            "Rule table. Rows: {}; columns: {}.",
-            self.row_header, self.column_header
-        );
+        let mut text =
+            format!("Rule table. Rows: {}; columns: {}.", self.row_header, self.column_header);
         for (label, cells) in self.labels.iter().zip(&self.cells) {
             text.push_str(&format!(" {label}: {}.", cells.join(" ")));
         }

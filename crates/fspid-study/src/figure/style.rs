@@ -18,15 +18,8 @@ pub enum SeriesStyle {
 }
 
 /// Dash patterns of the numbered styles; the first is a full line.
-const DASHES: [&str; SeriesStyle::COUNT] = [
-    "",
-    "7 3",
-    "2.2 2.4",
-    "9 3 2 3",
-    "13 4",
-    "4 2.2",
-    "9 2.5 2 2.5 2 2.5",
-];
+const DASHES: [&str; SeriesStyle::COUNT] =
+    ["", "7 3", "2.2 2.4", "9 3 2 3", "13 4", "4 2.2", "9 2.5 2 2.5 2 2.5"];
 
 impl SeriesStyle {
     /// Number of distinct numbered styles.
@@ -128,27 +121,21 @@ impl Role {
         match self {
             Self::Series(n) => Some(format!("series-{}", n % SeriesStyle::COUNT + 1)),
             Self::Fixed(_) | Self::None => None,
-            plain => PLAIN
-                .iter()
-                .find(|row| row.0 == plain)
-                .map(|row| row.1.to_owned()),
+            plain => PLAIN.iter().find(|row| row.0 == plain).map(|row| row.1.to_owned()),
         }
     }
 
     /// The colour in a stand-alone file.
     pub(super) fn fallback(self) -> String {
         match self {
-            Self::Series(n) => SERIES
-                .get(n % SeriesStyle::COUNT)
-                .map_or("#000000", |row| row.0)
-                .to_owned(),
+            Self::Series(n) => {
+                SERIES.get(n % SeriesStyle::COUNT).map_or("#000000", |row| row.0).to_owned()
+            }
             Self::Fixed([r, g, b]) => format!("#{r:02x}{g:02x}{b:02x}"),
             Self::None => "none".to_owned(),
-            plain => PLAIN
-                .iter()
-                .find(|row| row.0 == plain)
-                .map_or("#000000", |row| row.2)
-                .to_owned(),
+            plain => {
+                PLAIN.iter().find(|row| row.0 == plain).map_or("#000000", |row| row.2).to_owned()
+            }
         }
     }
 
@@ -164,11 +151,7 @@ impl Role {
     pub(super) fn from_token(token: &str) -> Option<Self> {
         let name = token.strip_prefix("role:")?;
         if let Some(number) = name.strip_prefix("series-") {
-            return number
-                .parse::<usize>()
-                .ok()?
-                .checked_sub(1)
-                .map(Self::Series);
+            return number.parse::<usize>().ok()?.checked_sub(1).map(Self::Series);
         }
         PLAIN.iter().find(|row| row.1 == name).map(|row| row.0)
     }
@@ -184,11 +167,7 @@ pub fn page_style() -> String {
     let mut dark = String::new();
     for (role, name, on_light, on_dark) in PLAIN {
         // The page has a ground of its own.
-        let on_light = if role == Role::Paper {
-            "transparent"
-        } else {
-            on_light
-        };
+        let on_light = if role == Role::Paper { "transparent" } else { on_light };
         light.push_str(&format!("--figure-{name}:{on_light};"));
         dark.push_str(&format!("--figure-{name}:{on_dark};"));
     }
@@ -208,21 +187,14 @@ pub fn page_style() -> String {
 /// The scale is uniform in the lightness and chroma of OKLab, with equally dark ends; blue and
 /// orange-brown stay apart for all common kinds of colour blindness.
 pub(super) fn diverging(value: f64, limit: f64) -> Rgb {
-    let ratio = if limit > 0.0 && value.is_finite() {
-        (value / limit).clamp(-1.0, 1.0)
-    } else {
-        0.0
-    };
+    let ratio =
+        if limit > 0.0 && value.is_finite() { (value / limit).clamp(-1.0, 1.0) } else { 0.0 };
     let position = (ratio + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
     let index = (position.floor() as usize).min(DIVERGING.len() - 2);
     let part = position - index as f64;
     let (low, high) = (DIVERGING[index], DIVERGING[index + 1]);
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * part).round() as u8;
-    [
-        mix(low[0], high[0]),
-        mix(low[1], high[1]),
-        mix(low[2], high[2]),
-    ]
+    [mix(low[0], high[0]), mix(low[1], high[1]), mix(low[2], high[2])]
 }
 
 /// True where black text reads better than white on `colour`.
@@ -284,10 +256,7 @@ mod tests {
 
     #[test]
     fn a_role_survives_the_trip_through_its_token() {
-        let themed = PLAIN
-            .iter()
-            .map(|row| row.0)
-            .chain((0..SeriesStyle::COUNT).map(Role::Series));
+        let themed = PLAIN.iter().map(|row| row.0).chain((0..SeriesStyle::COUNT).map(Role::Series));
         for role in themed {
             assert_eq!(Role::from_token(&role.token()), Some(role));
         }

@@ -59,10 +59,7 @@ impl Surface {
 
     fn limit(&self) -> f64 {
         let largest = self.extent().map_or(1.0, |(lo, hi)| lo.abs().max(hi.abs()));
-        let limit = self
-            .limit
-            .filter(|limit| limit.is_finite() && *limit > 0.0)
-            .unwrap_or(largest);
+        let limit = self.limit.filter(|limit| limit.is_finite() && *limit > 0.0).unwrap_or(largest);
         if limit > 0.0 { limit } else { 1.0 }
     }
 
@@ -71,32 +68,17 @@ impl Surface {
         let height = 330.0;
         let mut canvas = Canvas::new(WIDTH, top + height + EDGE);
         page::title(&mut canvas, &self.title);
-        let ranges = [
-            extent(self.xs.iter().copied()),
-            extent(self.ys.iter().copied()),
-            self.extent(),
-        ];
+        let ranges =
+            [extent(self.xs.iter().copied()), extent(self.ys.iter().copied()), self.extent()];
         let [x, y, z] = ranges.map(|range| Axis::linear(range, 0.0, 5));
         let view = View::new(
             [x, y, z],
-            Rect {
-                x: EDGE,
-                y: top,
-                width: WIDTH - 2.0 * EDGE - 56.0,
-                height,
-            },
+            Rect { x: EDGE, y: top, width: WIDTH - 2.0 * EDGE - 56.0, height },
         );
         let limit = self.limit();
         view.room(&mut canvas, [&self.x_label, &self.y_label, &self.z_label]);
-        view.faces(&mut canvas, &self.coarse(), |value| {
-            Role::Fixed(diverging(value, limit))
-        });
-        let bar = Rect {
-            x: WIDTH - EDGE - 52.0,
-            y: top + 24.0,
-            width: BAR,
-            height: 186.0,
-        };
+        view.faces(&mut canvas, &self.coarse(), |value| Role::Fixed(diverging(value, limit)));
+        let bar = Rect { x: WIDTH - EDGE - 52.0, y: top + 24.0, width: BAR, height: 186.0 };
         self.bar(&mut canvas, bar, &z, &shades(&z));
         canvas.finish(&self.title, &self.describe("Surface in space"))
     }
@@ -113,25 +95,12 @@ impl Surface {
         };
         let (rows, columns) = (pick(self.ys.len()), pick(self.xs.len()));
         let value = |i: &usize, j: &usize| {
-            self.values
-                .get(*i)
-                .and_then(|row| row.get(*j))
-                .copied()
-                .unwrap_or(f64::NAN)
+            self.values.get(*i).and_then(|row| row.get(*j)).copied().unwrap_or(f64::NAN)
         };
         Grid {
-            values: rows
-                .iter()
-                .map(|i| columns.iter().map(|j| value(i, j)).collect())
-                .collect(),
-            xs: columns
-                .iter()
-                .filter_map(|j| self.xs.get(*j).copied())
-                .collect(),
-            ys: rows
-                .iter()
-                .filter_map(|i| self.ys.get(*i).copied())
-                .collect(),
+            values: rows.iter().map(|i| columns.iter().map(|j| value(i, j)).collect()).collect(),
+            xs: columns.iter().filter_map(|j| self.xs.get(*j).copied()).collect(),
+            ys: rows.iter().filter_map(|i| self.ys.get(*i).copied()).collect(),
         }
     }
 
@@ -140,25 +109,12 @@ impl Surface {
             [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
         let top = page::title_height(&self.title, WIDTH) + 4.0;
-        let area = Rect {
-            x: left,
-            y: top,
-            width: MAP,
-            height: MAP,
-        };
+        let area = Rect { x: left, y: top, width: MAP, height: MAP };
         let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
         page::title(&mut canvas, &self.title);
         let grid = Grid {
-            xs: self
-                .xs
-                .iter()
-                .map(|v| area.x + x.fraction(*v) * area.width)
-                .collect(),
-            ys: self
-                .ys
-                .iter()
-                .map(|v| area.y + (1.0 - y.fraction(*v)) * area.height)
-                .collect(),
+            xs: self.xs.iter().map(|v| area.x + x.fraction(*v) * area.width).collect(),
+            ys: self.ys.iter().map(|v| area.y + (1.0 - y.fraction(*v)) * area.height).collect(),
             values: self.values.clone(),
         };
         let z = Axis::linear(self.extent(), 0.0, 10);
@@ -178,20 +134,11 @@ impl Surface {
             top + MAP / 2.0,
             std::slice::from_ref(&self.y_label),
         );
-        let bar = Rect {
-            x: area.x + MAP + 22.0,
-            y: top,
-            width: BAR,
-            height: MAP,
-        };
+        let bar = Rect { x: area.x + MAP + 22.0, y: top, width: BAR, height: MAP };
         self.bar(&mut canvas, bar, &z, &bands(&z));
         for level in levels(&z) {
             let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
-            canvas.line(
-                (bar.x, y),
-                (bar.x + bar.width, y),
-                &level_line(level, z.step()),
-            );
+            canvas.line((bar.x, y), (bar.x + bar.width, y), &level_line(level, z.step()));
         }
         canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
     }
@@ -203,29 +150,16 @@ impl Surface {
         let (limit, levels) = (self.limit(), levels(z));
         let floor = levels.first().map_or(lowest, |first| first - z.step());
         for base in std::iter::once(floor).chain(levels.iter().copied()) {
-            let from = if base <= floor {
-                f64::NEG_INFINITY
-            } else {
-                base
-            };
-            let d: String = grid
-                .region(from)
-                .iter()
-                .map(|polygon| polyline_data(polygon, true))
-                .collect();
+            let from = if base <= floor { f64::NEG_INFINITY } else { base };
+            let d: String =
+                grid.region(from).iter().map(|polygon| polyline_data(polygon, true)).collect();
             if !d.is_empty() {
-                canvas.path(
-                    &d,
-                    &Paint::face(Role::Fixed(diverging(base + z.step() / 2.0, limit))),
-                );
+                canvas.path(&d, &Paint::face(Role::Fixed(diverging(base + z.step() / 2.0, limit))));
             }
         }
         for level in levels {
-            let d: String = grid
-                .lines(level)
-                .iter()
-                .map(|line| polyline_data(line, false))
-                .collect();
+            let d: String =
+                grid.lines(level).iter().map(|line| polyline_data(line, false)).collect();
             if !d.is_empty() {
                 canvas.path(&d, &level_line(level, z.step()));
             }
@@ -241,23 +175,13 @@ impl Surface {
             // Each slice reaches under the one above it, so that no seam shows.
             let height = (place(lo) - place(hi) + 0.6).min(r.y + r.height - place(hi));
             let colour = diverging(lo / 2.0 + hi / 2.0, limit);
-            canvas.rect(
-                r.x,
-                place(hi),
-                r.width,
-                height,
-                &Paint::face(Role::Fixed(colour)),
-            );
+            canvas.rect(r.x, place(hi), r.width, height, &Paint::face(Role::Fixed(colour)));
         }
         canvas.rect(r.x, r.y, r.width, r.height, &Paint::line(Role::Ink, 0.8));
         let mut widest = 0.0_f64;
         for tick in z.ticks() {
             let y = r.y + (1.0 - tick.at) * r.height;
-            canvas.line(
-                (r.x + r.width, y),
-                (r.x + r.width + 4.0, y),
-                &Paint::line(Role::Ink, 1.0),
-            );
+            canvas.line((r.x + r.width, y), (r.x + r.width + 4.0, y), &Paint::line(Role::Ink, 1.0));
             canvas.text(
                 r.x + r.width + 7.0,
                 y + TICK_PX * 0.36,
@@ -267,12 +191,7 @@ impl Surface {
             widest = widest.max(text_width(&tick.label, TICK_PX));
         }
         let x = (r.x + r.width + 22.0 + widest).min(WIDTH - 4.0);
-        page::upright_label(
-            canvas,
-            x,
-            r.y + r.height / 2.0,
-            std::slice::from_ref(&self.z_label),
-        );
+        page::upright_label(canvas, x, r.y + r.height / 2.0, std::slice::from_ref(&self.z_label));
     }
 
     fn describe(&self, kind: &str) -> String {
@@ -297,17 +216,12 @@ fn levels(z: &Axis) -> Vec<f64> {
 
 /// Boundaries of the bands of a map: the levels and both ends.
 fn bands(z: &Axis) -> Vec<f64> {
-    std::iter::once(z.lo)
-        .chain(levels(z))
-        .chain(std::iter::once(z.hi))
-        .collect()
+    std::iter::once(z.lo).chain(levels(z)).chain(std::iter::once(z.hi)).collect()
 }
 
 /// Boundaries so close that the scale looks continuous.
 fn shades(z: &Axis) -> Vec<f64> {
-    (0..=64)
-        .map(|n| z.lo + (z.hi - z.lo) * f64::from(n) / 64.0)
-        .collect()
+    (0..=64).map(|n| z.lo + (z.hi - z.lo) * f64::from(n) / 64.0).collect()
 }
 
 /// Thick at zero, full above and dashed below it.
@@ -323,23 +237,12 @@ fn level_line(level: f64, step: f64) -> Paint {
 }
 
 fn map_axes(canvas: &mut Canvas, area: Rect, x: &Axis, y: &Axis) {
-    canvas.rect(
-        area.x,
-        area.y,
-        area.width,
-        area.height,
-        &Paint::line(Role::Ink, 1.0),
-    );
+    canvas.rect(area.x, area.y, area.width, area.height, &Paint::line(Role::Ink, 1.0));
     let (bottom, ink) = (area.y + area.height, Paint::line(Role::Ink, 1.0));
     for tick in x.ticks() {
         let at = area.x + tick.at * area.width;
         canvas.line((at, bottom), (at, bottom + 4.0), &ink);
-        canvas.text(
-            at,
-            bottom + 4.0 + TICK_PX,
-            &tick.label,
-            Font::new(TICK_PX, Anchor::Middle),
-        );
+        canvas.text(at, bottom + 4.0 + TICK_PX, &tick.label, Font::new(TICK_PX, Anchor::Middle));
     }
     for tick in y.ticks() {
         let at = bottom - tick.at * area.height;

@@ -58,14 +58,7 @@ pub(super) struct Font {
 impl Font {
     /// Upright ink of `size` px.
     pub(super) const fn new(size: f64, anchor: Anchor) -> Self {
-        Self {
-            size,
-            anchor,
-            bold: false,
-            italic: false,
-            rotate_deg: 0.0,
-            role: Role::Ink,
-        }
+        Self { size, anchor, bold: false, italic: false, rotate_deg: 0.0, role: Role::Ink }
     }
 
     pub(super) const fn bold(mut self) -> Self {
@@ -102,24 +95,12 @@ pub(super) struct Paint {
 impl Paint {
     /// An outline of `width` px.
     pub(super) const fn line(stroke: Role, width: f64) -> Self {
-        Self {
-            fill: Role::None,
-            stroke,
-            width,
-            dash: String::new(),
-            opacity: None,
-        }
+        Self { fill: Role::None, stroke, width, dash: String::new(), opacity: None }
     }
 
     /// A face without outline.
     pub(super) const fn face(fill: Role) -> Self {
-        Self {
-            fill,
-            stroke: Role::None,
-            width: 0.0,
-            dash: String::new(),
-            opacity: None,
-        }
+        Self { fill, stroke: Role::None, width: 0.0, dash: String::new(), opacity: None }
     }
 
     pub(super) fn dashed(mut self, dash: &str) -> Self {
@@ -151,13 +132,8 @@ pub(super) struct Canvas {
 impl Canvas {
     /// An empty figure of that size.
     pub(super) fn new(width: f64, height: f64) -> Self {
-        let mut canvas = Self {
-            body: String::new(),
-            clips: 0,
-            width,
-            height,
-            used: BTreeSet::new(),
-        };
+        let mut canvas =
+            Self { body: String::new(), clips: 0, width, height, used: BTreeSet::new() };
         canvas.rect(0.0, 0.0, width, height, &Paint::face(Role::Paper));
         canvas
     }
@@ -169,12 +145,8 @@ impl Canvas {
 
     /// Writes `text` with its baseline at `y`.
     pub(super) fn text(&mut self, x: f64, y: f64, text: &str, font: Font) {
-        let mut tag = format!(
-            "<text x=\"{}\" y=\"{}\" font-size=\"{}\"",
-            num(x),
-            num(y),
-            num(font.size)
-        );
+        let mut tag =
+            format!("<text x=\"{}\" y=\"{}\" font-size=\"{}\"", num(x), num(y), num(font.size));
         match font.anchor {
             Anchor::Start => {}
             Anchor::Middle => tag.push_str(" text-anchor=\"middle\""),
@@ -220,16 +192,7 @@ impl Canvas {
 
     /// Draws a rectangle.
     pub(super) fn rect(&mut self, x: f64, y: f64, width: f64, height: f64, paint: &Paint) {
-        self.rounded(
-            Rect {
-                x,
-                y,
-                width,
-                height,
-            },
-            0.0,
-            paint,
-        );
+        self.rounded(Rect { x, y, width, height }, 0.0, paint);
     }
 
     /// Draws a rectangle with rounded corners.
@@ -250,10 +213,7 @@ impl Canvas {
     /// Draws a circle.
     pub(super) fn circle(&mut self, centre: (f64, f64), radius: f64, paint: &Paint) {
         let (x, y) = (num(centre.0), num(centre.1));
-        self.body.push_str(&format!(
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"",
-            num(radius)
-        ));
+        self.body.push_str(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"", num(radius)));
         self.paint(paint);
         self.body.push_str("/>\n");
     }
@@ -264,11 +224,7 @@ impl Canvas {
         if d.contains('l') {
             self.path(&d, paint);
         } else if let Some(&point) = points.first() {
-            self.circle(
-                point,
-                paint.width.max(1.0) * 1.2,
-                &Paint::face(paint.stroke),
-            );
+            self.circle(point, paint.width.max(1.0) * 1.2, &Paint::face(paint.stroke));
         }
     }
 
@@ -300,18 +256,13 @@ impl Canvas {
 
     /// Opens a group that is moved by (`dx`, `dy`).
     pub(super) fn begin_shift(&mut self, dx: f64, dy: f64) {
-        self.body.push_str(&format!(
-            "<g transform=\"translate({} {})\">\n",
-            num(dx),
-            num(dy)
-        ));
+        self.body.push_str(&format!("<g transform=\"translate({} {})\">\n", num(dx), num(dy)));
     }
 
     /// Opens a group that is turned by `degrees` about `centre`.
     pub(super) fn begin_turn(&mut self, degrees: f64, centre: (f64, f64)) {
         let (a, x, y) = (num(degrees), num(centre.0), num(centre.1));
-        self.body
-            .push_str(&format!("<g transform=\"rotate({a} {x} {y})\">\n"));
+        self.body.push_str(&format!("<g transform=\"rotate({a} {x} {y})\">\n"));
     }
 
     /// Closes the last group.
@@ -327,8 +278,7 @@ impl Canvas {
                 continue;
             }
             let attribute = if is_stroke { "stroke" } else { "fill" };
-            self.body
-                .push_str(&format!(" {attribute}=\"{}\"", role.fallback()));
+            self.body.push_str(&format!(" {attribute}=\"{}\"", role.fallback()));
             if role.variable().is_some() {
                 self.used.insert((is_stroke, role));
                 if !classes.is_empty() {
@@ -341,16 +291,13 @@ impl Canvas {
             self.body.push_str(&format!(" class=\"{classes}\""));
         }
         if paint.stroke != Role::None {
-            self.body
-                .push_str(&format!(" stroke-width=\"{}\"", num(paint.width)));
+            self.body.push_str(&format!(" stroke-width=\"{}\"", num(paint.width)));
             if !paint.dash.is_empty() {
-                self.body
-                    .push_str(&format!(" stroke-dasharray=\"{}\"", escape(&paint.dash)));
+                self.body.push_str(&format!(" stroke-dasharray=\"{}\"", escape(&paint.dash)));
             }
         }
         if let Some(opacity) = paint.opacity {
-            self.body
-                .push_str(&format!(" opacity=\"{}\"", num(opacity)));
+            self.body.push_str(&format!(" opacity=\"{}\"", num(opacity)));
         }
     }
 
@@ -360,10 +307,7 @@ impl Canvas {
         let mut rules = String::new();
         for (is_stroke, role) in &self.used {
             let property = if *is_stroke { "stroke" } else { "fill" };
-            let (name, variable) = (
-                class(*is_stroke, *role),
-                role.variable().unwrap_or_default(),
-            );
+            let (name, variable) = (class(*is_stroke, *role), role.variable().unwrap_or_default());
             rules.push_str(&format!(
                 "#{ID} .{name}{{{property}:var(--figure-{variable},{})}}",
                 role.fallback()
@@ -400,11 +344,7 @@ fn class(is_stroke: bool, role: Role) -> String {
 /// Path data through points, in relative steps of a hundredth of a pixel without drift.
 pub(super) fn polyline_data(points: &[(f64, f64)], closed: bool) -> String {
     let cents = |v: f64| {
-        if v.is_finite() {
-            (v.clamp(-1e7, 1e7) * 100.0).round() as i64
-        } else {
-            0
-        }
+        if v.is_finite() { (v.clamp(-1e7, 1e7) * 100.0).round() as i64 } else { 0 }
     };
     let mut data = String::new();
     let mut last: Option<(i64, i64)> = None;
@@ -431,11 +371,7 @@ pub(super) fn polyline_data(points: &[(f64, f64)], closed: bool) -> String {
 fn hundredths(cents: i64) -> String {
     let sign = if cents < 0 { "-" } else { "" };
     let (whole, part) = (cents.unsigned_abs() / 100, cents.unsigned_abs() % 100);
-    let whole_text = if whole == 0 && part != 0 {
-        String::new()
-    } else {
-        whole.to_string()
-    };
+    let whole_text = if whole == 0 && part != 0 { String::new() } else { whole.to_string() };
     match part {
         0 => format!("{sign}{whole_text}"),
         _ if part % 10 == 0 => format!("{sign}{whole_text}.{}", part / 10),
@@ -449,22 +385,14 @@ mod tests {
 
     #[test]
     fn path_steps_are_short_and_skip_repeated_points() {
-        assert_eq!(
-            polyline_data(&[(0.0, 0.0), (0.5, -1.0), (0.5, -1.0)], false),
-            "M0 0l.5-1"
-        );
+        assert_eq!(polyline_data(&[(0.0, 0.0), (0.5, -1.0), (0.5, -1.0)], false), "M0 0l.5-1");
     }
 
     #[test]
     fn labels_cannot_break_out_of_the_document() {
         assert_eq!(escape("a<b>&\"\u{1}\u{0}"), "a&lt;b&gt;&amp;&quot;");
         let mut canvas = Canvas::new(10.0, 10.0);
-        canvas.text(
-            0.0,
-            0.0,
-            "</text><script>\u{1}",
-            Font::new(10.0, Anchor::Start),
-        );
+        canvas.text(0.0, 0.0, "</text><script>\u{1}", Font::new(10.0, Anchor::Start));
         let svg = canvas.finish("<t>", "\u{1}");
         assert!(!svg.as_str().contains("<script>"));
         assert!(!svg.as_str().contains('\u{1}'));

@@ -22,10 +22,8 @@ struct Draw(u64);
 
 impl Draw {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
@@ -34,11 +32,7 @@ impl Draw {
     }
 
     fn mixed(&mut self) -> f64 {
-        if self.next() < 0.5 {
-            self.odd()
-        } else {
-            self.next() * 10.0 - 5.0
-        }
+        if self.next() < 0.5 { self.odd() } else { self.next() * 10.0 - 5.0 }
     }
 
     fn list(&mut self, most: usize) -> Vec<f64> {
@@ -119,16 +113,8 @@ fn table() -> RuleTable {
         labels: SEVEN.map(str::to_owned).to_vec(),
         cells: vec![vec!["PB".to_owned(), "??".to_owned()], Vec::new()],
         marked: vec![
-            Mark {
-                row: 0,
-                column: 1,
-                reason: "not a label".to_owned(),
-            },
-            Mark {
-                row: 90,
-                column: 90,
-                reason: "outside".to_owned(),
-            },
+            Mark { row: 0, column: 1, reason: "not a label".to_owned() },
+            Mark { row: 90, column: 90, reason: "outside".to_owned() },
         ],
     }
 }
@@ -136,37 +122,18 @@ fn table() -> RuleTable {
 fn sine(n: u32, phase: f64) -> LineFigure {
     let x: Vec<f64> = (0..n).map(|k| f64::from(k) * 1e-3).collect();
     let y = x.iter().map(|t| (t + phase).sin()).collect();
-    let series = vec![Series {
-        name: "s".to_owned(),
-        style: SeriesStyle::Numbered(0),
-        x,
-        y,
-        stairs: false,
-    }];
-    let panel = LinePanel {
-        series,
-        ..LinePanel::default()
-    };
-    LineFigure {
-        title: "sine".to_owned(),
-        panels: vec![panel],
-        width_px: 720.0,
-    }
+    let series =
+        vec![Series { name: "s".to_owned(), style: SeriesStyle::Numbered(0), x, y, stairs: false }];
+    let panel = LinePanel { series, ..LinePanel::default() };
+    LineFigure { title: "sine".to_owned(), panels: vec![panel], width_px: 720.0 }
 }
 
 /// One of each kind, ordinary and odd.
 fn gallery() -> Vec<Svg> {
     let mut draw = Draw(7);
-    let mut all = vec![
-        diagrams::aircraft_axes(),
-        diagrams::pitch_loop(),
-        diagrams::self_tuning_pid(),
-    ];
-    all.extend([
-        table().render(),
-        RuleTable::default().render(),
-        sine(2_000, 0.0).render(),
-    ]);
+    let mut all =
+        vec![diagrams::aircraft_axes(), diagrams::pitch_loop(), diagrams::self_tuning_pid()];
+    all.extend([table().render(), RuleTable::default().render(), sine(2_000, 0.0).render()]);
     for _ in 0..150 {
         all.push(draw.line().render());
         all.push(draw.ratio().render());
@@ -194,9 +161,7 @@ fn ids_of_well_formed(svg: &str) -> Vec<String> {
         let (tag, text) = part.split_once('>').expect("a tag without end");
         for entity in text.split('&').skip(1).chain(tag.split('&').skip(1)) {
             assert!(
-                ["amp;", "lt;", "gt;", "quot;"]
-                    .iter()
-                    .any(|known| entity.starts_with(known)),
+                ["amp;", "lt;", "gt;", "quot;"].iter().any(|known| entity.starts_with(known)),
                 "{entity}"
             );
         }
@@ -263,11 +228,7 @@ fn the_same_input_gives_the_same_bytes_and_other_input_other_ids() {
     assert_eq!(gallery(), gallery());
     let (one, two) = (sine(100, 0.0).render(), sine(100, 0.5).render());
     let shared: Vec<String> = ids_of_well_formed(one.as_str());
-    assert!(
-        ids_of_well_formed(two.as_str())
-            .iter()
-            .all(|id| !shared.contains(id))
-    );
+    assert!(ids_of_well_formed(two.as_str()).iter().all(|id| !shared.contains(id)));
 }
 
 #[test]

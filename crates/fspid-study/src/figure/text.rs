@@ -7,11 +7,7 @@ pub(super) fn num(value: f64) -> String {
     }
     let text = format!("{:.2}", value.clamp(-1e7, 1e7));
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// Escapes for text and attributes; control characters, which XML does not know, are dropped.
@@ -65,11 +61,7 @@ fn shifted(text: &str, shift_em: f64, attributes: &str) -> String {
     match text {
         "" => String::new(),
         _ if shift_em == 0.0 => escape(text),
-        _ => format!(
-            "<tspan dy=\"{}em\"{attributes}>{}</tspan>",
-            num(shift_em),
-            escape(text)
-        ),
+        _ => format!("<tspan dy=\"{}em\"{attributes}>{}</tspan>", num(shift_em), escape(text)),
     }
 }
 
@@ -103,18 +95,12 @@ pub(super) fn slug(title: &str) -> String {
         }
     }
     let out = out.trim_end_matches('-');
-    if out.is_empty() {
-        "untitled".to_owned()
-    } else {
-        out.to_owned()
-    }
+    if out.is_empty() { "untitled".to_owned() } else { out.to_owned() }
 }
 
 /// FNV-1a hash: figures with one title but different content get different ids.
 pub(super) fn fingerprint(text: &str) -> u32 {
-    text.bytes().fold(0x811c_9dc5, |hash, byte| {
-        (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
-    })
+    text.bytes().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
 }
 
 #[cfg(test)]

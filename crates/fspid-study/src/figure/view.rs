@@ -29,11 +29,7 @@ impl View {
     /// A room that fills `area` with space for its labels.
     pub(super) fn new(axes: [Axis; 3], area: Rect) -> Self {
         let scale = (area.width / 3.3).min(area.height / 2.75);
-        Self {
-            axes,
-            centre: (area.x + area.width * 0.55, area.y + area.height * 0.455),
-            scale,
-        }
+        Self { axes, centre: (area.x + area.width * 0.55, area.y + area.height * 0.455), scale }
     }
 
     /// Canvas place and depth of a point whose coordinates run from -1 to 1; nearer is larger.
@@ -43,13 +39,7 @@ impl View {
         let right = -sa * x + ca * y;
         let up = -se * ca * x - se * sa * y + ce * z;
         let near = ce * ca * x + ce * sa * y + se * z;
-        (
-            (
-                self.centre.0 + right * self.scale,
-                self.centre.1 - up * self.scale,
-            ),
-            near,
-        )
+        ((self.centre.0 + right * self.scale, self.centre.1 - up * self.scale), near)
     }
 
     fn at(&self, point: [f64; 3]) -> (f64, f64) {
@@ -57,33 +47,16 @@ impl View {
     }
 
     fn inside(&self, axis: usize, value: f64) -> f64 {
-        self.axes
-            .get(axis)
-            .map_or(0.0, |axis| axis.fraction(value) * 2.0 - 1.0)
+        self.axes.get(axis).map_or(0.0, |axis| axis.fraction(value) * 2.0 - 1.0)
     }
 
     /// Draws floor, back walls, grid, ticks and labels.
     pub(super) fn room(&self, canvas: &mut Canvas, labels: [&str; 3]) {
         let wall = Paint::line(Role::Setpoint, 0.8).filled(Role::Face);
         for corners in [
-            [
-                [-1.0, -1.0, -1.0],
-                [1.0, -1.0, -1.0],
-                [1.0, 1.0, -1.0],
-                [-1.0, 1.0, -1.0],
-            ],
-            [
-                [-1.0, -1.0, -1.0],
-                [-1.0, 1.0, -1.0],
-                [-1.0, 1.0, 1.0],
-                [-1.0, -1.0, 1.0],
-            ],
-            [
-                [-1.0, 1.0, -1.0],
-                [1.0, 1.0, -1.0],
-                [1.0, 1.0, 1.0],
-                [-1.0, 1.0, 1.0],
-            ],
+            [[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]],
+            [[-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]],
+            [[-1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]],
         ] {
             canvas.polyline(&corners.map(|corner| self.at(corner)), true, &wall);
         }
@@ -104,20 +77,16 @@ impl View {
         label: &str,
         path: &dyn Fn(f64) -> [[f64; 3]; 3],
     ) {
-        let (ends, middle) = (
-            [path(-1.0)[0], path(1.0)[0]].map(|end| self.at(end)),
-            self.at(path(0.0)[0]),
-        );
+        let (ends, middle) =
+            ([path(-1.0)[0], path(1.0)[0]].map(|end| self.at(end)), self.at(path(0.0)[0]));
         // Outwards, away from the middle of the room.
         let outward = match n {
             0 => (-0.35, 0.94),
             1 => (0.8, 0.6),
             _ => (-1.0, 0.0),
         };
-        let anchor = [Anchor::End, Anchor::Start, Anchor::End]
-            .get(n)
-            .copied()
-            .unwrap_or(Anchor::Middle);
+        let anchor =
+            [Anchor::End, Anchor::Start, Anchor::End].get(n).copied().unwrap_or(Anchor::Middle);
         for tick in self.axes.get(n).map(Axis::ticks).unwrap_or_default() {
             let points = path(tick.at * 2.0 - 1.0).map(|point| self.at(point));
             canvas.polyline(&points, false, &Paint::line(Role::Grid, 0.7));
@@ -127,28 +96,19 @@ impl View {
                 (x + outward.0 * 5.0, y + outward.1 * 5.0),
                 &Paint::line(Role::Ink, 1.0),
             );
-            let (tx, ty) = (
-                x + outward.0 * 8.0,
-                y + outward.1 * 9.0 + TICK_PX * (0.36 + 0.3 * outward.1),
-            );
+            let (tx, ty) =
+                (x + outward.0 * 8.0, y + outward.1 * 9.0 + TICK_PX * (0.36 + 0.3 * outward.1));
             canvas.text(tx, ty, &tick.label, Font::new(TICK_PX, anchor));
         }
         canvas.line(ends[0], ends[1], &Paint::line(Role::Ink, 1.0));
-        let slope = (ends[1].1 - ends[0].1)
-            .atan2(ends[1].0 - ends[0].0)
-            .to_degrees();
+        let slope = (ends[1].1 - ends[0].1).atan2(ends[1].0 - ends[0].0).to_degrees();
         let (x, y) = match n {
             0 => (middle.0 - 16.0, middle.1 + 42.0),
             1 => (middle.0 + 44.0, middle.1 + 29.0),
             _ => (middle.0 - 40.0, middle.1),
         };
         let turn = if n == 2 { -90.0 } else { slope };
-        canvas.text(
-            x,
-            y,
-            label,
-            Font::new(LABEL_PX, Anchor::Middle).turned(turn),
-        );
+        canvas.text(x, y, label, Font::new(LABEL_PX, Anchor::Middle).turned(turn));
     }
 
     /// Draws the faces of `grid`, whose nodes are in display units.
@@ -164,10 +124,8 @@ impl View {
                     cell.map(|(x, y, z)| [self.inside(0, x), self.inside(1, y), self.inside(2, z)]);
                 let mean = cell.iter().map(|corner| corner.2 / 4.0).sum::<f64>();
                 // Height does not decide what hides what in a surface over the floor.
-                let depth: f64 = corners
-                    .iter()
-                    .map(|[x, y, _]| self.project([*x, *y, 0.0]).1)
-                    .sum();
+                let depth: f64 =
+                    corners.iter().map(|[x, y, _]| self.project([*x, *y, 0.0]).1).sum();
                 faces.push((depth, corners.map(|corner| self.at(corner)), mean));
             }
         }
@@ -186,15 +144,7 @@ mod tests {
     #[test]
     fn the_axes_are_right_handed_and_z_points_up() {
         let axis = Axis::linear(Some((0.0, 1.0)), 0.0, 5);
-        let view = View::new(
-            [axis; 3],
-            Rect {
-                x: 0.0,
-                y: 0.0,
-                width: 100.0,
-                height: 100.0,
-            },
-        );
+        let view = View::new([axis; 3], Rect { x: 0.0, y: 0.0, width: 100.0, height: 100.0 });
         let origin = view.at([0.0; 3]);
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|p| {
             let at = view.at(p);

@@ -69,11 +69,7 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
         Err(error) => return report_syntax(report, source, text, &error),
     };
     let end = text.len().min(1);
-    let place = Place {
-        source,
-        start: 0,
-        end,
-    };
+    let place = Place { source, start: 0, end };
     let value = Value::Table(members(source, table.get_ref()));
     Some(Item { place, value })
 }
@@ -88,11 +84,7 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
     };
     let bare = |c: char| c.is_alphanumeric() || "-_./: ".contains(c);
     if text.trim().starts_with(char::is_alphabetic) && text.chars().all(bare) {
-        let place = Place {
-            source,
-            start: 0,
-            end: text.len(),
-        };
+        let place = Place { source, start: 0, end: text.len() };
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
@@ -127,11 +119,7 @@ fn is_decimal_comma(text: &str, at: usize) -> bool {
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.
 fn check_shape(report: &mut Report, source: usize, text: &str) -> Option<()> {
-    let at = |start| Place {
-        source,
-        start,
-        end: start,
-    };
+    let at = |start| Place { source, start, end: start };
     if let Some(position) = text.find('\0') {
         let message = "a NUL byte; this is no text file";
         report.missing(at(position), "", message, "text in UTF-8");
@@ -179,9 +167,7 @@ fn too_deep(text: &str) -> Option<usize> {
 /// The first place from `at` on where `pattern` begins, or the end.
 fn find(bytes: &[u8], at: usize, pattern: &[u8]) -> usize {
     let rest = bytes.get(at..).unwrap_or_default();
-    let found = rest
-        .windows(pattern.len())
-        .position(|window| window == pattern);
+    let found = rest.windows(pattern.len()).position(|window| window == pattern);
     found.map_or(bytes.len(), |offset| at + offset)
 }
 
@@ -238,11 +224,7 @@ fn item(source: usize, value: &Spanned<DeValue<'_>>) -> Item {
 }
 
 fn place(source: usize, span: std::ops::Range<usize>) -> Place {
-    Place {
-        source,
-        start: span.start,
-        end: span.end,
-    }
+    Place { source, start: span.start, end: span.end }
 }
 
 #[cfg(test)]

@@ -89,10 +89,8 @@ impl std::error::Error for LoadError {}
 /// A file that cannot be read, or everything that is wrong with it.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
     let name = path.display().to_string();
-    let bytes = files::read_regular(path).map_err(|reason| LoadError::Unreadable {
-        path: name.clone(),
-        reason,
-    })?;
+    let bytes = files::read_regular(path)
+        .map_err(|reason| LoadError::Unreadable { path: name.clone(), reason })?;
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) => {
@@ -106,10 +104,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
 
 fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
     let before = bytes.get(..position).unwrap_or_default();
-    let line_start = before
-        .iter()
-        .rposition(|&byte| byte == b'\n')
-        .map_or(0, |at| at + 1);
+    let line_start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
     let in_line = String::from_utf8_lossy(before.get(line_start..).unwrap_or_default());
     let found = bytes.get(position).map(|byte| format!("byte 0x{byte:02X}"));
     let problem = Problem {
@@ -142,12 +137,7 @@ pub fn parse(
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
     let (scenario, requirements) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    Ok(Study {
-        scenario,
-        requirements,
-        digest: files.finish(),
-        warnings,
-    })
+    Ok(Study { scenario, requirements, digest: files.finish(), warnings })
 }
 
 fn read(
@@ -158,11 +148,7 @@ fn read(
 ) -> Option<(Scenario, Vec<Requirement>)> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
-        let place = report::Place {
-            source,
-            start: 0,
-            end: 0,
-        };
+        let place = report::Place { source, start: 0, end: 0 };
         report.missing(place, "", "the file is too large", "up to 10 MiB");
         return None;
     }

@@ -39,11 +39,7 @@ struct Setting {
 
 fn whole(report: &mut Report, origin: &str, text: &str) -> Place {
     let source = report.add_source(Some(origin.to_owned()), text);
-    Place {
-        source,
-        start: 0,
-        end: text.len(),
-    }
+    Place { source, start: 0, end: text.len() }
 }
 
 /// The steps of `controller[0].nominal.kp` or `controller."my PID".kp`.
@@ -114,11 +110,7 @@ fn descend(report: &mut Report, at: &mut Item, steps: &[Step], path: &str, set: 
 
 fn join(path: &str, name: &str) -> String {
     let name = excerpt(name);
-    if path.is_empty() {
-        name
-    } else {
-        format!("{path}.{name}")
-    }
+    if path.is_empty() { name } else { format!("{path}.{name}") }
 }
 
 /// The member of that name; an empty table is put there if there is none, for the check to judge.

@@ -16,38 +16,17 @@ use crate::file::spec::PLANT_FILE;
 
 /// Plants by name.
 const PLANTS: [(&str, &str); 5] = [
-    (
-        "b747-paper",
-        include_str!("../../../../data/plants/b747-paper.toml"),
-    ),
-    (
-        "navion-paper",
-        include_str!("../../../../data/plants/navion-paper.toml"),
-    ),
-    (
-        "b747-short-period",
-        include_str!("../../../../data/plants/b747-short-period.toml"),
-    ),
-    (
-        "navion-full",
-        include_str!("../../../../data/plants/navion-full.toml"),
-    ),
-    (
-        "ctms-pitch",
-        include_str!("../../../../data/plants/ctms-pitch.toml"),
-    ),
+    ("b747-paper", include_str!("../../../../data/plants/b747-paper.toml")),
+    ("navion-paper", include_str!("../../../../data/plants/navion-paper.toml")),
+    ("b747-short-period", include_str!("../../../../data/plants/b747-short-period.toml")),
+    ("navion-full", include_str!("../../../../data/plants/navion-full.toml")),
+    ("ctms-pitch", include_str!("../../../../data/plants/ctms-pitch.toml")),
 ];
 
 /// Rule tables by name.
 const RULE_TABLES: [(&str, &str); 2] = [
-    (
-        "printed",
-        include_str!("../../../../data/rule-tables/printed.toml"),
-    ),
-    (
-        "mirrored",
-        include_str!("../../../../data/rule-tables/mirrored.toml"),
-    ),
+    ("printed", include_str!("../../../../data/rule-tables/printed.toml")),
+    ("mirrored", include_str!("../../../../data/rule-tables/mirrored.toml")),
 ];
 
 /// Names of the plants that the program carries.

@@ -43,11 +43,7 @@ impl Problems {
         let omitted = omitted + list.len().saturating_sub(MOST);
         list.truncate(MOST);
         let file = file.to_owned();
-        Self {
-            file,
-            list,
-            omitted,
-        }
+        Self { file, list, omitted }
     }
 
     /// The problems as JSON: `{"file": …, "problems": [{"path": …, "line": …, …}]}`.
@@ -113,9 +109,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         let whole = strsim::jaro_winkler(&a, &b);
         let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
         // The beginning is meant as the whole: `duration` for `duration_s`, `b747` for `b747-paper`.
-        let beginning = b
-            .strip_prefix(a.as_str())
-            .is_some_and(|rest| rest.starts_with(['_', '-']));
+        let beginning = b.strip_prefix(a.as_str()).is_some_and(|rest| rest.starts_with(['_', '-']));
         if beginning {
             2.0
         } else if typing {
@@ -124,9 +118,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
             whole
         }
     };
-    let scored = known
-        .iter()
-        .map(|candidate| (likeness(candidate), *candidate));
+    let scored = known.iter().map(|candidate| (likeness(candidate), *candidate));
     scored
         .filter(|(score, _)| *score >= 1.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -44,20 +44,14 @@ impl Report {
         let after_breaks = text.match_indices('\n').map(|(at, _)| at + 1);
         let lines = std::iter::once(0).chain(after_breaks).collect();
         let text = text.to_owned();
-        self.sources.push(Source {
-            origin,
-            text,
-            lines,
-        });
+        self.sources.push(Source { origin, text, lines });
         self.sources.len() - 1
     }
 
     /// The text of a stretch.
     pub(crate) fn text(&self, place: Place) -> &str {
         let source = self.sources.get(place.source);
-        source
-            .and_then(|source| source.text.get(place.start..place.end))
-            .unwrap_or_default()
+        source.and_then(|source| source.text.get(place.start..place.end)).unwrap_or_default()
     }
 
     /// How many problems there are so far.
@@ -96,9 +90,7 @@ impl Report {
     /// A problem with the line in which a place lies.
     pub(crate) fn line(&mut self, place: Place, message: String) {
         let source = self.sources.get(place.source);
-        let text = source
-            .map(|source| source.text.as_str())
-            .unwrap_or_default();
+        let text = source.map(|source| source.text.as_str()).unwrap_or_default();
         let before = text.get(..place.start).unwrap_or_default();
         let begin = before.rfind('\n').map_or(0, |at| at + 1);
         let line = text.get(begin..).and_then(|rest| rest.lines().next());
@@ -112,20 +104,9 @@ impl Report {
             return;
         }
         let (line, column) = self.line_and_column(place);
-        let origin = self
-            .sources
-            .get(place.source)
-            .and_then(|source| source.origin.clone());
+        let origin = self.sources.get(place.source).and_then(|source| source.origin.clone());
         let path = path.to_owned();
-        let problem = Problem {
-            origin,
-            path,
-            line,
-            column,
-            message,
-            found,
-            allowed,
-        };
+        let problem = Problem { origin, path, line, column, message, found, allowed };
         self.problems.push((place.source, problem));
     }
 
@@ -134,11 +115,8 @@ impl Report {
             return (1, 1);
         };
         let line = source.lines.partition_point(|&start| start <= place.start);
-        let begin = line
-            .checked_sub(1)
-            .and_then(|index| source.lines.get(index))
-            .copied()
-            .unwrap_or(0);
+        let begin =
+            line.checked_sub(1).and_then(|index| source.lines.get(index)).copied().unwrap_or(0);
         let before = source.text.get(begin..place.start).unwrap_or_default();
         (line, before.chars().count() + 1)
     }
@@ -173,11 +151,7 @@ pub(crate) fn excerpt(text: &str) -> String {
         .take(EXCERPT)
         .flat_map(|c| {
             let visible = !c.is_control() || c == '\t';
-            if visible {
-                vec![c]
-            } else {
-                c.escape_unicode().collect()
-            }
+            if visible { vec![c] } else { c.escape_unicode().collect() }
         })
         .collect();
     if line.chars().nth(EXCERPT).is_some() || text.trim_end().contains('\n') {

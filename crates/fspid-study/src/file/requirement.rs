@@ -28,23 +28,14 @@ pub(crate) fn requirements(
             && !names.contains(&name)
         {
             let (place, path) = (section.at("controller"), section.path("controller"));
-            report.value(
-                place,
-                &path,
-                "no controller has this name",
-                names.join(", "),
-            );
+            report.value(place, &path, "no controller has this name", names.join(", "));
             continue;
         }
         let word = section.text("measure");
         let measure = word.and_then(Measure::from_name);
         if let (Some(measure), Some(most)) = (measure, section.number("most")) {
             let controller = controller.map(str::to_owned);
-            requirements.push(Requirement {
-                controller,
-                measure,
-                most,
-            });
+            requirements.push(Requirement { controller, measure, most });
         }
     }
     requirements

@@ -9,10 +9,7 @@ use crate::file::spec::{Choice, Default, Key, Kind, Presence, Range, SCENARIO, T
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = table(&SCENARIO);
-    schema.insert(
-        "$schema".to_owned(),
-        json!("https://json-schema.org/draft/2020-12/schema"),
-    );
+    schema.insert("$schema".to_owned(), json!("https://json-schema.org/draft/2020-12/schema"));
     schema.insert("title".to_owned(), json!("fspid scenario"));
     Value::Object(schema)
 }
@@ -67,25 +64,14 @@ fn object(keys: &[&'static Key], kind: Option<&str>, choices: &[Choice]) -> Map<
 
 /// Exactly one of the ways, without a key of another.
 fn choice(choice: &Choice) -> Value {
-    let keys = |way: &Way| {
-        way.required
-            .iter()
-            .chain(way.optional)
-            .copied()
-            .collect::<Vec<_>>()
-    };
+    let keys = |way: &Way| way.required.iter().chain(way.optional).copied().collect::<Vec<_>>();
     let ways: Vec<Value> = choice
         .ways
         .iter()
         .map(|way| {
-            let others = choice
-                .ways
-                .iter()
-                .filter(|other| !std::ptr::eq(*other, way));
-            let foreign: Vec<Value> = others
-                .flat_map(keys)
-                .map(|name| json!({ "required": [name] }))
-                .collect();
+            let others = choice.ways.iter().filter(|other| !std::ptr::eq(*other, way));
+            let foreign: Vec<Value> =
+                others.flat_map(keys).map(|name| json!({ "required": [name] })).collect();
             json!({ "required": way.required, "not": { "anyOf": foreign } })
         })
         .collect();
@@ -100,11 +86,7 @@ fn property(key: &'static Key) -> Value {
         }
         _ => "",
     };
-    let doc = if unit.is_empty() {
-        key.doc.to_owned()
-    } else {
-        format!("{} [{unit}]", key.doc)
-    };
+    let doc = if unit.is_empty() { key.doc.to_owned() } else { format!("{} [{unit}]", key.doc) };
     schema.insert("description".to_owned(), json!(doc));
     if let Presence::Default(default) = key.presence {
         let value = match default {
@@ -139,20 +121,14 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
         Kind::Defuzzifier => {
             json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid):[0-9]+)$" })
         }
-        Kind::Numbers {
-            range, least, most, ..
-        } => {
+        Kind::Numbers { range, least, most, .. } => {
             json!({ "type": "array", "items": number(*range), "minItems": least, "maxItems": most })
         }
         Kind::Interval { range, .. } => {
             json!({ "type": "array", "items": number(*range), "minItems": 2, "maxItems": 2 })
         }
         Kind::Table(spec) => return table(spec),
-        Kind::Tables {
-            table: spec,
-            least,
-            most,
-        } => {
+        Kind::Tables { table: spec, least, most } => {
             json!({ "type": "array", "items": table(spec), "minItems": least, "maxItems": most })
         }
     };

@@ -35,12 +35,7 @@ impl ErrorIntegrals {
             }
         }
         let [iae_rad_s, itae_rad_s2, ise_rad2_s, itse_rad2_s2] = sums.map(|sum| sum * dt_s);
-        Self {
-            iae_rad_s,
-            itae_rad_s2,
-            ise_rad2_s,
-            itse_rad2_s2,
-        }
+        Self { iae_rad_s, itae_rad_s2, ise_rad2_s, itse_rad2_s2 }
     }
 }
 
@@ -59,16 +54,10 @@ impl CommandEffort {
     /// Of the commands of samples `dt_s` apart.
     #[must_use]
     pub fn of(commands_rad: &[f64], dt_s: f64) -> Self {
-        let changes = || {
-            commands_rad
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]).abs())
-        };
+        let changes = || commands_rad.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         Self {
             variation_rad: changes().sum(),
-            largest_rad: commands_rad
-                .iter()
-                .fold(0.0, |largest, u| u.abs().max(largest)),
+            largest_rad: commands_rad.iter().fold(0.0, |largest, u| u.abs().max(largest)),
             fastest_rad_s: changes().fold(0.0, f64::max) / dt_s,
         }
     }
@@ -87,10 +76,7 @@ mod tests {
         assert!((integrals.iae_rad_s - 1.0).abs() < 1e-4, "{integrals:?}");
         assert!((integrals.ise_rad2_s - 0.5).abs() < 1e-4, "{integrals:?}");
         assert!((integrals.itae_rad_s2 - 1.0).abs() < 1e-4, "{integrals:?}");
-        assert!(
-            (integrals.itse_rad2_s2 - 0.25).abs() < 1e-4,
-            "{integrals:?}"
-        );
+        assert!((integrals.itse_rad2_s2 - 0.25).abs() < 1e-4, "{integrals:?}");
     }
 
     #[test]
@@ -105,11 +91,7 @@ mod tests {
     fn the_jump_of_the_first_command_does_not_count_as_variation() {
         let effort = CommandEffort::of(&[5.0, 5.0, 4.0, 6.0], 0.5);
         assert_eq!(
-            (
-                effort.variation_rad,
-                effort.largest_rad,
-                effort.fastest_rad_s
-            ),
+            (effort.variation_rad, effort.largest_rad, effort.fastest_rad_s),
             (3.0, 6.0, 4.0)
         );
     }

@@ -95,25 +95,16 @@ impl FlightMetrics {
     pub fn of(trace: &Trace, edges: &[Edge], timing: Timing, unstable: Option<Unstable>) -> Self {
         let failed = match (trace.outcome, unstable) {
             (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
-            (
-                Outcome::Completed,
-                Some(Unstable {
-                    spectral_radius, ..
-                }),
-            ) => Some(Verdict::Unstable { spectral_radius }),
+            (Outcome::Completed, Some(Unstable { spectral_radius, .. })) => {
+                Some(Verdict::Unstable { spectral_radius })
+            }
             (Outcome::Completed, None) => None,
         };
         let absence = failed.and_then(Verdict::absence);
         let edges = edge_metrics(trace, edges, timing, absence);
-        let restarts: Vec<usize> = edges
-            .iter()
-            .map(|edge| timing.first_sample_at(edge.at_s))
-            .collect();
-        let errors = trace
-            .setpoint_rad
-            .iter()
-            .zip(&trace.theta_rad)
-            .map(|(r, y)| r - y);
+        let restarts: Vec<usize> =
+            edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
+        let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
         Self {
             verdict: failed.unwrap_or_else(|| verdict(&edges)),
             integrals: match absence {
@@ -140,9 +131,7 @@ impl FlightMetrics {
 
     /// A measure of the step number `index` from 0; absent where there is no such step.
     pub fn of_step(&self, index: usize, measure: impl Fn(&StepMetrics) -> Measured) -> Measured {
-        self.edges
-            .get(index)
-            .map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
+        self.edges.get(index).map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
     }
 }
 
@@ -153,44 +142,24 @@ fn edge_metrics(
     absence: Option<Absent>,
 ) -> Vec<EdgeMetrics> {
     // A step at the very last sample has no response to measure.
-    let edges: Vec<&Edge> = edges
-        .iter()
-        .filter(|edge| edge.sample + 1 < timing.rows())
-        .collect();
-    let ends = edges
-        .iter()
-        .skip(1)
-        .map(|edge| edge.sample)
-        .chain([timing.rows()]);
+    let edges: Vec<&Edge> = edges.iter().filter(|edge| edge.sample + 1 < timing.rows()).collect();
+    let ends = edges.iter().skip(1).map(|edge| edge.sample).chain([timing.rows()]);
     edges
         .iter()
         .zip(ends)
         .map(|(edge, end)| {
             let window = edge.sample..end.min(trace.rows());
-            let step = match (
-                absence,
-                trace.time_s.get(window.clone()),
-                trace.theta_rad.get(window),
-            ) {
-                (None, Some(time_s), Some(response)) => {
-                    let (from, to) = (edge.from_rad, edge.to_rad);
-                    StepMetrics::of(StepWindow {
-                        time_s,
-                        response,
-                        from,
-                        to,
-                    })
-                }
-                (Some(reason), ..) => StepMetrics::absent(reason),
-                _ => StepMetrics::absent(Absent::NoStep),
-            };
+            let step =
+                match (absence, trace.time_s.get(window.clone()), trace.theta_rad.get(window)) {
+                    (None, Some(time_s), Some(response)) => {
+                        let (from, to) = (edge.from_rad, edge.to_rad);
+                        StepMetrics::of(StepWindow { time_s, response, from, to })
+                    }
+                    (Some(reason), ..) => StepMetrics::absent(reason),
+                    _ => StepMetrics::absent(Absent::NoStep),
+                };
             let at_s = timing.time_s(edge.sample);
-            EdgeMetrics {
-                at_s,
-                from_rad: edge.from_rad,
-                to_rad: edge.to_rad,
-                step,
-            }
+            EdgeMetrics { at_s, from_rad: edge.from_rad, to_rad: edge.to_rad, step }
         })
         .collect()
 }

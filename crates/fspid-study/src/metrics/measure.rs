@@ -17,12 +17,8 @@ pub enum Measure {
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 4] = [
-        Self::Overshoot,
-        Self::RiseTime,
-        Self::SettlingTime,
-        Self::FinalError,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Overshoot, Self::RiseTime, Self::SettlingTime, Self::FinalError];
 
     /// Name in files and answers, with its unit.
     #[must_use]

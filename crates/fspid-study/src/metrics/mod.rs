@@ -47,10 +47,7 @@ impl fmt::Display for Absent {
         match self {
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
             Self::Unstable { spectral_radius } => {
-                write!(
-                    f,
-                    "unstable: spectral radius {spectral_radius:.6} of the sampled loop"
-                )
+                write!(f, "unstable: spectral radius {spectral_radius:.6} of the sampled loop")
             }
             Self::NotFinite => f.write_str("the response is not finite"),
             Self::NotRisen { window_s } => {

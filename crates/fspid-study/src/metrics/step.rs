@@ -30,16 +30,8 @@ impl StepWindow<'_> {
     #[must_use]
     pub fn first_crossing_s(&self, share: f64) -> Option<f64> {
         let step = self.to - self.from;
-        let way: Vec<f64> = self
-            .response
-            .iter()
-            .map(|y| (y - self.from) / step)
-            .collect();
-        Normalised {
-            time_s: self.time_s,
-            way: &way,
-        }
-        .first_crossing_s(share)
+        let way: Vec<f64> = self.response.iter().map(|y| (y - self.from) / step).collect();
+        Normalised { time_s: self.time_s, way: &way }.first_crossing_s(share)
     }
 }
 
@@ -95,24 +87,11 @@ impl StepMetrics {
         if !usable {
             return Self::absent(Absent::NoStep);
         }
-        if window
-            .response
-            .iter()
-            .chain(window.time_s)
-            .any(|value| !value.is_finite())
-        {
+        if window.response.iter().chain(window.time_s).any(|value| !value.is_finite()) {
             return Self::absent(Absent::NotFinite);
         }
-        let way: Vec<f64> = window
-            .response
-            .iter()
-            .map(|y| (y - window.from) / step)
-            .collect();
-        Normalised {
-            time_s: window.time_s,
-            way: &way,
-        }
-        .measure(step)
+        let way: Vec<f64> = window.response.iter().map(|y| (y - window.from) / step).collect();
+        Normalised { time_s: window.time_s, way: &way }.measure(step)
     }
 }
 
@@ -174,9 +153,7 @@ impl Normalised<'_> {
     fn rise_time_s(&self) -> Measured {
         match (self.first_crossing_s(0.1), self.first_crossing_s(RISEN)) {
             (Some(low), Some(high)) => Ok(high - low),
-            _ => Err(Absent::NotRisen {
-                window_s: self.window_s(),
-            }),
+            _ => Err(Absent::NotRisen { window_s: self.window_s() }),
         }
     }
 
@@ -188,23 +165,15 @@ impl Normalised<'_> {
             return Ok(0.0);
         };
         if outside + 1 == self.way.len() {
-            return Err(Absent::NotSettled {
-                window_s: self.window_s(),
-            });
+            return Err(Absent::NotSettled { window_s: self.window_s() });
         }
-        let edge = if self.way[outside] > 1.0 {
-            1.0 + band
-        } else {
-            1.0 - band
-        };
+        let edge = if self.way[outside] > 1.0 { 1.0 + band } else { 1.0 - band };
         Ok(self.crossing_s(outside + 1, edge))
     }
 
     fn after_rise(&self) -> Result<&[f64], Absent> {
         let k = self.way.iter().position(|&way| way >= RISEN);
-        k.and_then(|k| self.way.get(k..)).ok_or(Absent::NotRisen {
-            window_s: self.window_s(),
-        })
+        k.and_then(|k| self.way.get(k..)).ok_or(Absent::NotRisen { window_s: self.window_s() })
     }
 
     /// Largest distance from the start, and when, refined by a parabola where there are neighbours.
@@ -226,10 +195,7 @@ impl Normalised<'_> {
         }
         let shift = 0.5 * (before - after) / curvature;
         let spacing_s = self.time_s[top + 1] - self.time_s[top];
-        (
-            here - 0.25 * (before - after) * shift,
-            plain.1 + shift * spacing_s,
-        )
+        (here - 0.25 * (before - after) * shift, plain.1 + shift * spacing_s)
     }
 }
 
@@ -239,21 +205,14 @@ mod tests {
 
     /// Samples of `response` from 0 to `end_s`.
     fn sampled(end_s: f64, response: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
-        let time_s: Vec<f64> = (0..=20_000)
-            .map(|k| f64::from(k) * end_s / 20_000.0)
-            .collect();
+        let time_s: Vec<f64> = (0..=20_000).map(|k| f64::from(k) * end_s / 20_000.0).collect();
         let response = time_s.iter().map(|&t| response(t)).collect();
         (time_s, response)
     }
 
     fn measure(from: f64, to: f64, end_s: f64, response: impl Fn(f64) -> f64) -> StepMetrics {
         let (time_s, response) = sampled(end_s, response);
-        StepMetrics::of(StepWindow {
-            time_s: &time_s,
-            response: &response,
-            from,
-            to,
-        })
+        StepMetrics::of(StepWindow { time_s: &time_s, response: &response, from, to })
     }
 
     fn close(measured: Measured, expected: f64, tolerance: f64) -> bool {
@@ -263,28 +222,17 @@ mod tests {
     #[test]
     fn a_first_order_lag_rises_in_ln_9_and_settles_in_minus_ln_0_02() {
         let metrics = measure(0.0, 1.0, 10.0, |t| 1.0 - (-t).exp());
-        assert!(
-            close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6),
-            "{metrics:?}"
-        );
-        assert!(
-            close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6),
-            "{metrics:?}"
-        );
+        assert!(close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6), "{metrics:?}");
+        assert!(close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6), "{metrics:?}");
         assert_eq!(metrics.overshoot_pct, Ok(0.0));
-        assert!(close(
-            metrics.final_error_pct,
-            100.0 * (-10.0_f64).exp(),
-            1e-9
-        ));
+        assert!(close(metrics.final_error_pct, 100.0 * (-10.0_f64).exp(), 1e-9));
     }
 
     #[test]
     fn a_response_that_turns_to_nan_has_no_metrics() {
         // A peer answers a settling time of 3.92 s and an overshoot of 0.
-        let metrics = measure(0.0, 1.0, 10.0, |t| {
-            if t > 5.0 { f64::NAN } else { 1.0 - (-t).exp() }
-        });
+        let metrics =
+            measure(0.0, 1.0, 10.0, |t| if t > 5.0 { f64::NAN } else { 1.0 - (-t).exp() });
         assert_eq!(metrics, StepMetrics::absent(Absent::NotFinite));
     }
 
@@ -292,14 +240,8 @@ mod tests {
     fn a_response_that_stops_half_way_is_not_risen() {
         // A peer raises an index error.
         let metrics = measure(0.0, 2.0, 10.0, |t| 1.0 - (-t).exp());
-        assert_eq!(
-            metrics.rise_time_s,
-            Err(Absent::NotRisen { window_s: 10.0 })
-        );
-        assert_eq!(
-            metrics.settling_time_s,
-            Err(Absent::NotSettled { window_s: 10.0 })
-        );
+        assert_eq!(metrics.rise_time_s, Err(Absent::NotRisen { window_s: 10.0 }));
+        assert_eq!(metrics.settling_time_s, Err(Absent::NotSettled { window_s: 10.0 }));
         assert!(close(metrics.final_error_pct, 50.0, 0.01));
     }
 
@@ -307,10 +249,7 @@ mod tests {
     fn regulation_to_zero_is_measured_from_where_it_began() {
         // A peer, which takes 0 for "not given", answers an overshoot of 2 180 630 %.
         let metrics = measure(1.0, 0.0, 12.0, |t| (-t).exp());
-        assert!(
-            close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6),
-            "{metrics:?}"
-        );
+        assert!(close(metrics.settling_time_s, -0.02_f64.ln(), 1e-6), "{metrics:?}");
         assert_eq!(metrics.overshoot_pct, Ok(0.0));
     }
 
@@ -318,10 +257,7 @@ mod tests {
     fn a_step_from_one_to_two_rises_as_one_from_zero_to_one() {
         // A peer, which starts every step at 0, answers 1.61 s.
         let metrics = measure(1.0, 2.0, 12.0, |t| 2.0 - (-t).exp());
-        assert!(
-            close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6),
-            "{metrics:?}"
-        );
+        assert!(close(metrics.rise_time_s, 9.0_f64.ln(), 1e-6), "{metrics:?}");
     }
 
     #[test]
@@ -358,16 +294,8 @@ mod tests {
 
     #[test]
     fn a_window_without_a_step_or_without_samples_has_no_metrics() {
-        assert_eq!(
-            measure(1.0, 1.0, 1.0, |_| 1.0),
-            StepMetrics::absent(Absent::NoStep)
-        );
-        let empty = StepWindow {
-            time_s: &[],
-            response: &[],
-            from: 0.0,
-            to: 1.0,
-        };
+        assert_eq!(measure(1.0, 1.0, 1.0, |_| 1.0), StepMetrics::absent(Absent::NoStep));
+        let empty = StepWindow { time_s: &[], response: &[], from: 0.0, to: 1.0 };
         assert_eq!(StepMetrics::of(empty), StepMetrics::absent(Absent::NoStep));
     }
 }

@@ -28,18 +28,16 @@ impl Node {
     /// The field with this name.
     pub(super) fn field(&self, name: &str) -> Option<&Self> {
         match self {
-            Self::Struct(_, fields) => fields
-                .iter()
-                .find(|(of, _)| of == name)
-                .map(|(_, node)| node),
+            Self::Struct(_, fields) => {
+                fields.iter().find(|(of, _)| of == name).map(|(_, node)| node)
+            }
             _ => None,
         }
     }
 
     /// The fields below these names, one after the other.
     pub(super) fn at(&self, path: &[&str]) -> Option<&Self> {
-        path.iter()
-            .try_fold(self, |node, name| node.inside().field(name))
+        path.iter().try_fold(self, |node, name| node.inside().field(name))
     }
 
     /// What a `Some`, or another wrapper of one value, holds.
@@ -87,9 +85,7 @@ impl Reader<'_> {
 
     fn word(&mut self) -> String {
         self.skip();
-        let end = self
-            .rest
-            .find([' ', ',', '{', '}', '(', ')', '[', ']', ':', '"']);
+        let end = self.rest.find([' ', ',', '{', '}', '(', ')', '[', ']', ':', '"']);
         let (word, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
         self.rest = rest;
         word.to_owned()
@@ -189,19 +185,10 @@ mod tests {
             last: f64::INFINITY,
         };
         let node = Node::of(&outer);
-        assert_eq!(
-            node.at(&["name"]),
-            Some(&Node::Text("a \"b\", {c} <script>".to_owned()))
-        );
+        assert_eq!(node.at(&["name"]), Some(&Node::Text("a \"b\", {c} <script>".to_owned())));
         let list = node.at(&["list"]).map(Node::items).unwrap_or_default();
-        assert_eq!(
-            list.iter().map(Node::number).collect::<Vec<_>>(),
-            [None, Some(-1e-300)]
-        );
-        assert_eq!(
-            node.at(&["last"]).and_then(Node::number),
-            Some(f64::INFINITY)
-        );
+        assert_eq!(list.iter().map(Node::number).collect::<Vec<_>>(), [None, Some(-1e-300)]);
+        assert_eq!(node.at(&["last"]).and_then(Node::number), Some(f64::INFINITY));
         assert_eq!(node.at(&["empty"]).map(|node| node.items().len()), Some(0));
     }
 }

@@ -68,15 +68,14 @@ fn environment() -> &'static Environment<'static> {
 
 /// The template filled with the context. A template that fails leaves a visible note: a test looks for it.
 pub(super) fn render(template: &str, context: Value) -> String {
-    environment()
-        .get_template(template)
-        .and_then(|found| found.render(context))
-        .unwrap_or_else(|error| {
+    environment().get_template(template).and_then(|found| found.render(context)).unwrap_or_else(
+        |error| {
             format!(
                 "<p class=\"failed\">This part could not be written: {}</p>",
                 escape(&format!("{error:#}"))
             )
-        })
+        },
+    )
 }
 
 /// Text as HTML.

@@ -11,10 +11,7 @@ use super::html::escape;
 /// A document without its title, as HTML; headings of the second level become `<h3>`. Tables turn
 /// into cards on a narrow screen.
 pub(super) fn html(text: &str) -> String {
-    let mut writer = Writer {
-        known: numbers(text),
-        ..Writer::default()
-    };
+    let mut writer = Writer { known: numbers(text), ..Writer::default() };
     let events = Parser::new_ext(text, Options::ENABLE_TABLES);
     for event in events {
         writer.event(event);
@@ -102,14 +99,8 @@ impl Writer {
 
     fn start(&mut self, tag: &Tag<'_>) {
         match tag {
-            Tag::Heading {
-                level: HeadingLevel::H1,
-                ..
-            } => self.in_title = true,
-            Tag::Heading {
-                level: HeadingLevel::H2,
-                ..
-            } => self.open("h3"),
+            Tag::Heading { level: HeadingLevel::H1, .. } => self.in_title = true,
+            Tag::Heading { level: HeadingLevel::H2, .. } => self.open("h3"),
             Tag::Heading { .. } => self.open("h4"),
             Tag::Paragraph => self.open("p"),
             Tag::List(None) => self.push("<ul>\n"),
@@ -145,11 +136,7 @@ impl Writer {
         } else if self.column == 0 {
             self.push("<th scope=\"row\">");
         } else {
-            let label = self
-                .heads
-                .get(self.column)
-                .map(|head| escape(head))
-                .unwrap_or_default();
+            let label = self.heads.get(self.column).map(|head| escape(head)).unwrap_or_default();
             self.push(&format!("<td data-label=\"{label}\">"));
         }
     }
@@ -176,11 +163,7 @@ impl Writer {
             }
             TagEnd::TableRow => self.push("</tr>\n"),
             TagEnd::TableCell => {
-                let closed = if self.in_head || self.column == 0 {
-                    "</th>"
-                } else {
-                    "</td>"
-                };
+                let closed = if self.in_head || self.column == 0 { "</th>" } else { "</td>" };
                 self.push(closed);
                 self.column += 1;
             }
@@ -194,10 +177,7 @@ impl Writer {
         {
             head.push_str(text);
         }
-        let first = text
-            .split(|c: char| !c.is_ascii_alphanumeric())
-            .next()
-            .unwrap_or_default();
+        let first = text.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
         if let Some(at) = self.opened.take()
             && is_number(first)
             && self.known.iter().any(|known| known == first)
@@ -223,9 +203,7 @@ pub(super) fn linked(text: &str) -> String {
     let mut rest = text;
     while let Some(at) = rest.find(|c: char| c.is_ascii_alphanumeric()) {
         let (before, word_on) = rest.split_at(at);
-        let end = word_on
-            .find(|c: char| !c.is_ascii_alphanumeric())
-            .unwrap_or(word_on.len());
+        let end = word_on.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(word_on.len());
         let (word, after) = word_on.split_at(end);
         out.push_str(&escape(before));
         if is_number(word) {
@@ -249,9 +227,7 @@ fn subscript<'a>(word: &str, after: &'a str) -> Option<(&'a str, &'a str)> {
     if let Some(braced) = rest.strip_prefix('{') {
         return braced.split_once('}');
     }
-    let end = rest
-        .find(|c: char| !c.is_alphanumeric() && c != '\u{307}')
-        .unwrap_or(rest.len());
+    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '\u{307}').unwrap_or(rest.len());
     let (index, after) = rest.split_at(end);
     let short = (1..=3).contains(&index.chars().filter(|c| c.is_alphanumeric()).count());
     (short && !after.starts_with('_')).then_some((index, after))
@@ -273,10 +249,7 @@ mod tests {
             ),
             "{html}"
         );
-        assert!(
-            html.contains("<p id=\"E18\"><strong>E18.</strong>"),
-            "{html}"
-        );
+        assert!(html.contains("<p id=\"E18\"><strong>E18.</strong>"), "{html}");
         assert!(
             html.contains("<a href=\"#A2\">A2</a>")
                 && !html.contains("<c>")

@@ -20,16 +20,15 @@ const COLUMNS: &[Column] = &[
     ("time of peak, s", 2, |step| step.peak_time_s),
 ];
 
+/// More steps than these would bury the rest of a report.
+const MOST_STEPS: usize = 40;
+
 /// Columns that the paper speaks of.
 const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
 
 /// "2, down: +1 to −1 deg at 6.60 s".
 pub(super) fn step_name(index: usize, edge: &EdgeMetrics) -> String {
-    let way = if edge.to_rad >= edge.from_rad {
-        "up"
-    } else {
-        "down"
-    };
+    let way = if edge.to_rad >= edge.from_rad { "up" } else { "down" };
     let (from, to) = (degrees(edge.from_rad), degrees(edge.to_rad));
     let level = |value: f64| {
         let text = number::fixed(value, 3);
@@ -50,36 +49,30 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
     let metrics = &result.metrics;
     if fails(result) {
         let reason = format!("\u{2717} {}: no measures", metrics.verdict);
-        let cells = vec![
-            Cell::text(&result.name),
-            Cell::text("all"),
-            Cell::failing(reason, columns.len()),
-        ];
-        return vec![Row {
-            class: "first",
-            ..Row::from(cells)
-        }];
+        let cells =
+            vec![Cell::text(&result.name), Cell::text("all"), Cell::failing(reason, columns.len())];
+        return vec![Row { class: "first", ..Row::from(cells) }];
     }
     if metrics.edges.is_empty() {
-        let mut cells = vec![
-            Cell::text(&result.name),
-            Cell::text("no step in the command"),
-        ];
+        let mut cells = vec![Cell::text(&result.name), Cell::text("no step in the command")];
         cells.extend(measures(&metrics.first_step()));
-        return vec![Row {
-            class: "first",
-            ..Row::from(cells)
-        }];
+        return vec![Row { class: "first", ..Row::from(cells) }];
     }
     let row = |(index, edge): (usize, &EdgeMetrics)| {
         let mut cells = vec![Cell::text(&result.name), Cell::text(step_name(index, edge))];
         cells.extend(measures(&edge.step));
-        Row {
-            class: if index == 0 { "first" } else { "" },
-            ..Row::from(cells)
-        }
+        Row { class: if index == 0 { "first" } else { "" }, ..Row::from(cells) }
     };
-    metrics.edges.iter().enumerate().map(row).collect()
+    let shown = metrics.edges.iter().enumerate().take(MOST_STEPS);
+    let mut rows: Vec<Row> = shown.map(row).collect();
+    let left_out = metrics.edges.len().saturating_sub(MOST_STEPS);
+    if left_out > 0 {
+        let reason =
+            format!("{left_out} more steps: `fspid simulate --format json` lists them all");
+        let name = Cell::text(&result.name);
+        rows.push(Row::from(vec![name, Cell::text("and"), Cell::left_out(reason, columns.len())]));
+    }
+    rows
 }
 
 /// Every step measure of every controller.
@@ -101,10 +94,8 @@ pub(super) fn side_by_side(
     variants: &[(&str, &Simulation)],
     only: &[&str],
 ) -> Table {
-    let columns: Vec<&Column> = OF_THE_PAPER
-        .iter()
-        .filter_map(|index| COLUMNS.get(*index))
-        .collect();
+    let columns: Vec<&Column> =
+        OF_THE_PAPER.iter().filter_map(|index| COLUMNS.get(*index)).collect();
     let mut head = vec!["controller", "step of the command"];
     let mut groups = vec![("", 2)];
     for (name, _) in variants {
@@ -115,10 +106,8 @@ pub(super) fn side_by_side(
     let Some((_, first)) = variants.first() else {
         return table;
     };
-    for result in first
-        .results
-        .iter()
-        .filter(|r| only.is_empty() || only.contains(&r.name.as_str()))
+    for result in
+        first.results.iter().filter(|r| only.is_empty() || only.contains(&r.name.as_str()))
     {
         let mut rows = rows(result, &columns);
         for (_, other) in variants.iter().skip(1) {
@@ -129,11 +118,7 @@ pub(super) fn side_by_side(
             // A failed flight has one row for all steps: it says so on each.
             for (index, row) in rows.iter_mut().enumerate() {
                 let other = others.get(index).or_else(|| others.first());
-                row.cells.extend(
-                    other
-                        .iter()
-                        .flat_map(|row| row.cells.iter().skip(2).cloned()),
-                );
+                row.cells.extend(other.iter().flat_map(|row| row.cells.iter().skip(2).cloned()));
             }
         }
         table.rows.extend(rows);
@@ -157,9 +142,7 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
     ];
     let mut table = Table::new(caption, &head).in_cards();
     for result in &simulation.results {
-        let FlightMetrics {
-            integrals, effort, ..
-        } = &result.metrics;
+        let FlightMetrics { integrals, effort, .. } = &result.metrics;
         let mut cells = vec![Cell::text(&result.name)];
         if fails(result) {
             cells.push(Cell::failing(
@@ -189,13 +172,6 @@ pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
 /// What is known of a failed flight too.
 fn tail(result: &ControllerResult) -> [Cell; 2] {
     let faults = result.trace.faults;
-    let faults = if faults.is_empty() {
-        "none".to_owned()
-    } else {
-        faults.to_string()
-    };
-    [
-        Cell::number(result.trace.saturated_samples.to_string()),
-        Cell::text(faults),
-    ]
+    let faults = if faults.is_empty() { "none".to_owned() } else { faults.to_string() };
+    [Cell::number(result.trace.saturated_samples.to_string()), Cell::text(faults)]
 }

@@ -31,10 +31,7 @@ pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
 /// The report of the paper.
 #[must_use]
 pub fn of_reproduction(library: &Library, reproduction: &Reproduction) -> String {
-    paper::report(&paper::Paper {
-        library,
-        reproduction,
-    })
+    paper::report(&paper::Paper { library, reproduction })
 }
 
 /// Everything that lies beside the report: names below its folder, and texts.
@@ -43,8 +40,5 @@ pub fn files_of_reproduction(
     library: &Library,
     reproduction: &Reproduction,
 ) -> Vec<(String, String)> {
-    paper::files(&paper::Paper {
-        library,
-        reproduction,
-    })
+    paper::files(&paper::Paper { library, reproduction })
 }

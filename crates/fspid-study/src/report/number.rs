@@ -5,31 +5,19 @@ use crate::metrics::Measured;
 /// Minus signs as print has them.
 fn signed(text: String) -> String {
     let negative_zero = text.starts_with('-') && !text.contains(|c: char| ('1'..='9').contains(&c));
-    if negative_zero {
-        text.replace('-', "")
-    } else {
-        text.replace('-', "\u{2212}")
-    }
+    if negative_zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") }
 }
 
 /// `value` with so many decimals.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
-    if value.is_finite() {
-        signed(format!("{value:.decimals$}"))
-    } else {
-        "\u{2013}".to_owned()
-    }
+    if value.is_finite() { signed(format!("{value:.decimals$}")) } else { "\u{2013}".to_owned() }
 }
 
 /// `value` with its sign, `+` too.
 pub(super) fn with_sign(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
     let is_zero = !text.contains(|c: char| ('1'..='9').contains(&c));
-    if text.starts_with('\u{2212}') || is_zero {
-        text
-    } else {
-        format!("+{text}")
-    }
+    if text.starts_with('\u{2212}') || is_zero { text } else { format!("+{text}") }
 }
 
 /// `value` with so many significant digits, in powers of ten where that is shorter.
@@ -47,11 +35,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
         let decimals = usize::try_from((digits as i32 - 1 - exponent).max(0)).unwrap_or(0);
         return signed(format!("{value:.decimals$}"));
     }
-    format!(
-        "{} \u{d7} 10{}",
-        signed(mantissa.to_owned()),
-        raised(exponent)
-    )
+    format!("{} \u{d7} 10{}", signed(mantissa.to_owned()), raised(exponent))
 }
 
 /// An exponent in raised digits.
@@ -78,9 +62,7 @@ pub(super) fn measured(value: Measured, decimals: usize) -> String {
 /// The text with a capital at its beginning.
 pub(super) fn capital(text: &str) -> String {
     let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(chars).collect()
-    })
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
 }
 
 #[cfg(test)]

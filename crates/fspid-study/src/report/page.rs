@@ -44,24 +44,19 @@ pub(super) fn references(ids: &[&str]) -> Vec<Reference> {
     for id in ids {
         let follows = |run: &Vec<&str>| {
             let last = run.last().and_then(|last| number(last));
-            last.zip(number(id))
-                .is_some_and(|(last, this)| last + 1 == this)
+            last.zip(number(id)).is_some_and(|(last, this)| last + 1 == this)
         };
         match runs.last_mut().filter(|run| follows(run)) {
             Some(run) => run.push(id),
             None => runs.push(vec![id]),
         }
     }
-    let one = |id: &str| Reference {
-        first: id.to_owned(),
-        last: String::new(),
-    };
+    let one = |id: &str| Reference { first: id.to_owned(), last: String::new() };
     runs.iter()
         .flat_map(|run| match run.as_slice() {
-            [first, _, .., last] => vec![Reference {
-                first: (*first).to_owned(),
-                last: (*last).to_owned(),
-            }],
+            [first, _, .., last] => {
+                vec![Reference { first: (*first).to_owned(), last: (*last).to_owned() }]
+            }
             few => few.iter().map(|id| one(id)).collect(),
         })
         .collect()
@@ -71,28 +66,15 @@ impl Figure {
     /// A figure without assumptions.
     pub(super) fn new(name: impl Into<String>, svg: Svg, caption: impl Into<String>) -> Self {
         let svg = svg.into_string();
-        let width = svg
-            .split(" width=\"")
-            .nth(1)
-            .and_then(|rest| rest.split('"').next());
-        let wide = width
-            .and_then(|width| width.parse::<f64>().ok())
-            .is_some_and(|width| width > WIDE_PX);
-        Self {
-            name: name.into(),
-            svg,
-            wide,
-            caption: caption.into(),
-            assumptions: Vec::new(),
-        }
+        let width = svg.split(" width=\"").nth(1).and_then(|rest| rest.split('"').next());
+        let wide =
+            width.and_then(|width| width.parse::<f64>().ok()).is_some_and(|width| width > WIDE_PX);
+        Self { name: name.into(), svg, wide, caption: caption.into(), assumptions: Vec::new() }
     }
 
     /// The same, resting on these.
     pub(super) fn resting_on(self, assumptions: &[&str]) -> Self {
-        Self {
-            assumptions: references(assumptions),
-            ..self
-        }
+        Self { assumptions: references(assumptions), ..self }
     }
 }
 
@@ -114,29 +96,18 @@ pub(super) struct Cell {
 impl Cell {
     /// Words.
     pub(super) fn text(text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            ..Self::default()
-        }
+        Self { text: text.into(), ..Self::default() }
     }
 
     /// A number, already written.
     pub(super) fn number(text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            class: "number",
-            ..Self::default()
-        }
+        Self { text: text.into(), class: "number", ..Self::default() }
     }
 
     /// A measure, or in words why there is none.
     pub(super) fn measured(value: Measured, decimals: usize) -> Self {
         let class = if value.is_ok() { "number" } else { "absent" };
-        Self {
-            text: number::measured(value, decimals),
-            class,
-            ..Self::default()
-        }
+        Self { text: number::measured(value, decimals), class, ..Self::default() }
     }
 
     /// A status as a sign and a word.
@@ -150,29 +121,22 @@ impl Cell {
 
     /// Links to these ids.
     pub(super) fn links(ids: &[&str]) -> Self {
-        Self {
-            links: references(ids),
-            class: "refs",
-            ..Self::default()
-        }
+        Self { links: references(ids), class: "refs", ..Self::default() }
     }
 
     /// One reason in place of so many measures.
     pub(super) fn failing(reason: impl Into<String>, span: usize) -> Self {
-        Self {
-            text: reason.into(),
-            class: "failing",
-            span,
-            ..Self::default()
-        }
+        Self { text: reason.into(), class: "failing", span, ..Self::default() }
+    }
+
+    /// What is not shown here, over so many columns.
+    pub(super) fn left_out(what: impl Into<String>, span: usize) -> Self {
+        Self { class: "absent", ..Self::failing(what, span) }
     }
 
     /// Words in which assumptions and errata are linked.
     pub(super) fn linked(text: &str) -> Self {
-        Self {
-            markup: markdown::linked(text),
-            ..Self::default()
-        }
+        Self { markup: markdown::linked(text), ..Self::default() }
     }
 }
 
@@ -199,10 +163,7 @@ pub(super) struct Row {
 
 impl From<Vec<Cell>> for Row {
     fn from(cells: Vec<Cell>) -> Self {
-        Self {
-            cells,
-            ..Self::default()
-        }
+        Self { cells, ..Self::default() }
     }
 }
 
@@ -236,29 +197,16 @@ impl Table {
     /// A table with these columns.
     pub(super) fn new(caption: impl Into<String>, head: &[&str]) -> Self {
         let head: Vec<String> = head.iter().map(|text| (*text).to_owned()).collect();
-        Self {
-            caption: caption.into(),
-            labels: head.clone(),
-            head,
-            ..Self::default()
-        }
+        Self { caption: caption.into(), labels: head.clone(), head, ..Self::default() }
     }
 
     /// With headings over its columns.
     pub(super) fn grouped(mut self, groups: &[(&str, usize)]) -> Self {
-        let group = |(text, span): &(&str, usize)| Group {
-            text: (*text).to_owned(),
-            span: *span,
-        };
+        let group = |(text, span): &(&str, usize)| Group { text: (*text).to_owned(), span: *span };
         self.groups = groups.iter().map(group).collect();
-        let over = groups
-            .iter()
-            .flat_map(|(text, span)| std::iter::repeat_n(*text, *span));
-        for (label, group) in self
-            .labels
-            .iter_mut()
-            .zip(over)
-            .filter(|(_, group)| !group.is_empty())
+        let over = groups.iter().flat_map(|(text, span)| std::iter::repeat_n(*text, *span));
+        for (label, group) in
+            self.labels.iter_mut().zip(over).filter(|(_, group)| !group.is_empty())
         {
             *label = format!("{group}: {label}");
         }
@@ -295,12 +243,7 @@ impl Section {
     /// A section whose body is a filled template.
     pub(super) fn of(id: &'static str, title: &str, template: &str, context: Value) -> Self {
         let body = html::render(template, context);
-        Self {
-            id,
-            title: title.to_owned(),
-            body,
-            figures: Vec::new(),
-        }
+        Self { id, title: title.to_owned(), body, figures: Vec::new() }
     }
 
     /// The same, with its figures.
@@ -321,10 +264,7 @@ mod tests {
     #[test]
     fn three_in_a_row_are_a_run() {
         let found = references(&["A1", "A2", "A23", "A3", "A5", "A6"]);
-        let text: Vec<String> = found
-            .iter()
-            .map(|r| format!("{}-{}", r.first, r.last))
-            .collect();
+        let text: Vec<String> = found.iter().map(|r| format!("{}-{}", r.first, r.last)).collect();
         assert_eq!(text, ["A1-A3", "A5-", "A6-", "A23-"]);
     }
 }

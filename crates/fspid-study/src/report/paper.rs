@@ -32,10 +32,7 @@ pub(super) fn report(paper: &Paper<'_>) -> String {
 
 /// Figures, traces and scenarios, each as a file.
 pub(super) fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
-    let Paper {
-        library,
-        reproduction,
-    } = paper;
+    let Paper { library, reproduction } = paper;
     let mut files: Vec<(String, String)> = section::ALL
         .iter()
         .flat_map(|of| of(paper).figures)
@@ -48,10 +45,7 @@ pub(super) fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
     for (name, _, simulation) in section::disturbances::flights(library) {
         files.push((format!("traces/{name}.csv"), simulation.csv()));
     }
-    files.push((
-        "traces/long-term-change.csv".to_owned(),
-        reproduction.long_term.csv(),
-    ));
+    files.push(("traces/long-term-change.csv".to_owned(), reproduction.long_term.csv()));
     for Stored { name, text } in library.scenarios() {
         files.push((format!("scenarios/{name}"), text.clone()));
     }

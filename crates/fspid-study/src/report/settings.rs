@@ -20,19 +20,13 @@ struct Setting {
 
 /// The settings of the aircraft, the loop and the command.
 pub(super) fn of_flight(scenario: &Scenario) -> Table {
-    table(
-        "Aircraft, servo, samples, command and disturbances.",
-        &Node::of(scenario),
-    )
+    table("Aircraft, servo, samples, command and disturbances.", &Node::of(scenario))
 }
 
 /// The settings of each controller with its name.
 pub(super) fn of_controllers(scenario: &Scenario) -> Vec<Table> {
     let one = |named: &fspid_sim::NamedController| {
-        table(
-            &format!("Controller {}.", named.name),
-            &Node::of(&named.controller),
-        )
+        table(&format!("Controller {}.", named.name), &Node::of(&named.controller))
     };
     scenario.controllers.iter().map(one).collect()
 }
@@ -55,9 +49,8 @@ fn collect(path: &str, node: &Node, out: &mut Vec<Setting>) {
             if VARIANTS.contains(&leaf) {
                 push(path, &words(name), out);
             }
-            for (field, node) in fields
-                .iter()
-                .filter(|(field, _)| !LEFT_OUT.contains(&field.as_str()))
+            for (field, node) in
+                fields.iter().filter(|(field, _)| !LEFT_OUT.contains(&field.as_str()))
             {
                 collect(&joined(path, field), node, out);
             }
@@ -76,11 +69,7 @@ fn collect(path: &str, node: &Node, out: &mut Vec<Setting>) {
         },
         Node::List(items) if items.iter().all(|item| matches!(item, Node::Word(_))) => {
             let values: Vec<String> = items.iter().map(|item| value(path, item)).collect();
-            let text = if values.is_empty() {
-                "none".to_owned()
-            } else {
-                values.join(", ")
-            };
+            let text = if values.is_empty() { "none".to_owned() } else { values.join(", ") };
             push(path, &text, out);
         }
         Node::List(items) => {
@@ -100,33 +89,19 @@ const VARIANTS: [&str; 4] = ["shape", "law", "windup", "kind"];
 
 fn joined(path: &str, field: &str) -> String {
     // These say nothing that the rest does not.
-    let silent = [
-        "transfer_function",
-        "coefficients",
-        "shell",
-        "tuner",
-        "settings",
-        "timing",
-    ];
+    let silent = ["transfer_function", "coefficients", "shell", "tuner", "settings", "timing"];
     let field = field.replace('_', " ");
     if silent.contains(&field.replace(' ', "_").as_str()) {
         return path.to_owned();
     }
-    if path.is_empty() {
-        field
-    } else {
-        format!("{path} {field}")
-    }
+    if path.is_empty() { field } else { format!("{path} {field}") }
 }
 
 fn push(path: &str, value: &str, out: &mut Vec<Setting>) {
     let (path, unit) = renamed(path);
     let number = value.starts_with(|c: char| c.is_ascii_digit() || c == '\u{2212}');
-    let value = if number && !unit.is_empty() {
-        format!("{value} {unit}")
-    } else {
-        value.to_owned()
-    };
+    let value =
+        if number && !unit.is_empty() { format!("{value} {unit}") } else { value.to_owned() };
     out.push(Setting { path, value });
 }
 
@@ -150,11 +125,7 @@ fn renamed(path: &str) -> (String, &'static str) {
             return (plain(kept), unit);
         }
     }
-    let unit = if path.ends_with("gains ki") || path.ends_with("nominal ki") {
-        "1/s"
-    } else {
-        ""
-    };
+    let unit = if path.ends_with("gains ki") || path.ends_with("nominal ki") { "1/s" } else { "" };
     (plain(path), unit)
 }
 
@@ -219,10 +190,7 @@ fn words(name: &str) -> String {
 /// The rules of a controller's supervisor, read back from its cells.
 pub(super) fn rules(controller: &fspid_sim::Controller) -> Option<RuleTable> {
     let node = Node::of(controller);
-    let consequents = node
-        .at(&["tuner", "supervisor", "consequents"])?
-        .items()
-        .to_vec();
+    let consequents = node.at(&["tuner", "supervisor", "consequents"])?.items().to_vec();
     let grids: Vec<Grid> = consequents.iter().filter_map(grid).collect();
     <[Grid; 3]>::try_from(grids).ok().map(RuleTable::new)
 }
@@ -231,10 +199,7 @@ pub(super) fn rules(controller: &fspid_sim::Controller) -> Option<RuleTable> {
 fn grid(consequents: &Node) -> Option<Grid> {
     let numbers = |name: &str| -> Option<Vec<usize>> {
         let items = consequents.field(name)?.items();
-        items
-            .iter()
-            .map(|item| item.number().map(|number| number as usize))
-            .collect()
+        items.iter().map(|item| item.number().map(|number| number as usize)).collect()
     };
     let (cells, ends) = (numbers("cells")?, numbers("ends")?);
     let mut rows = [[Label::ZO; 7]; 7];
@@ -248,14 +213,8 @@ fn grid(consequents: &Node) -> Option<Grid> {
 /// What disturbs, in words: "pulse (at 1 s, width 1 s)".
 pub(super) fn disturbance_forms(scenario: &Scenario) -> Vec<String> {
     let node = Node::of(scenario);
-    let disturbances = node
-        .field("disturbances")
-        .map(Node::items)
-        .unwrap_or_default();
-    disturbances
-        .iter()
-        .filter_map(|disturbance| form(disturbance.field("shape")?))
-        .collect()
+    let disturbances = node.field("disturbances").map(Node::items).unwrap_or_default();
+    disturbances.iter().filter_map(|disturbance| form(disturbance.field("shape")?)).collect()
 }
 
 fn form(shape: &Node) -> Option<String> {
@@ -264,9 +223,7 @@ fn form(shape: &Node) -> Option<String> {
     };
     let detail = |(field, node): &(String, Node)| {
         let (name, unit) = renamed(&format!(" {}", field.replace('_', " ")));
-        format!("{} {} {unit}", name.trim(), value(&name, node))
-            .trim_end()
-            .to_owned()
+        format!("{} {} {unit}", name.trim(), value(&name, node)).trim_end().to_owned()
     };
     let details: Vec<String> = fields.iter().map(detail).collect();
     Some(format!("{} ({})", words(name), details.join(", ")))
@@ -306,24 +263,21 @@ mod tests {
                 .collect()
         };
         let flight = rows(&of_flight(&study.scenario));
-        assert!(
-            flight.contains(&"setpoint amplitude = 5 deg".to_owned()),
-            "{flight:#?}"
-        );
+        assert!(flight.contains(&"setpoint amplitude = 5 deg".to_owned()), "{flight:#?}");
         let tuned = rows(&of_controllers(&study.scenario)[1]);
+        assert!(tuned.contains(&"guard limit = 1000000000 deg".to_owned()), "{tuned:#?}");
+        assert!(tuned.contains(&"supervisor out of range = clamp".to_owned()), "{tuned:#?}");
         assert!(
-            tuned.contains(&"guard limit = 1000000000 deg".to_owned()),
+            tuned.iter().any(|row| row == "input scale error = 1 per deg (supervisor units)"),
             "{tuned:#?}"
         );
-        assert!(
-            tuned.contains(&"supervisor out of range = clamp".to_owned()),
-            "{tuned:#?}"
-        );
-        assert!(
-            tuned
-                .iter()
-                .any(|row| row == "input scale error = 1 per deg (supervisor units)"),
-            "{tuned:#?}"
-        );
+    }
+
+    #[test]
+    fn a_disturbance_is_described_by_its_shape_and_times() {
+        let text = file::starter().to_owned()
+            + "\n[[disturbance]]\nkind = \"pulse\"\nenters_at = \"elevator\"\namplitude_deg = 2.0\nat_s = 1.0\nwidth_s = 0.5\n";
+        let study = file::parse(&text, "test.toml", None, &[]).expect("the scenario is right");
+        assert_eq!(disturbance_forms(&study.scenario), ["pulse (at 1 s, width 0.5 s)"]);
     }
 }

@@ -24,9 +24,7 @@ const NAMES: [(Output, &str, &str); 3] = [
 /// Equally spaced values over the range.
 fn nodes(range: f64, count: u32) -> Vec<f64> {
     let last = f64::from(count - 1);
-    (0..count)
-        .map(|k| range * (2.0 * f64::from(k) / last - 1.0))
-        .collect()
+    (0..count).map(|k| range * (2.0 * f64::from(k) / last - 1.0)).collect()
 }
 
 /// The paper's supervisor with this table; `None` for a range that no supervisor may have.
@@ -42,33 +40,21 @@ pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
         let grade = |x: f64| supervisor.grades(x).get(index).copied().unwrap_or(f64::NAN);
         grid.iter().map(|&x| (x, grade(x))).collect::<Vec<_>>()
     };
-    let inputs = SEVEN
-        .iter()
-        .enumerate()
-        .map(|(n, label)| ((*label).to_owned(), curve(n)));
+    let inputs = SEVEN.iter().enumerate().map(|(n, label)| ((*label).to_owned(), curve(n)));
     let spacing = range / 3.0;
     let outputs = SEVEN.iter().zip(-3_i8..).filter_map(|(label, steps)| {
         let centre = f64::from(steps) * spacing;
         let triangle = Triangle::<f64>::new(&[centre, spacing]).ok()?;
         let corners = [centre - spacing, centre, centre + spacing];
-        let points = corners
-            .into_iter()
-            .filter(|x| x.abs() <= range * (1.0 + 1e-9));
-        Some((
-            (*label).to_owned(),
-            points.map(|x| (x, triangle.grade(x))).collect(),
-        ))
+        let points = corners.into_iter().filter(|x| x.abs() <= range * (1.0 + 1e-9));
+        Some(((*label).to_owned(), points.map(|x| (x, triangle.grade(x))).collect()))
     });
     let input_label = "error e, change of error ec (supervisor units)";
     let output_label = "increments \u{394}k_{p}, \u{394}k_{i}, \u{394}k_{d} (supervisor units)";
     vec![
         Figure::new(
             format!("{prefix}-inputs"),
-            memberships(
-                "Input sets of the supervisor",
-                input_label,
-                inputs.collect(),
-            ),
+            memberships("Input sets of the supervisor", input_label, inputs.collect()),
             format!(
                 "Membership functions of both inputs: seven Gaussian sets, neighbours cross at a grade of 0.5 \
                  (half range {}). Computed by the supervisor that flies.",
@@ -77,11 +63,7 @@ pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
         ),
         Figure::new(
             format!("{prefix}-outputs"),
-            memberships(
-                "Output sets of the supervisor",
-                output_label,
-                outputs.collect(),
-            ),
+            memberships("Output sets of the supervisor", output_label, outputs.collect()),
             "Membership functions of the three outputs: seven triangles, cut off at the ends of the range.",
         ),
     ]
@@ -109,13 +91,7 @@ pub(super) fn odd_cells(table: &RuleTable) -> Vec<OddCell> {
                 let found = grid.at(error, change);
                 if found != expected {
                     let there = grid.at(opposite.0, opposite.1);
-                    odd.push(OddCell {
-                        output,
-                        at: (error, change),
-                        found,
-                        opposite,
-                        there,
-                    });
+                    odd.push(OddCell { output, at: (error, change), found, opposite, there });
                 }
             }
         }
@@ -135,22 +111,12 @@ fn counterpart(
         Output::DeltaKd => (error, change.mirrored()),
     };
     let there = grid.at(opposite.0, opposite.1);
-    (
-        opposite,
-        if output == Output::DeltaKd {
-            there
-        } else {
-            there.mirrored()
-        },
-    )
+    (opposite, if output == Output::DeltaKd { there } else { there.mirrored() })
 }
 
 /// Cells that the paper prints with a double slash before the kd label (erratum E7).
-const DOUBLE_SLASHES: [(Label, Label); 3] = [
-    (Label::NB, Label::PB),
-    (Label::PB, Label::NB),
-    (Label::PB, Label::NM),
-];
+const DOUBLE_SLASHES: [(Label, Label); 3] =
+    [(Label::NB, Label::PB), (Label::PB, Label::NB), (Label::PB, Label::NM)];
 
 /// The three grids of a table with their odd cells marked.
 pub(super) fn rule_tables(
@@ -172,11 +138,7 @@ pub(super) fn rule_tables(
             column_header: "change of error ec".to_owned(),
             labels: SEVEN.map(str::to_owned).to_vec(),
             cells: cells.collect(),
-            marked: if marks == Marks::None {
-                Vec::new()
-            } else {
-                marked(output, &odd, marks)
-            },
+            marked: if marks == Marks::None { Vec::new() } else { marked(output, &odd, marks) },
         };
         let plain = symbol.replace("_{", "").replace('}', "");
         let caption =
@@ -251,19 +213,15 @@ pub(super) fn surfaces(
             z_label: symbol.to_owned(),
             xs: axis.clone(),
             ys: axis.clone(),
-            values: answers
-                .iter()
-                .map(|row| row.iter().map(value).collect())
-                .collect(),
+            values: answers.iter().map(|row| row.iter().map(value).collect()).collect(),
             limit: Some(range),
         };
         let plain = symbol.replace("_{", "").replace('}', "");
         for kind in kinds {
             let (word, how) = match kind {
-                SurfaceKind::Map => (
-                    "map",
-                    "lines of equal value: dashed where negative, thick at zero",
-                ),
+                SurfaceKind::Map => {
+                    ("map", "lines of equal value: dashed where negative, thick at zero")
+                }
                 SurfaceKind::View => ("view", "the same, seen in space"),
             };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
@@ -292,33 +250,20 @@ mod tests {
     fn the_mirrored_table_has_no_odd_cell_left_by_its_own_symmetry() {
         let printed = rule_table("printed").expect("shipped");
         let odd = odd_cells(&printed);
-        let kp: Vec<_> = odd
-            .iter()
-            .filter(|cell| cell.output == Output::DeltaKp)
-            .collect();
+        let kp: Vec<_> = odd.iter().filter(|cell| cell.output == Output::DeltaKp).collect();
         // An odd cell and its opposite come together.
         assert!(!kp.is_empty() && kp.len() % 2 == 0, "{kp:?}");
-        assert!(
-            kp.iter().any(|cell| cell.at == (Label::NB, Label::PS)),
-            "{kp:?}"
-        );
+        assert!(kp.iter().any(|cell| cell.at == (Label::NB, Label::PS)), "{kp:?}");
     }
 
     #[test]
     fn at_rest_the_printed_table_raises_kp_and_lowers_kd_in_proportion_to_its_range() {
         let printed = rule_table("printed").expect("shipped");
-        let five = exact(&printed, 5.0)
-            .and_then(|s| at_rest(&s))
-            .expect("an answer");
-        let forty = exact(&printed, 40.0)
-            .and_then(|s| at_rest(&s))
-            .expect("an answer");
+        let five = exact(&printed, 5.0).and_then(|s| at_rest(&s)).expect("an answer");
+        let forty = exact(&printed, 40.0).and_then(|s| at_rest(&s)).expect("an answer");
         for (small, large) in five.into_iter().zip(forty) {
             assert!((8.0 * small - large).abs() < 1e-9);
         }
-        assert!(
-            (five[0] - 0.2165).abs() < 1e-4 && (five[2] + 1.6666).abs() < 1e-4,
-            "{five:?}"
-        );
+        assert!((five[0] - 0.2165).abs() < 1e-4 && (five[2] + 1.6666).abs() < 1e-4, "{five:?}");
     }
 }

@@ -43,10 +43,8 @@ fn style(name: &str, index: usize) -> SeriesStyle {
 impl Drawing<'_> {
     /// Draws pitch, command and, for self-tuning controllers, the three gains.
     pub(super) fn render(&self) -> Svg {
-        let mut panels = vec![
-            self.pitch(),
-            self.angle("command u (deg)", |r| &r.trace.command_rad),
-        ];
+        let mut panels =
+            vec![self.pitch(), self.angle("command u (deg)", |r| &r.trace.command_rad)];
         if self.detailed {
             panels.push(self.angle("elevator (deg)", |r| &r.trace.elevator_rad));
         }
@@ -55,12 +53,7 @@ impl Drawing<'_> {
             panels.push(self.gain("k_{i} (1/s)", |gains| gains.ki));
             panels.push(self.gain("k_{d} (s)", |gains| gains.kd));
         }
-        LineFigure {
-            title: self.title.to_owned(),
-            panels,
-            width_px: self.width_px,
-        }
-        .render()
+        LineFigure { title: self.title.to_owned(), panels, width_px: self.width_px }.render()
     }
 
     fn flown(&self) -> impl Iterator<Item = (usize, &ControllerResult)> {
@@ -70,11 +63,7 @@ impl Drawing<'_> {
     }
 
     fn is_tuned(&self, name: &str) -> bool {
-        let named = self
-            .scenario
-            .controllers
-            .iter()
-            .find(|named| named.name == name);
+        let named = self.scenario.controllers.iter().find(|named| named.name == name);
         named.is_some_and(|named| matches!(named.controller, Controller::SelfTuning(_)))
     }
 
@@ -96,10 +85,8 @@ impl Drawing<'_> {
     fn pitch(&self) -> LinePanel {
         let in_degrees = |values: &[f64]| values.iter().copied().map(degrees).collect::<Vec<_>>();
         // The longest trace shows the whole set-point.
-        let longest = self
-            .flown()
-            .map(|(_, result)| &result.trace)
-            .max_by_key(|trace| trace.rows());
+        let longest =
+            self.flown().map(|(_, result)| &result.trace).max_by_key(|trace| trace.rows());
         let mut series = Vec::new();
         if let Some(trace) = longest {
             series.push(Series {
@@ -116,21 +103,14 @@ impl Drawing<'_> {
             y_label: "pitch angle (deg)".to_owned(),
             x_label: "time (s)".to_owned(),
             series,
-            bands: if self.detailed {
-                self.bands()
-            } else {
-                Vec::new()
-            },
+            bands: if self.detailed { self.bands() } else { Vec::new() },
             x_range: self.window(),
             y_range,
         }
     }
 
     fn angle(&self, label: &str, of: fn(&ControllerResult) -> &Vec<f64>) -> LinePanel {
-        let series = self.series(
-            |result| of(result).iter().copied().map(degrees).collect(),
-            true,
-        );
+        let series = self.series(|result| of(result).iter().copied().map(degrees).collect(), true);
         let y_range = self.range(&[], of).or_else(|| self.without_spikes(of));
         let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
         LinePanel {
@@ -146,18 +126,12 @@ impl Drawing<'_> {
     /// A range without the spikes of single samples, if there are any.
     fn without_spikes(&self, of: fn(&ControllerResult) -> &Vec<f64>) -> Option<(f64, f64)> {
         let trace = |(_, result): (usize, &'_ ControllerResult)| {
-            shown(&result.trace, of(result))
-                .iter()
-                .copied()
-                .map(degrees)
-                .collect::<Vec<f64>>()
+            shown(&result.trace, of(result)).iter().copied().map(degrees).collect::<Vec<f64>>()
         };
         let mut values: Vec<f64> = self.flown().flat_map(trace).collect();
         values.sort_by(f64::total_cmp);
-        let (low, high) = (
-            *values.get(values.len() / 200)?,
-            *values.get(values.len() * 199 / 200)?,
-        );
+        let (low, high) =
+            (*values.get(values.len() / 200)?, *values.get(values.len() * 199 / 200)?);
         let (lowest, highest) = (*values.first()?, *values.last()?);
         let usual = low.abs().max(high.abs());
         let margin = 0.15 * (high - low);
@@ -171,12 +145,9 @@ impl Drawing<'_> {
         if self.range(&[], command).is_some() || self.without_spikes(command).is_none() {
             return String::new();
         }
-        let largest = self
-            .flown()
-            .flat_map(|(_, result)| shown(&result.trace, &result.trace.command_rad));
-        let largest = largest
-            .map(|command| degrees(command.abs()))
-            .fold(0.0, f64::max);
+        let largest =
+            self.flown().flat_map(|(_, result)| shown(&result.trace, &result.trace.command_rad));
+        let largest = largest.map(|command| degrees(command.abs())).fold(0.0, f64::max);
         format!(
             " At a step the derivative of the error moves the command by up to {} deg for a sample; the panel leaves \
              these spikes out.",
@@ -188,13 +159,7 @@ impl Drawing<'_> {
         let mut series = self.series(|result| result.trace.gains.iter().map(of).collect(), true);
         series.retain(|series| self.is_tuned(&series.name));
         let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
-        LinePanel {
-            y_label,
-            x_label,
-            series,
-            x_range: self.window(),
-            ..LinePanel::default()
-        }
+        LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() }
     }
 
     /// The whole flight, also where a trace ends early.
@@ -213,14 +178,9 @@ impl Drawing<'_> {
         let good = good.flat_map(|(_, result)| of(result).iter().copied().map(degrees));
         let commanded = and.iter().filter(|s| s.style == SeriesStyle::Setpoint);
         let commanded = commanded.flat_map(|series| series.y.iter().copied());
-        let largest = good
-            .chain(commanded)
-            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let bound = if largest > 0.0 {
-            HEADROOM * largest
-        } else {
-            10.0
-        };
+        let largest =
+            good.chain(commanded).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let bound = if largest > 0.0 { HEADROOM * largest } else { 10.0 };
         Some((-bound, bound))
     }
 
@@ -231,15 +191,9 @@ impl Drawing<'_> {
         };
         let mut bands: Vec<Band> = Vec::new();
         for edge in &result.metrics.edges {
-            let (level, half) = (
-                degrees(edge.to_rad),
-                0.02 * degrees((edge.to_rad - edge.from_rad).abs()),
-            );
-            let band = Band {
-                label: String::new(),
-                lower: level - half,
-                upper: level + half,
-            };
+            let (level, half) =
+                (degrees(edge.to_rad), 0.02 * degrees((edge.to_rad - edge.from_rad).abs()));
+            let band = Band { label: String::new(), lower: level - half, upper: level + half };
             if !bands.contains(&band) {
                 bands.push(band);
             }
@@ -261,18 +215,12 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
         [.., before, last] => before.to_bits() != last.to_bits(),
         _ => false,
     };
-    let end = if steps_at_end {
-        column.len().saturating_sub(1)
-    } else {
-        column.len()
-    };
+    let end = if steps_at_end { column.len().saturating_sub(1) } else { column.len() };
     column.get(..end).unwrap_or(column)
 }
 
 /// True for a flight without measures.
 pub(super) fn fails(result: &ControllerResult) -> bool {
-    matches!(
-        result.metrics.verdict,
-        Verdict::Diverged { .. } | Verdict::Unstable { .. }
-    ) || result.trace.outcome != Outcome::Completed
+    matches!(result.metrics.verdict, Verdict::Diverged { .. } | Verdict::Unstable { .. })
+        || result.trace.outcome != Outcome::Completed
 }

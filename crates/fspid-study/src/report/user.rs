@@ -75,21 +75,12 @@ fn outcome(result: &ControllerResult) -> Outcome {
             with_unit(first.overshoot_pct, 2, "%")
         ),
     };
-    Outcome {
-        name: result.name.clone(),
-        class,
-        word,
-        detail,
-    }
+    Outcome { name: result.name.clone(), class, word, detail }
 }
 
 fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> String {
     let text = measured(value, decimals);
-    if value.is_ok() {
-        format!("{text} {unit}")
-    } else {
-        format!("absent ({text})")
-    }
+    if value.is_ok() { format!("{text} {unit}") } else { format!("absent ({text})") }
 }
 
 impl User<'_> {
@@ -112,11 +103,8 @@ impl User<'_> {
             Table::new("Requirements: the worst of all steps counts.", &head).in_cards();
         for judgement in &self.simulation.judgements {
             let requirement = &judgement.requirement;
-            let verdict = if judgement.met {
-                ("met", "\u{2713} met")
-            } else {
-                ("unmet", "\u{2717} NOT MET")
-            };
+            let verdict =
+                if judgement.met { ("met", "\u{2713} met") } else { ("unmet", "\u{2717} NOT MET") };
             table.push(vec![
                 Cell::text(&judgement.controller),
                 Cell::text(format!(
@@ -125,10 +113,7 @@ impl User<'_> {
                     exact(requirement.most)
                 )),
                 Cell::measured(judgement.value, 4),
-                Cell {
-                    class: verdict.0,
-                    ..Cell::text(verdict.1)
-                },
+                Cell { class: verdict.0, ..Cell::text(verdict.1) },
             ]);
         }
         table
@@ -143,13 +128,8 @@ impl User<'_> {
             detailed: true,
             width_px: 720.0,
         };
-        let failing: Vec<&str> = self
-            .simulation
-            .results
-            .iter()
-            .filter(|r| fails(r))
-            .map(|r| r.name.as_str())
-            .collect();
+        let failing: Vec<&str> =
+            self.simulation.results.iter().filter(|r| fails(r)).map(|r| r.name.as_str()).collect();
         let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
                        of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
                        self-tuning controllers.";
@@ -175,18 +155,10 @@ impl User<'_> {
     /// One part for each self-tuning controller; no section without one.
     fn tuning(self) -> Option<Section> {
         let controllers = &self.study.scenario.controllers;
-        let parts: Vec<Tuning> = controllers
-            .iter()
-            .enumerate()
-            .filter_map(|(n, c)| tuning(n, c))
-            .collect();
+        let parts: Vec<Tuning> =
+            controllers.iter().enumerate().filter_map(|(n, c)| tuning(n, c)).collect();
         (!parts.is_empty()).then(|| {
-            Section::of(
-                "tuning",
-                "Self-tuning",
-                "user",
-                context! { part => "tuning", parts },
-            )
+            Section::of("tuning", "Self-tuning", "user", context! { part => "tuning", parts })
         })
     }
 
@@ -251,12 +223,7 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
 fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> Table {
     let caption = "At rest, with error and change zero. The last column is what the gains become after one second \
                    under an accumulating law, and at once under a memoryless one.";
-    let head = [
-        "gain",
-        "rules add, supervisor units",
-        "nominal gain",
-        "gain at rest",
-    ];
+    let head = ["gain", "rules add, supervisor units", "nominal gain", "gain at rest"];
     let mut table = Table::new(caption, &head);
     let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
     let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);

@@ -22,10 +22,7 @@ impl Printed {
     /// Half a unit of its last digit.
     #[must_use]
     pub fn half_unit(self) -> f64 {
-        let decimals = self
-            .0
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len());
+        let decimals = self.0.split_once('.').map_or(0, |(_, decimals)| decimals.len());
         (0..decimals).fold(0.5, |half, _| half / 10.0)
     }
 
@@ -33,11 +30,7 @@ impl Printed {
     #[must_use]
     pub fn judge(self, ours: f64) -> Status {
         let (paper, distance) = (self.value(), (ours - self.value()).abs());
-        let accepted = if paper == 0.0 {
-            Self::ZERO_ACCEPTS
-        } else {
-            self.half_unit()
-        };
+        let accepted = if paper == 0.0 { Self::ZERO_ACCEPTS } else { self.half_unit() };
         // A hair of rounding at the very edge of a digit is not a miss.
         if distance <= accepted * (1.0 + 1e-9) {
             Status::Reproduced
@@ -64,12 +57,8 @@ pub enum Status {
 
 impl Status {
     /// All of them, best first.
-    pub const ALL: [Self; 4] = [
-        Self::Reproduced,
-        Self::Approached,
-        Self::Contradicted,
-        Self::Undetermined,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Reproduced, Self::Approached, Self::Contradicted, Self::Undetermined];
 
     /// Name in answers.
     #[must_use]
@@ -146,12 +135,7 @@ const fn reading(
     edge: usize,
     measure: Measure,
 ) -> Reading {
-    Reading {
-        figure,
-        controllers,
-        edge,
-        measure,
-    }
+    Reading { figure, controllers, edge, measure }
 }
 
 const fn value(
@@ -164,13 +148,7 @@ const fn value(
         Measure::RiseTime | Measure::SettlingTime => "s",
         Measure::Overshoot | Measure::FinalError => "%",
     };
-    Claim {
-        id,
-        quantity,
-        paper: Printed(paper),
-        unit,
-        source: Quantity::Value(reading),
-    }
+    Claim { id, quantity, paper: Printed(paper), unit, source: Quantity::Value(reading) }
 }
 
 const fn later(
@@ -181,10 +159,7 @@ const fn later(
     reading: Reading,
 ) -> Claim {
     let source = Quantity::Later { first, reading };
-    Claim {
-        source,
-        ..value(id, quantity, paper, reading)
-    }
+    Claim { source, ..value(id, quantity, paper, reading) }
 }
 
 const fn percent(
@@ -194,18 +169,8 @@ const fn percent(
     [first, later]: [&'static str; 2],
     of_later: bool,
 ) -> Claim {
-    let source = Quantity::Percent {
-        first,
-        later,
-        of_later,
-    };
-    Claim {
-        id,
-        quantity,
-        paper: Printed(paper),
-        unit: "%",
-        source,
-    }
+    let source = Quantity::Percent { first, later, of_later };
+    Claim { id, quantity, paper: Printed(paper), unit: "%", source }
 }
 
 const PC: &[&str] = &["PC"];
@@ -302,11 +267,7 @@ mod tests {
     fn every_claim_has_its_own_id_a_number_and_claims_to_compare_with() {
         for (index, claim) in CLAIMS.iter().enumerate() {
             assert!(claim.paper.value().is_finite(), "{}", claim.id);
-            assert!(
-                !CLAIMS[..index].iter().any(|other| other.id == claim.id),
-                "{}",
-                claim.id
-            );
+            assert!(!CLAIMS[..index].iter().any(|other| other.id == claim.id), "{}", claim.id);
             let before = |id: &str| CLAIMS[..index].iter().any(|other| other.id == id);
             match claim.source {
                 Quantity::Value(_) => {}

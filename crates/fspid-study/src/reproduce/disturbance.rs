@@ -53,10 +53,7 @@ pub struct Sweep {
 impl Sweep {
     /// Cost of one controller over that of another at each size; absent where either is.
     pub fn ratios(&self, of: usize, over: usize) -> impl Iterator<Item = Result<f64, Absent>> + '_ {
-        self.costs[of]
-            .iter()
-            .zip(&self.costs[over])
-            .map(|(a, b)| Ok((*a)? / (*b)?))
+        self.costs[of].iter().zip(&self.costs[over]).map(|(a, b)| Ok((*a)? / (*b)?))
     }
 }
 
@@ -75,16 +72,8 @@ pub fn cost(simulation: &Simulation, controller: &str, size_deg: f64) -> Result<
 #[must_use]
 pub fn flight_cost(trace: &Trace, size_deg: f64) -> f64 {
     let dt_s = trace.time_s.get(1).copied().unwrap_or(0.0);
-    let start = trace
-        .time_s
-        .iter()
-        .position(|&time| time >= START_S)
-        .unwrap_or(0);
-    let errors = trace
-        .setpoint_rad
-        .iter()
-        .zip(&trace.theta_rad)
-        .map(|(r, y)| r - y);
+    let start = trace.time_s.iter().position(|&time| time >= START_S).unwrap_or(0);
+    let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
     let itae = ErrorIntegrals::of(errors, dt_s, &[0, start]).itae_rad_s2;
     let variation = CommandEffort::of(&trace.command_rad, dt_s).variation_rad;
     (degrees(itae) + VARIATION_WEIGHT * degrees(variation)) / size_deg
@@ -110,11 +99,7 @@ pub fn sweep(library: &Library) -> Result<Vec<Sweep>, Problems> {
                     });
                 }
             }
-            sweeps.push(Sweep {
-                shape,
-                entry,
-                costs,
-            });
+            sweeps.push(Sweep { shape, entry, costs });
         }
     }
     Ok(sweeps)

@@ -134,10 +134,7 @@ impl Library {
 
     /// The text of the scenario with this name; empty if there is none, which no reader accepts.
     fn text(&self, name: &str) -> &str {
-        self.0
-            .iter()
-            .find(|stored| stored.name == name)
-            .map_or("", |stored| &stored.text)
+        self.0.iter().find(|stored| stored.name == name).map_or("", |stored| &stored.text)
     }
 
     /// Reads a scenario, with values set as on the command line.

@@ -29,10 +29,7 @@ pub struct JudgedClaim {
 pub(super) fn judge(figures: &[FlownFigure]) -> Vec<JudgedClaim> {
     let own = flights(Fit::Own, figures);
     let shared = flights(Fit::Shared, figures);
-    CLAIMS
-        .iter()
-        .map(|claim| judge_claim(claim, &own, &shared))
-        .collect()
+    CLAIMS.iter().map(|claim| judge_claim(claim, &own, &shared)).collect()
 }
 
 /// The flights of all figures under one fit.
@@ -64,15 +61,7 @@ fn judge_claim(
         Ok(_) => note(claim, claim.source),
     };
     let assumptions = figure.map_or(&[][..], |figure| figure.assumptions);
-    JudgedClaim {
-        claim: *claim,
-        ours,
-        shared,
-        status,
-        shared_status,
-        assumptions,
-        note,
-    }
+    JudgedClaim { claim: *claim, ours, shared, status, shared_status, assumptions, note }
 }
 
 fn note(claim: &Claim, source: Quantity) -> String {
@@ -94,16 +83,10 @@ fn note(claim: &Claim, source: Quantity) -> String {
         Quantity::Percent { of_later: true, .. } => {
             "per cent of the later value, as the paper does"
         }
-        Quantity::Percent {
-            of_later: false, ..
-        } => "per cent of the first value",
+        Quantity::Percent { of_later: false, .. } => "per cent of the first value",
         Quantity::Value(_) => "",
     };
-    [special, reading]
-        .into_iter()
-        .filter(|text| !text.is_empty())
-        .collect::<Vec<_>>()
-        .join("; ")
+    [special, reading].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// Number and status of a claim.

@@ -123,12 +123,7 @@ impl Reproduction {
             for figure in FIGURES {
                 let study = library.figure(fit, figure.id)?;
                 let simulation = Simulation::of(&study)?;
-                figures.push(FlownFigure {
-                    figure: *figure,
-                    fit,
-                    study,
-                    simulation,
-                });
+                figures.push(FlownFigure { figure: *figure, fit, study, simulation });
             }
         }
         let sweeps = disturbance::sweep(library)?;
@@ -164,22 +159,13 @@ impl Reproduction {
     /// The figure under a fit.
     #[must_use]
     pub fn figure(&self, fit: Fit, id: &str) -> Option<&FlownFigure> {
-        self.figures
-            .iter()
-            .find(|flown| flown.fit == fit && flown.figure.id == id)
+        self.figures.iter().find(|flown| flown.fit == fit && flown.figure.id == id)
     }
 
     /// Id and status of every claim, numbers first.
     pub fn statuses(&self) -> impl Iterator<Item = (&'static str, Status)> + '_ {
-        let numbers = self
-            .claims
-            .iter()
-            .map(|judged| (judged.claim.id, judged.status));
-        numbers.chain(
-            self.statements
-                .iter()
-                .map(|judged| (judged.id, judged.status)),
-        )
+        let numbers = self.claims.iter().map(|judged| (judged.claim.id, judged.status));
+        numbers.chain(self.statements.iter().map(|judged| (judged.id, judged.status)))
     }
 
     /// How many claims have this status.
@@ -237,8 +223,5 @@ fn digest(library: &Library) -> String {
         hash.update(stored.text.as_bytes());
         hash.update([0]);
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -67,17 +67,11 @@ pub(super) struct Setting {
 }
 
 /// Figs 5 and 6.
-pub(super) const FULL_MODEL: Setting = Setting {
-    plant: "b747-paper",
-    range: 5.0,
-    error_sign: ErrorSign::SetpointMinusMeasurement,
-};
+pub(super) const FULL_MODEL: Setting =
+    Setting { plant: "b747-paper", range: 5.0, error_sign: ErrorSign::SetpointMinusMeasurement };
 /// Figs 7, 8 and 9.
-pub(super) const SHORT_PERIOD: Setting = Setting {
-    plant: "navion-paper",
-    range: 40.0,
-    error_sign: ErrorSign::MeasurementMinusSetpoint,
-};
+pub(super) const SHORT_PERIOD: Setting =
+    Setting { plant: "navion-paper", range: 40.0, error_sign: ErrorSign::MeasurementMinusSetpoint };
 
 /// A controller of a figure.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,10 +140,7 @@ impl FlightModel {
         };
         let controllers = self.controllers.iter().map(|model| {
             let controller = self.controller(model, table)?;
-            Ok(NamedController {
-                name: model.name.clone(),
-                controller,
-            })
+            Ok(NamedController { name: model.name.clone(), controller })
         });
         Ok(Scenario {
             name: self.name.clone(),
@@ -170,17 +161,11 @@ impl FlightModel {
     ) -> Result<Controller, SimError> {
         let [kp, ki, kd] = model.gains;
         let gains = Gains { kp, ki, kd };
-        let shell = Shell {
-            rate_gain_s: model.rate_gain,
-            ..Shell::sampled_every(SAMPLE_PERIOD_S)
-        };
+        let shell = Shell { rate_gain_s: model.rate_gain, ..Shell::sampled_every(SAMPLE_PERIOD_S) };
         let Some(scales) = model.scales else {
             return Ok(Controller::Fixed(Pid::new(gains, shell)?));
         };
-        let shell = Shell {
-            integral: IntegralForm::Literal,
-            ..shell
-        };
+        let shell = Shell { integral: IntegralForm::Literal, ..shell };
         let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
         let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
         let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
@@ -193,11 +178,7 @@ impl FlightModel {
                 change_per_rad: degrees(scales.change),
             },
             output_scale: Gains { kp, ki, kd },
-            gain_limits: Some(GainLimits {
-                kp: floor,
-                ki: floor,
-                kd: floor,
-            }),
+            gain_limits: Some(GainLimits { kp: floor, ki: floor, kd: floor }),
             ..TunerSettings::literal()
         };
         let tuner = SelfTuner::new(gains, supervisor, settings)?;
@@ -211,18 +192,9 @@ impl FlightModel {
         for line in heading {
             push(&mut out, format_args!("# {line}"));
         }
-        push(
-            &mut out,
-            format_args!("schema = 1\nname = \"{}\"", self.name),
-        );
-        push(
-            &mut out,
-            format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant),
-        );
-        push(
-            &mut out,
-            format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"),
-        );
+        push(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
+        push(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
+        push(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
         let setpoint = match self.command {
             Command::Step { .. } | Command::Rest { .. } => "kind = \"step\"".to_owned(),
             Command::Square { half_period_s, .. } => {
@@ -236,10 +208,7 @@ impl FlightModel {
                 "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
             ),
         );
-        push(
-            &mut out,
-            format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"),
-        );
+        push(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"));
         for controller in &self.controllers {
             self.push_controller(&mut out, controller);
         }
@@ -247,22 +216,14 @@ impl FlightModel {
     }
 
     fn push_controller(&self, out: &mut String, controller: &ControllerModel) {
-        let ControllerModel {
-            name,
-            gains: [kp, ki, kd],
-            rate_gain,
-            scales,
-        } = controller;
+        let ControllerModel { name, gains: [kp, ki, kd], rate_gain, scales } = controller;
         push(out, format_args!("\n[[controller]]\nname = \"{name}\""));
         match scales {
             None if *ki == 0.0 && *kd == 0.0 => {
                 push(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
             }
             None => {
-                push(
-                    out,
-                    format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"),
-                );
+                push(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
             }
             Some(_) => {
                 push(
@@ -313,11 +274,7 @@ mod tests {
     use crate::file;
 
     fn model(setting: Setting, command: Command, rate_gain: f64) -> FlightModel {
-        let scales = Scales {
-            error: 23.71,
-            change: 29.5,
-            output: [0.28, 0.0096, 0.034],
-        };
+        let scales = Scales { error: 23.71, change: 29.5, output: [0.28, 0.0096, 0.034] };
         let controller = |name: &str, gains, scales| ControllerModel {
             name: name.to_owned(),
             gains,

@@ -57,11 +57,7 @@ impl Evidence<'_> {
                 "continuous disturbance: FSPID better than CPID",
                 "continuous",
             ),
-            self.disturbances(
-                "F7.2",
-                "abrupt disturbance: FSPID better than CPID",
-                "abrupt",
-            ),
+            self.disturbances("F7.2", "abrupt disturbance: FSPID better than CPID", "abrupt"),
             self.damping(),
             self.adaptation(),
             self.pid_against_p(),
@@ -70,14 +66,11 @@ impl Evidence<'_> {
     }
 
     fn figure(&self, id: &str) -> Option<&FlownFigure> {
-        self.figures
-            .iter()
-            .find(|flown| flown.fit == Fit::Own && flown.figure.id == id)
+        self.figures.iter().find(|flown| flown.fit == Fit::Own && flown.figure.id == id)
     }
 
     fn result(&self, figure: &str, controller: &str) -> Option<&ControllerResult> {
-        self.figure(figure)
-            .and_then(|flown| flown.simulation.result(controller))
+        self.figure(figure).and_then(|flown| flown.simulation.result(controller))
     }
 
     /// F6.1: the proportional loop of Fig. 5 without its gyro.
@@ -86,11 +79,7 @@ impl Evidence<'_> {
         let (status, ours) = match answer {
             Some((damping, radius)) => {
                 // Undamped to the eye: less than a tenth of critical, or growing.
-                let status = if damping < 0.1 {
-                    Status::Reproduced
-                } else {
-                    Status::Contradicted
-                };
+                let status = if damping < 0.1 { Status::Reproduced } else { Status::Contradicted };
                 let way = if radius < 1.0 { "decays" } else { "grows" };
                 let text = format!(
                     "the gain of Fig. 5 without the gyro oscillates with a damping ratio of \
@@ -98,10 +87,7 @@ impl Evidence<'_> {
                 );
                 (status, text)
             }
-            None => (
-                Status::Undetermined,
-                "the loop could not be analysed".to_owned(),
-            ),
+            None => (Status::Undetermined, "the loop could not be analysed".to_owned()),
         };
         JudgedStatement {
             id: "F6.1",
@@ -147,23 +133,16 @@ impl Evidence<'_> {
 
     /// S1: without the gyro the PIDs damp the loop and the proportional controller does not.
     fn damping(&self) -> JudgedStatement {
-        let settled = |name: &str| {
-            self.result("6", name)
-                .map(|result| result.metrics.verdict.to_string())
-        };
-        let damping = self
-            .figure("6")
-            .and_then(proportional_damping)
-            .map(|(ratio, _)| ratio);
+        let settled =
+            |name: &str| self.result("6", name).map(|result| result.metrics.verdict.to_string());
+        let damping = self.figure("6").and_then(proportional_damping).map(|(ratio, _)| ratio);
         let overshoot = |name: &str| {
             let step = self.result("6", name)?.metrics.first_step();
             step.overshoot_pct.ok()
         };
         let (pids, fspids) = (["CPID 1", "CPID 2"], ["FSPID 1", "FSPID 2"]);
         let calm = |names: [&str; 2]| {
-            names
-                .iter()
-                .all(|name| self.result("6", name).is_some_and(oscillation_dies))
+            names.iter().all(|name| self.result("6", name).is_some_and(oscillation_dies))
         };
         let status = match damping {
             Some(ratio) if ratio < 0.1 && calm(pids) && calm(fspids) => Status::Reproduced,
@@ -205,7 +184,9 @@ impl Evidence<'_> {
         let pairs: Option<Vec<(f64, f64, f64)>> = self
             .long_term
             .iter()
-            .map(|(share, flight)| Some((*share, growth(flight, "FSPID")?, growth(flight, "CPID")?)))
+            .map(|(share, flight)| {
+                Some((*share, growth(flight, "FSPID")?, growth(flight, "CPID")?))
+            })
             .collect();
         let (status, ours) = match pairs {
             Some(pairs) => {
@@ -241,20 +222,13 @@ impl Evidence<'_> {
         let ratio = |figure: &str, cpid: &str| {
             let iae = |name: &str| {
                 let result = self.result(figure, name)?;
-                result
-                    .metrics
-                    .integrals
-                    .ok()
-                    .map(|integrals| integrals.itae_rad_s2)
+                result.metrics.integrals.ok().map(|integrals| integrals.itae_rad_s2)
             };
             Some(iae(cpid)? / iae("PC")?)
         };
         let ratios =
             [("5", "CPID"), ("6", "CPID 1"), ("6", "CPID 2")].map(|(f, c)| (f, c, ratio(f, c)));
-        let won = ratios
-            .iter()
-            .filter(|(.., ratio)| ratio.is_some_and(|r| r < 1.0))
-            .count();
+        let won = ratios.iter().filter(|(.., ratio)| ratio.is_some_and(|r| r < 1.0)).count();
         let status = match won {
             3 => Status::Reproduced,
             2 => Status::Approached,
@@ -282,11 +256,7 @@ impl Evidence<'_> {
         let kd = rule_one(table, Output::DeltaKd, |label| label <= Label::ZO);
         let total = kp.0 + ki.0 + kd.0;
         let cells = kp.1 + ki.1 + kd.1;
-        let status = if total == cells {
-            Status::Reproduced
-        } else {
-            Status::Contradicted
-        };
+        let status = if total == cells { Status::Reproduced } else { Status::Contradicted };
         let positive_kp = positive_error_cells(table);
         JudgedStatement {
             id: "S4",
@@ -313,27 +283,18 @@ fn rule_one(table: &RuleTable, output: Output, asked: impl Fn(Label) -> bool) ->
             .flat_map(|error| Label::ALL.into_iter().map(move |change| (error, change)))
     };
     let grid = table.grid(output);
-    (
-        cells().filter(|(e, c)| asked(grid.at(*e, *c))).count(),
-        cells().count(),
-    )
+    (cells().filter(|(e, c)| asked(grid.at(*e, *c))).count(), cells().count())
 }
 
 fn positive_error_cells(table: &RuleTable) -> usize {
     let grid = table.grid(Output::DeltaKp);
-    Label::ALL
-        .into_iter()
-        .filter(|change| grid.at(Label::PB, *change) > Label::ZO)
-        .count()
+    Label::ALL.into_iter().filter(|change| grid.at(Label::PB, *change) > Label::ZO).count()
 }
 
 /// Damping ratio of the dominant oscillation of the proportional loop, and its spectral radius.
 fn proportional_damping(flown: &FlownFigure) -> Option<(f64, f64)> {
     let scenario = &flown.study.scenario;
-    let named = scenario
-        .controllers
-        .iter()
-        .find(|named| named.name == "PC")?;
+    let named = scenario.controllers.iter().find(|named| named.name == "PC")?;
     let Controller::Fixed(pid) = named.controller else {
         return None;
     };
@@ -356,11 +317,7 @@ fn oscillation_dies(result: &ControllerResult) -> bool {
     let last = theta.get(theta.len() * 3 / 4..).unwrap_or_default();
     let highest = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = last.iter().copied().fold(f64::INFINITY, f64::min);
-    let step = result
-        .metrics
-        .edges
-        .first()
-        .map_or(0.0, |edge| (edge.to_rad - edge.from_rad).abs());
+    let step = result.metrics.edges.first().map_or(0.0, |edge| (edge.to_rad - edge.from_rad).abs());
     result.metrics.integrals.is_ok() && highest - lowest < 0.1 * step
 }
 

@@ -31,11 +31,9 @@ pub(super) fn figure_of(claim: &Claim) -> &'static str {
 pub(super) fn readings(of: &Claim) -> Vec<Reading> {
     match of.source {
         Quantity::Value(reading) | Quantity::Later { reading, .. } => vec![reading],
-        Quantity::Percent { first, later, .. } => [first, later]
-            .into_iter()
-            .filter_map(claim)
-            .flat_map(readings)
-            .collect(),
+        Quantity::Percent { first, later, .. } => {
+            [first, later].into_iter().filter_map(claim).flat_map(readings).collect()
+        }
     }
 }
 
@@ -46,11 +44,7 @@ pub(super) fn readings(of: &Claim) -> Vec<Reading> {
 pub(super) fn number(of: &Claim, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
     match of.source {
         Quantity::Value(reading) | Quantity::Later { reading, .. } => read(reading, flights),
-        Quantity::Percent {
-            first,
-            later,
-            of_later,
-        } => {
+        Quantity::Percent { first, later, of_later } => {
             let named = |id| claim(id).map_or(Err(Absent::NoStep), |c| number(c, flights));
             let (first, later) = (named(first)?, named(later)?);
             Ok(100.0 * (later - first).abs() / if of_later { later } else { first })
@@ -66,9 +60,7 @@ fn read(reading: Reading, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
             .iter()
             .find(|flight| flight.figure == reading.figure && flight.controller == *name)
             .ok_or(Absent::NoStep)?;
-        let value = flight
-            .metrics
-            .of_step(reading.edge, |step| reading.measure.of(step))?;
+        let value = flight.metrics.of_step(reading.edge, |step| reading.measure.of(step))?;
         worst = worst.max(value.abs());
     }
     Ok(worst)

@@ -26,31 +26,20 @@ pub fn fallen(reproduction: &Reproduction) -> Vec<Fallen> {
     let mut fallen = Vec::new();
     for (id, status) in &table {
         let recorded = status.as_str().unwrap_or_default();
-        let now = reproduction
-            .statuses()
-            .find(|(of, _)| of == id)
-            .map(|(_, status)| status);
+        let now = reproduction.statuses().find(|(of, _)| of == id).map(|(_, status)| status);
         let holds = match (Status::from_name(recorded), now) {
             (Some(recorded), Some(now)) => now <= recorded,
             _ => false,
         };
         if !holds {
             let now = now.map_or("missing", Status::name);
-            fallen.push(Fallen {
-                id: id.clone(),
-                recorded: recorded.to_owned(),
-                now,
-            });
+            fallen.push(Fallen { id: id.clone(), recorded: recorded.to_owned(), now });
         }
     }
     for (id, status) in reproduction.statuses() {
         if !table.contains_key(id) {
             let recorded = "nothing".to_owned();
-            fallen.push(Fallen {
-                id: id.to_owned(),
-                recorded,
-                now: status.name(),
-            });
+            fallen.push(Fallen { id: id.to_owned(), recorded, now: status.name() });
         }
     }
     fallen

@@ -6,15 +6,8 @@ use super::{ControllerResult, Simulation};
 use crate::units::degrees;
 
 /// Columns of one controller.
-const COLUMNS: [&str; 7] = [
-    "theta_deg",
-    "q_deg_s",
-    "command_deg",
-    "elevator_deg",
-    "kp",
-    "ki",
-    "kd",
-];
+const COLUMNS: [&str; 7] =
+    ["theta_deg", "q_deg_s", "command_deg", "elevator_deg", "kp", "ki", "kd"];
 
 impl Simulation {
     /// All traces side by side: time and set-point once, then each controller's columns, with its
@@ -25,11 +18,8 @@ impl Simulation {
         let several = self.results.len() > 1;
         for result in &self.results {
             for column in COLUMNS {
-                let prefix = if several {
-                    quoted(&format!("{}.", result.name))
-                } else {
-                    String::new()
-                };
+                let prefix =
+                    if several { quoted(&format!("{}.", result.name)) } else { String::new() };
                 text.push(',');
                 text.push_str(&prefix);
                 text.push_str(column);

@@ -34,14 +34,8 @@ fn controller(result: &ControllerResult) -> Value {
         ("itae", integrals.map(|i| degrees(i.itae_rad_s2))),
         ("ise", integrals.map(|i| degrees(degrees(i.ise_rad2_s)))),
         ("itse", integrals.map(|i| degrees(degrees(i.itse_rad2_s2)))),
-        (
-            "command_variation",
-            metrics.effort.map(|e| degrees(e.variation_rad)),
-        ),
-        (
-            "command_max_deg",
-            metrics.effort.map(|e| degrees(e.largest_rad)),
-        ),
+        ("command_variation", metrics.effort.map(|e| degrees(e.variation_rad))),
+        ("command_max_deg", metrics.effort.map(|e| degrees(e.largest_rad))),
     ]);
     let (values, absent) = split(&measures);
     json!({

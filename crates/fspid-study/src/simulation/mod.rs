@@ -60,19 +60,11 @@ impl Simulation {
             .map(|(named, trace)| {
                 let unstable = instability(scenario, &named.controller)?;
                 let metrics = FlightMetrics::of(&trace, &flight.edges, scenario.timing, unstable);
-                Ok(ControllerResult {
-                    name: named.name.clone(),
-                    trace,
-                    metrics,
-                })
+                Ok(ControllerResult { name: named.name.clone(), trace, metrics })
             })
             .collect::<Result<Vec<_>, SimError>>()?;
         let judgements = judge(&study.requirements, &results);
-        Ok(Self {
-            scenario: scenario.name.clone(),
-            results,
-            judgements,
-        })
+        Ok(Self { scenario: scenario.name.clone(), results, judgements })
     }
 
     /// True if every requirement is met.
@@ -92,11 +84,7 @@ fn judge(requirements: &[Requirement], results: &[ControllerResult]) -> Vec<Judg
     let mut judgements = Vec::new();
     for requirement in requirements {
         for result in results {
-            if requirement
-                .controller
-                .as_ref()
-                .is_some_and(|name| *name != result.name)
-            {
+            if requirement.controller.as_ref().is_some_and(|name| *name != result.name) {
                 continue;
             }
             let value = requirement.measure.worst(&result.metrics);

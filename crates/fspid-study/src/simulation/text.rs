@@ -28,22 +28,28 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
     let metrics = &result.metrics;
     for (edge, number) in metrics.edges.iter().zip(1..) {
         let (from_deg, to_deg) = (degrees(edge.from_rad), degrees(edge.to_rad));
-        line(out, format_args!(
-            "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}",
-            edge.at_s,
-            step(&edge.step),
-        ));
+        line(
+            out,
+            format_args!(
+                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}",
+                edge.at_s,
+                step(&edge.step),
+            ),
+        );
     }
     if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
-        line(out, format_args!(
-            "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, \
+        line(
+            out,
+            format_args!(
+                "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, \
              largest command {:.3} deg",
-            degrees(integrals.iae_rad_s),
-            degrees(integrals.itae_rad_s2),
-            degrees(degrees(integrals.ise_rad2_s)),
-            degrees(effort.variation_rad),
-            degrees(effort.largest_rad),
-        ));
+                degrees(integrals.iae_rad_s),
+                degrees(integrals.itae_rad_s2),
+                degrees(degrees(integrals.ise_rad2_s)),
+                degrees(effort.variation_rad),
+                degrees(effort.largest_rad),
+            ),
+        );
     }
     if !result.trace.faults.is_empty() {
         line(out, format_args!("  faults: {}", result.trace.faults));

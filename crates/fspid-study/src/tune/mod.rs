@@ -52,26 +52,12 @@ pub fn search(
         Some((point, spread)) => Start::About(point, *spread),
         None => Start::Anywhere,
     };
-    let mut global = LShade::new(
-        space.dimension(),
-        budget.population,
-        budget.global,
-        budget.seed,
-        start,
-    );
+    let mut global =
+        LShade::new(space.dimension(), budget.population, budget.global, budget.seed, start);
     let spent = run(&mut global, space, budget.global, enough, &cost);
     let (best, best_cost) = global.best();
-    let polished = polish(
-        space,
-        (&space.point(best), best_cost),
-        budget.polish,
-        enough,
-        cost,
-    );
-    Found {
-        evaluations: spent + polished.evaluations,
-        ..polished
-    }
+    let polished = polish(space, (&space.point(best), best_cost), budget.polish, enough, cost);
+    Found { evaluations: spent + polished.evaluations, ..polished }
 }
 
 /// Rolls a simplex downhill from a point of known cost.
@@ -85,11 +71,7 @@ pub fn polish(
     let mut local = NelderMead::new(&space.unit(from.0), from.1);
     let evaluations = run(&mut local, space, evaluations, enough, &cost);
     let (unit, cost) = local.best();
-    Found {
-        point: space.point(unit),
-        cost,
-        evaluations,
-    }
+    Found { point: space.point(unit), cost, evaluations }
 }
 
 /// Asks, evaluates and tells until the allowance is spent or the cost is `enough`; evaluations spent.
@@ -138,9 +120,7 @@ fn evaluate(
             .zip(candidates.chunks(share))
             // A cost that panics is no candidate; the search goes on without it.
             .flat_map(|(worker, chunk)| {
-                worker
-                    .join()
-                    .unwrap_or_else(|_| vec![f64::INFINITY; chunk.len()])
+                worker.join().unwrap_or_else(|_| vec![f64::INFINITY; chunk.len()])
             })
             .collect()
     })
@@ -151,29 +131,16 @@ mod tests {
     use super::*;
 
     fn rosenbrock(point: &[f64]) -> f64 {
-        point
-            .windows(2)
-            .map(|p| 100.0 * (p[1] - p[0] * p[0]).powi(2) + (1.0 - p[0]).powi(2))
-            .sum()
+        point.windows(2).map(|p| 100.0 * (p[1] - p[0] * p[0]).powi(2) + (1.0 - p[0]).powi(2)).sum()
     }
 
     fn space() -> Space {
-        let parameter = |name| Parameter {
-            name,
-            lower: -5.0,
-            upper: 5.0,
-            scale: Scale::Linear,
-        };
+        let parameter = |name| Parameter { name, lower: -5.0, upper: 5.0, scale: Scale::Linear };
         Space::new(vec![parameter("a"), parameter("b"), parameter("c")])
     }
 
     fn budget(seed: u64) -> Budget {
-        Budget {
-            seed,
-            population: 30,
-            global: 6_000,
-            polish: 2_000,
-        }
+        Budget { seed, population: 30, global: 6_000, polish: 2_000 }
     }
 
     #[test]
@@ -205,20 +172,13 @@ mod tests {
         };
         let found = search(&space(), budget(3), None, 0.0, away);
         assert_eq!(outside.into_inner(), 0);
-        assert!(
-            found.point.iter().all(|x| (x - 5.0).abs() < 1e-6),
-            "{found:?}"
-        );
+        assert!(found.point.iter().all(|x| (x - 5.0).abs() < 1e-6), "{found:?}");
     }
 
     #[test]
     fn a_cost_that_is_not_a_number_never_wins() {
         let cost = |point: &[f64]| {
-            if point[0] > 0.0 {
-                f64::NAN
-            } else {
-                rosenbrock(point)
-            }
+            if point[0] > 0.0 { f64::NAN } else { rosenbrock(point) }
         };
         let found = search(&space(), budget(1), None, 0.0, cost);
         assert!(found.point[0] <= 0.0 && found.cost.is_finite());

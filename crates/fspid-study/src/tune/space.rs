@@ -72,20 +72,12 @@ impl Space {
     /// The coordinates of a point in the unit cube.
     #[must_use]
     pub fn unit(&self, point: &[f64]) -> Vec<f64> {
-        self.parameters
-            .iter()
-            .zip(point)
-            .map(|(parameter, &x)| parameter.unit(x))
-            .collect()
+        self.parameters.iter().zip(point).map(|(parameter, &x)| parameter.unit(x)).collect()
     }
 
     /// The point at these coordinates of the unit cube.
     #[must_use]
     pub fn point(&self, unit: &[f64]) -> Vec<f64> {
-        self.parameters
-            .iter()
-            .zip(unit)
-            .map(|(parameter, &u)| parameter.at(u))
-            .collect()
+        self.parameters.iter().zip(unit).map(|(parameter, &u)| parameter.at(u)).collect()
     }
 }

@@ -1,4 +1,3 @@
-
 use fspid_study::file::{self, LoadError};
 
 fn problems(text: &str) -> file::Problems {
@@ -41,33 +40,23 @@ fn bytes_that_are_no_utf_8_are_refused_with_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("latin.toml");
     std::fs::write(&path, b"schema = 1\nname = \"caf\xe9\"\n").expect("written");
-    let Err(LoadError::Problems(found)) = file::load(&path, &[]) else {
-        panic!("it is not UTF-8")
-    };
+    let Err(LoadError::Problems(found)) = file::load(&path, &[]) else { panic!("it is not UTF-8") };
     assert_eq!((found.list[0].line, found.list[0].column), (2, 12));
     assert_eq!(found.list[0].found, "byte 0xE9");
 }
 
 #[test]
 fn a_byte_order_mark_and_carriage_returns_change_nothing() {
-    let good = file::parse(file::starter(), "x", None, &[])
-        .expect("good")
-        .scenario;
+    let good = file::parse(file::starter(), "x", None, &[]).expect("good").scenario;
     for text in [
         format!("\u{feff}{}", file::starter()),
         file::starter().replace('\n', "\r\n"),
         format!("\u{feff}{}", file::starter().replace('\n', "\r\n")),
     ] {
-        assert_eq!(
-            file::parse(&text, "x", None, &[]).expect("good").scenario,
-            good
-        );
+        assert_eq!(file::parse(&text, "x", None, &[]).expect("good").scenario, good);
     }
     let bad = file::starter().replace("duration_s = 10.0", "duration_s = 0.0");
-    let (unix, dos) = (
-        problems(&bad),
-        problems(&format!("\u{feff}{}", bad.replace('\n', "\r\n"))),
-    );
+    let (unix, dos) = (problems(&bad), problems(&format!("\u{feff}{}", bad.replace('\n', "\r\n"))));
     assert_eq!(unix, dos);
     let first = &problems("\u{feff}nmae = 1").list;
     assert!(
@@ -124,11 +113,7 @@ fn a_huge_line_and_a_huge_number_of_problems_are_answered_in_short() {
         let found = problems(&text);
         assert!(found.list.len() <= 100);
         // Of a key of five million letters only the path may be long, and it is not.
-        assert!(
-            found.to_string().len() < 40_000,
-            "{}",
-            found.to_string().len()
-        );
+        assert!(found.to_string().len() < 40_000, "{}", found.to_string().len());
     }
 }
 
@@ -139,20 +124,14 @@ fn a_file_beyond_ten_mebibytes_is_not_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("large.toml");
     std::fs::write(&path, &text).expect("written");
-    assert!(matches!(
-        file::load(&path, &[]),
-        Err(LoadError::Unreadable { .. })
-    ));
+    assert!(matches!(file::load(&path, &[]), Err(LoadError::Unreadable { .. })));
 }
 
 #[test]
 fn a_flight_of_a_million_million_samples_is_refused_before_it_starts() {
     for (period, duration) in [("1e-9", "1e3"), ("1e-300", "1e300"), ("0.01", "1e10")] {
         let text = file::starter()
-            .replace(
-                "sample_period_s = 0.01",
-                &format!("sample_period_s = {period}"),
-            )
+            .replace("sample_period_s = 0.01", &format!("sample_period_s = {period}"))
             .replace("duration_s = 10.0", &format!("duration_s = {duration}"));
         let found = problems(&text);
         assert_eq!(found.list.len(), 1, "{found}");
@@ -199,12 +178,7 @@ fn traces_that_would_not_fit_into_memory_together_are_refused() {
     assert!(file::parse(&text.replace("1e5", "9e4"), "x", None, &[]).is_ok());
     let third = "[[controller]]\nname = \"third\"\nkind = \"p\"\nkp = 1.0\n";
     let found = problems(&format!("{}\n{third}", text.replace("1e5", "9e4")));
-    assert!(
-        found
-            .to_string()
-            .contains("3 traces of 9000001 samples are too many"),
-        "{found}"
-    );
+    assert!(found.to_string().contains("3 traces of 9000001 samples are too many"), "{found}");
 }
 
 /// A starter with random damage is refused with a reason or flies; it never makes the reader fall.
@@ -213,9 +187,8 @@ fn a_damaged_scenario_is_refused_with_a_reason_or_accepted() {
     let mut state = 1_u64;
     let mut random = move |below: usize| {
         // Numerical Recipes' generator; its upper bits are good enough for damage.
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };
     let bits = [
@@ -254,10 +227,7 @@ fn a_damaged_scenario_is_refused_with_a_reason_or_accepted() {
                 assert!(!found.list.is_empty(), "{text}");
                 let lines = text.lines().count() + 1;
                 assert!(
-                    found
-                        .list
-                        .iter()
-                        .all(|problem| (1..=lines).contains(&problem.line)),
+                    found.list.iter().all(|problem| (1..=lines).contains(&problem.line)),
                     "{found}"
                 );
                 refused += 1;
@@ -287,9 +257,7 @@ fn a_ramp_through_a_plant_without_effect_is_refused() {
         "preset = \"navion-paper\"\n",
         &format!("{}elevator_sign = \"nose-up-positive\"\n", plant("")),
     );
-    let found = problems(&format!(
-        "{text}\n[[plant_change]]\nat_s = 1.0\nramp_s = 1.0\n{}",
-        plant("-")
-    ));
+    let found =
+        problems(&format!("{text}\n[[plant_change]]\nat_s = 1.0\nramp_s = 1.0\n{}", plant("-")));
     assert_eq!(found.list[0].path, "plant_change[0].ramp_s", "{found}");
 }

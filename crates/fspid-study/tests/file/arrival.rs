@@ -18,9 +18,7 @@ const DEG: f64 = std::f64::consts::PI / 180.0;
 
 fn read(text: &str) -> Scenario {
     let study = file::parse(text, "every-key.toml", None, &[]);
-    study
-        .unwrap_or_else(|problems| panic!("{problems}"))
-        .scenario
+    study.unwrap_or_else(|problems| panic!("{problems}")).scenario
 }
 
 fn whole() -> String {
@@ -41,10 +39,7 @@ fn full_shell() -> Shell<f64> {
     Shell {
         dt_s: 0.01,
         rate_gain_s: 0.1,
-        setpoint_weights: SetpointWeights {
-            proportional: 0.8,
-            derivative: 0.5,
-        },
+        setpoint_weights: SetpointWeights { proportional: 0.8, derivative: 0.5 },
         derivative: Derivative { filter_s: 0.05 },
         integral: IntegralForm::Bumpless,
         anti_windup: AntiWindup::Clamping(limits(-5.0 * DEG, 5.0 * DEG)),
@@ -57,9 +52,7 @@ fn full_shell() -> Shell<f64> {
 /// The shell of the two controllers in ISA form.
 fn isa_shell() -> Shell<f64> {
     Shell {
-        derivative: Derivative {
-            filter_s: 0.1 / 10.0,
-        },
+        derivative: Derivative { filter_s: 0.1 / 10.0 },
         anti_windup: AntiWindup::BackCalculation { tracking_s: 0.7 },
         limits: Some(limits(-20.0 * DEG, 20.0 * DEG)),
         ..Shell::sampled_every(0.01)
@@ -70,42 +63,24 @@ fn pid(gains: Gains<f64>, shell: Shell<f64>) -> Controller {
     Controller::Fixed(Pid::new(gains, shell).expect("allowed"))
 }
 
-const GAINS: Gains<f64> = Gains {
-    kp: 1.0,
-    ki: 0.2,
-    kd: 0.1,
-};
+const GAINS: Gains<f64> = Gains { kp: 1.0, ki: 0.2, kd: 0.1 };
 
 fn tuned() -> Controller {
     let table = rule_table("printed").expect("carried");
-    let supervisor = Supervisor::new(
-        &table,
-        5.0,
-        Defuzzifier::Endpoints(101),
-        OutOfRange::Evaluate,
-    );
+    let supervisor =
+        Supervisor::new(&table, 5.0, Defuzzifier::Endpoints(101), OutOfRange::Evaluate);
     let settings = TunerSettings {
         error_sign: ErrorSign::MeasurementMinusSetpoint,
         change: Change::Delta,
-        input_scale: InputScale {
-            error_per_rad: 1.0 / DEG,
-            change_per_rad: 20.0 / DEG,
-        },
-        output_scale: Gains {
-            kp: 0.01,
-            ki: 0.001,
-            kd: 0.002,
-        },
+        input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 20.0 / DEG },
+        output_scale: Gains { kp: 0.01, ki: 0.001, kd: 0.002 },
         law: Law::Accumulating { leakage_per_s: 0.1 },
         gain_limits: Some(GainLimits {
             kp: limits(0.1, 5.0),
             ki: limits(0.0, 2.0),
             kd: limits(0.0, 1.0),
         }),
-        dead_zone: Some(DeadZone {
-            error_rad: 0.01 * DEG,
-            change_rad: 0.1 * DEG,
-        }),
+        dead_zone: Some(DeadZone { error_rad: 0.01 * DEG, change_rad: 0.1 * DEG }),
     };
     let tuner = SelfTuner::new(GAINS, supervisor.expect("allowed"), settings).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, full_shell()).expect("allowed"))
@@ -115,10 +90,7 @@ fn tuned_isa(isa: Gains<f64>) -> Controller {
     let table = rule_table("printed").expect("carried");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
-        input_scale: InputScale {
-            error_per_rad: 1.0 / DEG,
-            change_per_rad: 1.0 / DEG,
-        },
+        input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 1.0 / DEG },
         ..TunerSettings::literal()
     };
     let tuner = SelfTuner::new(isa, supervisor.expect("allowed"), settings).expect("allowed");
@@ -126,27 +98,10 @@ fn tuned_isa(isa: Gains<f64>) -> Controller {
 }
 
 fn controllers() -> Vec<NamedController> {
-    let isa = Gains {
-        kp: 1.0,
-        ki: 1.0 / 5.0,
-        kd: 0.1,
-    };
-    let p = Shell {
-        rate_gain_s: 0.1,
-        ..Shell::sampled_every(0.01)
-    };
+    let isa = Gains { kp: 1.0, ki: 1.0 / 5.0, kd: 0.1 };
+    let p = Shell { rate_gain_s: 0.1, ..Shell::sampled_every(0.01) };
     vec![
-        named(
-            "p",
-            pid(
-                Gains {
-                    kp: 1.0,
-                    ki: 0.0,
-                    kd: 0.0,
-                },
-                p,
-            ),
-        ),
+        named("p", pid(Gains { kp: 1.0, ki: 0.0, kd: 0.0 }, p)),
         named("pid", pid(GAINS, full_shell())),
         named("isa", pid(isa, isa_shell())),
         named("fspid", tuned()),
@@ -160,19 +115,8 @@ fn disturbances() -> Result<Vec<Disturbance>, SimError> {
         Disturbance::new(Entry::Servo, amplitude, Shape::Step { at_s })?,
         Disturbance::new(Entry::Elevator, amplitude, Shape::Pulse { at_s, width_s })?,
         Disturbance::new(Entry::Elevator, amplitude, Shape::Ramp { at_s, width_s })?,
-        Disturbance::new(
-            Entry::Measurement,
-            amplitude,
-            Shape::Sine {
-                at_s,
-                frequency_hz: 2.0,
-            },
-        )?,
-        Disturbance::new(
-            Entry::Measurement,
-            0.01 * DEG,
-            Shape::Noise { at_s, seed: 7 },
-        )?,
+        Disturbance::new(Entry::Measurement, amplitude, Shape::Sine { at_s, frequency_hz: 2.0 })?,
+        Disturbance::new(Entry::Measurement, 0.01 * DEG, Shape::Noise { at_s, seed: 7 })?,
     ])
 }
 
@@ -213,50 +157,26 @@ fn every_kind_of_set_point_arrives() {
     let shapes = [
         (
             "square\"\nhalf_period_s = 2.0\nbipolar = true",
-            Shape::Square {
-                at_s,
-                half_period_s: 2.0,
-                bipolar: true,
-            },
+            Shape::Square { at_s, half_period_s: 2.0, bipolar: true },
         ),
         (
             "square\"\nhalf_period_s = 2.0",
-            Shape::Square {
-                at_s,
-                half_period_s: 2.0,
-                bipolar: false,
-            },
+            Shape::Square { at_s, half_period_s: 2.0, bipolar: false },
         ),
         ("doublet\"\nwidth_s = 2.0", Shape::Doublet { at_s, width_s }),
         ("ramp\"\nwidth_s = 2.0", Shape::Ramp { at_s, width_s }),
-        (
-            "sine\"\nfrequency_hz = 3.0",
-            Shape::Sine {
-                at_s,
-                frequency_hz: 3.0,
-            },
-        ),
+        ("sine\"\nfrequency_hz = 3.0", Shape::Sine { at_s, frequency_hz: 3.0 }),
     ];
     for (words, shape) in shapes {
         let text = whole().replacen("kind = \"step\"", &format!("kind = \"{words}"), 1);
-        assert_eq!(
-            Ok(read(&text).setpoint),
-            Profile::new(DEG, shape),
-            "{words}"
-        );
+        assert_eq!(Ok(read(&text).setpoint), Profile::new(DEG, shape), "{words}");
     }
-    for (word, interpolation) in [
-        ("hold", Interpolation::Hold),
-        ("linear", Interpolation::Linear),
-    ] {
+    for (word, interpolation) in [("hold", Interpolation::Hold), ("linear", Interpolation::Linear)]
+    {
         let table = format!(
             "kind = \"table\"\ntime_s = [0, 1.5]\nvalue_deg = [1, -2]\ninterpolation = \"{word}\""
         );
-        let text = whole().replacen(
-            "kind = \"step\"\namplitude_deg = 1.0\nat_s = 0.5",
-            &table,
-            1,
-        );
+        let text = whole().replacen("kind = \"step\"\namplitude_deg = 1.0\nat_s = 0.5", &table, 1);
         assert_eq!(
             Ok(read(&text).setpoint),
             Profile::table(vec![0.0, 1.5], vec![DEG, -2.0 * DEG], interpolation)
@@ -281,35 +201,17 @@ fn the_other_words_arrive_too() {
     assert_eq!(conditional.anti_windup, AntiWindup::Conditional);
     let weight = "setpoint_weights.derivative = 0.5\nderivative_on = \"error\"";
     let measured = shell((weight, "derivative_on = \"measurement\""));
-    assert_eq!(
-        measured.setpoint_weights,
-        SetpointWeights {
-            proportional: 0.8,
-            derivative: 0.0
-        }
-    );
-    let both = shell((
-        weight,
-        "setpoint_weights.derivative = 0\nderivative_on = \"measurement\"",
-    ));
+    assert_eq!(measured.setpoint_weights, SetpointWeights { proportional: 0.8, derivative: 0.0 });
+    let both = shell((weight, "setpoint_weights.derivative = 0\nderivative_on = \"measurement\""));
     assert_eq!(both.setpoint_weights, measured.setpoint_weights);
 
     let down = whole().replacen("\"nose-up-positive\"", "\"nose-down-positive\"", 1);
     let scenario = read(&down);
-    assert_eq!(
-        scenario.plant.elevator_sign(),
-        ElevatorSign::NoseDownPositive
-    );
+    assert_eq!(scenario.plant.elevator_sign(), ElevatorSign::NoseDownPositive);
     // A change takes over the plant's sign, unless it is a plant with a sign of its own.
-    let signs: Vec<ElevatorSign> = scenario
-        .plant_changes
-        .iter()
-        .map(|change| change.target().elevator_sign())
-        .collect();
-    assert_eq!(
-        signs,
-        [ElevatorSign::NoseDownPositive, ElevatorSign::NoseUpPositive]
-    );
+    let signs: Vec<ElevatorSign> =
+        scenario.plant_changes.iter().map(|change| change.target().elevator_sign()).collect();
+    assert_eq!(signs, [ElevatorSign::NoseDownPositive, ElevatorSign::NoseUpPositive]);
 
     for (word, policy) in [("clamp", OutOfRange::Clamp), ("error", OutOfRange::Error)] {
         let text = whole().replacen("\"evaluate\"", &format!("\"{word}\""), 1);

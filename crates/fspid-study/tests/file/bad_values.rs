@@ -21,9 +21,7 @@ const SETPOINTS: [&str; 6] = [
 /// The file with every key, once for each set-point.
 fn texts() -> Vec<String> {
     let whole = text("crates/fspid-study/tests/scenarios/every-key.toml");
-    SETPOINTS
-        .map(|setpoint| whole.replace(SETPOINTS[0], setpoint))
-        .to_vec()
+    SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint)).to_vec()
 }
 
 /// A number in the file: its line, what stands before it, and whether it is in a list.
@@ -40,20 +38,14 @@ fn numbers(text: &str) -> Vec<Number> {
         let first = value.trim_matches(['[', ']']).split(',').next()?;
         first.parse::<f64>().ok()?;
         let head = format!("{key} = ");
-        Some(Number {
-            line: index,
-            head,
-            in_list,
-        })
+        Some(Number { line: index, head, in_list })
     };
     text.lines().enumerate().filter_map(number).collect()
 }
 
 fn with(text: &str, number: &Number, value: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
-    let rest = lines[number.line]
-        .split_once(", ")
-        .map_or("]", |(_, rest)| rest);
+    let rest = lines[number.line].split_once(", ").map_or("]", |(_, rest)| rest);
     let changed = match number.in_list {
         true => format!("{}[{value}, {rest}", number.head),
         false => format!("{}{value}", number.head),
@@ -83,25 +75,14 @@ fn in_schema(schema: &Value, path: &str, found: &mut BTreeSet<String>) {
     let kind = schema["properties"]["kind"]["const"].as_str();
     let path = kind.map_or(path.to_owned(), |kind| format!("{path}:{kind}"));
     let items = &schema["items"];
-    if ["number", "integer"]
-        .iter()
-        .any(|word| schema["type"] == *word || items["type"] == *word)
-    {
+    if ["number", "integer"].iter().any(|word| schema["type"] == *word || items["type"] == *word) {
         found.insert(path.clone());
     }
     for (key, property) in schema["properties"].as_object().into_iter().flatten() {
-        let path = if path.is_empty() {
-            key.clone()
-        } else {
-            format!("{path}.{key}")
-        };
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
         in_schema(property, &path, found);
     }
-    schema["oneOf"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .for_each(|one| in_schema(one, &path, found));
+    schema["oneOf"].as_array().into_iter().flatten().for_each(|one| in_schema(one, &path, found));
     if items.is_object() {
         in_schema(items, &path, found);
     }
@@ -116,13 +97,8 @@ fn refuse(text: &str, number: &Number, value: &str) -> String {
     let at_line =
         |problem: &&file::Problem| problem.line == number.line + 1 && problem.path.contains(key);
     let found = problems.list.iter().find(at_line);
-    let found = found.unwrap_or_else(|| {
-        panic!(
-            "{}{value}, line {}: {problems}",
-            number.head,
-            number.line + 1
-        )
-    });
+    let found = found
+        .unwrap_or_else(|| panic!("{}{value}, line {}: {problems}", number.head, number.line + 1));
     assert!(
         !found.message.is_empty() && !found.found.is_empty() && !found.allowed.is_empty(),
         "{problems}"
@@ -136,10 +112,7 @@ fn the_file_with_every_key_is_good() {
         let study = file::parse(&text, "every-key.toml", None, &[]);
         let study = study.unwrap_or_else(|problems| panic!("{problems}"));
         assert!(study.warnings.is_empty(), "{:?}", study.warnings);
-        assert_eq!(
-            crate::schema::fault(&file::schema(), &as_json(&text), ""),
-            None
-        );
+        assert_eq!(crate::schema::fault(&file::schema(), &as_json(&text), ""), None);
     }
 }
 
@@ -170,10 +143,7 @@ fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
     let mut all = BTreeSet::new();
     in_schema(&file::schema(), "", &mut all);
     let missed: Vec<&String> = all.difference(&covered).collect();
-    assert!(
-        missed.is_empty(),
-        "numbers that no bad value was tried on: {missed:?}"
-    );
+    assert!(missed.is_empty(), "numbers that no bad value was tried on: {missed:?}");
     assert!(all.len() > 90, "{}", all.len());
 }
 
@@ -201,19 +171,13 @@ fn whole_numbers_refuse_fractions_and_what_does_not_fit() {
     let text = &texts()[0];
     let whole = ["schema = ", "delay_samples = ", "seed = "];
     let numbers = numbers(text);
-    let numbers: Vec<&Number> = numbers
-        .iter()
-        .filter(|number| whole.contains(&number.head.as_str()))
-        .collect();
+    let numbers: Vec<&Number> =
+        numbers.iter().filter(|number| whole.contains(&number.head.as_str())).collect();
     assert_eq!(numbers.len(), 3);
     for number in numbers {
-        for value in [
-            "1.5",
-            "-1",
-            "1e3",
-            "99999999999999999999",
-            "170141183460469231731687303715884105728",
-        ] {
+        for value in
+            ["1.5", "-1", "1e3", "99999999999999999999", "170141183460469231731687303715884105728"]
+        {
             refuse(text, number, value);
         }
     }

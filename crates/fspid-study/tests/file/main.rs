@@ -1,8 +1,5 @@
 //! Scenario files: what is read, what is refused, and in which words.
-#![allow(
-    clippy::float_cmp,
-    reason = "what is read from a file is compared bit by bit"
-)]
+#![allow(clippy::float_cmp, reason = "what is read from a file is compared bit by bit")]
 
 mod abuse;
 mod arrival;
@@ -30,13 +27,7 @@ pub(crate) fn shipped() -> Vec<(String, String)> {
     let folder =
         std::fs::read_dir(repository("scenarios")).expect("there is a folder of scenarios");
     let mut names: Vec<String> = folder
-        .map(|entry| {
-            entry
-                .expect("readable")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
+        .map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned())
         .filter(|name| name.ends_with(".toml"))
         .collect();
     names.sort();

@@ -12,54 +12,22 @@ const GOLDEN: &str = "crates/fspid-study/tests/scenarios/messages.txt";
 const MISTAKES: [(&str, &str, &str); 31] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
-    (
-        "a key that does not exist",
-        "name = \"my first flight\"",
-        "name = \"x\"\ncolour = \"red\"",
-    ),
-    (
-        "a missing table",
-        "[loop]\nsample_period_s = 0.01\nduration_s = 10.0",
-        "",
-    ),
+    ("a key that does not exist", "name = \"my first flight\"", "name = \"x\"\ncolour = \"red\""),
+    ("a missing table", "[loop]\nsample_period_s = 0.01\nduration_s = 10.0", ""),
     ("a missing key", "amplitude_deg = 5.0", ""),
-    (
-        "a text for a number",
-        "duration_s = 10.0",
-        "duration_s = \"ten seconds\"",
-    ),
-    (
-        "a period of zero",
-        "sample_period_s = 0.01",
-        "sample_period_s = 0.0",
-    ),
+    ("a text for a number", "duration_s = 10.0", "duration_s = \"ten seconds\""),
+    ("a period of zero", "sample_period_s = 0.01", "sample_period_s = 0.0"),
     ("a number that is none", "kp = 1.0", "kp = nan"),
     ("a number beyond all bounds", "kp = 1.0", "kp = 1e999"),
-    (
-        "far too many samples",
-        "duration_s = 10.0",
-        "duration_s = 1e10",
-    ),
-    (
-        "a flight shorter than a sample",
-        "duration_s = 10.0",
-        "duration_s = 0.001",
-    ),
-    (
-        "an unknown plant",
-        "preset = \"navion-paper\"",
-        "preset = \"b747\"",
-    ),
+    ("far too many samples", "duration_s = 10.0", "duration_s = 1e10"),
+    ("a flight shorter than a sample", "duration_s = 10.0", "duration_s = 0.001"),
+    ("an unknown plant", "preset = \"navion-paper\"", "preset = \"b747\""),
     (
         "a plant said twice",
         "preset = \"navion-paper\"",
         "preset = \"navion-paper\"\nnumerator = [1.0]\ndenominator = [1.0, 1.0]",
     ),
-    (
-        "a plant said by half",
-        "preset = \"navion-paper\"",
-        "numerator = [1.0]",
-    ),
+    ("a plant said by half", "preset = \"navion-paper\"", "numerator = [1.0]"),
     ("a plant not said at all", "preset = \"navion-paper\"", ""),
     (
         "an improper transfer function",
@@ -77,26 +45,10 @@ const MISTAKES: [(&str, &str, &str); 31] = [
         "numerator = []\ndenominator = [1.0, 1.0]\nelevator_sign = \"nose-up-positive\"",
     ),
     ("an unknown kind", "kind = \"step\"", "kind = \"stairs\""),
-    (
-        "a key of another kind",
-        "kp = 1.0\n",
-        "kp = 1.0\nnominal = { kp = 1.0 }\n",
-    ),
-    (
-        "two controllers of one name",
-        "name = \"FSPID\"",
-        "name = \"PID\"",
-    ),
-    (
-        "nominal gains out of their limits",
-        "kd_min = 0.0",
-        "kd_min = 0.5",
-    ),
-    (
-        "gain limits without room",
-        "kd_min = 0.0",
-        "kd_min = 0.0\nkd_max = 0.0",
-    ),
+    ("a key of another kind", "kp = 1.0\n", "kp = 1.0\nnominal = { kp = 1.0 }\n"),
+    ("two controllers of one name", "name = \"FSPID\"", "name = \"PID\""),
+    ("nominal gains out of their limits", "kd_min = 0.0", "kd_min = 0.5"),
+    ("gain limits without room", "kd_min = 0.0", "kd_min = 0.0\nkd_max = 0.0"),
     (
         "command limits the wrong way round",
         "kd = 0.15\n",
@@ -112,26 +64,10 @@ const MISTAKES: [(&str, &str, &str); 31] = [
         "law = \"memoryless\"",
         "law = \"memoryless\"\nleakage_per_s = 1.0",
     ),
-    (
-        "an unknown rule table",
-        "table = \"mirrored\"",
-        "table = \"printd\"",
-    ),
-    (
-        "an unknown defuzzifier",
-        "range = 5.0",
-        "range = 5.0\ndefuzzifier = \"centroid\"",
-    ),
-    (
-        "a rule file that is not there",
-        "table = \"mirrored\"",
-        "table = \"my-rules.toml\"",
-    ),
-    (
-        "a table for a list of tables",
-        "[setpoint]",
-        "[disturbance]\nkind = \"step\"\n\n[setpoint]",
-    ),
+    ("an unknown rule table", "table = \"mirrored\"", "table = \"printd\""),
+    ("an unknown defuzzifier", "range = 5.0", "range = 5.0\ndefuzzifier = \"centroid\""),
+    ("a rule file that is not there", "table = \"mirrored\"", "table = \"my-rules.toml\""),
+    ("a table for a list of tables", "[setpoint]", "[disturbance]\nkind = \"step\"\n\n[setpoint]"),
     ("no TOML", "duration_s = 10.0", "duration_s = 10,0"),
 ];
 
@@ -160,10 +96,7 @@ fn longer() -> Vec<(&'static str, String)> {
             "a derivative on both",
             starter.replace("kd = 0.15\n", &format!("kd = 0.15\n{conflict}\n")),
         ),
-        (
-            "plant changes of another order and out of order",
-            starter.replace("[setpoint]", change),
-        ),
+        ("plant changes of another order and out of order", starter.replace("[setpoint]", change)),
         ("a table of set-points out of order", setpoint_table()),
         (
             "a requirement of nobody",
@@ -175,10 +108,7 @@ fn longer() -> Vec<(&'static str, String)> {
             "no controller at all",
             format!(
                 "controller = []\n{}",
-                starter
-                    .split("# A controller with")
-                    .next()
-                    .unwrap_or_default()
+                starter.split("# A controller with").next().unwrap_or_default()
             ),
         ),
         (
@@ -190,9 +120,7 @@ fn longer() -> Vec<(&'static str, String)> {
 
 /// The starter with a table in place of its step.
 fn setpoint_table() -> String {
-    let (before, rest) = file::starter()
-        .split_once("kind = \"step\"")
-        .expect("there is one");
+    let (before, rest) = file::starter().split_once("kind = \"step\"").expect("there is one");
     let (_, after) = rest.split_once("at_s = 0.0").expect("it has a start");
     format!("{before}kind = \"table\"\ntime_s = [0, 2, 1]\nvalue_deg = [0, 1, 2]{after}")
 }
@@ -209,12 +137,7 @@ fn all() -> String {
         let problems = problems.expect_err(title);
         messages.push_str(&format!("# {title}\n{problems}\n\n"));
     }
-    let sets = [
-        "loop.sample_period_s=0",
-        "controller.FPID.nominal.kp=2",
-        "loop.period=1",
-        "loop",
-    ];
+    let sets = ["loop.sample_period_s=0", "controller.FPID.nominal.kp=2", "loop.period=1", "loop"];
     let sets: Vec<String> = sets.iter().map(|&text| text.to_owned()).collect();
     let problems =
         file::parse(file::starter(), "starter.toml", None, &sets).expect_err("bad settings");
@@ -240,11 +163,7 @@ fn problems_as_json_hold_what_the_text_says() {
     let text = file::starter().replace("sample_period_s = 0.01", "sample_period_s = 0.0");
     let problems = file::parse(&text, "mine.toml", None, &[]).expect_err("a period of zero");
     let json = problems.to_json();
-    let line = text
-        .lines()
-        .position(|line| line.contains("sample_period_s"))
-        .expect("there")
-        + 1;
+    let line = text.lines().position(|line| line.contains("sample_period_s")).expect("there") + 1;
     let expected = serde_json::json!({
         "file": "mine.toml",
         "problems": [{
@@ -266,11 +185,7 @@ fn many_problems_are_reported_together_and_in_the_order_of_the_file() {
         .replace("range = 5.0", "range = 0")
         .replace("law = ", "low = ");
     let problems = file::parse(&text, "mine.toml", None, &[]).expect_err("six mistakes");
-    let paths: Vec<&str> = problems
-        .list
-        .iter()
-        .map(|problem| problem.path.as_str())
-        .collect();
+    let paths: Vec<&str> = problems.list.iter().map(|problem| problem.path.as_str()).collect();
     let expected = [
         "schema",
         "plant.preset",
@@ -280,10 +195,7 @@ fn many_problems_are_reported_together_and_in_the_order_of_the_file() {
         "controller[1].supervisor.range",
     ];
     assert_eq!(paths, expected, "{problems}");
-    assert!(
-        problems.to_string().ends_with("6 problems in mine.toml"),
-        "{problems}"
-    );
+    assert!(problems.to_string().ends_with("6 problems in mine.toml"), "{problems}");
 }
 
 /// What only the models can judge is found in the sound parts even where others are wrong.
@@ -297,18 +209,10 @@ fn a_mistake_of_form_does_not_hide_a_mistake_of_meaning() {
         )
         .replace("kd_min = 0.0", "kd_min = 3.0");
     let problems = file::parse(&text, "mine.toml", None, &[]).expect_err("three mistakes");
-    let paths: Vec<&str> = problems
-        .list
-        .iter()
-        .map(|problem| problem.path.as_str())
-        .collect();
+    let paths: Vec<&str> = problems.list.iter().map(|problem| problem.path.as_str()).collect();
     assert_eq!(
         paths,
-        [
-            "plant.numerator",
-            "loop.duration_s",
-            "controller[1].nominal.kd"
-        ],
+        ["plant.numerator", "loop.duration_s", "controller[1].nominal.kd"],
         "{problems}"
     );
 }

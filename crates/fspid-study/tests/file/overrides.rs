@@ -13,17 +13,10 @@ fn problem(text: &str) -> file::Problem {
 
 #[test]
 fn a_value_is_set_by_its_path() {
-    let study = set(&[
-        "loop.sample_period_s=0.02",
-        "plant.preset=b747-paper",
-        "name=two words",
-    ]);
+    let study = set(&["loop.sample_period_s=0.02", "plant.preset=b747-paper", "name=two words"]);
     let scenario = study.expect("allowed").scenario;
     assert_eq!(scenario.timing.dt_s(), 0.02);
-    assert_eq!(
-        Some(scenario.plant),
-        file::preset("b747-paper").map(|file| file.plant)
-    );
+    assert_eq!(Some(scenario.plant), file::preset("b747-paper").map(|file| file.plant));
     assert_eq!(scenario.name, "two words");
 }
 
@@ -35,32 +28,17 @@ fn a_controller_is_addressed_by_name_or_index() {
         "controller.\"FSPID\".nominal.kp",
     ] {
         let study = set(&[&format!("{path}=2.5")]).expect("allowed");
-        assert_eq!(
-            study.scenario.controllers[1].controller.nominal().kp,
-            2.5,
-            "{path}"
-        );
+        assert_eq!(study.scenario.controllers[1].controller.nominal().kp, 2.5, "{path}");
     }
 }
 
 #[test]
 fn a_key_or_table_that_the_file_leaves_out_can_be_set() {
     let study = set(&["controller.PID.isa.gain=3", "setpoint.at_s=1"]);
-    let problems = study
-        .expect_err("kp and isa exclude each other")
-        .to_string();
-    assert!(
-        problems.contains("controller[0].isa: not together with `kp`"),
-        "{problems}"
-    );
+    let problems = study.expect_err("kp and isa exclude each other").to_string();
+    assert!(problems.contains("controller[0].isa: not together with `kp`"), "{problems}");
     let study = set(&["controller.PID.output_limits_deg=[-5, 5]"]).expect("allowed");
-    assert!(
-        study.scenario.controllers[0]
-            .controller
-            .shell()
-            .limits
-            .is_some()
-    );
+    assert!(study.scenario.controllers[0].controller.shell().limits.is_some());
 }
 
 #[test]
@@ -72,23 +50,14 @@ fn later_settings_win() {
 #[test]
 fn what_is_wrong_with_a_setting_is_told_with_the_setting() {
     let found = problem("loop.sample_period_s=0");
-    assert_eq!(
-        found.origin.as_deref(),
-        Some("--set loop.sample_period_s=0")
-    );
-    assert_eq!(
-        (found.path.as_str(), found.found.as_str()),
-        ("loop.sample_period_s", "0")
-    );
+    assert_eq!(found.origin.as_deref(), Some("--set loop.sample_period_s=0"));
+    assert_eq!((found.path.as_str(), found.found.as_str()), ("loop.sample_period_s", "0"));
 }
 
 #[test]
 fn an_unknown_path_says_what_is_known() {
     let found = problem("loop.sample_perod_s=0.01");
-    assert!(
-        found.message.contains("did you mean `sample_period_s`?"),
-        "{found:?}"
-    );
+    assert!(found.message.contains("did you mean `sample_period_s`?"), "{found:?}");
     let found = problem("controller.FPID.nominal.kp=2");
     assert!(
         found.message.contains("did you mean `FSPID`?") && found.allowed.contains("PID, FSPID"),
@@ -119,12 +88,7 @@ fn a_setting_that_cannot_be_read_is_refused() {
         "loop.duration_s=",
     ] {
         let found = problem(text);
-        assert!(
-            found
-                .origin
-                .is_some_and(|origin| origin.starts_with("--set ")),
-            "{text}"
-        );
+        assert!(found.origin.is_some_and(|origin| origin.starts_with("--set ")), "{text}");
     }
     let deep = format!("loop.duration_s={}", "[".repeat(100_000));
     assert!(set(&[&deep]).is_err());

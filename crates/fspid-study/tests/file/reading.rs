@@ -43,24 +43,15 @@ fn every_commented_line_of_the_starter_may_be_uncommented() {
         }
     }
     let uncommented = |from: &str| {
-        let (before, block) = file::starter()
-            .split_once(from)
-            .expect("the block is there");
+        let (before, block) = file::starter().split_once(from).expect("the block is there");
         let end = block.find("\n\n").unwrap_or(block.len());
         let (block, after) = block.split_at(end);
-        format!(
-            "{before}{}{}{after}",
-            &from[2..],
-            block.replace("\n# ", "\n")
-        )
+        format!("{before}{}{}{after}", &from[2..], block.replace("\n# ", "\n"))
     };
     for block in ["# [[disturbance]]", "# [[requirement]]"] {
         let study = parse(&uncommented(block));
         let study = study.unwrap_or_else(|problems| panic!("{problems}"));
-        assert_eq!(
-            study.scenario.disturbances.len() + study.requirements.len(),
-            1
-        );
+        assert_eq!(study.scenario.disturbances.len() + study.requirements.len(), 1);
     }
 }
 
@@ -84,13 +75,7 @@ fn every_plant_that_is_carried_says_what_it_is_and_where_it_is_from() {
     let names = file::plant_names();
     assert_eq!(
         names,
-        [
-            "b747-paper",
-            "navion-paper",
-            "b747-short-period",
-            "navion-full",
-            "ctms-pitch"
-        ]
+        ["b747-paper", "navion-paper", "b747-short-period", "navion-full", "ctms-pitch"]
     );
     for name in names {
         let text = text(&format!("data/plants/{name}.toml"));
@@ -118,10 +103,7 @@ fn the_elevator_sign_of_every_plant_agrees_with_its_numerator() {
 fn the_modes_of_the_747_are_those_of_its_notes() {
     let plant = file::preset("b747-paper").expect("carried");
     let poles = plant.plant.transfer_function().poles().expect("found");
-    let slowest = poles
-        .iter()
-        .map(|pole| pole.re.hypot(pole.im))
-        .fold(f64::INFINITY, f64::min);
+    let slowest = poles.iter().map(|pole| pole.re.hypot(pole.im)).fold(f64::INFINITY, f64::min);
     assert!((slowest - 0.068_651_97).abs() < 1e-8, "{slowest}");
 }
 
@@ -138,14 +120,8 @@ fn degrees_of_the_file_are_radians_of_the_controller() {
     let controller = &study.scenario.controllers[1].controller;
     let limits = controller.shell().limits.expect("has limits");
     assert!((limits.upper() - 8.0_f64.to_radians()).abs() < 1e-15);
-    let fspid = parse(file::starter())
-        .expect("no problems")
-        .scenario
-        .controllers[1]
-        .controller;
-    let Controller::SelfTuning(fspid) = fspid else {
-        panic!("a self-tuning controller")
-    };
+    let fspid = parse(file::starter()).expect("no problems").scenario.controllers[1].controller;
+    let Controller::SelfTuning(fspid) = fspid else { panic!("a self-tuning controller") };
     // One degree is an error of 1 to the supervisor; the answer is that of the rules themselves.
     let table = file::rule_table("mirrored").expect("carried");
     let rules = fspid_fuzzy::Supervisor::new(
@@ -154,11 +130,7 @@ fn degrees_of_the_file_are_radians_of_the_controller() {
         fspid_fuzzy::Defuzzifier::Exact,
         fspid_fuzzy::OutOfRange::Clamp,
     );
-    let delta = rules
-        .expect("allowed")
-        .infer(1.0, 0.0)
-        .expect("inside")
-        .delta;
+    let delta = rules.expect("allowed").infer(1.0, 0.0).expect("inside").delta;
     let mut state = fspid_core::State::new();
     let sample = fspid_core::Sample {
         setpoint_rad: 1.0_f64.to_radians(),
@@ -166,14 +138,8 @@ fn degrees_of_the_file_are_radians_of_the_controller() {
         rate_rad_s: 0.0,
     };
     let gains = fspid.step(&mut state, sample).gains;
-    assert!(
-        (gains.kp - (1.0 + 0.05 * delta.kp)).abs() < 1e-14,
-        "{gains:?}"
-    );
-    assert!(
-        (gains.kd - (0.15 + 0.01 * delta.kd)).abs() < 1e-14,
-        "{gains:?}"
-    );
+    assert!((gains.kp - (1.0 + 0.05 * delta.kp)).abs() < 1e-14, "{gains:?}");
+    assert!((gains.kd - (0.15 + 0.01 * delta.kd)).abs() < 1e-14, "{gains:?}");
 }
 
 #[test]
@@ -198,24 +164,15 @@ fn what_is_left_out_takes_the_documented_default() {
         };
         assert_eq!(*shell, expected, "{}", named.name);
     }
-    let names: Vec<&str> = study
-        .scenario
-        .controllers
-        .iter()
-        .map(|named| named.name.as_str())
-        .collect();
+    let names: Vec<&str> =
+        study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     assert_eq!(names, ["PC", "CPID", "FSPID"]);
-    assert_eq!(
-        study.scenario.controllers[0].controller.shell().rate_gain_s,
-        0.9144
-    );
+    assert_eq!(study.scenario.controllers[0].controller.shell().rate_gain_s, 0.9144);
 }
 
 #[test]
 fn an_absent_actuator_is_an_ideal_servo() {
-    let (before, rest) = file::starter()
-        .split_once("[actuator]")
-        .expect("there is one");
+    let (before, rest) = file::starter().split_once("[actuator]").expect("there is one");
     let (_, after) = rest.split_once("[loop]").expect("there is one");
     let study = parse(&format!("{before}[loop]{after}")).expect("no problems");
     assert_eq!(study.scenario.servo, fspid_sim::Servo::ideal());
@@ -224,22 +181,15 @@ fn an_absent_actuator_is_an_ideal_servo() {
 #[test]
 fn a_requirement_is_read_with_its_measure_and_controller() {
     let study = file::load(&repository("scenarios/limits.toml"), &[]).expect("no problems");
-    let [requirement] = study.requirements.as_slice() else {
-        panic!("one requirement")
-    };
+    let [requirement] = study.requirements.as_slice() else { panic!("one requirement") };
     assert_eq!(requirement.controller.as_deref(), Some("back-calculation"));
-    assert_eq!(
-        (requirement.measure, requirement.most),
-        (Measure::Overshoot, 10.0)
-    );
+    assert_eq!((requirement.measure, requirement.most), (Measure::Overshoot, 10.0));
 }
 
 #[test]
 fn integers_are_numbers_where_numbers_are_asked_for() {
     let text = file::starter();
-    let whole = text
-        .replace("duration_s = 10.0", "duration_s = 10")
-        .replace("kp = 1.0", "kp = 1");
+    let whole = text.replace("duration_s = 10.0", "duration_s = 10").replace("kp = 1.0", "kp = 1");
     let (a, b) = (parse(text).expect("good"), parse(&whole).expect("good"));
     assert_eq!(a.scenario, b.scenario);
 }
@@ -250,17 +200,13 @@ fn an_accumulating_law_without_gain_limits_warns_of_its_drift_at_rest() {
         .split_once("[controller.gain_limits]")
         .map(|(a, b)| (a.to_owned(), b.to_owned()))
         .expect("has limits");
-    let (_, after) = rest
-        .split_once("[controller.supervisor]")
-        .expect("has a supervisor");
+    let (_, after) = rest.split_once("[controller.supervisor]").expect("has a supervisor");
     let free = format!("{before}[controller.supervisor]{after}")
         .replace("leakage_per_s = 0.1\n", "")
         .replace("output_scale = { kp = 0.01, ki = 0.001, kd = 0.001 }", "")
         .replace("range = 40.0", "range = 5.0");
     let study = parse(&free).expect("it is allowed");
-    let [warning] = study.warnings.as_slice() else {
-        panic!("{:?}", study.warnings)
-    };
+    let [warning] = study.warnings.as_slice() else { panic!("{:?}", study.warnings) };
     assert!(
         warning.contains("controller[1]")
             && warning.contains("kp by +0.2165")
@@ -282,16 +228,10 @@ fn an_accumulating_law_without_gain_limits_warns_of_its_drift_at_rest() {
 fn an_event_after_the_end_and_a_sine_too_fast_for_the_samples_are_warned_of() {
     let late = file::starter().replace("at_s = 0.0", "at_s = 11.0");
     let warnings = parse(&late).expect("it is allowed").warnings;
-    assert!(
-        warnings.len() == 1 && warnings[0].contains("setpoint.at_s is 11.0 s"),
-        "{warnings:?}"
-    );
+    assert!(warnings.len() == 1 && warnings[0].contains("setpoint.at_s is 11.0 s"), "{warnings:?}");
     let fast = file::starter().replace("kind = \"step\"", "kind = \"sine\"\nfrequency_hz = 51");
     let warnings = parse(&fast).expect("it is allowed").warnings;
-    assert!(
-        warnings.len() == 1 && warnings[0].contains("at most 50.0 Hz"),
-        "{warnings:?}"
-    );
+    assert!(warnings.len() == 1 && warnings[0].contains("at most 50.0 Hz"), "{warnings:?}");
 }
 
 #[test]
@@ -323,33 +263,24 @@ fn files_that_are_referred_to_are_regular_files_relative_to_the_scenario() {
     let folder = tempfile::tempdir().expect("a folder");
     let inner = folder.path().join("rules");
     std::fs::create_dir_all(inner.join("folder.toml")).expect("made");
-    std::fs::write(
-        inner.join("mine.toml"),
-        text("data/rule-tables/printed.toml"),
-    )
-    .expect("written");
+    std::fs::write(inner.join("mine.toml"), text("data/rule-tables/printed.toml"))
+        .expect("written");
     let scenario = |table: &str| {
         file::starter().replace("table = \"mirrored\"", &format!("table = \"{table}\""))
     };
     let path = folder.path().join("scenario.toml");
     std::fs::write(&path, scenario("rules/mine.toml")).expect("written");
     assert!(file::load(&path, &[]).is_ok());
-    for (table, words) in [
-        ("rules/folder.toml", "no regular file"),
-        ("rules/none.toml", "no such file"),
-    ] {
+    for (table, words) in
+        [("rules/folder.toml", "no regular file"), ("rules/none.toml", "no such file")]
+    {
         std::fs::write(&path, scenario(table)).expect("written");
-        let Err(LoadError::Problems(problems)) = file::load(&path, &[]) else {
-            panic!("{table}")
-        };
+        let Err(LoadError::Problems(problems)) = file::load(&path, &[]) else { panic!("{table}") };
         assert_eq!(problems.list[0].path, "controller[1].supervisor.table");
         assert!(problems.to_string().contains(words), "{problems}");
     }
     let without_folder = parse(&scenario("rules/mine.toml")).expect_err("no folder");
-    assert!(
-        without_folder.to_string().contains("not in a folder"),
-        "{without_folder}"
-    );
+    assert!(without_folder.to_string().contains("not in a folder"), "{without_folder}");
 }
 
 #[test]
@@ -360,40 +291,23 @@ fn a_problem_in_another_file_is_told_with_that_files_name_and_line() {
         "PM PM PS ZO XX NM NM",
         1,
     );
-    let line = rules
-        .lines()
-        .position(|line| line.contains("XX"))
-        .expect("there")
-        + 1;
+    let line = rules.lines().position(|line| line.contains("XX")).expect("there") + 1;
     std::fs::write(folder.path().join("rules.toml"), rules).expect("written");
     let scenario = file::starter().replace("table = \"mirrored\"", "table = \"rules.toml\"");
     let problems =
         file::parse(&scenario, "s.toml", Some(folder.path()), &[]).expect_err("a bad cell");
-    let [problem] = problems.list.as_slice() else {
-        panic!("{problems}")
-    };
+    let [problem] = problems.list.as_slice() else { panic!("{problems}") };
     assert_eq!(
         (problem.origin.as_deref(), problem.line, problem.column),
         (Some("rules.toml"), line, 13)
     );
-    assert!(
-        problem
-            .message
-            .contains("row 4 (error ZO), column 5 (change PS)"),
-        "{problems}"
-    );
+    assert!(problem.message.contains("row 4 (error ZO), column 5 (change PS)"), "{problems}");
     assert_eq!(problem.found, "XX");
 }
 
 #[test]
 fn a_file_that_cannot_be_read_is_unreadable_and_not_wrong() {
-    for path in [
-        Path::new("no-such-file.toml").to_owned(),
-        repository("scenarios"),
-    ] {
-        assert!(matches!(
-            file::load(&path, &[]),
-            Err(LoadError::Unreadable { .. })
-        ));
+    for path in [Path::new("no-such-file.toml").to_owned(), repository("scenarios")] {
+        assert!(matches!(file::load(&path, &[]), Err(LoadError::Unreadable { .. })));
     }
 }

@@ -7,9 +7,7 @@ use crate::shipped;
 /// or the first thing that is not. A word of the schema that is not known here fails the test.
 pub(crate) fn fault(schema: &Value, value: &Value, path: &str) -> Option<String> {
     let object = schema.as_object().expect("a schema is an object");
-    object
-        .iter()
-        .find_map(|(word, rule)| word_fault((word, rule), schema, value, path))
+    object.iter().find_map(|(word, rule)| word_fault((word, rule), schema, value, path))
 }
 
 fn word_fault(
@@ -34,10 +32,7 @@ fn word_fault(
         "additionalProperties" => {
             let known = schema["properties"].as_object().expect("an object");
             let closed = rule == false;
-            let mut keys = value
-                .as_object()
-                .into_iter()
-                .flat_map(|members| members.keys());
+            let mut keys = value.as_object().into_iter().flat_map(|members| members.keys());
             !closed || keys.all(|key| known.contains_key(key))
         }
         _ => is_allowed(word, rule, value),
@@ -109,10 +104,7 @@ fn what_the_check_refuses_of_form_the_schema_refuses_too() {
         ("schema = 1", "schema = 2"),
         ("name = \"my first flight\"", ""),
         ("preset = \"navion-paper\"", "preset = \"concorde\""),
-        (
-            "preset = \"navion-paper\"",
-            "preset = \"navion-paper\"\nnumerator = [1.0]",
-        ),
+        ("preset = \"navion-paper\"", "preset = \"navion-paper\"\nnumerator = [1.0]"),
         ("preset = \"navion-paper\"", "numerator = [1.0]"),
         ("sample_period_s = 0.01", "sample_period_s = 0.0"),
         ("sample_period_s = 0.01", "sample_perod_s = 0.01"),
@@ -128,14 +120,8 @@ fn what_the_check_refuses_of_form_the_schema_refuses_too() {
     for (from, to) in changes {
         let text = file::starter().replacen(from, to, 1);
         assert_ne!(text, file::starter(), "{from}");
-        assert!(
-            fault(&schema, &as_json(&text), "").is_some(),
-            "{from} -> {to}"
-        );
-        assert!(
-            file::parse(&text, "x", None, &[]).is_err(),
-            "{from} -> {to}"
-        );
+        assert!(fault(&schema, &as_json(&text), "").is_some(), "{from} -> {to}");
+        assert!(file::parse(&text, "x", None, &[]).is_err(), "{from} -> {to}");
     }
 }
 
@@ -147,9 +133,7 @@ fn every_key_of_the_schema_has_a_description() {
                 let path = format!("{path}.{key}");
                 assert!(
                     key == "kind"
-                        || property["description"]
-                            .as_str()
-                            .is_some_and(|doc| doc.len() > 4),
+                        || property["description"].as_str().is_some_and(|doc| doc.len() > 4),
                     "{path}"
                 );
                 walk(property, &path);
@@ -163,10 +147,7 @@ fn every_key_of_the_schema_has_a_description() {
                 .flatten()
                 .for_each(|one| walk(one, path));
         }
-        schema
-            .get("items")
-            .into_iter()
-            .for_each(|items| walk(items, path));
+        schema.get("items").into_iter().for_each(|items| walk(items, path));
     }
     walk(&file::schema(), "");
 }

@@ -6,11 +6,7 @@ use fspid_study::reproduce::Status::{Approached, Contradicted, Reproduced};
 use crate::paper;
 
 fn status(id: &str) -> Status {
-    paper()
-        .statuses()
-        .find(|(of, _)| *of == id)
-        .map(|(_, status)| status)
-        .expect("a judged claim")
+    paper().statuses().find(|(of, _)| *of == id).map(|(_, status)| status).expect("a judged claim")
 }
 
 macro_rules! claims {
@@ -66,10 +62,7 @@ fn every_claim_of_the_program_has_a_test() {
 fn every_claim_of_the_program_stands_in_the_document() {
     let document = include_str!("../../../../docs/paper/claims.md");
     for (id, _) in paper().statuses() {
-        assert!(
-            document.contains(&format!("| {id} |")),
-            "docs/paper/claims.md lacks {id}"
-        );
+        assert!(document.contains(&format!("| {id} |")), "docs/paper/claims.md lacks {id}");
     }
 }
 
@@ -77,11 +70,7 @@ fn every_claim_of_the_program_stands_in_the_document() {
 fn no_claim_is_undetermined_and_every_miss_has_a_note() {
     for judged in &paper().claims {
         assert_ne!(judged.status, Status::Undetermined, "{}", judged.claim.id);
-        assert!(
-            judged.status == Reproduced || !judged.note.is_empty(),
-            "{}",
-            judged.claim.id
-        );
+        assert!(judged.status == Reproduced || !judged.note.is_empty(), "{}", judged.claim.id);
     }
     for judged in &paper().statements {
         assert_ne!(judged.status, Status::Undetermined, "{}", judged.id);

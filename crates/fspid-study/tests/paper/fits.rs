@@ -9,10 +9,7 @@ use crate::paper;
 
 fn controller<'a>(flown: &'a FlownFigure, name: &str) -> &'a Controller {
     let mut controllers = flown.study.scenario.controllers.iter();
-    &controllers
-        .find(|named| named.name == name)
-        .expect("a controller")
-        .controller
+    &controllers.find(|named| named.name == name).expect("a controller").controller
 }
 
 #[test]
@@ -54,10 +51,7 @@ fn the_shared_fit_has_one_supervisor_for_each_range() {
     for figures in [&["5", "6"][..], &["8a", "8b", "9"]] {
         let tuners = tuners(Fit::Shared, figures);
         assert!(tuners.len() >= 3);
-        assert!(
-            tuners.iter().all(|tuner| *tuner == tuners[0]),
-            "{figures:?}"
-        );
+        assert!(tuners.iter().all(|tuner| *tuner == tuners[0]), "{figures:?}");
     }
 }
 
@@ -75,19 +69,10 @@ fn no_upward_step_hides_an_overshoot_above_10_percent() {
             });
             // Fig. 6 speaks of the proportional loop's oscillation instead of its overshoot.
             let oscillates = flown.figure.id == "6" && result.name == "PC";
-            for edge in result
-                .metrics
-                .edges
-                .iter()
-                .filter(|edge| edge.to_rad > edge.from_rad)
-            {
+            for edge in result.metrics.edges.iter().filter(|edge| edge.to_rad > edge.from_rad) {
                 let overshoot = edge.step.overshoot_pct.expect("measured");
                 let shown = claimed || oscillates || overshoot <= 10.0;
-                assert!(
-                    shown,
-                    "Fig. {} {}: {overshoot}",
-                    flown.figure.id, result.name
-                );
+                assert!(shown, "Fig. {} {}: {overshoot}", flown.figure.id, result.name);
             }
         }
     }
@@ -107,22 +92,15 @@ fn no_reproduced_number_hangs_on_the_last_digits_of_a_parameter() {
             let set = format!("controller[{index}].nominal.kp={kp:?}");
             let study = library.study(&name, &[set]).expect("a good value");
             let moved = Simulation::of(&study).expect("flies");
-            let (before, after) = (
-                &flown.simulation.results[index].metrics,
-                &moved.results[index].metrics,
-            );
+            let (before, after) =
+                (&flown.simulation.results[index].metrics, &moved.results[index].metrics);
             for (before, after) in before.edges.iter().zip(&after.edges) {
                 if before.to_rad < before.from_rad {
                     continue;
                 }
                 let rise = |step: Result<f64, Absent>| step.expect("risen");
                 let change = rise(before.step.rise_time_s) - rise(after.step.rise_time_s);
-                assert!(
-                    change.abs() < 1e-3,
-                    "Fig. {} {}: {change}",
-                    flown.figure.id,
-                    named.name
-                );
+                assert!(change.abs() < 1e-3, "Fig. {} {}: {change}", flown.figure.id, named.name);
             }
         }
     }
@@ -131,25 +109,11 @@ fn no_reproduced_number_hangs_on_the_last_digits_of_a_parameter() {
 #[test]
 fn the_stored_record_names_the_command_and_the_seeds_of_every_search() {
     let record = &paper().record;
-    assert!(
-        record
-            .command
-            .starts_with("fspid reproduce --identify --seed "),
-        "{}",
-        record.command
-    );
+    assert!(record.command.starts_with("fspid reproduce --identify --seed "), "{}", record.command);
     assert!(record.problems.len() >= 20, "{}", record.problems.len());
     for problem in &record.problems {
-        assert!(
-            problem.runs.iter().any(|run| run.seed == problem.kept),
-            "{}",
-            problem.name
-        );
-        assert!(
-            problem.runs.iter().all(|run| run.evaluations > 0),
-            "{}",
-            problem.name
-        );
+        assert!(problem.runs.iter().any(|run| run.seed == problem.kept), "{}", problem.name);
+        assert!(problem.runs.iter().all(|run| run.evaluations > 0), "{}", problem.name);
     }
 }
 
@@ -159,9 +123,7 @@ fn a_wrong_parameter_makes_a_claim_fall() {
     let mut scenarios = Library::stored().scenarios().to_vec();
     for stored in &mut scenarios {
         if stored.name == "own/figure-8b.toml" {
-            stored.text = stored
-                .text
-                .replace("half_period_s = 5", "half_period_s = 4");
+            stored.text = stored.text.replace("half_period_s = 5", "half_period_s = 4");
         }
     }
     let record = paper().record.clone();

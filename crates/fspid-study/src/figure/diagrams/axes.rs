@@ -21,10 +21,7 @@ pub fn aircraft_axes() -> Svg {
     angles(&mut canvas);
     let rows = [
         ("x_{b}", "forward; roll rate p, roll angle \u{3a6}"),
-        (
-            "y_{b}",
-            "to starboard, out of the page; pitch rate q, pitch angle \u{3b8}",
-        ),
+        ("y_{b}", "to starboard, out of the page; pitch rate q, pitch angle \u{3b8}"),
         ("z_{b}", "downwards; yaw rate r, yaw angle \u{3c8}"),
     ];
     for (n, (name, text)) in rows.iter().enumerate() {
@@ -37,21 +34,13 @@ pub fn aircraft_axes() -> Svg {
         &mut canvas,
         (630.0, 132.0),
         20.0,
-        [
-            "Elevator \u{3b4}_{e} > 0",
-            "trailing edge down",
-            "nose goes down",
-        ],
+        ["Elevator \u{3b4}_{e} > 0", "trailing edge down", "nose goes down"],
     );
     tail(
         &mut canvas,
         (630.0, 300.0),
         -20.0,
-        [
-            "Command u > 0",
-            "trailing edge up, \u{3b4}_{e} < 0",
-            "nose goes up",
-        ],
+        ["Command u > 0", "trailing edge up, \u{3b4}_{e} < 0", "nose goes up"],
     );
     canvas.finish(
         title,
@@ -64,19 +53,13 @@ pub fn aircraft_axes() -> Svg {
 /// A point given in body axes (forward, down), turned by the pitch angle.
 fn body(forward: f64, down: f64) -> (f64, f64) {
     let (s, c) = PITCH;
-    (
-        CENTRE.0 + forward * c + down * s,
-        CENTRE.1 - forward * s + down * c,
-    )
+    (CENTRE.0 + forward * c + down * s, CENTRE.1 - forward * s + down * c)
 }
 
 /// A point at `radius` and at an angle above the horizon (deg).
 fn polar(radius: f64, degrees: f64) -> (f64, f64) {
     let angle = degrees.to_radians();
-    (
-        CENTRE.0 + radius * series_cos(angle),
-        CENTRE.1 - radius * series_sin(angle),
-    )
+    (CENTRE.0 + radius * series_cos(angle), CENTRE.1 - radius * series_sin(angle))
 }
 
 fn aircraft(canvas: &mut Canvas) {
@@ -90,19 +73,10 @@ fn aircraft(canvas: &mut Canvas) {
         "M112 -11L127 -11L120 -17L110 -17Z",
         &Paint::line(Role::Ink, 1.0).filled(Role::Paper),
     );
-    canvas.path(
-        "M92 -8L-96 -8",
-        &Paint::line(Role::Muted, 2.4).dashed("2.4 5"),
-    );
+    canvas.path("M92 -8L-96 -8", &Paint::line(Role::Muted, 2.4).dashed("2.4 5"));
     canvas.path("M-112 -6L-146 -13L-168 -13L-158 -8Z", &ink);
-    canvas.path(
-        "M16 22C14 17 18 15 24 15L42 15C47 15 48 29 42 30L24 30C18 30 15 27 16 22Z",
-        &ink,
-    );
-    canvas.path(
-        "M48 8C44 4 36 4 28 6L-58 17L-50 19L20 15C36 14 46 12 48 8Z",
-        &ink,
-    );
+    canvas.path("M16 22C14 17 18 15 24 15L42 15C47 15 48 29 42 30L24 30C18 30 15 27 16 22Z", &ink);
+    canvas.path("M48 8C44 4 36 4 28 6L-58 17L-50 19L20 15C36 14 46 12 48 8Z", &ink);
     canvas.end();
     canvas.end();
 }
@@ -111,12 +85,7 @@ fn angles(canvas: &mut Canvas) {
     let (axis, arc) = (Role::Series(0), Role::Series(1));
     let horizon = Paint::line(Role::Muted, 1.0).dashed("6 4");
     canvas.line((CENTRE.0, CENTRE.1), (CENTRE.0 + 226.0, CENTRE.1), &horizon);
-    note(
-        canvas,
-        (CENTRE.0 + 226.0, CENTRE.1 + 15.0),
-        Anchor::End,
-        "horizon",
-    );
+    note(canvas, (CENTRE.0 + 226.0, CENTRE.1 + 15.0), Anchor::End, "horizon");
     arrow_in(canvas, &[body(0.0, 0.0), body(224.0, 0.0)], axis, 1.8);
     arrow_in(canvas, &[body(0.0, 0.0), body(0.0, 104.0)], axis, 1.8);
     canvas.circle(CENTRE, 6.5, &Paint::line(axis, 1.8).filled(Role::Face));
@@ -124,16 +93,9 @@ fn angles(canvas: &mut Canvas) {
     let (x, z) = (body(224.0, 0.0), body(0.0, 104.0));
     signal(canvas, (x.0 + 4.0, x.1 - 4.0), Anchor::Start, "x_{b}");
     signal(canvas, (z.0 + 10.0, z.1), Anchor::Start, "z_{b}");
-    signal(
-        canvas,
-        (CENTRE.0 - 12.0, CENTRE.1 + 36.0),
-        Anchor::End,
-        "y_{b}",
-    );
+    signal(canvas, (CENTRE.0 - 12.0, CENTRE.1 + 36.0), Anchor::End, "y_{b}");
     let sweep = |radius: f64, from: f64, to: f64| -> Vec<(f64, f64)> {
-        (0..=16)
-            .map(|n| polar(radius, from + (to - from) * f64::from(n) / 16.0))
-            .collect()
+        (0..=16).map(|n| polar(radius, from + (to - from) * f64::from(n) / 16.0)).collect()
     };
     arrow_in(canvas, &sweep(190.0, 0.0, PITCH_DEG - 0.6), arc, 1.6);
     let theta = polar(199.0, PITCH_DEG / 2.0);
@@ -141,29 +103,15 @@ fn angles(canvas: &mut Canvas) {
     arrow_in(canvas, &sweep(170.0, 20.0, 46.0), arc, 1.6);
     let q = polar(176.0, 46.0);
     signal(canvas, (q.0 - 4.0, q.1 - 8.0), Anchor::Middle, "q");
-    note(
-        canvas,
-        (q.0 + 8.0, q.1 - 8.0),
-        Anchor::Start,
-        "positive: nose up",
-    );
+    note(canvas, (q.0 + 8.0, q.1 - 8.0), Anchor::Start, "positive: nose up");
 }
 
 /// A section of the tail with the elevator turned trailing edge down by `down_deg`.
 fn tail(canvas: &mut Canvas, (x, y): (f64, f64), down_deg: f64, text: [&str; 3]) {
     let ink = Paint::line(Role::Ink, 1.4).filled(Role::Face);
-    canvas.text(
-        498.0,
-        y - 62.0,
-        text[0],
-        Font::new(TEXT_PX, Anchor::Start).bold(),
-    );
+    canvas.text(498.0, y - 62.0, text[0], Font::new(TEXT_PX, Anchor::Start).bold());
     note(canvas, (498.0, y - 45.0), Anchor::Start, text[1]);
-    canvas.line(
-        (x - 112.0, y),
-        (x + 96.0, y),
-        &Paint::line(Role::Muted, 1.0).dashed("6 4"),
-    );
+    canvas.line((x - 112.0, y), (x + 96.0, y), &Paint::line(Role::Muted, 1.0).dashed("6 4"));
     canvas.begin_shift(x, y);
     canvas.path("M-14 -11C12 -16 74 -15 80 0C74 15 12 16 -14 11Z", &ink);
     canvas.begin_turn(-down_deg, (-14.0, 0.0));
@@ -183,42 +131,22 @@ fn tail(canvas: &mut Canvas, (x, y): (f64, f64), down_deg: f64, text: [&str; 3])
         .collect();
     arrow_in(canvas, &tip, Role::Series(1), 1.6);
     // The force on the tail is opposite to the deflection.
-    arrow_in(
-        canvas,
-        &[(30.0, -side * 20.0), (30.0, -side * 52.0)],
-        Role::Series(0),
-        2.2,
-    );
+    arrow_in(canvas, &[(30.0, -side * 20.0), (30.0, -side * 52.0)], Role::Series(0), 2.2);
     canvas.end();
-    note(
-        canvas,
-        (x + 40.0, y - side * 42.0 + 4.0),
-        Anchor::Start,
-        "tail force",
-    );
-    note(
-        canvas,
-        (x + 96.0, y + side * 32.0 + 4.0),
-        Anchor::End,
-        text[2],
-    );
+    note(canvas, (x + 40.0, y - side * 42.0 + 4.0), Anchor::Start, "tail force");
+    note(canvas, (x + 96.0, y + side * 32.0 + 4.0), Anchor::End, text[2]);
 }
 
 /// Cosine by its series, for the same bits on every machine; good to 1e-9 below a right angle.
 fn series_cos(angle: f64) -> f64 {
     let square = angle * angle;
-    (1..=8).rev().fold(1.0, |sum, n| {
-        1.0 - square * sum / f64::from((2 * n - 1) * (2 * n))
-    })
+    (1..=8).rev().fold(1.0, |sum, n| 1.0 - square * sum / f64::from((2 * n - 1) * (2 * n)))
 }
 
 /// Sine by its series; see [`series_cos`].
 fn series_sin(angle: f64) -> f64 {
     let square = angle * angle;
-    angle
-        * (1..=8).rev().fold(1.0, |sum, n| {
-            1.0 - square * sum / f64::from((2 * n) * (2 * n + 1))
-        })
+    angle * (1..=8).rev().fold(1.0, |sum, n| 1.0 - square * sum / f64::from((2 * n) * (2 * n + 1)))
 }
 
 #[cfg(test)]

@@ -22,11 +22,7 @@ pub(super) struct Block<'a> {
 impl<'a> Block<'a> {
     /// A block of that size around `centre`.
     pub(super) const fn new(centre: Point, size: (f64, f64), lines: &'a [&'a str]) -> Self {
-        Self {
-            centre,
-            size,
-            lines,
-        }
+        Self { centre, size, lines }
     }
 
     /// The point on the left edge at height `y`.
@@ -52,12 +48,7 @@ impl<'a> Block<'a> {
     /// Draws the block.
     pub(super) fn draw(&self, canvas: &mut Canvas) {
         let ((x, y), (width, height)) = (self.centre, self.size);
-        let place = Rect {
-            x: x - width / 2.0,
-            y: y - height / 2.0,
-            width,
-            height,
-        };
+        let place = Rect { x: x - width / 2.0, y: y - height / 2.0, width, height };
         canvas.rounded(place, 3.0, &Paint::line(Role::Ink, WIRE).filled(Role::Face));
         let step = TEXT_PX + 4.0;
         let first = y - (self.lines.len().saturating_sub(1)) as f64 * step / 2.0 + TEXT_PX * 0.35;
@@ -70,18 +61,9 @@ impl<'a> Block<'a> {
 
 /// Draws a summing circle with signs left of it and below it.
 pub(super) fn sum(canvas: &mut Canvas, (x, y): Point, left: &str, below: &str) {
-    canvas.circle(
-        (x, y),
-        9.0,
-        &Paint::line(Role::Ink, WIRE).filled(Role::Face),
-    );
+    canvas.circle((x, y), 9.0, &Paint::line(Role::Ink, WIRE).filled(Role::Face));
     canvas.text(x - 18.0, y - 7.0, left, Font::new(TEXT_PX, Anchor::Middle));
-    canvas.text(
-        x + 10.0,
-        y + 22.0,
-        below,
-        Font::new(TEXT_PX, Anchor::Middle),
-    );
+    canvas.text(x + 10.0, y + 22.0, below, Font::new(TEXT_PX, Anchor::Middle));
 }
 
 /// Radius of the circle that [`sum`] draws (px).
@@ -105,11 +87,8 @@ pub(super) fn arrow_in(canvas: &mut Canvas, points: &[Point], role: Role, width:
         *end = back;
     }
     canvas.polyline(&shaft, false, &Paint::line(role, width));
-    let head = [
-        *tip,
-        (back.0 - uy * half, back.1 + ux * half),
-        (back.0 + uy * half, back.1 - ux * half),
-    ];
+    let head =
+        [*tip, (back.0 - uy * half, back.1 + ux * half), (back.0 + uy * half, back.1 - ux * half)];
     canvas.polyline(&head, true, &Paint::face(role));
 }
 
@@ -130,10 +109,5 @@ pub(super) fn signal(canvas: &mut Canvas, (x, y): Point, anchor: Anchor, name: &
 
 /// Writes an explanation.
 pub(super) fn note(canvas: &mut Canvas, (x, y): Point, anchor: Anchor, text: &str) {
-    canvas.text(
-        x,
-        y,
-        text,
-        Font::new(TEXT_PX - 1.5, anchor).role(Role::Muted),
-    );
+    canvas.text(x, y, text, Font::new(TEXT_PX - 1.5, anchor).role(Role::Muted));
 }

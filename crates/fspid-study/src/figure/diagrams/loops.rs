@@ -49,11 +49,7 @@ fn pitch_blocks(canvas: &mut Canvas) {
     let y = LOOP_Y;
     let (outer, inner) = ((98.0, y), (276.0, y));
     let controller = Block::new((178.0, y), (96.0, 52.0), &["controller", "P, PID, FSPID"]);
-    let servo = Block::new(
-        (372.0, y),
-        (104.0, 52.0),
-        &["elevator servo", "1 / (\u{3c4}s + 1)"],
-    );
+    let servo = Block::new((372.0, y), (104.0, 52.0), &["elevator servo", "1 / (\u{3c4}s + 1)"]);
     let sign = Block::new((498.0, y), (92.0, 52.0), &["\u{2212}1", "elevator sign"]);
     let aircraft = Block::new((632.0, y + 8.0), (80.0, 68.0), &["aircraft"]);
     let rate = Block::new((498.0, 190.0), (104.0, 34.0), &["rate gyro, K_{r}"]);
@@ -68,36 +64,11 @@ fn pitch_blocks(canvas: &mut Canvas) {
     let (pitch_y, rate_y, edge) = (y - 6.0, y + 30.0, aircraft.right().0);
     let (pitch_x, rate_x) = (718.0, 694.0);
     arrow(canvas, &[(edge, pitch_y), (744.0, pitch_y)]);
-    arrow(
-        canvas,
-        &[
-            (edge, rate_y),
-            (rate_x, rate_y),
-            (rate_x, rate.centre.1),
-            rate.right(),
-        ],
-    );
-    arrow(
-        canvas,
-        &[rate.left(), (inner.0, rate.centre.1), (inner.0, y + SUM)],
-    );
+    arrow(canvas, &[(edge, rate_y), (rate_x, rate_y), (rate_x, rate.centre.1), rate.right()]);
+    arrow(canvas, &[rate.left(), (inner.0, rate.centre.1), (inner.0, y + SUM)]);
     node(canvas, (pitch_x, pitch_y));
-    arrow(
-        canvas,
-        &[
-            (pitch_x, pitch_y),
-            (pitch_x, vertical.centre.1),
-            vertical.right(),
-        ],
-    );
-    arrow(
-        canvas,
-        &[
-            vertical.left(),
-            (outer.0, vertical.centre.1),
-            (outer.0, y + SUM),
-        ],
-    );
+    arrow(canvas, &[(pitch_x, pitch_y), (pitch_x, vertical.centre.1), vertical.right()]);
+    arrow(canvas, &[vertical.left(), (outer.0, vertical.centre.1), (outer.0, y + SUM)]);
     for block in [controller, servo, sign, aircraft, rate, vertical] {
         block.draw(canvas);
     }
@@ -119,10 +90,7 @@ pub fn self_tuning_pid() -> Svg {
     let pid = Block::new(
         (390.0, TUNING_Y),
         (196.0, 52.0),
-        &[
-            "adjustable PID",
-            "k_{p} e + k_{i} \u{222b}e + k_{d} \u{117}",
-        ],
+        &["adjustable PID", "k_{p} e + k_{i} \u{222b}e + k_{d} \u{117}"],
     );
     tuning_loop(&mut canvas, &pid);
     inference(&mut canvas, &law);
@@ -134,18 +102,8 @@ pub fn self_tuning_pid() -> Svg {
     arrow(&mut canvas, &[(600.0, law.centre.1), law.right()]);
     law.draw(&mut canvas);
     let beside = (606.0, law.centre.1 + 4.5);
-    signal(
-        &mut canvas,
-        beside,
-        Anchor::Start,
-        "k_{p}\u{2032}, k_{i}\u{2032}, k_{d}\u{2032}",
-    );
-    note(
-        &mut canvas,
-        (beside.0, beside.1 + 18.0),
-        Anchor::Start,
-        "nominal gains",
-    );
+    signal(&mut canvas, beside, Anchor::Start, "k_{p}\u{2032}, k_{i}\u{2032}, k_{d}\u{2032}");
+    note(&mut canvas, (beside.0, beside.1 + 18.0), Anchor::Start, "nominal gains");
     canvas.finish(
         title,
         "Block diagram. Pitch error e and its change ec enter a fuzzy inference of 49 rules, which gives \
@@ -165,32 +123,21 @@ fn tuning_loop(canvas: &mut Canvas, pid: &Block<'_>) {
     arrow(canvas, &[pid.right(), plant.left()]);
     arrow(canvas, &[plant.right(), (744.0, y)]);
     arrow(canvas, &[(694.0, y), (694.0, gyro.centre.1), gyro.right()]);
-    arrow(
-        canvas,
-        &[gyro.left(), (error.0, gyro.centre.1), (error.0, y + SUM)],
-    );
+    arrow(canvas, &[gyro.left(), (error.0, gyro.centre.1), (error.0, y + SUM)]);
     for block in [*pid, plant, gyro] {
         block.draw(canvas);
     }
     sum(canvas, error, "+", "\u{2212}");
     node(canvas, (694.0, y));
-    for (x, name) in [
-        (52.0, "\u{3b8}_{ref}"),
-        (132.0, "e"),
-        (512.0, "u"),
-        (722.0, "\u{3b8}"),
-    ] {
+    for (x, name) in [(52.0, "\u{3b8}_{ref}"), (132.0, "e"), (512.0, "u"), (722.0, "\u{3b8}")] {
         signal(canvas, (x, y - 8.0), Anchor::Middle, name);
     }
 }
 
 /// The inference at the top: its two inputs from the error, its three outputs into `law`.
 fn inference(canvas: &mut Canvas, law: &Block<'_>) {
-    let fuzzy = Block::new(
-        (390.0, 76.0),
-        (196.0, 60.0),
-        &["fuzzy inference", "49 rules, centroid"],
-    );
+    let fuzzy =
+        Block::new((390.0, 76.0), (196.0, 60.0), &["fuzzy inference", "49 rules, centroid"]);
     let change = Block::new((224.0, 92.0), (56.0, 28.0), &["change"]);
     let (from, upper, lower) = ((152.0, TUNING_Y), 60.0, change.centre.1);
     node(canvas, from);
@@ -200,11 +147,7 @@ fn inference(canvas: &mut Canvas, law: &Block<'_>) {
     arrow(canvas, &[change.right(), (fuzzy.left().0, lower)]);
     signal(canvas, (274.0, upper - 6.0), Anchor::Middle, "e");
     signal(canvas, (270.0, lower - 6.0), Anchor::Middle, "ec");
-    for (dx, name) in [
-        (-60.0, "\u{394}k_{p}"),
-        (0.0, "\u{394}k_{i}"),
-        (60.0, "\u{394}k_{d}"),
-    ] {
+    for (dx, name) in [(-60.0, "\u{394}k_{p}"), (0.0, "\u{394}k_{i}"), (60.0, "\u{394}k_{d}")] {
         let x = fuzzy.centre.0 + dx;
         arrow(canvas, &[(x, fuzzy.bottom().1), (x, law.top().1)]);
         signal(canvas, (x + 6.0, 134.0), Anchor::Start, name);

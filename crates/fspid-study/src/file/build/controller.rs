@@ -22,14 +22,9 @@ pub(super) fn controller(
     dt_s: f64,
 ) -> Option<Controller> {
     if section.kind == "p" {
-        let gains = Gains {
-            kp: section.number("kp")?,
-            ..Gains::ZERO
-        };
-        let shell = Shell {
-            rate_gain_s: section.number("rate_gain")?,
-            ..Shell::sampled_every(dt_s)
-        };
+        let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
+        let shell =
+            Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
         return judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed);
     }
     let (gains, filter_s) = gains(report, section);
@@ -101,9 +96,7 @@ fn shell(
     Some(Shell {
         rate_gain_s: section.number("rate_gain")?,
         setpoint_weights: weights?,
-        derivative: Derivative {
-            filter_s: filter_s?,
-        },
+        derivative: Derivative { filter_s: filter_s? },
         integral: match section.text("integral")? {
             "literal" => IntegralForm::Literal,
             _ => IntegralForm::Bumpless,
@@ -171,21 +164,16 @@ fn anti_windup(report: &mut Report, section: &Section, limited: bool) -> Option<
             let (lower, upper) = (part.number("lower_deg")?, part.number("upper_deg")?);
             if lower >= upper {
                 let (place, path) = (part.at("upper_deg"), part.path("upper_deg"));
-                report.value(
-                    place,
-                    &path,
-                    "not above `lower_deg`",
-                    format!("above {lower:?} deg"),
-                );
+                report.value(place, &path, "not above `lower_deg`", format!("above {lower:?} deg"));
                 return None;
             }
             let limits = Limits::new("anti-windup limits", rad(lower), rad(upper));
             AntiWindup::Clamping(judged(report, (part, "upper_deg"), limits)?)
         }
         "conditional" => AntiWindup::Conditional,
-        "back-calculation" => AntiWindup::BackCalculation {
-            tracking_s: part.number("tracking_s")?,
-        },
+        "back-calculation" => {
+            AntiWindup::BackCalculation { tracking_s: part.number("tracking_s")? }
+        }
         _ => AntiWindup::None,
     })
 }
@@ -238,29 +226,17 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
         if scale.is_finite() {
             return Some(scale);
         }
-        report.value(
-            part.at(key),
-            &part.path(key),
-            "too large",
-            "a smaller factor",
-        );
+        report.value(part.at(key), &part.path(key), "too large", "a smaller factor");
         None
     };
     let (error, change) = (per_rad("error_scale"), per_rad("change_scale"));
-    Some(InputScale {
-        error_per_rad: error?,
-        change_per_rad: change?,
-    })
+    Some(InputScale { error_per_rad: error?, change_per_rad: change? })
 }
 
 fn output_scale(part: &Section) -> Gains<f64> {
     let scale = part.section("output_scale");
     let number = |key| scale.and_then(|scale| scale.number(key)).unwrap_or(1.0);
-    Gains {
-        kp: number("kp"),
-        ki: number("ki"),
-        kd: number("kd"),
-    }
+    Gains { kp: number("kp"), ki: number("ki"), kd: number("kd") }
 }
 
 fn dead_zone(section: &Section) -> Option<DeadZone<f64>> {
@@ -316,27 +292,14 @@ fn gain_limits(report: &mut Report, part: &Section) -> Option<GainLimits<f64>> {
         report.value(part.at(most), &part.path(most), message, allowed);
         None
     };
-    let (kp, ki, kd) = (
-        limits("kp_min", "kp_max"),
-        limits("ki_min", "ki_max"),
-        limits("kd_min", "kd_max"),
-    );
-    Some(GainLimits {
-        kp: kp?,
-        ki: ki?,
-        kd: kd?,
-    })
+    let (kp, ki, kd) =
+        (limits("kp_min", "kp_max"), limits("ki_min", "ki_max"), limits("kd_min", "kd_max"));
+    Some(GainLimits { kp: kp?, ki: ki?, kd: kd? })
 }
 
 /// Reports nominal gains outside their limits at the gain itself.
 fn refuse_nominal(report: &mut Report, section: &Section, error: ConfigError) {
-    let ConfigError::OutsideLimits {
-        what,
-        found,
-        lower,
-        upper,
-    } = error
-    else {
+    let ConfigError::OutsideLimits { what, found, lower, upper } = error else {
         judged(report, (section, "supervisor"), Err::<(), _>(error));
         return;
     };
@@ -365,11 +328,8 @@ fn warn_of_drift(
         return;
     }
     let (nominal, rest) = (tuner.nominal(), tuner.gains_at_rest());
-    let drifts = [
-        ("kp", rest.kp - nominal.kp),
-        ("ki", rest.ki - nominal.ki),
-        ("kd", rest.kd - nominal.kd),
-    ];
+    let drifts =
+        [("kp", rest.kp - nominal.kp), ("ki", rest.ki - nominal.ki), ("kd", rest.kd - nominal.kd)];
     let bounded = |gain: &str, drift: f64| {
         let end = if drift > 0.0 { "max" } else { "min" };
         limits.is_some_and(|limits| limits.given(&format!("{gain}_{end}")))

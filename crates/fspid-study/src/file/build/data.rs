@@ -67,21 +67,14 @@ fn key_at_fault(error: &SimError) -> &'static str {
 fn in_words(error: &SimError) -> (String, String) {
     const SHORTER: &str = "a list shorter than the denominator";
     let (message, allowed) = match error {
-        SimError::Linear(LtiError::ZeroPolynomial { .. }) => (
-            "zero everywhere".to_owned(),
-            "at least one coefficient other than 0",
-        ),
+        SimError::Linear(LtiError::ZeroPolynomial { .. }) => {
+            ("zero everywhere".to_owned(), "at least one coefficient other than 0")
+        }
         SimError::Linear(LtiError::LeadingZero { zeros, .. }) => (
-            format!(
-                "begins with {zeros} zero{}",
-                if *zeros == 1 { "" } else { "s" }
-            ),
+            format!("begins with {zeros} zero{}", if *zeros == 1 { "" } else { "s" }),
             "a first coefficient other than 0, that of the highest power",
         ),
-        SimError::Linear(LtiError::Improper {
-            numerator_degree,
-            denominator_degree,
-        }) => (
+        SimError::Linear(LtiError::Improper { numerator_degree, denominator_degree }) => (
             format!("degree {numerator_degree} over degree {denominator_degree} is improper"),
             SHORTER,
         ),
@@ -90,10 +83,7 @@ fn in_words(error: &SimError) -> (String, String) {
                 .to_owned(),
             SHORTER,
         ),
-        other => (
-            other.to_string(),
-            "coefficients closer to each other in size",
-        ),
+        other => (other.to_string(), "coefficients closer to each other in size"),
     };
     (message, allowed.to_owned())
 }
@@ -126,17 +116,8 @@ pub(crate) fn rules_named(
     }
     let source = report.add_source(None, name);
     let end = name.len();
-    let place = Place {
-        source,
-        start: 0,
-        end,
-    };
-    rule_table(&referred(
-        report,
-        files,
-        &RULE_FILE,
-        (name, (place, String::new())),
-    )?)
+    let place = Place { source, start: 0, end };
+    rule_table(&referred(report, files, &RULE_FILE, (name, (place, String::new())))?)
 }
 
 fn rule_table(section: &Section) -> Option<RuleTable> {

@@ -32,11 +32,7 @@ pub(crate) fn scenario(
     let setpoint =
         sound(section.section("setpoint")).and_then(|part| signal::setpoint(report, part));
     let mut disturbances = Vec::new();
-    for part in section
-        .sections("disturbance")
-        .iter()
-        .filter(|part| part.sound)
-    {
+    for part in section.sections("disturbance").iter().filter(|part| part.sound) {
         disturbances.extend(signal::disturbance(report, part));
     }
     let plant_changes = timing::plant_changes(
@@ -113,11 +109,10 @@ fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
     let lag = Servo::first_order(section.number("time_constant_s")?);
     let lag = judged(report, (section, "time_constant_s"), lag)?;
     let servo =
-        lag.with_delay(delay)
-            .and_then(|servo| match section.number("position_limit_deg") {
-                Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),
-                None => Ok(servo),
-            });
+        lag.with_delay(delay).and_then(|servo| match section.number("position_limit_deg") {
+            Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),
+            None => Ok(servo),
+        });
     let servo = servo.and_then(|servo| match section.number("rate_limit_deg_s") {
         Some(limit_deg_s) => servo.with_rate_limit(rad(limit_deg_s)),
         None => Ok::<_, SimError>(servo),
@@ -141,17 +136,11 @@ fn controllers(
     for (index, part) in parts.iter().enumerate() {
         let earlier = parts.get(..index).unwrap_or_default();
         let name = part.text("name");
-        if let Some(twin) = earlier
-            .iter()
-            .find(|other| name.is_some() && other.text("name") == name)
+        if let Some(twin) =
+            earlier.iter().find(|other| name.is_some() && other.text("name") == name)
         {
             let message = format!("the name is taken by {}", twin.path);
-            report.value(
-                part.at("name"),
-                &part.path("name"),
-                message,
-                "a name of its own",
-            );
+            report.value(part.at("name"), &part.path("name"), message, "a name of its own");
         }
     }
     // A period stands in where the loop is wrong, so that the controllers are judged all the same.

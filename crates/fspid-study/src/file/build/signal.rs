@@ -26,26 +26,11 @@ fn shape(section: &Section) -> Option<Shape> {
             half_period_s: section.number("half_period_s")?,
             bipolar: section.boolean("bipolar")?,
         },
-        "doublet" => Shape::Doublet {
-            at_s,
-            width_s: width_s?,
-        },
-        "pulse" => Shape::Pulse {
-            at_s,
-            width_s: width_s?,
-        },
-        "ramp" => Shape::Ramp {
-            at_s,
-            width_s: width_s?,
-        },
-        "sine" => Shape::Sine {
-            at_s,
-            frequency_hz: section.number("frequency_hz")?,
-        },
-        "noise" => Shape::Noise {
-            at_s,
-            seed: u64::try_from(section.integer("seed")?).ok()?,
-        },
+        "doublet" => Shape::Doublet { at_s, width_s: width_s? },
+        "pulse" => Shape::Pulse { at_s, width_s: width_s? },
+        "ramp" => Shape::Ramp { at_s, width_s: width_s? },
+        "sine" => Shape::Sine { at_s, frequency_hz: section.number("frequency_hz")? },
+        "noise" => Shape::Noise { at_s, seed: u64::try_from(section.integer("seed")?).ok()? },
         _ => Shape::Step { at_s },
     })
 }
@@ -60,12 +45,7 @@ fn table(report: &mut Report, section: &Section) -> Option<Profile> {
     if times.len() != values.len() {
         let message = format!("{} values for {} times", values.len(), times.len());
         let path = section.path("value_deg");
-        report.missing(
-            section.at("value_deg"),
-            &path,
-            message,
-            "as many values as times",
-        );
+        report.missing(section.at("value_deg"), &path, message, "as many values as times");
         return None;
     }
     let time_s = times.iter().map(|(time_s, _)| *time_s).collect();
@@ -75,12 +55,7 @@ fn table(report: &mut Report, section: &Section) -> Option<Profile> {
         && let Some((_, place)) = times.get(row - 1)
     {
         let path = format!("{}[{}]", section.path("time_s"), row - 1);
-        report.value(
-            *place,
-            &path,
-            "not in order of time",
-            "a time after the one before",
-        );
+        report.value(*place, &path, "not in order of time", "a time after the one before");
         return None;
     }
     judged(report, (section, "time_s"), profile)
@@ -89,11 +64,7 @@ fn table(report: &mut Report, section: &Section) -> Option<Profile> {
 pub(super) fn disturbance(report: &mut Report, section: &Section) -> Option<Disturbance> {
     let word = section.text("enters_at")?;
     let entry = Entry::ALL.into_iter().find(|entry| entry.name() == word)?;
-    let size = if section.kind == "noise" {
-        "standard_deviation_deg"
-    } else {
-        "amplitude_deg"
-    };
+    let size = if section.kind == "noise" { "standard_deviation_deg" } else { "amplitude_deg" };
     let amplitude_rad = rad(section.number(size)?);
     let disturbance = Disturbance::new(entry, amplitude_rad, shape(section)?);
     judged(report, (section, size), disturbance)

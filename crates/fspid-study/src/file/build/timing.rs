@@ -42,17 +42,9 @@ pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timin
         return;
     }
     if let Some(part) = section.section("loop") {
-        let message = format!(
-            "{controllers} traces of {} samples are too many",
-            timing.rows()
-        );
+        let message = format!("{controllers} traces of {} samples are too many", timing.rows());
         let allowed = format!("up to {MOST_ROWS} samples in all traces together");
-        report.value(
-            part.at("duration_s"),
-            &part.path("duration_s"),
-            message,
-            allowed,
-        );
+        report.value(part.at("duration_s"), &part.path("duration_s"), message, allowed);
     }
 }
 
@@ -89,9 +81,7 @@ pub(super) fn check_plant(
 /// The key that gave a plant.
 fn key_of(part: &Section) -> &'static str {
     let keys = ["preset", "file", "denominator"];
-    keys.into_iter()
-        .find(|key| part.given(key))
-        .unwrap_or("denominator")
+    keys.into_iter().find(|key| part.given(key)).unwrap_or("denominator")
 }
 
 /// The changes of the plant, in order of time; what is wrong with one is reported.
@@ -110,12 +100,7 @@ pub(super) fn plant_changes(
         // Written so that NaN fails.
         if !(at_s > before_s) {
             let allowed = format!("after the change before it, at {before_s:?} s");
-            report.value(
-                part.at("at_s"),
-                &part.path("at_s"),
-                "not in order of time",
-                allowed,
-            );
+            report.value(part.at("at_s"), &part.path("at_s"), "not in order of time", allowed);
         }
         before_s = at_s;
         let sign = plant.as_ref().map(LinearPlant::elevator_sign);
@@ -168,28 +153,19 @@ fn check_ramp(report: &mut Report, part: &Section, timing: Timing) {
     // Written so that NaN fails.
     if !(samples <= MOST_RAMP_SAMPLES) {
         let allowed = format!("up to {MOST_RAMP_SAMPLES} samples in a ramp");
-        report.value(
-            part.at("ramp_s"),
-            &part.path("ramp_s"),
-            "too long a ramp",
-            allowed,
-        );
+        report.value(part.at("ramp_s"), &part.path("ramp_s"), "too long a ramp", allowed);
     }
 }
 
 /// What can only be judged of the flight as a whole, and what is probably not meant.
 pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Scenario) {
     let end_s = scenario.timing.end_s();
-    let parts = ["disturbance", "plant_change"]
-        .into_iter()
-        .flat_map(|key| section.sections(key));
+    let parts = ["disturbance", "plant_change"].into_iter().flat_map(|key| section.sections(key));
     for part in section.section("setpoint").into_iter().chain(parts) {
         let at_s = part.number("at_s").unwrap_or(0.0);
         if at_s > end_s {
             let path = part.path("at_s");
-            report.warn(format!(
-                "{path} is {at_s:?} s, after the flight's end at {end_s:?} s"
-            ));
+            report.warn(format!("{path} is {at_s:?} s, after the flight's end at {end_s:?} s"));
         }
         let nyquist_hz = 0.5 / scenario.timing.dt_s();
         let frequency_hz = part.number("frequency_hz").unwrap_or(0.0);
@@ -200,10 +176,8 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
             ));
         }
     }
-    let mut ramps = section
-        .sections("plant_change")
-        .iter()
-        .filter(|part| part.number("ramp_s") > Some(0.0));
+    let mut ramps =
+        section.sections("plant_change").iter().filter(|part| part.number("ramp_s") > Some(0.0));
     if let Some(ramp) = ramps.next_back()
         && report.count() == 0
     {

@@ -21,12 +21,7 @@ pub(super) fn check(
         .filter_map(|way| keys(way).find_map(|name| present(name)).map(|m| (way, m)))
         .collect();
     match used.as_slice() {
-        [] => report.missing(
-            section.place,
-            &section.path,
-            "a key is missing",
-            words(choice),
-        ),
+        [] => report.missing(section.place, &section.path, "a key is missing", words(choice)),
         [(way, _)] => {
             let given = keys(way).find(|name| present(name).is_some());
             for name in way.required.iter().filter(|name| present(name).is_none()) {

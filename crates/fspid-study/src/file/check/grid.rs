@@ -89,11 +89,7 @@ fn place_of(report: &Report, whole: Place, error: GridError, hole: Option<Hole>)
         },
     };
     let start = whole.start + quotes + line_start + start;
-    Place {
-        start,
-        end: start + length,
-        ..whole
-    }
+    Place { start, end: start + length, ..whole }
 }
 
 /// The line of that number among those that are not empty, and where it begins.
@@ -104,9 +100,7 @@ fn filled_line(text: &str, number: usize) -> Option<(usize, &str)> {
         next += line.len();
         (start, line)
     });
-    lines
-        .filter(|(_, line)| !line.trim().is_empty())
-        .nth(number)
+    lines.filter(|(_, line)| !line.trim().is_empty()).nth(number)
 }
 
 /// The word of that number in a line, and where it begins.

@@ -20,12 +20,7 @@ pub(crate) fn table(
     let Value::Table(members) = &item.value else {
         let found = item.value.type_name();
         let allowed = in_words(spec);
-        report.value(
-            item.place,
-            path,
-            format!("expected a table, not {found}"),
-            allowed,
-        );
+        report.value(item.place, path, format!("expected a table, not {found}"), allowed);
         return None;
     };
     let before = report.count();
@@ -113,10 +108,7 @@ impl<'a> Checker<'a> {
             let (owners, meant) = (owners(spec, name), nearest(name, &known));
             let message = if !owners.is_empty() {
                 let kind = self.section.kind;
-                format!(
-                    "belongs to kind {}, not to kind \"{kind}\"",
-                    quoted_or(&owners)
-                )
+                format!("belongs to kind {}, not to kind \"{kind}\"", quoted_or(&owners))
             } else if let Some(meant) = meant {
                 all_meant.push(meant);
                 format!("unknown key; did you mean `{meant}`?")
@@ -124,8 +116,7 @@ impl<'a> Checker<'a> {
                 "unknown key".to_owned()
             };
             let path = self.section.path(&excerpt(name));
-            self.report
-                .missing(member.place, &path, message, known.join(", "));
+            self.report.missing(member.place, &path, message, known.join(", "));
         }
         all_meant
     }
@@ -150,8 +141,7 @@ impl<'a> Checker<'a> {
             Presence::Optional => {}
             Presence::Required => {
                 let allowed = value::allowed(&key.kind);
-                self.report
-                    .missing(self.section.place, path, "missing key", allowed);
+                self.report.missing(self.section.place, path, "missing key", allowed);
             }
             Presence::Default(default) => {
                 let value = default_value(&key.kind, *default);
@@ -162,23 +152,14 @@ impl<'a> Checker<'a> {
 
     fn put(&mut self, key: &'static Key, place: Place, value: Checked, given: bool) {
         let name = key.name;
-        self.section.entries.push(Entry {
-            name,
-            place,
-            value,
-            given,
-        });
+        self.section.entries.push(Entry { name, place, value, given });
     }
 }
 
 /// The place of the value; that of the key where the value is a table without a place of its own.
 fn value_place(member: &Member) -> Place {
     let place = member.item.place;
-    if place.end > place.start {
-        place
-    } else {
-        member.place
-    }
+    if place.end > place.start { place } else { member.place }
 }
 
 fn default_value(kind: &crate::file::spec::Kind, default: Default) -> Checked {

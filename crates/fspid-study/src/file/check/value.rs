@@ -41,12 +41,9 @@ pub(super) fn check(
         Kind::Rules(grids) => rules(report, item, path, grids),
         Kind::Grid => grid::check(report, item, path).map(Checked::Grid),
         Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
-        Kind::Numbers {
-            unit,
-            range,
-            least,
-            most,
-        } => numbers(report, item, path, (*range, unit), (*least, *most)).map(Checked::Numbers),
+        Kind::Numbers { unit, range, least, most } => {
+            numbers(report, item, path, (*range, unit), (*least, *most)).map(Checked::Numbers)
+        }
         Kind::Interval { unit, range } => {
             interval(report, item, path, (*range, unit)).map(Checked::Numbers)
         }
@@ -72,18 +69,12 @@ pub(super) fn allowed(kind: &Kind) -> String {
         ),
         Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
         Kind::Defuzzifier => Defuzzifier::NAMES.to_owned(),
-        Kind::Numbers {
-            range: Range::Finite,
-            ..
-        } => "a list of finite numbers".to_owned(),
+        Kind::Numbers { range: Range::Finite, .. } => "a list of finite numbers".to_owned(),
         Kind::Numbers { range, unit, .. } => {
             format!("a list of numbers, each {}", range.words(unit))
         }
         Kind::Interval { range, unit } => {
-            format!(
-                "[lower, upper] with lower below upper, each {}",
-                range.words(unit)
-            )
+            format!("[lower, upper] with lower below upper, each {}", range.words(unit))
         }
         Kind::Table(spec) => in_words(spec),
         Kind::Tables { .. } => "tables under a heading in double brackets".to_owned(),
@@ -166,12 +157,7 @@ fn numbers(
     (range, unit): (Range, &'static str),
     (least, most): (usize, usize),
 ) -> Option<Vec<(f64, Place)>> {
-    let kind = Kind::Numbers {
-        unit,
-        range,
-        least,
-        most,
-    };
+    let kind = Kind::Numbers { unit, range, least, most };
     let Value::Array(items) = &item.value else {
         return wrong_type(report, item, path, &kind);
     };
@@ -253,9 +239,8 @@ fn rules(report: &mut Report, item: &Item, path: &str, grids: &'static Table) ->
         _ => return wrong_type(report, item, path, &Kind::Rules(grids)),
     };
     let known = rule_table_names();
-    let is_file = std::path::Path::new(text)
-        .extension()
-        .is_some_and(|extension| extension == "toml");
+    let is_file =
+        std::path::Path::new(text).extension().is_some_and(|extension| extension == "toml");
     if known.contains(&text.as_str()) || is_file {
         return Some(Checked::Text(text.clone()));
     }

@@ -8,11 +8,7 @@ use super::{
 
 pub(super) static CONTROLLER: Table = Table {
     doc: "A controller; a positive command turns the nose up.",
-    groups: &[&[required(
-        "name",
-        Kind::Text,
-        "Name in traces and reports; each only once.",
-    )]],
+    groups: &[&[required("name", Kind::Text, "Name in traces and reports; each only once.")]],
     choices: &[],
     variants: &[
         Variant {
@@ -37,14 +33,8 @@ pub(super) static CONTROLLER: Table = Table {
                 ],
                 choices: &[Choice {
                     ways: &[
-                        Way {
-                            required: &["kp"],
-                            optional: &["ki", "kd"],
-                        },
-                        Way {
-                            required: &["isa"],
-                            optional: &[],
-                        },
+                        Way { required: &["kp"], optional: &["ki", "kd"] },
+                        Way { required: &["isa"], optional: &[] },
                     ],
                 }],
                 variants: &[],
@@ -68,14 +58,8 @@ pub(super) static CONTROLLER: Table = Table {
                 ],
                 choices: &[Choice {
                     ways: &[
-                        Way {
-                            required: &["nominal"],
-                            optional: &[],
-                        },
-                        Way {
-                            required: &["nominal_isa"],
-                            optional: &[],
-                        },
+                        Way { required: &["nominal"], optional: &[] },
+                        Way { required: &["nominal_isa"], optional: &[] },
                     ],
                 }],
                 variants: &[],
@@ -104,17 +88,8 @@ static ISA: Table = plain(
     "Gains in ISA form: gain · (e + ∫e dt / ti_s + td_s · de/dt).",
     &[&[
         required("gain", finite(""), "K, command per error."),
-        optional(
-            "ti_s",
-            positive("s"),
-            "Integral time; no integral if left out.",
-        ),
-        defaulted(
-            "td_s",
-            not_negative("s"),
-            Default::Number(0.0),
-            "Derivative time.",
-        ),
+        optional("ti_s", positive("s"), "Integral time; no integral if left out."),
+        defaulted("td_s", not_negative("s"), Default::Number(0.0), "Derivative time."),
         optional(
             "n",
             positive(""),
@@ -155,23 +130,13 @@ const SHELL: &[Key] = &[
     ),
     optional(
         "output_limits_deg",
-        Kind::Interval {
-            unit: "deg",
-            range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG),
-        },
+        Kind::Interval { unit: "deg", range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG) },
         "Lowest and highest command.",
     ),
-    optional(
-        "slew_limit_deg_s",
-        positive("deg/s"),
-        "Largest rate of the command.",
-    ),
+    optional("slew_limit_deg_s", positive("deg/s"), "Largest rate of the command."),
     defaulted(
         "sample_guard_deg",
-        Kind::Number {
-            unit: "deg",
-            range: Range::PositiveUpTo(1e300),
-        },
+        Kind::Number { unit: "deg", range: Range::PositiveUpTo(1e300) },
         Default::Number(1e9),
         "A larger sample is not believed: the command is held.",
     ),
@@ -186,12 +151,7 @@ static WEIGHTS: Table = plain(
             Default::Number(1.0),
             "Weight in the proportional term.",
         ),
-        defaulted(
-            "derivative",
-            finite(""),
-            Default::Number(1.0),
-            "Weight in the derivative term.",
-        ),
+        defaulted("derivative", finite(""), Default::Number(1.0), "Weight in the derivative term."),
     ]],
 );
 
@@ -200,10 +160,7 @@ static ANTI_WINDUP: Table = Table {
     groups: &[],
     choices: &[],
     variants: &[
-        Variant {
-            name: "none",
-            table: plain("The integral runs on.", &[]),
-        },
+        Variant { name: "none", table: plain("The integral runs on.", &[]) },
         Variant {
             name: "clamping",
             table: plain(
@@ -233,11 +190,7 @@ static ANTI_WINDUP: Table = Table {
 
 /// What a self-tuning controller has beyond a PID.
 const TUNER: &[Key] = &[
-    required(
-        "supervisor",
-        Kind::Table(&SUPERVISOR),
-        "The fuzzy rules and their scales.",
-    ),
+    required("supervisor", Kind::Table(&SUPERVISOR), "The fuzzy rules and their scales."),
     defaulted(
         "law",
         Kind::Word(&["memoryless", "accumulating"]),
@@ -271,10 +224,7 @@ static SUPERVISOR: Table = plain(
         ),
         required(
             "range",
-            Kind::Number {
-                unit: "",
-                range: Range::Between(1e-100, 1e100),
-            },
+            Kind::Number { unit: "", range: Range::Between(1e-100, 1e100) },
             "Half range of inputs and outputs.",
         ),
         defaulted(
@@ -324,24 +274,9 @@ static SUPERVISOR: Table = plain(
 static OUTPUT_SCALE: Table = plain(
     "Factors of the increments.",
     &[&[
-        defaulted(
-            "kp",
-            finite(""),
-            Default::Number(1.0),
-            "Factor of the proportional gain's.",
-        ),
-        defaulted(
-            "ki",
-            finite(""),
-            Default::Number(1.0),
-            "Factor of the integral gain's.",
-        ),
-        defaulted(
-            "kd",
-            finite(""),
-            Default::Number(1.0),
-            "Factor of the derivative gain's.",
-        ),
+        defaulted("kp", finite(""), Default::Number(1.0), "Factor of the proportional gain's."),
+        defaulted("ki", finite(""), Default::Number(1.0), "Factor of the integral gain's."),
+        defaulted("kd", finite(""), Default::Number(1.0), "Factor of the derivative gain's."),
     ]],
 );
 
@@ -360,11 +295,7 @@ static GAIN_LIMITS: Table = plain(
 static DEAD_ZONE: Table = plain(
     "Errors and changes so small that the increments are 0; both must be inside.",
     &[&[
-        required(
-            "error_deg",
-            not_negative("deg"),
-            "Error up to which it holds.",
-        ),
+        required("error_deg", not_negative("deg"), "Error up to which it holds."),
         required(
             "change_deg_s",
             not_negative("deg/s"),

@@ -15,11 +15,7 @@ pub(crate) static PLANT_FILE: Table = plain(
             "Coefficients of pitch angle over elevator, highest power of s first.",
         ),
         required("denominator", COEFFICIENTS, "As numerator; longer than it."),
-        required(
-            "elevator_sign",
-            Kind::Word(&ELEVATOR_SIGNS),
-            "What a positive elevator does.",
-        ),
+        required("elevator_sign", Kind::Word(&ELEVATOR_SIGNS), "What a positive elevator does."),
         optional("condition", Kind::Table(&CONDITION), "Flight condition."),
         optional("source", Kind::Text, "Where the numbers come from."),
         optional("notes", Kind::Text, "What else should be known."),
@@ -34,10 +30,7 @@ static CONDITION: Table = plain(
         optional("altitude_m", finite("m"), "Altitude."),
         optional(
             "mach",
-            Kind::Number {
-                unit: "",
-                range: Range::PositiveUpTo(25.0),
-            },
+            Kind::Number { unit: "", range: Range::PositiveUpTo(25.0) },
             "Mach number.",
         ),
         optional("mass_kg", positive("kg"), "Mass."),
@@ -45,11 +38,7 @@ static CONDITION: Table = plain(
 );
 
 const GRID_KEYS: &[Key] = &[
-    required(
-        "delta_kp",
-        Kind::Grid,
-        "Increment of the proportional gain.",
-    ),
+    required("delta_kp", Kind::Grid, "Increment of the proportional gain."),
     required("delta_ki", Kind::Grid, "Increment of the integral gain."),
     required("delta_kd", Kind::Grid, "Increment of the derivative gain."),
 ];

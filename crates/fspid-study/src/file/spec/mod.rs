@@ -192,22 +192,12 @@ fn short(value: f64) -> String {
 
 /// A key that must be there.
 pub(crate) const fn required(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        kind,
-        presence: Presence::Required,
-        doc,
-    }
+    Key { name, kind, presence: Presence::Required, doc }
 }
 
 /// A key that may be left out.
 pub(crate) const fn optional(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        kind,
-        presence: Presence::Optional,
-        doc,
-    }
+    Key { name, kind, presence: Presence::Optional, doc }
 }
 
 /// A key with a default.
@@ -217,52 +207,30 @@ pub(crate) const fn defaulted(
     default: Default,
     doc: &'static str,
 ) -> Key {
-    Key {
-        name,
-        kind,
-        presence: Presence::Default(default),
-        doc,
-    }
+    Key { name, kind, presence: Presence::Default(default), doc }
 }
 
 /// A table without choices and kinds.
 pub(crate) const fn plain(doc: &'static str, groups: &'static [&'static [Key]]) -> Table {
-    Table {
-        doc,
-        groups,
-        choices: &[],
-        variants: &[],
-    }
+    Table { doc, groups, choices: &[], variants: &[] }
 }
 
 /// A number of any size.
 pub(crate) const fn finite(unit: &'static str) -> Kind {
-    Kind::Number {
-        unit,
-        range: Range::Finite,
-    }
+    Kind::Number { unit, range: Range::Finite }
 }
 
 /// A time or another number, 0 or above.
 pub(crate) const fn not_negative(unit: &'static str) -> Kind {
-    Kind::Number {
-        unit,
-        range: Range::NotNegative,
-    }
+    Kind::Number { unit, range: Range::NotNegative }
 }
 
 /// A number above 0.
 pub(crate) const fn positive(unit: &'static str) -> Kind {
-    Kind::Number {
-        unit,
-        range: Range::Positive,
-    }
+    Kind::Number { unit, range: Range::Positive }
 }
 
 /// An angle in degrees.
 pub(crate) const fn angle() -> Kind {
-    Kind::Number {
-        unit: "deg",
-        range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG),
-    }
+    Kind::Number { unit: "deg", range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG) }
 }

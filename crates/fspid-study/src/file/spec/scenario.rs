@@ -12,62 +12,34 @@ use crate::file::preset::plant_names;
 pub(crate) static SCENARIO: Table = plain(
     "A flight to be simulated, once for each controller.",
     &[&[
-        required(
-            "schema",
-            Kind::Integer { least: 1, most: 1 },
-            "Version of this format.",
-        ),
+        required("schema", Kind::Integer { least: 1, most: 1 }, "Version of this format."),
         required("name", Kind::Text, "Name in reports."),
-        required(
-            "plant",
-            Kind::Table(&PLANT),
-            "The aircraft, from elevator to pitch angle.",
-        ),
+        required("plant", Kind::Table(&PLANT), "The aircraft, from elevator to pitch angle."),
         optional(
             "actuator",
             Kind::Table(&ACTUATOR),
             "The elevator servo; without this table it is ideal.",
         ),
         required("loop", Kind::Table(&LOOP), "Samples and duration."),
-        required(
-            "setpoint",
-            Kind::Table(&SETPOINT),
-            "The commanded pitch angle.",
-        ),
+        required("setpoint", Kind::Table(&SETPOINT), "The commanded pitch angle."),
         optional(
             "disturbance",
-            Kind::Tables {
-                table: &DISTURBANCE,
-                least: 0,
-                most: 100,
-            },
+            Kind::Tables { table: &DISTURBANCE, least: 0, most: 100 },
             "What disturbs; all are added.",
         ),
         optional(
             "plant_change",
-            Kind::Tables {
-                table: &PLANT_CHANGE,
-                least: 0,
-                most: 100,
-            },
+            Kind::Tables { table: &PLANT_CHANGE, least: 0, most: 100 },
             "Changes of the aircraft in flight, in order of time.",
         ),
         required(
             "controller",
-            Kind::Tables {
-                table: &CONTROLLER,
-                least: 1,
-                most: 100,
-            },
+            Kind::Tables { table: &CONTROLLER, least: 1, most: 100 },
             "Who answers; each flies the whole scenario alone.",
         ),
         optional(
             "requirement",
-            Kind::Tables {
-                table: &REQUIREMENT,
-                least: 0,
-                most: 1000,
-            },
+            Kind::Tables { table: &REQUIREMENT, least: 0, most: 1000 },
             "What the responses must meet.",
         ),
     ]],
@@ -77,18 +49,11 @@ pub(crate) static SCENARIO: Table = plain(
 pub(crate) const ELEVATOR_SIGNS: [&str; 2] = ["nose-down-positive", "nose-up-positive"];
 
 /// A list of coefficients.
-pub(super) const COEFFICIENTS: Kind = Kind::Numbers {
-    unit: "",
-    range: Range::Finite,
-    least: 1,
-    most: 101,
-};
+pub(super) const COEFFICIENTS: Kind =
+    Kind::Numbers { unit: "", range: Range::Finite, least: 1, most: 101 };
 
-const PRESET: Key = optional(
-    "preset",
-    Kind::Preset(plant_names),
-    "A plant that the program carries.",
-);
+const PRESET: Key =
+    optional("preset", Kind::Preset(plant_names), "A plant that the program carries.");
 const FILE: Key = optional("file", Kind::Path, "A plant file, relative to this file.");
 const NUMERATOR: Key = optional(
     "numerator",
@@ -107,18 +72,9 @@ static PLANT: Table = Table {
     groups: &[&[PRESET, NUMERATOR, DENOMINATOR, ELEVATOR_SIGN, FILE]],
     choices: &[Choice {
         ways: &[
-            Way {
-                required: &["preset"],
-                optional: &[],
-            },
-            Way {
-                required: &["numerator", "denominator", "elevator_sign"],
-                optional: &[],
-            },
-            Way {
-                required: &["file"],
-                optional: &[],
-            },
+            Way { required: &["preset"], optional: &[] },
+            Way { required: &["numerator", "denominator", "elevator_sign"], optional: &[] },
+            Way { required: &["file"], optional: &[] },
         ],
     }],
     variants: &[],
@@ -140,19 +96,10 @@ static PLANT_CHANGE: Table = Table {
     ],
     choices: &[Choice {
         ways: &[
-            Way {
-                required: &["preset"],
-                optional: &[],
-            },
+            Way { required: &["preset"], optional: &[] },
             // The sign is that of the plant unless it is given.
-            Way {
-                required: &["numerator", "denominator"],
-                optional: &["elevator_sign"],
-            },
-            Way {
-                required: &["file"],
-                optional: &[],
-            },
+            Way { required: &["numerator", "denominator"], optional: &["elevator_sign"] },
+            Way { required: &["file"], optional: &[] },
         ],
     }],
     variants: &[],
@@ -179,10 +126,7 @@ static ACTUATOR: Table = plain(
         ),
         defaulted(
             "delay_samples",
-            Kind::Integer {
-                least: 0,
-                most: 10_000,
-            },
+            Kind::Integer { least: 0, most: 10_000 },
             Default::Integer(0),
             "How many samples the command arrives late.",
         ),
@@ -192,11 +136,7 @@ static ACTUATOR: Table = plain(
 static LOOP: Table = plain(
     "When samples are taken.",
     &[&[
-        required(
-            "sample_period_s",
-            positive("s"),
-            "Time from sample to sample.",
-        ),
+        required("sample_period_s", positive("s"), "Time from sample to sample."),
         required(
             "duration_s",
             positive("s"),
@@ -206,12 +146,8 @@ static LOOP: Table = plain(
 );
 
 /// Words for what a requirement measures.
-pub(crate) const MEASURES: [&str; 4] = [
-    "overshoot_pct",
-    "rise_time_s",
-    "settling_time_s",
-    "final_error_pct",
-];
+pub(crate) const MEASURES: [&str; 4] =
+    ["overshoot_pct", "rise_time_s", "settling_time_s", "final_error_pct"];
 
 static REQUIREMENT: Table = plain(
     "A bound that the response to the first command must meet.",

@@ -6,16 +6,9 @@ use super::{
 };
 
 /// Highest frequency, Hz; far above what any sample period can show.
-const FREQUENCY: Kind = Kind::Number {
-    unit: "Hz",
-    range: Range::PositiveUpTo(1e6),
-};
+const FREQUENCY: Kind = Kind::Number { unit: "Hz", range: Range::PositiveUpTo(1e6) };
 
-const AMPLITUDE: Key = required(
-    "amplitude_deg",
-    angle(),
-    "Size; negative for the other way.",
-);
+const AMPLITUDE: Key = required("amplitude_deg", angle(), "Size; negative for the other way.");
 const AT: Key = defaulted("at_s", not_negative("s"), Default::Number(0.0), "Start.");
 
 /// Rows that a set-point table may have.
@@ -51,33 +44,21 @@ pub(super) static SETPOINT: Table = Table {
             name: "doublet",
             table: plain(
                 "The amplitude, then minus the amplitude, then 0.",
-                &[&[
-                    AMPLITUDE,
-                    AT,
-                    required("width_s", positive("s"), "Length of each half."),
-                ]],
+                &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of each half.")]],
             ),
         },
         Variant {
             name: "ramp",
             table: plain(
                 "In a straight line from 0 to the amplitude, where it stays.",
-                &[&[
-                    AMPLITUDE,
-                    AT,
-                    required("width_s", positive("s"), "Length of the rise."),
-                ]],
+                &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
             ),
         },
         Variant {
             name: "sine",
             table: plain(
                 "A sine wave from the start on.",
-                &[&[
-                    AMPLITUDE,
-                    AT,
-                    required("frequency_hz", FREQUENCY, "Frequency."),
-                ]],
+                &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
             ),
         },
         Variant {
@@ -141,22 +122,14 @@ pub(super) static DISTURBANCE: Table = Table {
             name: "ramp",
             table: plain(
                 "In a straight line from 0 to the amplitude, where it stays.",
-                &[&[
-                    AMPLITUDE,
-                    AT,
-                    required("width_s", positive("s"), "Length of the rise."),
-                ]],
+                &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
             ),
         },
         Variant {
             name: "sine",
             table: plain(
                 "A sine wave from the start on.",
-                &[&[
-                    AMPLITUDE,
-                    AT,
-                    required("frequency_hz", FREQUENCY, "Frequency."),
-                ]],
+                &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
             ),
         },
         Variant {
@@ -166,19 +139,13 @@ pub(super) static DISTURBANCE: Table = Table {
                 &[&[
                     required(
                         "standard_deviation_deg",
-                        Kind::Number {
-                            unit: "deg",
-                            range: Range::UpTo(ANGLE_LIMIT_DEG),
-                        },
+                        Kind::Number { unit: "deg", range: Range::UpTo(ANGLE_LIMIT_DEG) },
                         "Standard deviation.",
                     ),
                     AT,
                     required(
                         "seed",
-                        Kind::Integer {
-                            least: 0,
-                            most: i64::MAX,
-                        },
+                        Kind::Integer { least: 0, most: i64::MAX },
                         "The same seed gives the same noise.",
                     ),
                 ]],

@@ -24,19 +24,11 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
         .in_cards();
     for judged in claims {
         // One digit more than the paper prints.
-        let decimals = judged
-            .claim
-            .paper
-            .0
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len())
-            + 1;
+        let decimals =
+            judged.claim.paper.0.split_once('.').map_or(0, |(_, decimals)| decimals.len()) + 1;
         let value = |value: Result<f64, crate::metrics::Absent>| match value {
             Ok(value) => Cell::number(fixed(value, decimals)),
-            Err(reason) => Cell {
-                class: "absent",
-                ..Cell::text(reason.to_string())
-            },
+            Err(reason) => Cell { class: "absent", ..Cell::text(reason.to_string()) },
         };
         table.push(Row {
             id: judged.claim.id.to_owned(),
@@ -59,14 +51,7 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
 }
 
 fn statements(statements: &[JudgedStatement]) -> Table {
-    let head = [
-        "id",
-        "the paper says",
-        "we find",
-        "status",
-        "rests on",
-        "how it is judged",
-    ];
+    let head = ["id", "the paper says", "we find", "status", "rests on", "how it is judged"];
     let mut table = Table::new("Every claim in words that a flight can answer.", &head).in_cards();
     for judged in statements {
         table.push(Row {

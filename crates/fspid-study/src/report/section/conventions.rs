@@ -30,11 +30,6 @@ pub(super) fn section(_: &Paper<'_>) -> Section {
         )
         .resting_on(&["A2", "A3", "A10"]),
     ];
-    Section::of(
-        "conventions",
-        "Axes, signs and loops",
-        "conventions",
-        context! { figures },
-    )
-    .with_figures(figures)
+    Section::of("conventions", "Axes, signs and loops", "conventions", context! { figures })
+        .with_figures(figures)
 }

@@ -35,18 +35,8 @@ pub(super) const MATCHES: [Match; 3] = [
         name: "FSPID over CPID with the same nominal gains",
         slug: "same-gains",
     },
-    Match {
-        of: 1,
-        over: 2,
-        name: "FSPID over a re-tuned CPID",
-        slug: "retuned-cpid",
-    },
-    Match {
-        of: 3,
-        over: 2,
-        name: "both tuned with the same effort",
-        slug: "both-tuned",
-    },
+    Match { of: 1, over: 2, name: "FSPID over a re-tuned CPID", slug: "retuned-cpid" },
+    Match { of: 3, over: 2, name: "both tuned with the same effort", slug: "both-tuned" },
 ];
 
 /// Place of entry of the time responses that are shown.
@@ -64,14 +54,9 @@ pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simul
     let mut flights = Vec::new();
     for shape in SHAPES {
         for entry in ENTRIES {
-            let flown = library
-                .study(&scenario_name(shape, entry), &[])
-                .ok()
-                .and_then(|study| {
-                    Simulation::of(&study)
-                        .ok()
-                        .map(|simulation| (study, simulation))
-                });
+            let flown = library.study(&scenario_name(shape, entry), &[]).ok().and_then(|study| {
+                Simulation::of(&study).ok().map(|simulation| (study, simulation))
+            });
             if let Some((study, simulation)) = flown {
                 flights.push((format!("disturbance-{shape}-{entry}"), study, simulation));
             }
@@ -100,18 +85,12 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
             name: shape,
             title: capital(shape),
             form: form(shape, &flights),
-            verdicts: MATCHES
-                .iter()
-                .map(|of| verdict(of, sweeps, shape))
-                .collect(),
+            verdicts: MATCHES.iter().map(|of| verdict(of, sweeps, shape)).collect(),
             ratios: MATCHES.iter().map(|of| ratio(of, sweeps, shape)).collect(),
             response: flights.iter().find_map(|flown| response(shape, flown)),
         })
         .collect();
-    let figures = shapes
-        .iter()
-        .flat_map(|s| s.ratios.iter().chain(&s.response).cloned())
-        .collect();
+    let figures = shapes.iter().flat_map(|s| s.ratios.iter().chain(&s.response).cloned()).collect();
     let context = context! {
         shapes,
         outcome => outcome(sweeps),
@@ -126,20 +105,14 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         cases => SIZES_DEG.len() * ENTRIES.len(),
         budget => budget(paper),
     };
-    Section::of(
-        "disturbances",
-        "Figure 7: disturbances",
-        "disturbances",
-        context,
-    )
-    .with_figures(figures)
+    Section::of("disturbances", "Figure 7: disturbances", "disturbances", context)
+        .with_figures(figures)
 }
 
 /// The form of a shape as its scenario has it.
 fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
-    let named = flights
-        .iter()
-        .find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
+    let named =
+        flights.iter().find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
     named.map_or_else(String::new, |(_, study, _)| {
         settings::disturbance_forms(&study.scenario).join(" and ")
     })
@@ -147,13 +120,7 @@ fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
 
 /// Who wins, in words: the geometric mean decides, the count qualifies.
 pub(super) fn verdict(of: &Match, sweeps: &[Sweep], shape: &str) -> String {
-    let Contest {
-        won,
-        cases,
-        lowest,
-        mean,
-        highest,
-    } = of.contest(sweeps, shape);
+    let Contest { won, cases, lowest, mean, highest } = of.contest(sweeps, shape);
     format!(
         "{}: FSPID better in {won} of {cases} cases; its cost is {} on average (geometric mean of the ratio {}, \
          from {} to {}).",
@@ -182,18 +149,10 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
         },
         style: SeriesStyle::Numbered(n),
         x: SIZES_DEG.to_vec(),
-        y: sweep
-            .ratios(of.of, of.over)
-            .map(|ratio| ratio.unwrap_or(f64::NAN))
-            .collect(),
+        y: sweep.ratios(of.of, of.over).map(|ratio| ratio.unwrap_or(f64::NAN)).collect(),
         stairs: false,
     };
-    let series = sweeps
-        .iter()
-        .filter(|sweep| sweep.shape == shape)
-        .enumerate()
-        .map(line)
-        .collect();
+    let series = sweeps.iter().filter(|sweep| sweep.shape == shape).enumerate().map(line).collect();
     let drawn = RatioFigure {
         title: format!("Fig. 7, {shape}: {}", of.name),
         x_label: "size of the disturbance (deg)".to_owned(),
@@ -205,11 +164,7 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
         width_px: 480.0,
     };
     let caption = format!("Cost ratio, {shape} disturbance: {}.", of.name);
-    Figure::new(
-        format!("figure-7-{shape}-{}", of.slug),
-        drawn.render(),
-        caption,
-    )
+    Figure::new(format!("figure-7-{shape}-{}", of.slug), drawn.render(), caption)
 }
 
 fn response(
@@ -221,48 +176,25 @@ fn response(
     }
     let title = format!("Fig. 7, {shape} disturbance at the {SHOWN_AT}");
     let (scenario, only) = (&study.scenario, &CONTROLLERS[..]);
-    let drawing = Drawing {
-        title: &title,
-        scenario,
-        simulation,
-        only,
-        detailed: false,
-        width_px: 720.0,
-    };
+    let drawing =
+        Drawing { title: &title, scenario, simulation, only, detailed: false, width_px: 720.0 };
     let caption = format!(
         "Response to the {shape} disturbance entering at the {SHOWN_AT}, at the size of the stored scenario; the \
          set-point stays at zero. From above: pitch angle, command, gains of both FSPIDs.{}",
         drawing.spikes()
     );
-    let figure = Figure::new(
-        format!("figure-7-{shape}-response"),
-        drawing.render(),
-        caption,
-    );
+    let figure = Figure::new(format!("figure-7-{shape}-response"), drawing.render(), caption);
     Some(figure.resting_on(&["A16", "A17"]))
 }
 
 /// Every comparison in numbers.
 fn outcome(sweeps: &[Sweep]) -> Table {
     let caption = "Ratios of cost over all sizes and places of entry; below 1 the FSPID is better. The mean is geometric.";
-    let head = [
-        "disturbance",
-        "comparison",
-        "FSPID better in",
-        "lowest",
-        "mean",
-        "highest",
-    ];
+    let head = ["disturbance", "comparison", "FSPID better in", "lowest", "mean", "highest"];
     let mut table = Table::new(caption, &head).in_cards();
     for shape in SHAPES {
         for of in &MATCHES {
-            let Contest {
-                won,
-                cases,
-                lowest,
-                mean,
-                highest,
-            } = of.contest(sweeps, shape);
+            let Contest { won, cases, lowest, mean, highest } = of.contest(sweeps, shape);
             let mut cells = vec![Cell::text(shape), Cell::text(of.name)];
             cells.push(Cell::number(format!("{won} of {cases}")));
             cells.extend([lowest, mean, highest].map(|ratio| Cell::number(fixed(ratio, 3))));
@@ -276,10 +208,7 @@ fn outcome(sweeps: &[Sweep]) -> Table {
 fn gains(flights: &[(String, Study, Simulation)]) -> Table {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
-    let mut table = Table::new(
-        caption,
-        &["controller", "kp", "ki, 1/s", "kd, s", "gains are"],
-    );
+    let mut table = Table::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
     for (index, (name, study, _)) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");
@@ -288,11 +217,7 @@ fn gains(flights: &[(String, Study, Simulation)]) -> Table {
             }
             let place = name.trim_start_matches("disturbance-").replace('-', ", ");
             let nominal = named.controller.nominal();
-            let title = if tuned {
-                format!("{}: {place}", named.name)
-            } else {
-                named.name.clone()
-            };
+            let title = if tuned { format!("{}: {place}", named.name) } else { named.name.clone() };
             let mut cells = vec![Cell::text(title)];
             cells.extend(
                 [nominal.kp, nominal.ki, nominal.kd].map(|gain| Cell::number(significant(gain, 4))),
@@ -311,13 +236,8 @@ fn gains(flights: &[(String, Study, Simulation)]) -> Table {
 fn budget(paper: &Paper<'_>) -> Option<String> {
     let problems = paper.reproduction.record.problems.iter();
     let tuned = problems.filter(|problem| problem.name.contains("tuned"));
-    let spent: Vec<usize> = tuned
-        .flat_map(|problem| problem.runs.iter().map(|run| run.evaluations))
-        .collect();
+    let spent: Vec<usize> =
+        tuned.flat_map(|problem| problem.runs.iter().map(|run| run.evaluations)).collect();
     let (least, most) = (spent.iter().min()?, spent.iter().max()?);
-    Some(if least == most {
-        most.to_string()
-    } else {
-        format!("{least} to {most}")
-    })
+    Some(if least == most { most.to_string() } else { format!("{least} to {most}") })
 }

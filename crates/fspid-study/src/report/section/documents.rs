@@ -10,12 +10,7 @@ const ASSUMPTIONS: &str = include_str!("../../../../../docs/paper/assumptions.md
 
 /// What is wrong or contradictory in print.
 pub(super) fn errata(_: &Paper<'_>) -> Section {
-    Section::of(
-        "errata",
-        "Errata",
-        "document",
-        context! { html => markdown::html(ERRATA) },
-    )
+    Section::of("errata", "Errata", "document", context! { html => markdown::html(ERRATA) })
 }
 
 /// What the paper leaves open and what stands in its place.

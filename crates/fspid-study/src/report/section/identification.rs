@@ -26,39 +26,24 @@ struct Problem {
 /// The record of the searches.
 pub(super) fn section(paper: &Paper<'_>) -> Section {
     let record = &paper.reproduction.record;
-    let fits: Vec<Problem> = record
-        .problems
-        .iter()
-        .filter(|p| !p.name.contains("tuned"))
-        .map(problem)
-        .collect();
+    let fits: Vec<Problem> =
+        record.problems.iter().filter(|p| !p.name.contains("tuned")).map(problem).collect();
     let tuned = record.problems.iter().filter(|p| p.name.contains("tuned"));
     let several = record.problems.iter().any(|problem| problem.runs.len() > 1);
     let context =
         context! { command => record.command, fits, tuned => tuned_table(tuned), several };
-    Section::of(
-        "identification",
-        "How the parameters were found",
-        "identification",
-        context,
-    )
+    Section::of("identification", "How the parameters were found", "identification", context)
 }
 
 fn problem(of: &ProblemRecord) -> Problem {
-    let mut runs = Table::new(
-        format!("{}: seeds.", of.name),
-        &["seed", "cost", "evaluations", "kept"],
-    );
+    let mut runs =
+        Table::new(format!("{}: seeds.", of.name), &["seed", "cost", "evaluations", "kept"]);
     for run in &of.runs {
         runs.push(vec![
             Cell::text(run.seed.to_string()),
             Cell::number(significant(run.cost, 3)),
             Cell::number(run.evaluations.to_string()),
-            Cell::text(if run.seed == of.kept {
-                "\u{2713} kept"
-            } else {
-                ""
-            }),
+            Cell::text(if run.seed == of.kept { "\u{2713} kept" } else { "" }),
         ]);
     }
     Problem {
@@ -84,21 +69,10 @@ fn parameters(of: &ProblemRecord) -> Table {
     let mut table = Table::new(format!("{}: {caption}.", of.name), head);
     let kept = of.runs.iter().find(|run| run.seed == of.kept);
     for (index, (name, (low, high))) in of.parameters.iter().zip(of.spread()).enumerate() {
-        let value = kept
-            .and_then(|run| run.point.get(index))
-            .copied()
-            .unwrap_or(f64::NAN);
+        let value = kept.and_then(|run| run.point.get(index)).copied().unwrap_or(f64::NAN);
         let mut cells = vec![Cell::text(numbered(&of.parameters, index))];
-        let spread = if several {
-            vec![value, low, high]
-        } else {
-            vec![value]
-        };
-        cells.extend(
-            spread
-                .into_iter()
-                .map(|value| Cell::number(significant(value, 4))),
-        );
+        let spread = if several { vec![value, low, high] } else { vec![value] };
+        cells.extend(spread.into_iter().map(|value| Cell::number(significant(value, 4))));
         cells.push(Cell::text(unit(name)));
         table.push(cells);
     }
@@ -132,11 +106,7 @@ fn unit(name: &str) -> &'static str {
 
 /// Parameters that seeds of about equal cost put at different places.
 fn loose(of: &ProblemRecord) -> Vec<String> {
-    let best = of
-        .runs
-        .iter()
-        .map(|run| run.cost)
-        .fold(f64::INFINITY, f64::min);
+    let best = of.runs.iter().map(|run| run.cost).fold(f64::INFINITY, f64::min);
     let good: Vec<&SeedRecord> = of
         .runs
         .iter()
@@ -147,33 +117,19 @@ fn loose(of: &ProblemRecord) -> Vec<String> {
     }
     let is_loose = |index: usize| {
         let values = || good.iter().filter_map(|run| run.point.get(index).copied());
-        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let (low, high) =
+            values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         high - low > DETERMINED * low.abs().max(high.abs())
     };
-    let names = of
-        .parameters
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| is_loose(*index));
+    let names = of.parameters.iter().enumerate().filter(|(index, _)| is_loose(*index));
     names.map(|(_, name)| name.clone()).collect()
 }
 
 fn tuned_table<'a>(problems: impl Iterator<Item = &'a ProblemRecord>) -> Table {
-    let head = [
-        "search",
-        "seeds",
-        "lowest cost",
-        "highest cost",
-        "evaluations in all",
-        "kept seed",
-    ];
-    let mut table = Table::new(
-        "Controllers tuned against the disturbances of Fig. 7.",
-        &head,
-    )
-    .in_cards();
+    let head =
+        ["search", "seeds", "lowest cost", "highest cost", "evaluations in all", "kept seed"];
+    let mut table =
+        Table::new("Controllers tuned against the disturbances of Fig. 7.", &head).in_cards();
     for problem in problems {
         let costs = || problem.runs.iter().map(|run| run.cost);
         let spent: usize = problem.runs.iter().map(|run| run.evaluations).sum();

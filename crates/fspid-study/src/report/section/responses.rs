@@ -31,21 +31,10 @@ struct Standing {
 
 /// The time responses of the paper.
 pub(super) fn section(paper: &Paper<'_>) -> Section {
-    let parts: Vec<Part> = FIGURES
-        .iter()
-        .filter_map(|figure| part(paper, figure.id))
-        .collect();
-    let figures = parts
-        .iter()
-        .flat_map(|part| [part.own.clone(), part.shared.clone()])
-        .collect();
-    Section::of(
-        "responses",
-        "Figures 5, 6, 8 and 9",
-        "responses",
-        context! { parts },
-    )
-    .with_figures(figures)
+    let parts: Vec<Part> = FIGURES.iter().filter_map(|figure| part(paper, figure.id)).collect();
+    let figures = parts.iter().flat_map(|part| [part.own.clone(), part.shared.clone()]).collect();
+    Section::of("responses", "Figures 5, 6, 8 and 9", "responses", context! { parts })
+        .with_figures(figures)
 }
 
 fn part(paper: &Paper<'_>, id: &'static str) -> Option<Part> {
@@ -53,33 +42,20 @@ fn part(paper: &Paper<'_>, id: &'static str) -> Option<Part> {
     let own = reproduction.figure(Fit::Own, id)?;
     let shared = reproduction.figure(Fit::Shared, id)?;
     let of_figure = |judged: &&JudgedClaim| {
-        judged
-            .claim
-            .id
-            .strip_prefix('F')
-            .is_some_and(|rest| rest.split('.').next() == Some(id))
+        judged.claim.id.strip_prefix('F').is_some_and(|rest| rest.split('.').next() == Some(id))
     };
     let claims: Vec<&JudgedClaim> = reproduction.claims.iter().filter(of_figure).collect();
     let standing = |fit: &'static str, status: fn(&JudgedClaim) -> Status| Standing {
         fit,
-        reproduced: claims
-            .iter()
-            .filter(|judged| status(judged) == Status::Reproduced)
-            .count(),
+        reproduced: claims.iter().filter(|judged| status(judged) == Status::Reproduced).count(),
         all: claims.len(),
     };
-    let variants = [
-        ("own fit", &own.simulation),
-        ("shared supervisor", &shared.simulation),
-    ];
+    let variants = [("own fit", &own.simulation), ("shared supervisor", &shared.simulation)];
     Some(Part {
         id,
         title: own.figure.title,
         own: figure(own, "a fit of the figure's own"),
-        shared: figure(
-            shared,
-            "the supervisor that is shared by all figures of its range",
-        ),
+        shared: figure(shared, "the supervisor that is shared by all figures of its range"),
         measures: measures::side_by_side(
             &format!("Fig. {id}: measures of every step of the command under both fits."),
             &variants,
@@ -89,11 +65,7 @@ fn part(paper: &Paper<'_>, id: &'static str) -> Option<Part> {
             standing("its own fit", |j| j.status),
             standing("the shared supervisor", |j| j.shared_status),
         ],
-        square: own
-            .simulation
-            .results
-            .first()
-            .is_some_and(|result| result.metrics.edges.len() > 1),
+        square: own.simulation.results.first().is_some_and(|result| result.metrics.edges.len() > 1),
     })
 }
 
@@ -111,12 +83,8 @@ fn figure(flown: &FlownFigure, fit: &str) -> Figure {
         width_px: 520.0,
     };
     let timing = flown.study.scenario.timing;
-    let names: Vec<&str> = flown
-        .simulation
-        .results
-        .iter()
-        .map(|result| result.name.as_str())
-        .collect();
+    let names: Vec<&str> =
+        flown.simulation.results.iter().map(|result| result.name.as_str()).collect();
     let caption = format!(
         "Fig. {} with {fit}. Window {} s, sampled every {} s; controllers {}. From above: pitch angle, command, and \
          the three gains of the FSPID.{}",

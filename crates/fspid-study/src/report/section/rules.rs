@@ -28,18 +28,11 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
     let tables = supervisor::rule_tables("table-3", "printed table", &printed, Marks::Paper);
     let mirrored_tables =
         supervisor::rule_tables("mirrored", "mirrored table", &mirrored, Marks::None);
-    let figures: Vec<Figure> = [
-        &sets,
-        &tables,
-        &mirrored_tables,
-        &maps,
-        &views,
-        &mirrored_maps,
-    ]
-    .into_iter()
-    .flatten()
-    .cloned()
-    .collect();
+    let figures: Vec<Figure> = [&sets, &tables, &mirrored_tables, &maps, &views, &mirrored_maps]
+        .into_iter()
+        .flatten()
+        .cloned()
+        .collect();
     let context = context! {
         sets, tables, mirrored_tables, maps, views, mirrored_maps,
         odd => odd(&printed),
@@ -60,27 +53,10 @@ fn pictures(printed: &RuleTable, mirrored: &RuleTable) -> Pictures {
     };
     let sets = supervisor::exact(printed, range);
     (
-        sets.map_or_else(Vec::new, |supervisor| {
-            supervisor::sets("figure-4", &supervisor)
-        }),
-        surfaces(
-            "surface-printed",
-            "printed table",
-            printed,
-            SurfaceKind::Map,
-        ),
-        surfaces(
-            "surface-printed",
-            "printed table",
-            printed,
-            SurfaceKind::View,
-        ),
-        surfaces(
-            "surface-mirrored",
-            "mirrored table",
-            mirrored,
-            SurfaceKind::Map,
-        ),
+        sets.map_or_else(Vec::new, |supervisor| supervisor::sets("figure-4", &supervisor)),
+        surfaces("surface-printed", "printed table", printed, SurfaceKind::Map),
+        surfaces("surface-printed", "printed table", printed, SurfaceKind::View),
+        surfaces("surface-mirrored", "mirrored table", mirrored, SurfaceKind::Map),
     )
 }
 
@@ -88,24 +64,9 @@ fn pictures(printed: &RuleTable, mirrored: &RuleTable) -> Pictures {
 fn odd(printed: &RuleTable) -> Table {
     let caption = "Cells of the printed table that break the symmetry of their gain. For kp and ki, opposite inputs \
                    should have opposite labels; for kd, opposite changes should have the same label.";
-    let mut table = Table::new(
-        caption,
-        &[
-            "gain",
-            "cell (e, ec)",
-            "holds",
-            "counterpart (e, ec)",
-            "holds",
-        ],
-    );
-    for OddCell {
-        output,
-        at,
-        found,
-        opposite,
-        there,
-    } in supervisor::odd_cells(printed)
-    {
+    let mut table =
+        Table::new(caption, &["gain", "cell (e, ec)", "holds", "counterpart (e, ec)", "holds"]);
+    for OddCell { output, at, found, opposite, there } in supervisor::odd_cells(printed) {
         // Both of a pair are odd: one line for the two.
         if (at.0.index(), at.1.index()) > (opposite.0.index(), opposite.1.index()) {
             continue;
@@ -129,15 +90,8 @@ fn odd(printed: &RuleTable) -> Table {
 /// What each supervisor adds at zero error and no change.
 fn at_rest() -> Table {
     let caption = "What the supervisor answers at rest (error and change zero), in supervisor units: exact centroid.";
-    let mut table = Table::new(
-        caption,
-        &[
-            "rule table, half range",
-            "\u{394}kp",
-            "\u{394}ki",
-            "\u{394}kd",
-        ],
-    );
+    let mut table =
+        Table::new(caption, &["rule table, half range", "\u{394}kp", "\u{394}ki", "\u{394}kd"]);
     for name in TABLES {
         for range in RANGES {
             let answer = file::rule_table(name)
@@ -145,10 +99,7 @@ fn at_rest() -> Table {
                 .and_then(|supervisor| supervisor::at_rest(&supervisor));
             let mut cells = vec![Cell::text(format!("{name}, {range}"))];
             cells.extend(
-                answer
-                    .into_iter()
-                    .flatten()
-                    .map(|value| Cell::number(with_sign(value, 4))),
+                answer.into_iter().flatten().map(|value| Cell::number(with_sign(value, 4))),
             );
             table.push(cells);
         }
@@ -160,18 +111,9 @@ fn at_rest() -> Table {
 fn in_flight(paper: &Paper<'_>) -> Table {
     let caption = "Gains of every flown FSPID: nominal, and at rest after the output factors and the floor at zero \
                    (A12). kp has no unit, ki is in 1/s, kd in s.";
-    let head = [
-        "figure, fit, controller",
-        "kp",
-        "ki",
-        "kd",
-        "kp",
-        "ki",
-        "kd",
-    ];
-    let mut table = Table::new(caption, &head)
-        .grouped(&[("", 1), ("nominal", 3), ("at rest", 3)])
-        .in_cards();
+    let head = ["figure, fit, controller", "kp", "ki", "kd", "kp", "ki", "kd"];
+    let mut table =
+        Table::new(caption, &head).grouped(&[("", 1), ("nominal", 3), ("at rest", 3)]).in_cards();
     for flown in &paper.reproduction.figures {
         for named in &flown.study.scenario.controllers {
             let fspid_sim::Controller::SelfTuning(fspid) = &named.controller else {
@@ -180,9 +122,7 @@ fn in_flight(paper: &Paper<'_>) -> Table {
             let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
             let name = format!("{}, {}, {}", flown.figure.id, flown.fit.name(), named.name);
             let mut cells = vec![Cell::text(name)];
-            let gains = [
-                nominal.kp, nominal.ki, nominal.kd, rest.kp, rest.ki, rest.kd,
-            ];
+            let gains = [nominal.kp, nominal.ki, nominal.kd, rest.kp, rest.ki, rest.kd];
             cells.extend(gains.map(|gain| Cell::number(significant(gain, 4))));
             table.push(Row::from(cells));
         }

@@ -37,21 +37,9 @@ fn statuses(reproduction: &Reproduction) -> Table {
     head.extend(Status::ALL.map(|status| Cell::status(status).text));
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
     let mut table = Table::new("How many claims stand how.", &head).in_cards();
-    let own = reproduction
-        .claims
-        .iter()
-        .map(|judged| judged.status)
-        .collect();
-    let shared = reproduction
-        .claims
-        .iter()
-        .map(|judged| judged.shared_status)
-        .collect();
-    let words = reproduction
-        .statements
-        .iter()
-        .map(|judged| judged.status)
-        .collect();
+    let own = reproduction.claims.iter().map(|judged| judged.status).collect();
+    let shared = reproduction.claims.iter().map(|judged| judged.shared_status).collect();
+    let words = reproduction.statements.iter().map(|judged| judged.status).collect();
     let rows: [(&str, Vec<Status>); 3] = [
         ("numbers, each figure with its own fit", own),
         ("numbers, one supervisor per range", shared),
@@ -88,16 +76,11 @@ fn fits(reproduction: &Reproduction) -> Fits {
         .filter(|judged| judged.claim.paper.value() != 0.0)
         .filter_map(|judged| {
             let (paper, shared) = (judged.claim.paper.value(), judged.shared.ok()?);
-            Some((
-                100.0 * (shared - paper).abs() / paper.abs(),
-                judged.claim.id,
-            ))
+            Some((100.0 * (shared - paper).abs() / paper.abs(), judged.claim.id))
         })
         .collect();
     deviations.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let median = deviations
-        .get(deviations.len() / 2)
-        .map_or(f64::NAN, |found| found.0);
+    let median = deviations.get(deviations.len() / 2).map_or(f64::NAN, |found| found.0);
     let worst = deviations.last().copied().unwrap_or((f64::NAN, "F5.1"));
     let parameters = |start: &str| {
         let problems = reproduction.record.problems.iter();
@@ -106,12 +89,7 @@ fn fits(reproduction: &Reproduction) -> Fits {
     };
     let count = |status: Status, shared: bool| {
         let of = |judged: &&crate::reproduce::JudgedClaim| {
-            status
-                == if shared {
-                    judged.shared_status
-                } else {
-                    judged.status
-                }
+            status == if shared { judged.shared_status } else { judged.status }
         };
         claims.iter().filter(of).count()
     };
@@ -137,13 +115,8 @@ struct Outcome {
 
 fn contests(reproduction: &Reproduction) -> Vec<Outcome> {
     let one = |of: &Match, shape: &str| {
-        let Contest {
-            won, cases, mean, ..
-        } = of.contest(&reproduction.sweeps, shape);
-        format!(
-            "{shape}, better in {won} of {cases} cases, cost {} on average",
-            compared(mean)
-        )
+        let Contest { won, cases, mean, .. } = of.contest(&reproduction.sweeps, shape);
+        format!("{shape}, better in {won} of {cases} cases, cost {} on average", compared(mean))
     };
     let outcome = |of: &Match| Outcome {
         name: of.name,
@@ -182,21 +155,12 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
     let metrics = &flown.simulation.result(controller)?.metrics;
     let step = |index: usize| {
         let edge = metrics.edges.get(index)?;
-        let (rise_s, overshoot_pct) = (
-            measured(edge.step.rise_time_s, 2),
-            measured(edge.step.overshoot_pct, 1),
-        );
-        Some(Step {
-            rise_s,
-            overshoot_pct,
-        })
+        let (rise_s, overshoot_pct) =
+            (measured(edge.step.rise_time_s, 2), measured(edge.step.overshoot_pct, 1));
+        Some(Step { rise_s, overshoot_pct })
     };
-    let size = |index: usize| {
-        metrics
-            .edges
-            .get(index)
-            .map(|edge| (edge.to_rad - edge.from_rad).abs())
-    };
+    let size =
+        |index: usize| metrics.edges.get(index).map(|edge| (edge.to_rad - edge.from_rad).abs());
     let (small, large) = (size(0)?, size(2)?);
     let alone = |size_rad: f64| alone(paper, figure, controller, crate::units::degrees(size_rad));
     let (alone_small, alone_large) = (alone(small)?, alone(large)?);
@@ -210,12 +174,7 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
         .figures
         .iter()
         .flat_map(|flown| {
-            flown
-                .study
-                .scenario
-                .controllers
-                .iter()
-                .filter_map(|c| settings::law(&c.controller))
+            flown.study.scenario.controllers.iter().filter_map(|c| settings::law(&c.controller))
         })
         .collect();
     laws.sort();
@@ -238,10 +197,7 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
 /// Rise time of one step of this size from rest, with nothing before it.
 fn alone(paper: &Paper<'_>, figure: &str, controller: &str, size_deg: f64) -> Option<Measured> {
     let step = format!("setpoint={{kind=\"step\",amplitude_deg={size_deg:?},at_s=1.0}}");
-    let study = paper
-        .library
-        .study(&format!("own/figure-{figure}.toml"), &[step])
-        .ok()?;
+    let study = paper.library.study(&format!("own/figure-{figure}.toml"), &[step]).ok()?;
     let simulation = Simulation::of(&study).ok()?;
     let of = |step: &StepMetrics| step.rise_time_s;
     Some(simulation.result(controller)?.metrics.of_step(0, of))
@@ -263,16 +219,7 @@ fn failed(reproduction: &Reproduction) -> Vec<Failed> {
         status: Cell::status(status).text,
         class: status.name(),
     };
-    let numbers = reproduction
-        .claims
-        .iter()
-        .map(|j| entry(j.claim.id, j.claim.quantity, j.status));
-    let words = reproduction
-        .statements
-        .iter()
-        .map(|j| entry(j.id, j.paper, j.status));
-    numbers
-        .chain(words)
-        .filter(|failed| failed.class != Status::Reproduced.name())
-        .collect()
+    let numbers = reproduction.claims.iter().map(|j| entry(j.claim.id, j.claim.quantity, j.status));
+    let words = reproduction.statements.iter().map(|j| entry(j.id, j.paper, j.status));
+    numbers.chain(words).filter(|failed| failed.class != Status::Reproduced.name()).collect()
 }

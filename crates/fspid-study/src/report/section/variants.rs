@@ -46,13 +46,8 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
             &sampled,
         ),
     };
-    Section::of(
-        "variants",
-        "Other rule table, other centroid",
-        "variants",
-        context,
-    )
-    .with_figures(figures)
+    Section::of("variants", "Other rule table, other centroid", "variants", context)
+        .with_figures(figures)
 }
 
 fn pairs<'a>(paper: &Paper<'a>, change: (&str, &str)) -> Vec<Pair<'a>> {
@@ -60,16 +55,9 @@ fn pairs<'a>(paper: &Paper<'a>, change: (&str, &str)) -> Vec<Pair<'a>> {
         let stored = paper.reproduction.figure(Fit::Own, id)?;
         let changed = fly(paper, stored, change)?;
         let tuned = tuned(stored).map(|(_, name)| name).collect();
-        Some(Pair {
-            stored,
-            changed,
-            tuned,
-        })
+        Some(Pair { stored, changed, tuned })
     };
-    FIGURES
-        .iter()
-        .filter_map(|figure| pair(figure.id))
-        .collect()
+    FIGURES.iter().filter_map(|figure| pair(figure.id)).collect()
 }
 
 /// Index and name of every self-tuning controller.
@@ -98,9 +86,7 @@ fn most(pairs: &[Pair<'_>]) -> Option<String> {
                 let result = simulation.result(name);
                 result.map_or_else(Vec::new, |result| result.metrics.edges.clone())
             };
-            let both = edges(&pair.stored.simulation)
-                .into_iter()
-                .zip(edges(&pair.changed));
+            let both = edges(&pair.stored.simulation).into_iter().zip(edges(&pair.changed));
             for (index, (stored, changed)) in both.enumerate() {
                 let (Ok(before), Ok(after)) = (stored.step.rise_time_s, changed.step.rise_time_s)
                 else {
@@ -125,10 +111,7 @@ fn most(pairs: &[Pair<'_>]) -> Option<String> {
 fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> Table {
     let mut all = Table::default();
     for pair in pairs {
-        let variants = [
-            ("as stored", &pair.stored.simulation),
-            (changed, &pair.changed),
-        ];
+        let variants = [("as stored", &pair.stored.simulation), (changed, &pair.changed)];
         let mut one = measures::side_by_side(caption, &variants, &pair.tuned);
         for row in &mut one.rows {
             if let Some(cell) = row.cells.first_mut() {
@@ -147,17 +130,9 @@ fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> Table {
 fn drawing(pair: &Pair<'_>) -> Figure {
     let id = pair.stored.figure.id;
     let line = |name: &str, style, simulation: &Simulation| {
-        let result = simulation
-            .results
-            .iter()
-            .find(|result| pair.tuned.contains(&result.name.as_str()))?;
-        let y = result
-            .trace
-            .theta_rad
-            .iter()
-            .copied()
-            .map(degrees)
-            .collect();
+        let result =
+            simulation.results.iter().find(|result| pair.tuned.contains(&result.name.as_str()))?;
+        let y = result.trace.theta_rad.iter().copied().map(degrees).collect();
         Some(Series {
             name: name.to_owned(),
             style,
@@ -171,21 +146,11 @@ fn drawing(pair: &Pair<'_>) -> Figure {
         name: "set-point".to_owned(),
         style: SeriesStyle::Setpoint,
         x: result.trace.time_s.clone(),
-        y: result
-            .trace
-            .setpoint_rad
-            .iter()
-            .copied()
-            .map(degrees)
-            .collect(),
+        y: result.trace.setpoint_rad.iter().copied().map(degrees).collect(),
         stairs: true,
     });
     let printed = line("FSPID, printed table", SeriesStyle::Numbered(0), stored);
-    let mirrored = line(
-        "FSPID, mirrored table",
-        SeriesStyle::Numbered(1),
-        &pair.changed,
-    );
+    let mirrored = line("FSPID, mirrored table", SeriesStyle::Numbered(1), &pair.changed);
     let panel = LinePanel {
         y_label: "pitch angle (deg)".to_owned(),
         x_label: "time (s)".to_owned(),
@@ -193,12 +158,7 @@ fn drawing(pair: &Pair<'_>) -> Figure {
         ..LinePanel::default()
     };
     let title = format!("Fig. {id}: printed against mirrored rule table");
-    let svg = LineFigure {
-        title,
-        panels: vec![panel],
-        width_px: 720.0,
-    }
-    .render();
+    let svg = LineFigure { title, panels: vec![panel], width_px: 720.0 }.render();
     let caption =
         format!("Fig. {id}, FSPID under the figure's own fit: only the rule table differs.");
     Figure::new(format!("variant-{id}-mirrored"), svg, caption).resting_on(&["A14"])

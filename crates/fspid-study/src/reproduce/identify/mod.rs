@@ -37,10 +37,7 @@ impl Options {
     /// The command that repeats the search.
     #[must_use]
     pub fn command(self) -> String {
-        format!(
-            "fspid reproduce --identify --seed {} --seeds {}",
-            self.seed, self.seeds
-        )
+        format!("fspid reproduce --identify --seed {} --seeds {}", self.seed, self.seeds)
     }
 }
 
@@ -71,12 +68,8 @@ impl std::error::Error for Missing {}
 /// [`Missing`] if the program was built without one of the paper's plants or tables.
 pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Identified, Missing> {
     let bench = bench()?;
-    let mut session = Session {
-        options,
-        bench: &bench,
-        progress: &mut progress,
-        record: Record::new(options),
-    };
+    let mut session =
+        Session { options, bench: &bench, progress: &mut progress, record: Record::new(options) };
     let proportional = session.proportional();
     let mut files = Vec::new();
     let mut own = Vec::new();
@@ -85,12 +78,7 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
         let weighing = Weighing::Digits;
         // Long flights, and claims that no attempt can meet.
         let effort = if figure.id == "9" { Effort::LONG_FIGURE } else { Effort::FIGURE };
-        let set = Set {
-            figures: &figures,
-            weighing,
-            proportional,
-            effort,
-        };
+        let set = Set { figures: &figures, weighing, proportional, effort };
         let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set, None);
         files.extend(session.files(Fit::Own, &set, &found));
         own.push((figure, found));
@@ -98,21 +86,12 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     let mut shared_short = None;
     for (name, setting, weighing) in [
         ("Figs 5 and 6, one supervisor", FULL_MODEL, Weighing::Digits),
-        (
-            "Figs 8a, 8b and 9, one supervisor",
-            SHORT_PERIOD,
-            Weighing::Shares,
-        ),
+        ("Figs 8a, 8b and 9, one supervisor", SHORT_PERIOD, Weighing::Shares),
     ] {
         let of_range = || own.iter().filter(|(figure, _)| figure.setting == setting);
         let figures: Vec<FigureProblem> = of_range().map(|(figure, _)| *figure).collect();
         let points: Vec<&[f64]> = of_range().map(|(_, found)| &found.point[..]).collect();
-        let set = Set {
-            figures: &figures,
-            weighing,
-            proportional,
-            effort: Effort::RANGE,
-        };
+        let set = Set { figures: &figures, weighing, proportional, effort: Effort::RANGE };
         let found = session.solve(name, &set, Some(&set.between(&points)));
         files.extend(session.files(Fit::Shared, &set, &found));
         if setting == SHORT_PERIOD {
@@ -124,24 +103,15 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
         files.push(session.long_term_change(&base));
     }
     files.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(Identified {
-        library: Library::new(files),
-        record: session.record,
-    })
+    Ok(Identified { library: Library::new(files), record: session.record })
 }
 
 fn bench() -> Result<Bench, Missing> {
     let plant = |name: &'static str| -> Result<LinearPlant, Missing> {
-        file::preset(name)
-            .map(|preset| preset.plant)
-            .ok_or(Missing(name))
+        file::preset(name).map(|preset| preset.plant).ok_or(Missing(name))
     };
     let table: RuleTable = file::rule_table("printed").ok_or(Missing("printed rule table"))?;
-    Ok(Bench {
-        full: plant(FULL_MODEL.plant)?,
-        short: plant(SHORT_PERIOD.plant)?,
-        table,
-    })
+    Ok(Bench { full: plant(FULL_MODEL.plant)?, short: plant(SHORT_PERIOD.plant)?, table })
 }
 
 struct Session<'a> {
@@ -158,45 +128,24 @@ impl Session<'_> {
 
     /// Gain and gyro gain of the proportional loop of Fig. 5.
     fn proportional(&mut self) -> [f64; 2] {
-        let log = |name, lower, upper| Parameter {
-            name,
-            lower,
-            upper,
-            scale: Scale::Logarithmic,
-        };
+        let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
         let space = Space::new(vec![log("kp", 2.0, 10.0), log("rate_gain", 0.1, 5.0)]);
         let figure = PROBLEMS[0];
         let runs: Vec<SeedResult> = self
             .seeds()
             .map(|seed| {
-                let budget = Budget {
-                    seed,
-                    population: 20,
-                    global: 1_500,
-                    polish: 500,
-                };
+                let budget = Budget { seed, population: 20, global: 1_500, polish: 500 };
                 let found = search(&space, budget, None, 1e-12, |point| {
                     let mut model = figure.flight(&[], None, Some([point[0], point[1]]));
-                    model
-                        .controllers
-                        .retain(|controller| controller.name == "PC");
+                    model.controllers.retain(|controller| controller.name == "PC");
                     self.bench.cost(figure.id, &model, Weighing::Centre).total()
                 });
                 let (cost, point) = (found.cost, found.point);
-                SeedResult {
-                    seed,
-                    attempts: 1,
-                    evaluations: found.evaluations,
-                    cost,
-                    point,
-                }
+                SeedResult { seed, attempts: 1, evaluations: found.evaluations, cost, point }
             })
             .collect();
         let best = self.keep("Fig. 5, proportional loop", &space, runs);
-        [
-            best.point.first().copied().unwrap_or(0.0),
-            best.point.get(1).copied().unwrap_or(0.0),
-        ]
+        [best.point.first().copied().unwrap_or(0.0), best.point.get(1).copied().unwrap_or(0.0)]
     }
 
     fn solve(&mut self, name: &str, set: &Set<'_>, begin: Option<&[f64]>) -> SeedResult {
@@ -221,10 +170,7 @@ impl Session<'_> {
                 best = run.clone();
             }
         }
-        (self.progress)(&format!(
-            "{name}: kept seed {} with cost {:.3e}",
-            best.seed, best.cost
-        ));
+        (self.progress)(&format!("{name}: kept seed {} with cost {:.3e}", best.seed, best.cost));
         self.record.push(name, space, &runs, best.seed);
         best
     }
@@ -255,34 +201,22 @@ impl Session<'_> {
             let mut model = figure.flight(part, Some(scales), Some([gain, gyro]));
             if let Command::Square { half_periods, .. } = &mut model.command {
                 *half_periods = SHOWN_HALF_PERIODS;
-                model
-                    .controllers
-                    .retain(|controller| controller.name != "PC");
+                model.controllers.retain(|controller| controller.name != "PC");
             }
-            let assumptions = FIGURES
-                .iter()
-                .find(|f| f.id == figure.id)
-                .map_or(&[][..], |f| f.assumptions);
+            let assumptions =
+                FIGURES.iter().find(|f| f.id == figure.id).map_or(&[][..], |f| f.assumptions);
             let what = match fit {
-                Fit::Own => format!(
-                    "Fig. {} of the paper with scale factors of its own.",
-                    figure.id
-                ),
+                Fit::Own => {
+                    format!("Fig. {} of the paper with scale factors of its own.", figure.id)
+                }
                 Fit::Shared => format!(
                     "Fig. {} of the paper with the scale factors shared by all figures of its range.",
                     figure.id
                 ),
             };
             let text = model.toml(&self.heading(&what, found, assumptions));
-            Stored {
-                name: format!("{}/figure-{}.toml", fit.name(), figure.id),
-                text,
-            }
+            Stored { name: format!("{}/figure-{}.toml", fit.name(), figure.id), text }
         };
-        set.figures
-            .iter()
-            .zip(set.parts(&found.point))
-            .map(figure_file)
-            .collect()
+        set.figures.iter().zip(set.parts(&found.point)).map(figure_file).collect()
     }
 }

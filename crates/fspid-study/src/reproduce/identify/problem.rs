@@ -116,12 +116,7 @@ pub(super) const PROBLEMS: [FigureProblem; 5] = [
 
 /// The parameters of the supervisor's scales.
 pub(super) fn scale_parameters(setting: Setting) -> Vec<Parameter> {
-    let log = |name, lower, upper| Parameter {
-        name,
-        lower,
-        upper,
-        scale: Scale::Logarithmic,
-    };
+    let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
     if setting == FULL_MODEL {
         vec![
             log("error_scale", 0.1, 100.0),
@@ -143,16 +138,8 @@ pub(super) fn scale_parameters(setting: Setting) -> Vec<Parameter> {
 
 pub(super) fn scales(point: &[f64]) -> Scales {
     match *point {
-        [error, change, kp, ki, kd, ..] => Scales {
-            error,
-            change,
-            output: [kp, ki, kd],
-        },
-        _ => Scales {
-            error: 0.0,
-            change: 0.0,
-            output: [0.0; 3],
-        },
+        [error, change, kp, ki, kd, ..] => Scales { error, change, output: [kp, ki, kd] },
+        _ => Scales { error: 0.0, change: 0.0, output: [0.0; 3] },
     }
 }
 
@@ -161,30 +148,21 @@ impl FigureProblem {
     pub(super) fn part(&self, index: usize, parts: usize) -> Self {
         let half_period_s = self.half_period_s.map(|(lower, upper)| {
             let width = (upper - lower) / parts as f64;
-            (
-                lower + width * index as f64,
-                lower + width * (index + 1) as f64,
-            )
+            (lower + width * index as f64, lower + width * (index + 1) as f64)
         });
-        Self {
-            half_period_s,
-            ..*self
-        }
+        Self { half_period_s, ..*self }
     }
 
     /// Nominal gains of each tuning, then the half period if there is one.
     pub(super) fn parameters(&self) -> Vec<Parameter> {
         const NAMES: [[&str; 3]; 2] = [["kp", "ki", "kd"], ["kp 2", "ki 2", "kd 2"]];
         let gains = NAMES.iter().take(self.tunings).flat_map(|names| {
-            names
-                .iter()
-                .zip(self.gains)
-                .map(|(name, (lower, upper))| Parameter {
-                    name,
-                    lower,
-                    upper,
-                    scale: Scale::Logarithmic,
-                })
+            names.iter().zip(self.gains).map(|(name, (lower, upper))| Parameter {
+                name,
+                lower,
+                upper,
+                scale: Scale::Logarithmic,
+            })
         });
         let half = self.half_period_s.map(|(lower, upper)| Parameter {
             name: HALF_PERIOD,
@@ -211,36 +189,23 @@ impl FigureProblem {
         };
         let [gain, gyro_gain] = proportional.unwrap_or([0.0; 2]);
         let rate_gain = if self.gyro { gyro_gain } else { 0.0 };
-        let model = |name: String, gains, scales| ControllerModel {
-            name,
-            gains,
-            rate_gain,
-            scales,
-        };
+        let model =
+            |name: String, gains, scales| ControllerModel { name, gains, rate_gain, scales };
         let mut controllers = Vec::new();
         if self.setting == FULL_MODEL && proportional.is_some() {
             controllers.push(model("PC".to_owned(), [gain, 0.0, 0.0], None));
         }
-        let kinds = [("CPID", None)]
-            .into_iter()
-            .chain(scales.map(|scales| ("FSPID", Some(scales))));
+        let kinds =
+            [("CPID", None)].into_iter().chain(scales.map(|scales| ("FSPID", Some(scales))));
         for (kind, scales) in kinds {
             for (index, gains) in point.chunks_exact(3).take(self.tunings).enumerate() {
-                let number = if self.tunings > 1 {
-                    format!(" {}", index + 1)
-                } else {
-                    String::new()
-                };
+                let number =
+                    if self.tunings > 1 { format!(" {}", index + 1) } else { String::new() };
                 let gains = [gains[0], gains[1], gains[2]];
                 controllers.push(model(format!("{kind}{number}"), gains, scales));
             }
         }
-        FlightModel {
-            name: self.name.to_owned(),
-            setting: self.setting,
-            command,
-            controllers,
-        }
+        FlightModel { name: self.name.to_owned(), setting: self.setting, command, controllers }
     }
 }
 
@@ -257,11 +222,7 @@ pub(super) struct Bench {
 
 impl Bench {
     fn plant(&self, setting: Setting) -> &LinearPlant {
-        if setting == FULL_MODEL {
-            &self.full
-        } else {
-            &self.short
-        }
+        if setting == FULL_MODEL { &self.full } else { &self.short }
     }
 
     /// Cost of a figure's flight.
@@ -296,10 +257,7 @@ impl Bench {
             })
             .sum();
         if diverged > 0.0 {
-            return Cost {
-                required: diverged,
-                preferred: 0.0,
-            };
+            return Cost { required: diverged, preferred: 0.0 };
         }
         let misses = |preference: bool| -> f64 {
             claims_of(id, &flights)
@@ -312,10 +270,7 @@ impl Bench {
             .zip(&flight.traces)
             .map(|(flight, trace)| flaws(flight, trace, model.command))
             .sum();
-        Cost {
-            required: misses(false) + flaws,
-            preferred: misses(true),
-        }
+        Cost { required: misses(false) + flaws, preferred: misses(true) }
     }
 }
 
@@ -328,10 +283,7 @@ pub(super) struct Cost {
 
 impl Cost {
     /// No flight at all.
-    const NONE: Self = Self {
-        required: f64::INFINITY,
-        preferred: 0.0,
-    };
+    const NONE: Self = Self { required: f64::INFINITY, preferred: 0.0 };
     /// How much a miss of 10 % of a claim that cannot be met counts, in half units of a digit.
     const PREFERENCE: f64 = 1e-2;
 
@@ -412,14 +364,7 @@ fn flaws(flight: &FigureFlight<'_>, trace: &Trace, command: Command) -> f64 {
     }
     if !is_square {
         cost += excess(swing_pct(flight, trace), if fuzzy { 1.0 } else { 3.0 }, 0.5);
-        cost += excess(
-            flight
-                .metrics
-                .effort
-                .map_or(0.0, |e| degrees(e.variation_rad)),
-            40.0,
-            20.0,
-        );
+        cost += excess(flight.metrics.effort.map_or(0.0, |e| degrees(e.variation_rad)), 40.0, 20.0);
     }
     cost
 }
@@ -443,16 +388,8 @@ fn graze_s(trace: &Trace, edge: &EdgeMetrics) -> f64 {
     else {
         return 0.0;
     };
-    let window = StepWindow {
-        time_s,
-        response,
-        from: edge.from_rad,
-        to: edge.to_rad,
-    };
-    match (
-        window.first_crossing_s(0.897),
-        window.first_crossing_s(0.903),
-    ) {
+    let window = StepWindow { time_s, response, from: edge.from_rad, to: edge.to_rad };
+    match (window.first_crossing_s(0.897), window.first_crossing_s(0.903)) {
         (Some(before), Some(after)) => after - before,
         _ => 0.0,
     }
@@ -460,17 +397,10 @@ fn graze_s(trace: &Trace, edge: &EdgeMetrics) -> f64 {
 
 /// Swing over the last quarter of the window, per cent of the step.
 fn swing_pct(flight: &FigureFlight<'_>, trace: &Trace) -> f64 {
-    let theta = trace
-        .theta_rad
-        .get(trace.rows() * 3 / 4..)
-        .unwrap_or_default();
+    let theta = trace.theta_rad.get(trace.rows() * 3 / 4..).unwrap_or_default();
     let highest = theta.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = theta.iter().copied().fold(f64::INFINITY, f64::min);
-    let step = flight
-        .metrics
-        .edges
-        .first()
-        .map_or(1.0, |edge| (edge.to_rad - edge.from_rad).abs());
+    let step = flight.metrics.edges.first().map_or(1.0, |edge| (edge.to_rad - edge.from_rad).abs());
     100.0 * (highest - lowest) / step
 }
 
@@ -480,9 +410,5 @@ fn square(x: f64) -> f64 {
 
 /// How far `value` is above `most`, in `unit`s, squared.
 fn excess(value: f64, most: f64, unit: f64) -> f64 {
-    if value > most {
-        square((value - most) / unit)
-    } else {
-        0.0
-    }
+    if value > most { square((value - most) / unit) } else { 0.0 }
 }

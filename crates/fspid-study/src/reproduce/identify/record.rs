@@ -38,10 +38,7 @@ impl ProblemRecord {
     pub fn spread(&self) -> Vec<(f64, f64)> {
         (0..self.parameters.len())
             .map(|index| {
-                let values = self
-                    .runs
-                    .iter()
-                    .filter_map(|run| run.point.get(index).copied());
+                let values = self.runs.iter().filter_map(|run| run.point.get(index).copied());
                 values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
                     (low.min(value), high.max(value))
                 })
@@ -61,20 +58,13 @@ pub struct Record {
 
 impl Record {
     pub(super) fn new(options: Options) -> Self {
-        Self {
-            command: options.command(),
-            problems: Vec::new(),
-        }
+        Self { command: options.command(), problems: Vec::new() }
     }
 
     pub(super) fn push(&mut self, name: &str, space: &Space, runs: &[SeedResult], kept: u64) {
         self.problems.push(ProblemRecord {
             name: name.to_owned(),
-            parameters: space
-                .parameters()
-                .iter()
-                .map(|p| p.name.to_owned())
-                .collect(),
+            parameters: space.parameters().iter().map(|p| p.name.to_owned()).collect(),
             kept,
             runs: runs
                 .iter()
@@ -122,11 +112,7 @@ impl Record {
                 seed: run["seed"].as_u64()?,
                 cost: run["cost"].as_f64()?,
                 evaluations: usize::try_from(run["evaluations"].as_u64()?).ok()?,
-                point: run["point"]
-                    .as_array()?
-                    .iter()
-                    .map(Value::as_f64)
-                    .collect::<Option<_>>()?,
+                point: run["point"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?,
             })
         };
         let problem = |problem: &Value| {
@@ -138,20 +124,12 @@ impl Record {
                     .map(|name| name.as_str().map(str::to_owned))
                     .collect::<Option<_>>()?,
                 kept: problem["kept_seed"].as_u64()?,
-                runs: problem["runs"]
-                    .as_array()?
-                    .iter()
-                    .map(run)
-                    .collect::<Option<_>>()?,
+                runs: problem["runs"].as_array()?.iter().map(run).collect::<Option<_>>()?,
             })
         };
         Some(Self {
             command: value["command"].as_str()?.to_owned(),
-            problems: value["problems"]
-                .as_array()?
-                .iter()
-                .map(problem)
-                .collect::<Option<_>>()?,
+            problems: value["problems"].as_array()?.iter().map(problem).collect::<Option<_>>()?,
         })
     }
 }

@@ -69,12 +69,7 @@ impl Set<'_> {
     }
 
     fn scale_space(&self) -> Space {
-        Space::new(
-            self.figures
-                .first()
-                .map(|f| scale_parameters(f.setting))
-                .unwrap_or_default(),
-        )
+        Space::new(self.figures.first().map(|f| scale_parameters(f.setting)).unwrap_or_default())
     }
 
     /// A point of this set from the points of its figures alone: the geometric mean of their scales,
@@ -82,23 +77,17 @@ impl Set<'_> {
     pub(super) fn between(&self, points: &[&[f64]]) -> Vec<f64> {
         let scales = self.scale_space().dimension();
         let mean = |index: usize| {
-            let logarithms = points
-                .iter()
-                .filter_map(|point| point.get(index))
-                .map(|x| libm::log(*x));
+            let logarithms =
+                points.iter().filter_map(|point| point.get(index)).map(|x| libm::log(*x));
             libm::exp(logarithms.sum::<f64>() / points.len().max(1) as f64)
         };
-        let parts = points
-            .iter()
-            .flat_map(|point| point.iter().skip(scales).copied());
+        let parts = points.iter().flat_map(|point| point.iter().skip(scales).copied());
         (0..scales).map(mean).chain(parts).collect()
     }
 
     /// The part of a point that belongs to each figure.
     pub(super) fn parts<'p>(&self, point: &'p [f64]) -> Vec<&'p [f64]> {
-        let mut rest = point
-            .get(self.scale_space().dimension()..)
-            .unwrap_or_default();
+        let mut rest = point.get(self.scale_space().dimension()..).unwrap_or_default();
         self.figures
             .iter()
             .map(|figure| {
@@ -118,38 +107,23 @@ impl Set<'_> {
                 let gyro = Some(self.proportional).filter(|_| figure.gyro);
                 let mut model = figure.flight(part, Some(scales), gyro);
                 // The proportional loop is settled already.
-                model
-                    .controllers
-                    .retain(|controller| controller.name != "PC");
+                model.controllers.retain(|controller| controller.name != "PC");
                 bench.cost(figure.id, &model, self.weighing)
             })
-            .fold(
-                Cost {
-                    required: 0.0,
-                    preferred: 0.0,
-                },
-                |sum, cost| Cost {
-                    required: sum.required + cost.required,
-                    preferred: sum.preferred + cost.preferred,
-                },
-            )
+            .fold(Cost { required: 0.0, preferred: 0.0 }, |sum, cost| Cost {
+                required: sum.required + cost.required,
+                preferred: sum.preferred + cost.preferred,
+            })
     }
 
     /// Nominal gains and half period of one figure, from the CPID's claims alone.
     fn nominal(&self, bench: &Bench, figure: &FigureProblem, seed: u64) -> Found {
         let space = Space::new(figure.parameters());
-        let budget = Budget {
-            seed,
-            population: 30,
-            global: self.effort.nominal,
-            polish: 0,
-        };
+        let budget = Budget { seed, population: 30, global: self.effort.nominal, polish: 0 };
         search(&space, budget, None, ENOUGH, |point| {
             let gyro = Some(self.proportional).filter(|_| figure.gyro);
             let mut model = figure.flight(point, None, gyro);
-            model
-                .controllers
-                .retain(|controller| controller.name != "PC");
+            model.controllers.retain(|controller| controller.name != "PC");
             bench.cost(figure.id, &model, self.weighing).total() + prior(&space, point)
         })
     }
@@ -166,32 +140,19 @@ impl Set<'_> {
         let join = |scales: &[f64]| [scales, &nominal].concat();
         let space = self.scale_space();
         let global = self.effort.scales;
-        let budget = Budget {
-            seed: seed + 10,
-            population: 40,
-            global,
-            polish: 0,
-        };
+        let budget = Budget { seed: seed + 10, population: 40, global, polish: 0 };
         let found = search(&space, budget, None, ENOUGH, |point| {
             self.cost(bench, &join(point)).total() + prior(&space, point)
         });
         let joint = self.joint(bench, seed, &join(&found.point), STAGED_SPREAD);
-        Found {
-            evaluations: evaluations + found.evaluations + joint.evaluations,
-            ..joint
-        }
+        Found { evaluations: evaluations + found.evaluations + joint.evaluations, ..joint }
     }
 
     /// All parameters together, from about a point.
     fn joint(&self, bench: &Bench, seed: u64, begin: &[f64], spread: f64) -> Found {
         let space = self.space();
         let global = self.effort.joint;
-        let budget = Budget {
-            seed: seed + 20,
-            population: 40,
-            global,
-            polish: 0,
-        };
+        let budget = Budget { seed: seed + 20, population: 40, global, polish: 0 };
         let found = search(&space, budget, Some((begin, spread)), ENOUGH, |point| {
             self.cost(bench, point).total() + prior(&space, point)
         });
@@ -199,9 +160,7 @@ impl Set<'_> {
         let held = |point: &[f64]| -> Vec<f64> {
             let names = space.parameters().iter().map(|parameter| parameter.name);
             let pairs = point.iter().zip(&found.point).zip(names);
-            pairs
-                .map(|((new, old), name)| if name == HALF_PERIOD { *old } else { *new })
-                .collect()
+            pairs.map(|((new, old), name)| if name == HALF_PERIOD { *old } else { *new }).collect()
         };
         let free_cost = self.cost(bench, &found.point).total();
         let from = (&found.point[..], free_cost);
@@ -209,11 +168,7 @@ impl Set<'_> {
             self.cost(bench, &held(point)).total()
         });
         let evaluations = found.evaluations + polished.evaluations;
-        Found {
-            point: held(&polished.point),
-            cost: polished.cost,
-            evaluations,
-        }
+        Found { point: held(&polished.point), cost: polished.cost, evaluations }
     }
 
     /// Searches with one seed: in stages, each attempt in another part of the half period's interval;
@@ -228,11 +183,7 @@ impl Set<'_> {
                 None => {
                     let part = |figure: &FigureProblem| figure.part(attempts, self.effort.attempts);
                     let figures: Vec<FigureProblem> = self.figures.iter().map(part).collect();
-                    Set {
-                        figures: &figures,
-                        ..*self
-                    }
-                    .staged(bench, attempt_seed)
+                    Set { figures: &figures, ..*self }.staged(bench, attempt_seed)
                 }
                 Some(begin) => match &best {
                     None => self.joint(bench, attempt_seed, begin, FIRST_SPREAD),
@@ -250,21 +201,10 @@ impl Set<'_> {
         }
         let (point, cost) =
             best.map_or((Vec::new(), f64::INFINITY), |best| (best.point, best.cost));
-        SeedResult {
-            seed,
-            attempts,
-            evaluations,
-            cost,
-            point,
-        }
+        SeedResult { seed, attempts, evaluations, cost, point }
     }
 }
 
 fn prior(space: &Space, point: &[f64]) -> f64 {
-    PRIOR
-        * space
-            .unit(point)
-            .iter()
-            .map(|u| (u - 0.5) * (u - 0.5))
-            .sum::<f64>()
+    PRIOR * space.unit(point).iter().map(|u| (u - 0.5) * (u - 0.5)).sum::<f64>()
 }

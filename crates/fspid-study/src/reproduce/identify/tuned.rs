@@ -22,12 +22,7 @@ const PULSE_S: f64 = 1.0;
 /// Size at which controllers are tuned, degrees.
 const TUNING_SIZE_DEG: f64 = 1.0;
 /// Evaluations that each controller may spend on each disturbance.
-const BUDGET: Budget = Budget {
-    seed: 0,
-    population: 30,
-    global: 2_000,
-    polish: 500,
-};
+const BUDGET: Budget = Budget { seed: 0, population: 30, global: 2_000, polish: 500 };
 /// The long-term change: length of the flight and start of the change in half periods, length in s.
 const CHANGE_FLIGHT_HALF_PERIODS: u32 = 10;
 const CHANGE_AT_HALF_PERIODS: f64 = 4.0;
@@ -56,12 +51,7 @@ impl Base {
             Some(&[kp, ki, kd, half, ..]) => ([kp, ki, kd], super::super::model::on_grid(half)),
             _ => ([0.0; 3], 1.0),
         };
-        Self {
-            gains,
-            half_period_s,
-            scales: scales(&found.point),
-            found: found.clone(),
-        }
+        Self { gains, half_period_s, scales: scales(&found.point), found: found.clone() }
     }
 
     fn pair(&self) -> Vec<ControllerModel> {
@@ -73,24 +63,13 @@ impl Base {
 }
 
 fn controller(name: &str, gains: [f64; 3], scales: Option<Scales>) -> ControllerModel {
-    ControllerModel {
-        name: name.to_owned(),
-        gains,
-        rate_gain: 0.0,
-        scales,
-    }
+    ControllerModel { name: name.to_owned(), gains, rate_gain: 0.0, scales }
 }
 
 fn shape(name: &str) -> Shape {
     match name {
-        "continuous" => Shape::Sine {
-            at_s: START_S,
-            frequency_hz: FREQUENCY_HZ,
-        },
-        _ => Shape::Pulse {
-            at_s: START_S,
-            width_s: PULSE_S,
-        },
+        "continuous" => Shape::Sine { at_s: START_S, frequency_hz: FREQUENCY_HZ },
+        _ => Shape::Pulse { at_s: START_S, width_s: PULSE_S },
     }
 }
 
@@ -120,12 +99,7 @@ fn disturbed(
 
 fn at_rest(name: String, controllers: Vec<ControllerModel>) -> FlightModel {
     let command = Command::Rest { window_s: FLIGHT_S };
-    FlightModel {
-        name,
-        setting: SHORT_PERIOD,
-        command,
-        controllers,
-    }
+    FlightModel { name, setting: SHORT_PERIOD, command, controllers }
 }
 
 /// Cost of one controller under one disturbance; infinite where the flight has none.
@@ -175,10 +149,7 @@ impl Session<'_> {
                 );
                 let heading = self.heading(&what, &base.found, DISTURBED);
                 let text = model.toml(&heading) + &disturbance_toml(shape_name, entry_name);
-                files.push(Stored {
-                    name: scenario_name(shape_name, entry_name),
-                    text,
-                });
+                files.push(Stored { name: scenario_name(shape_name, entry_name), text });
             }
         }
         files
@@ -191,42 +162,22 @@ impl Session<'_> {
         (entry_name, entry): (&str, Entry),
         fuzzy: bool,
     ) -> Found {
-        let log = |name, lower, upper| Parameter {
-            name,
-            lower,
-            upper,
-            scale: Scale::Logarithmic,
-        };
-        let mut parameters = vec![
-            log("kp", 0.05, 10.0),
-            log("ki", 1e-3, 10.0),
-            log("kd", 1e-3, 3.0),
-        ];
+        let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
+        let mut parameters =
+            vec![log("kp", 0.05, 10.0), log("ki", 1e-3, 10.0), log("kd", 1e-3, 3.0)];
         let mut about = base.gains.to_vec();
         if fuzzy {
             parameters.extend(scale_parameters(SHORT_PERIOD));
-            let Scales {
-                error,
-                change,
-                output,
-            } = base.scales;
+            let Scales { error, change, output } = base.scales;
             about.extend([error, change]);
             about.extend(output);
         }
         let space = Space::new(parameters);
-        let budget = Budget {
-            seed: self.options.seed,
-            ..BUDGET
-        };
+        let budget = Budget { seed: self.options.seed, ..BUDGET };
         // Both begin from what was identified, spread over much of the box.
         let found = search(&space, budget, Some((&about, 0.3)), 0.0, |point| {
             let tuned_scales = point.get(3..).filter(|rest| !rest.is_empty()).map(scales);
-            cost(
-                self.bench,
-                controller("", gains(point), tuned_scales),
-                shape_name,
-                entry,
-            )
+            cost(self.bench, controller("", gains(point), tuned_scales), shape_name, entry)
         });
         let kind = if fuzzy { "FSPID" } else { "CPID" };
         let name = format!("Fig. 7, {kind} tuned, {shape_name} at the {entry_name}");
@@ -260,10 +211,7 @@ impl Session<'_> {
             CHANGE_AT_HALF_PERIODS * base.half_period_s
         );
         let text = model.toml(&heading) + &change;
-        Stored {
-            name: "long-term-change.toml".to_owned(),
-            text,
-        }
+        Stored { name: "long-term-change.toml".to_owned(), text }
     }
 }
 

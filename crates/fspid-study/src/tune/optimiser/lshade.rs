@@ -64,10 +64,9 @@ impl LShade {
             let point: Vec<f64> = match start {
                 Start::Anywhere => (0..dimension).map(|_| random.unit()).collect(),
                 Start::About(point, _) if index == 0 => point.to_vec(),
-                Start::About(point, spread) => point
-                    .iter()
-                    .map(|x| (x + spread * random.normal()).clamp(0.0, 1.0))
-                    .collect(),
+                Start::About(point, spread) => {
+                    point.iter().map(|x| (x + spread * random.normal()).clamp(0.0, 1.0)).collect()
+                }
             };
             (point, f64::INFINITY)
         };
@@ -116,11 +115,7 @@ impl LShade {
                 within(own[j], own[j] + step)
             })
             .collect();
-        Trial {
-            point,
-            factor,
-            crossover,
-        }
+        Trial { point, factor, crossover }
     }
 
     /// Another member, and one more member or a beaten one.
@@ -188,24 +183,15 @@ impl Optimiser for LShade {
         self.trials = if self.generation == 0 {
             let first = |(point, _): &(Vec<f64>, f64)| {
                 let point = point.clone();
-                Trial {
-                    point,
-                    factor: FIRST_FACTOR,
-                    crossover: FIRST_CROSSOVER,
-                }
+                Trial { point, factor: FIRST_FACTOR, crossover: FIRST_CROSSOVER }
             };
             self.members.iter().map(first).collect()
         } else {
             let ranking = self.ranking();
-            (0..self.members.len())
-                .map(|index| self.trial(index, &ranking))
-                .collect()
+            (0..self.members.len()).map(|index| self.trial(index, &ranking)).collect()
         };
         self.generation += 1;
-        self.trials
-            .iter()
-            .map(|trial| trial.point.clone())
-            .collect()
+        self.trials.iter().map(|trial| trial.point.clone()).collect()
     }
 
     fn tell(&mut self, costs: &[f64]) {

@@ -82,20 +82,13 @@ impl NelderMead {
 
     fn cost_at(&self, from_worst: usize) -> f64 {
         let index = self.corners.len().checked_sub(1 + from_worst);
-        index
-            .and_then(|index| self.corners.get(index))
-            .map_or(f64::INFINITY, |(_, cost)| *cost)
+        index.and_then(|index| self.corners.get(index)).map_or(f64::INFINITY, |(_, cost)| *cost)
     }
 
     fn reflected_answer(&mut self, point: Vec<f64>, cost: f64) {
-        let best = self
-            .corners
-            .first()
-            .map_or(f64::INFINITY, |(_, cost)| *cost);
+        let best = self.corners.first().map_or(f64::INFINITY, |(_, cost)| *cost);
         if cost < best {
-            self.move_ = Move::Expand {
-                reflected: (point, cost),
-            };
+            self.move_ = Move::Expand { reflected: (point, cost) };
         } else if cost < self.cost_at(1) {
             self.replace_worst(point, cost);
         } else {
@@ -103,9 +96,7 @@ impl NelderMead {
             if cost < worst {
                 self.replace_worst(point, cost);
             }
-            self.move_ = Move::Contract {
-                reached: cost.min(worst),
-            };
+            self.move_ = Move::Contract { reached: cost.min(worst) };
         }
     }
 
@@ -129,13 +120,7 @@ impl NelderMead {
         let keep = 1.0 - 1.0 / n.max(2.0);
         others
             .iter()
-            .map(|(point, _)| {
-                point
-                    .iter()
-                    .zip(best)
-                    .map(|(p, b)| b + keep * (p - b))
-                    .collect()
-            })
+            .map(|(point, _)| point.iter().zip(best).map(|(p, b)| b + keep * (p - b)).collect())
             .collect()
     }
 }
@@ -163,11 +148,7 @@ impl Optimiser for NelderMead {
     }
 
     fn tell(&mut self, costs: &[f64]) {
-        let mut answers = self
-            .asked
-            .drain(..)
-            .zip(costs.iter().copied())
-            .collect::<Vec<_>>();
+        let mut answers = self.asked.drain(..).zip(costs.iter().copied()).collect::<Vec<_>>();
         match std::mem::replace(&mut self.move_, Move::Reflect) {
             Move::Build => self.corners.append(&mut answers),
             Move::Shrink => {
@@ -193,8 +174,6 @@ impl Optimiser for NelderMead {
     }
 
     fn best(&self) -> (&[f64], f64) {
-        self.corners
-            .first()
-            .map_or((&[], f64::INFINITY), |(point, cost)| (point, *cost))
+        self.corners.first().map_or((&[], f64::INFINITY), |(point, cost)| (point, *cost))
     }
 }
