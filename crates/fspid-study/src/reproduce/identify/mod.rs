@@ -15,7 +15,7 @@ use fspid_core::fuzzy::RuleTable;
 use fspid_sim::LinearPlant;
 
 use self::problem::{Bench, FigureProblem, PROBLEMS, Weighing, scales};
-use self::staged::{ACCEPTED, Effort, FIRST_SPREAD, NEXT_SPREAD, SeedResult, Set};
+use self::staged::{Effort, SeedResult, Set};
 use super::figures::{FIGURES, Fit, Library, Stored};
 use super::model::{Command, FULL_MODEL, SHORT_PERIOD, Scales};
 use crate::file;
@@ -75,10 +75,11 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
     let mut own = Vec::new();
     for figure in PROBLEMS {
         let figures = [figure];
+        let weighing = Weighing::Digits;
         // Long flights, and claims that no attempt can meet.
         let effort = if figure.id == "9" { Effort::LONG_FIGURE } else { Effort::FIGURE };
-        let set = Set { figures: &figures, weighing: Weighing::Digits, proportional, effort };
-        let found = session.figure(&figure, &set);
+        let set = Set { figures: &figures, weighing, proportional, effort };
+        let found = session.solve(&format!("Fig. {}, own scales", figure.id), &set, None);
         files.extend(session.files(Fit::Own, &set, &found));
         own.push((figure, found));
     }
@@ -91,8 +92,7 @@ pub fn identify(options: Options, mut progress: impl FnMut(&str)) -> Result<Iden
         let figures: Vec<FigureProblem> = of_range().map(|(figure, _)| *figure).collect();
         let points: Vec<&[f64]> = of_range().map(|(_, found)| &found.point[..]).collect();
         let set = Set { figures: &figures, weighing, proportional, effort: Effort::RANGE };
-        let begin = set.between(&points);
-        let found = session.solve(name, &set, Some((&begin, FIRST_SPREAD)));
+        let found = session.solve(name, &set, Some(&set.between(&points)));
         files.extend(session.files(Fit::Shared, &set, &found));
         if setting == SHORT_PERIOD {
             shared_short = Some(tuned::Base::of(&set, &found));
@@ -148,7 +148,7 @@ impl Session<'_> {
         [best.point.first().copied().unwrap_or(0.0), best.point.get(1).copied().unwrap_or(0.0)]
     }
 
-    fn solve(&mut self, name: &str, set: &Set<'_>, begin: Option<(&[f64], f64)>) -> SeedResult {
+    fn solve(&mut self, name: &str, set: &Set<'_>, begin: Option<&[f64]>) -> SeedResult {
         let mut runs = Vec::new();
         for seed in self.seeds() {
             let run = set.solve(self.bench, seed, begin);
@@ -161,26 +161,12 @@ impl Session<'_> {
         self.keep(name, &set.space(), runs)
     }
 
-    /// A figure with scales of its own: its numbers first, then the percentages that the paper
-    /// computes from them as well, if they can be had.
-    fn figure(&mut self, figure: &FigureProblem, set: &Set<'_>) -> SeedResult {
-        let name = format!("Fig. {}, own scales", figure.id);
-        let numbers = self.solve(&name, set, None);
-        if numbers.cost == 0.0 || numbers.cost > ACCEPTED {
-            return numbers;
-        }
-        let name = format!("{name}, percentages too");
-        let set = Set { weighing: Weighing::DigitsAndPercentages, ..*set };
-        let both = self.solve(&name, &set, Some((&numbers.point, NEXT_SPREAD)));
-        if both.cost <= ACCEPTED { both } else { numbers }
-    }
-
     /// Records all runs and returns the best, the earlier of equals.
     fn keep(&mut self, name: &str, space: &Space, runs: Vec<SeedResult>) -> SeedResult {
         let mut best = runs[0].clone();
         for run in &runs {
             // Among fits that meet every claim the first is as good as any.
-            if run.cost < best.cost && best.cost > ACCEPTED {
+            if run.cost < best.cost && best.cost > staged::ACCEPTED {
                 best = run.clone();
             }
         }

@@ -39,8 +39,6 @@ pub(super) enum Weighing {
     Centre,
     /// In half units of the last printed digit, content with [`INSIDE`] of one.
     Digits,
-    /// The same for percentages, which otherwise yield to the numbers they are computed from.
-    DigitsAndPercentages,
     /// In 5 % of rise times and 0.5 points or 10 % of overshoots.
     Shares,
 }
@@ -263,7 +261,7 @@ impl Bench {
         }
         let misses = |preference: bool| -> f64 {
             claims_of(id, &flights)
-                .filter(|claim| is_preference(claim, weighing) == preference)
+                .filter(|claim| is_preference(claim) == preference)
                 .map(|claim| residual(claim, &flights, weighing))
                 .sum()
         };
@@ -310,12 +308,9 @@ fn claims_of<'a>(
 }
 
 /// Claims that yield to the others: no fixed-gain loop meets F9.2, and the FSPID of the same figure must
-/// not suffer for it; and, unless asked for, percentages, which the paper computes from numbers that
-/// it rounds differently.
-fn is_preference(claim: &Claim, weighing: Weighing) -> bool {
-    let percentage = matches!(claim.source, Quantity::Percent { .. });
-    let asked_for = weighing == Weighing::DigitsAndPercentages;
-    claim.id.starts_with("F9.2") || (percentage && !asked_for)
+/// not suffer for it; and percentages, which the paper computes from numbers it rounds differently.
+fn is_preference(claim: &Claim) -> bool {
+    claim.id.starts_with("F9.2") || matches!(claim.source, Quantity::Percent { .. })
 }
 
 /// Square of how far a claim is missed.
@@ -333,10 +328,8 @@ fn residual(claim: &Claim, flights: &[FigureFlight<'_>], weighing: Weighing) -> 
     let half_unit = claim.paper.half_unit();
     match weighing {
         Weighing::Shares if matches!(claim.source, Quantity::Percent { .. }) => 0.0,
-        _ if is_preference(claim, weighing) => excess(distance, INSIDE * half_unit, 0.1 * paper),
-        Weighing::Digits | Weighing::DigitsAndPercentages => {
-            excess(distance, INSIDE * half_unit, half_unit)
-        }
+        _ if is_preference(claim) => excess(distance, INSIDE * half_unit, 0.1 * paper),
+        Weighing::Digits => excess(distance, INSIDE * half_unit, half_unit),
         Weighing::Centre => square(distance / half_unit),
         Weighing::Shares if claim.unit == "s" => square(distance / (0.05 * paper)),
         Weighing::Shares => square(distance / (0.1 * paper).max(0.5)),

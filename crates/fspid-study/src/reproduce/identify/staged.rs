@@ -12,9 +12,9 @@ const ENOUGH: f64 = 1e-9;
 const PRIOR: f64 = 1e-3;
 /// Spread of the joint search about what the stages found, as a share of the box.
 const STAGED_SPREAD: f64 = 0.05;
-/// Spread of the first search about other figures' scales, and of later ones about what was found.
-pub(super) const FIRST_SPREAD: f64 = 0.12;
-pub(super) const NEXT_SPREAD: f64 = 0.04;
+/// Spread of the first and of the later searches about a point that is given.
+const FIRST_SPREAD: f64 = 0.12;
+const NEXT_SPREAD: f64 = 0.04;
 
 /// Evaluations of the stages of one attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,8 +172,8 @@ impl Set<'_> {
     }
 
     /// Searches with one seed: in stages, each attempt in another part of the half period's interval;
-    /// or, with a point to begin from and a spread, all parameters together about it.
-    pub(super) fn solve(&self, bench: &Bench, seed: u64, begin: Option<(&[f64], f64)>) -> SeedResult {
+    /// or, with a point to begin from, all parameters together about it.
+    pub(super) fn solve(&self, bench: &Bench, seed: u64, begin: Option<&[f64]>) -> SeedResult {
         let mut best: Option<Found> = None;
         let mut evaluations = 0;
         let mut attempts = 0;
@@ -185,8 +185,8 @@ impl Set<'_> {
                     let figures: Vec<FigureProblem> = self.figures.iter().map(part).collect();
                     Set { figures: &figures, ..*self }.staged(bench, attempt_seed)
                 }
-                Some((begin, spread)) => match &best {
-                    None => self.joint(bench, attempt_seed, begin, spread),
+                Some(begin) => match &best {
+                    None => self.joint(bench, attempt_seed, begin, FIRST_SPREAD),
                     Some(best) => self.joint(bench, attempt_seed, &best.point, NEXT_SPREAD),
                 },
             };
