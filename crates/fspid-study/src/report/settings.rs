@@ -29,7 +29,7 @@ fn is_of_controller(setting: &Setting) -> bool {
 
 /// Settings as rows, their paths relative to the table that they share.
 fn table<'a>(caption: &str, shared: &str, settings: impl Iterator<Item = &'a Setting>) -> Table {
-    let mut table = Table::new(caption, &["setting", "value", "unit", "from"]);
+    let mut table = Table::new(caption, &["setting", "value", "unit", "from"]).in_cards();
     for Setting { path, value, unit, given, .. } in settings {
         let path = path.strip_prefix(shared).unwrap_or(path).trim_start_matches('.');
         let from = if *given {
