@@ -40,6 +40,17 @@ pub enum Law<R> {
     },
 }
 
+impl<R> Law<R> {
+    /// Name in files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Memoryless => "memoryless",
+            Self::Accumulating { .. } => "accumulating",
+        }
+    }
+}
+
 /// Factors before the supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputScale<R> {

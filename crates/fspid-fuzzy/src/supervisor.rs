@@ -12,7 +12,7 @@ use crate::error::FuzzyError;
 use crate::label::{LABEL_COUNT, Label};
 use crate::membership::{Gaussian, Shape};
 use crate::real::Real;
-use crate::rule_table::{Output, RuleTable};
+use crate::rule_table::{Grid, Output, RuleTable};
 
 /// Rules in the base.
 const RULE_COUNT: usize = LABEL_COUNT * LABEL_COUNT;
@@ -118,6 +118,22 @@ impl Consequents {
         sorted
     }
 
+    /// The grid that was sorted.
+    fn grid(&self) -> Grid {
+        let mut rows = [[Label::ZO; LABEL_COUNT]; LABEL_COUNT];
+        let mut begin = 0;
+        for (label, &end) in Label::ALL.into_iter().zip(&self.ends) {
+            let end = usize::from(end);
+            for &cell in self.cells.get(begin..end).unwrap_or_default() {
+                if let Some(place) = rows.as_flattened_mut().get_mut(usize::from(cell)) {
+                    *place = label;
+                }
+            }
+            begin = end;
+        }
+        Grid::new(rows)
+    }
+
     /// Firing strength of each label: the strongest of its rules.
     fn strengths<R: Real>(&self, firing: &[R; 64]) -> [R; LABEL_COUNT] {
         let mut strengths = [R::ZERO; LABEL_COUNT];
@@ -189,6 +205,21 @@ impl<R: Real> Supervisor<R> {
     /// Half range of inputs and outputs.
     pub fn range(&self) -> R {
         self.range
+    }
+
+    /// The rules.
+    pub fn table(&self) -> RuleTable {
+        RuleTable::new(self.consequents.each_ref().map(Consequents::grid))
+    }
+
+    /// The rule for the centre of gravity.
+    pub fn defuzzifier(&self) -> Defuzzifier {
+        self.defuzzifier
+    }
+
+    /// What happens to an input beyond the range.
+    pub fn out_of_range(&self) -> OutOfRange {
+        self.out_of_range
     }
 
     /// Grades of an input in its seven sets, from `NB` to `PB`.
@@ -267,5 +298,28 @@ impl<R: Real> Supervisor<R> {
     fn at_rest(&self) -> Inference<R> {
         let delta = Increments { kp: R::ZERO, ki: R::ZERO, kd: R::ZERO };
         Inference { delta, clamped: false, underflowed: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_supervisor_tells_the_rules_and_choices_it_was_built_of() {
+        // Each label alone in some grid, and all of them in rows that are not in their order.
+        let mixed = Grid::parse(
+            "PB NB ZO PM NS NM PS\nZO ZO ZO ZO ZO ZO ZO\nNB NM NS ZO PS PM PB\nPB PM PS ZO NS NM NB\n\
+             NS PS NS PS NS PS NS\nPM NM PM NM PM NM PM\nNB PB NB PB NB PB NB\n",
+        );
+        let mixed = mixed.expect("seven rows of seven");
+        for label in Label::ALL {
+            let alone = Grid::new([[label; LABEL_COUNT]; LABEL_COUNT]);
+            let table = RuleTable::new([mixed, alone, mixed.mirrored()]);
+            let (rule, policy) = (Defuzzifier::Midpoint(100), OutOfRange::Error);
+            let supervisor = Supervisor::new(&table, 5.0_f64, rule, policy).expect("allowed");
+            assert_eq!(supervisor.table(), table);
+            assert_eq!((supervisor.defuzzifier(), supervisor.out_of_range()), (rule, policy));
+        }
     }
 }

@@ -226,7 +226,9 @@ fn an_accumulating_law_without_limits_is_warned_of() {
 fn the_starter_s_report_is_sound_and_shows_the_defaults() {
     let html = of_flight(file::starter());
     assert_sound(&html);
-    for setting in ["guard limit", "anti-windup", "supervisor defuzzifier", "servo delay samples"] {
+    for setting in
+        ["sample_guard_deg", "integral", "supervisor.defuzzifier", "actuator.delay_samples"]
+    {
         assert!(html.contains(&format!("<th scope=\"row\">{setting}</th>")), "{setting}");
     }
 }

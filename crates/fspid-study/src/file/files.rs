@@ -6,18 +6,31 @@ use std::path::Path;
 use sha2::{Digest as _, Sha256};
 
 use crate::file::document::FILE_LIMIT;
+use crate::file::section::Section;
 
-/// Reads files and keeps the digest of everything read.
+/// Reads files and keeps the digest of everything read, and what plant files say.
 pub(crate) struct Files<'a> {
     folder: Option<&'a Path>,
     hasher: Sha256,
+    /// Path of the key that refers to a file, and what the file says.
+    referred: Vec<(String, Section)>,
 }
 
 impl<'a> Files<'a> {
     /// Relative paths are those of `folder`; without one, no file can be referred to.
     pub(crate) fn new(folder: Option<&'a Path>) -> Self {
         let hasher = Sha256::new();
-        Self { folder, hasher }
+        Self { folder, hasher, referred: Vec::new() }
+    }
+
+    /// Keeps what the file says that the key at `path` refers to.
+    pub(crate) fn keep(&mut self, path: String, section: Section) {
+        self.referred.push((path, section));
+    }
+
+    /// What the file says that the key at `path` refers to.
+    pub(crate) fn referred(&self, path: &str) -> Option<&Section> {
+        self.referred.iter().find(|(at, _)| at == path).map(|(_, section)| section)
     }
 
     /// Adds a text to the digest, with its length, so that no two sets of texts look alike.

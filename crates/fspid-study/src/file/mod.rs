@@ -2,7 +2,7 @@
 //!
 //! One specification (`spec`) lists every key with its kind, unit, range, default and meaning. From
 //! it come the check, which collects all problems of a file with their places, the JSON
-//! [`schema`], and the defaults. Degrees become radians here and nowhere else.
+//! [`schema`], the defaults, and the list of all [`Setting`]s. Degrees become radians here and nowhere else.
 //!
 //! ```
 //! let study = fspid_study::file::parse(fspid_study::file::starter(), "starter.toml", None, &[])?;
@@ -26,6 +26,7 @@ mod report;
 mod requirement;
 mod schema;
 mod section;
+mod setting;
 mod spec;
 
 use std::fmt;
@@ -43,6 +44,7 @@ pub use preset::{
 pub use problem::{Problem, Problems};
 pub use requirement::Requirement;
 pub use schema::schema;
+pub use setting::Setting;
 
 /// A scenario with what its file asks of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +53,8 @@ pub struct Study {
     pub scenario: Scenario,
     /// What the responses must meet.
     pub requirements: Vec<Requirement>,
+    /// Everything that is set, in the order of the specification.
+    pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
     pub digest: String,
     /// What is allowed and probably not meant.
@@ -136,8 +140,9 @@ pub fn parse(
     let study = read(&mut report, &mut files, text, overrides);
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
-    let (scenario, requirements) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    Ok(Study { scenario, requirements, digest: files.finish(), warnings })
+    let (scenario, requirements, settings) =
+        study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
+    Ok(Study { scenario, requirements, settings, digest: files.finish(), warnings })
 }
 
 fn read(
@@ -145,7 +150,7 @@ fn read(
     files: &mut Files<'_>,
     text: &str,
     overrides: &[String],
-) -> Option<(Scenario, Vec<Requirement>)> {
+) -> Option<(Scenario, Vec<Requirement>, Vec<Setting>)> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
         let place = report::Place { source, start: 0, end: 0 };
@@ -158,7 +163,8 @@ fn read(
         overrides::apply(report, &mut document, text);
     }
     let section = check::table(report, &spec::SCENARIO, &document, "")?;
-    build::scenario(report, files, &section)
+    let (scenario, requirements) = build::scenario(report, files, &section)?;
+    Some((scenario, requirements, setting::settings(files, &section)))
 }
 
 /// A commented scenario to begin with.

@@ -80,12 +80,7 @@ fn choice(choice: &Choice) -> Value {
 
 fn property(key: &'static Key) -> Value {
     let mut schema = kind(&key.kind);
-    let unit = match &key.kind {
-        Kind::Number { unit, .. } | Kind::Numbers { unit, .. } | Kind::Interval { unit, .. } => {
-            unit
-        }
-        _ => "",
-    };
+    let unit = key.kind.unit();
     let doc = if unit.is_empty() { key.doc.to_owned() } else { format!("{} [{unit}]", key.doc) };
     schema.insert("description".to_owned(), json!(doc));
     if let Presence::Default(default) = key.presence {

@@ -44,7 +44,7 @@ pub(crate) enum Checked {
 }
 
 impl Section {
-    fn entry(&self, name: &str) -> Option<&Entry> {
+    pub(crate) fn entry(&self, name: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.name == name)
     }
 

@@ -5,7 +5,6 @@
 //!
 //! Not here: what is measured and judged (`metrics`, `reproduce`), and how a line is drawn (`figure`).
 
-mod debug;
 mod html;
 mod markdown;
 mod measures;

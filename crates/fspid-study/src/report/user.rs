@@ -163,11 +163,11 @@ impl User<'_> {
     }
 
     fn settings(self) -> Section {
-        let scenario = &self.study.scenario;
+        let settings = &self.study.settings;
         let context = context! {
             part => "settings",
-            flight => settings::of_flight(scenario),
-            controllers => settings::of_controllers(scenario),
+            flight => settings::of_flight(settings),
+            controllers => settings::of_controllers(settings),
         };
         Section::of("settings", "Settings", "user", context)
     }
@@ -186,7 +186,7 @@ impl User<'_> {
 #[derive(Serialize)]
 struct Tuning {
     name: String,
-    law: String,
+    law: &'static str,
     accumulating: bool,
     sets: Vec<Figure>,
     tables: Vec<Figure>,
@@ -200,16 +200,18 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
     };
     let supervisor = fspid.tuner().supervisor();
     let prefix = |what: &str| format!("tuning-{}-{what}", index + 1);
-    let law = settings::law(&named.controller).unwrap_or_default();
-    let rules = settings::rules(&named.controller);
+    let law = fspid.tuner().settings().law.name();
     Some(Tuning {
         name: named.name.clone(),
         accumulating: law == "accumulating",
         law,
         sets: supervisor::sets(&prefix("sets"), supervisor),
-        tables: rules.map_or_else(Vec::new, |rules| {
-            supervisor::rule_tables(&prefix("rules"), &named.name, &rules, Marks::None)
-        }),
+        tables: supervisor::rule_tables(
+            &prefix("rules"),
+            &named.name,
+            &supervisor.table(),
+            Marks::None,
+        ),
         maps: supervisor::surfaces(
             &prefix("surface"),
             &named.name,

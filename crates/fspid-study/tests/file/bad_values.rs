@@ -19,7 +19,7 @@ const SETPOINTS: [&str; 6] = [
 ];
 
 /// The file with every key, once for each set-point.
-fn texts() -> Vec<String> {
+pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-study/tests/scenarios/every-key.toml");
     SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint)).to_vec()
 }

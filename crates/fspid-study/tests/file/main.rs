@@ -8,6 +8,7 @@ mod messages;
 mod overrides;
 mod reading;
 mod schema;
+mod settings;
 
 use std::path::PathBuf;
 

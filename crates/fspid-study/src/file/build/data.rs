@@ -21,14 +21,26 @@ pub(super) fn plant(
 ) -> Option<LinearPlant> {
     if let Some(name) = section.text("preset") {
         let part = carried(report, files, &PLANT_FILE, (name, plant_text(name)?))?;
-        return coefficients(report, &part, elevator_sign(&part)?);
+        return of_file(report, files, section.path("preset"), part);
     }
     if let Some(file) = section.text("file") {
         let at = (section.at("file"), section.path("file"));
         let part = referred(report, files, &PLANT_FILE, (file, at))?;
-        return coefficients(report, &part, elevator_sign(&part)?);
+        return of_file(report, files, section.path("file"), part);
     }
     coefficients(report, section, elevator_sign(section)?)
+}
+
+/// The plant of a file that the key at `path` refers to.
+fn of_file(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    path: String,
+    part: Section,
+) -> Option<LinearPlant> {
+    let plant = coefficients(report, &part, elevator_sign(&part)?);
+    files.keep(path, part);
+    plant
 }
 
 /// The plant of a table's numerator and denominator.

@@ -162,7 +162,8 @@ fn value_place(member: &Member) -> Place {
     if place.end > place.start { place } else { member.place }
 }
 
-fn default_value(kind: &crate::file::spec::Kind, default: Default) -> Checked {
+/// The default of a key of this kind.
+pub(crate) fn default_value(kind: &crate::file::spec::Kind, default: Default) -> Checked {
     use crate::file::spec::Kind;
     match (kind, default) {
         (Kind::Defuzzifier, _) => Checked::Defuzzifier(fspid_fuzzy::Defuzzifier::default()),

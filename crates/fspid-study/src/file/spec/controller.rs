@@ -151,7 +151,11 @@ static WEIGHTS: Table = plain(
             Default::Number(1.0),
             "Weight in the proportional term.",
         ),
-        defaulted("derivative", finite(""), Default::Number(1.0), "Weight in the derivative term."),
+        optional(
+            "derivative",
+            finite(""),
+            "Weight in the derivative term; if left out 1, or 0 where derivative_on is `measurement`.",
+        ),
     ]],
 );
 

@@ -35,6 +35,18 @@ impl Table {
     pub(crate) fn keys(&self) -> impl Iterator<Item = &'static Key> + use<> {
         self.groups.iter().copied().flatten()
     }
+
+    /// The keys together with those of the variant that is called `kind`.
+    pub(crate) fn keys_of(&self, kind: &str) -> impl Iterator<Item = &'static Key> + use<> {
+        let variant = self.variants.iter().find(|variant| variant.name == kind);
+        self.keys().chain(variant.into_iter().flat_map(|variant| variant.table.keys()))
+    }
+
+    /// True if the table may be empty, so that an absent one has its defaults.
+    pub(crate) fn may_be_empty(&self) -> bool {
+        let required = |key: &Key| matches!(key.presence, Presence::Required);
+        self.variants.is_empty() && self.choices.is_empty() && !self.keys().any(required)
+    }
 }
 
 /// One kind of a table that is chosen by `kind`.
@@ -115,6 +127,18 @@ pub(crate) enum Kind {
         least: usize,
         most: usize,
     },
+}
+
+impl Kind {
+    /// The unit, empty where there is none.
+    pub(crate) fn unit(&self) -> &'static str {
+        match self {
+            Self::Number { unit, .. }
+            | Self::Numbers { unit, .. }
+            | Self::Interval { unit, .. } => unit,
+            _ => "",
+        }
+    }
 }
 
 /// Whether a key must be there, and what holds if it is not.

@@ -114,7 +114,7 @@ fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
     let named =
         flights.iter().find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
     named.map_or_else(String::new, |(_, study, _)| {
-        settings::disturbance_forms(&study.scenario).join(" and ")
+        settings::disturbance_forms(&study.settings).join(" and ")
     })
 }
 

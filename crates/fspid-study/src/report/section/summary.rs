@@ -1,5 +1,6 @@
 //! What was done, and the bottom line: every sentence with numbers of this very run.
 
+use fspid_sim::Controller;
 use serde::Serialize;
 
 use super::disturbances::{MATCHES, Match, compared};
@@ -8,7 +9,6 @@ use crate::report::html::context;
 use crate::report::number::{fixed, measured, significant};
 use crate::report::page::{Cell, Section, Table};
 use crate::report::paper::Paper;
-use crate::report::settings;
 use crate::reproduce::disturbance::{Contest, SHAPES};
 use crate::reproduce::{Fit, Reproduction, Status};
 use crate::simulation::Simulation;
@@ -130,7 +130,7 @@ fn contests(reproduction: &Reproduction) -> Vec<Outcome> {
 struct Memory {
     figure: &'static str,
     memoryless: bool,
-    laws: Vec<String>,
+    laws: Vec<&'static str>,
     first: Step,
     down: Step,
     later: Step,
@@ -169,12 +169,12 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
         (first > later).then(|| 100.0 * (first - alone) / (first - later))
     };
     let share_pct = share(rise(0)?, rise(2)?, alone_large.ok()?);
-    let mut laws: Vec<String> = paper
+    let mut laws: Vec<&'static str> = paper
         .reproduction
         .figures
         .iter()
         .flat_map(|flown| {
-            flown.study.scenario.controllers.iter().filter_map(|c| settings::law(&c.controller))
+            flown.study.scenario.controllers.iter().filter_map(|named| law(&named.controller))
         })
         .collect();
     laws.sort();
@@ -192,6 +192,14 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
         mostly: share_pct.is_some_and(|share| share > 50.0),
         share_pct: share_pct.map(|share| fixed(share, 0)),
     })
+}
+
+/// The law of a self-tuning controller.
+fn law(controller: &Controller) -> Option<&'static str> {
+    match controller {
+        Controller::SelfTuning(fspid) => Some(fspid.tuner().settings().law.name()),
+        Controller::Fixed(_) => None,
+    }
 }
 
 /// Rise time of one step of this size from rest, with nothing before it.
