@@ -8,7 +8,7 @@ use super::super::disturbance::{ENTRIES, SHAPES, START_S, flight_cost, scenario_
 use super::super::figures::{DISTURBED, Stored, WEAKENED};
 use super::super::model::{Command, ControllerModel, FlightModel, SHORT_PERIOD, Scales};
 use super::Session;
-use super::problem::{Bench, scale_parameters, scales};
+use super::problem::{Bench, scales};
 use super::staged::{SeedResult, Set};
 use crate::tune::{Budget, Found, Parameter, Scale, Space, search};
 use crate::units::radians;
@@ -167,7 +167,14 @@ impl Session<'_> {
             vec![log("kp", 0.05, 10.0), log("ki", 1e-3, 10.0), log("kd", 1e-3, 3.0)];
         let mut about = base.gains.to_vec();
         if fuzzy {
-            parameters.extend(scale_parameters(SHORT_PERIOD));
+            // Wide enough for a supervisor that has next to nothing to say: the CPID is within reach.
+            parameters.extend([
+                log("error_scale", 0.1, 100.0),
+                log("change_scale", 0.1, 100.0),
+                log("output_scale kp", 1e-5, 1.0),
+                log("output_scale ki", 1e-5, 1.0),
+                log("output_scale kd", 1e-5, 1.0),
+            ]);
             let Scales { error, change, output } = base.scales;
             about.extend([error, change]);
             about.extend(output);
