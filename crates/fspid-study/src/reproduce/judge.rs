@@ -68,7 +68,10 @@ fn note(claim: &Claim, source: Quantity) -> String {
     let special = match claim.id {
         "F5.2" => "read at the end of the window (A15); the proportional loop sags further later",
         "F5.3" => "a slow tail, not a steady state: with ki > 0 the error goes to zero in the end",
-        "F8b.2.5" => "the paper's own 1.4 and 1.72 make 18.6 % of the later or 22.9 % of the first",
+        "F8b.2.5" => {
+            "the paper's own 1.4 and 1.72 make 18.6 % of the later or 22.9 % of the first; with a \
+             downward overshoot below 10 % the search finds no fit that rounds to 18 as well"
+        }
         "F9.1.3" => "the paper's own 1.38 and 0.84 make 39.1 %",
         id if id.starts_with("F9.2") => {
             "no fixed-gain loop found gives both the change of rise time and a constant overshoot; \

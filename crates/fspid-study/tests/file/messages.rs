@@ -51,13 +51,13 @@ const MISTAKES: [(&str, &str, &str); 31] = [
     ("gain limits without room", "kd_min = 0.0", "kd_min = 0.0\nkd_max = 0.0"),
     (
         "command limits the wrong way round",
-        "kd = 0.15\n",
-        "kd = 0.15\noutput_limits_deg = [20, -20]\n",
+        "kd = 0.05\n",
+        "kd = 0.05\noutput_limits_deg = [20, -20]\n",
     ),
     (
         "anti-windup without a limit",
-        "kd = 0.15\n",
-        "kd = 0.15\nanti_windup = { kind = \"conditional\" }\n",
+        "kd = 0.05\n",
+        "kd = 0.05\nanti_windup = { kind = \"conditional\" }\n",
     ),
     (
         "leakage without accumulation",
@@ -94,7 +94,7 @@ fn longer() -> Vec<(&'static str, String)> {
         ("an unknown label in a rule table", inline(&label)),
         (
             "a derivative on both",
-            starter.replace("kd = 0.15\n", &format!("kd = 0.15\n{conflict}\n")),
+            starter.replace("kd = 0.05\n", &format!("kd = 0.05\n{conflict}\n")),
         ),
         ("plant changes of another order and out of order", starter.replace("[setpoint]", change)),
         ("a table of set-points out of order", setpoint_table()),

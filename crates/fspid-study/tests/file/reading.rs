@@ -139,7 +139,7 @@ fn degrees_of_the_file_are_radians_of_the_controller() {
     };
     let gains = fspid.step(&mut state, sample).gains;
     assert!((gains.kp - (1.0 + 0.05 * delta.kp)).abs() < 1e-14, "{gains:?}");
-    assert!((gains.kd - (0.15 + 0.01 * delta.kd)).abs() < 1e-14, "{gains:?}");
+    assert!((gains.kd - (0.05 + 0.01 * delta.kd)).abs() < 1e-14, "{gains:?}");
 }
 
 #[test]
