@@ -24,7 +24,7 @@ impl ElevatorSign {
     }
 }
 
-/// Transfer function from elevator [rad] to pitch angle [rad], with the sign of its elevator.
+/// Transfer function from elevator, rad, to pitch angle, rad, with the sign of its elevator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearPlant {
     transfer_function: TransferFunction,

@@ -145,6 +145,7 @@ fn every_assumption_and_erratum_has_its_anchor() {
 fn parameters_that_the_claims_do_not_determine_are_named_where_there_are_several_seeds() {
     let (library, mut reproduction) = paper();
     for problem in &mut reproduction.record.problems {
+        problem.runs.truncate(1);
         let mut other = problem.runs[0].clone();
         other.seed += 1;
         other.point[0] *= 2.0;

@@ -75,7 +75,7 @@ impl Profile {
         Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
     }
 
-    /// Set-point at each sample [rad], and the steps in it.
+    /// Set-point at each sample, rad, and the steps in it.
     #[must_use]
     pub fn sampled(&self, timing: Timing) -> (Vec<f64>, Vec<Edge>) {
         let mut values = vec![0.0; timing.rows()];
