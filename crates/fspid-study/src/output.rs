@@ -16,12 +16,17 @@ pub struct OutputError {
 
 impl fmt::Display for OutputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "cannot write {}: {}; nothing there was changed",
-            self.path.display(),
-            self.reason
-        )
+        write!(f, "cannot write {}: ", self.path.display())?;
+        // The system's own words would name the new file beside it, which nobody knows.
+        match self.reason.kind() {
+            io::ErrorKind::StorageFull => f.write_str("the disk is full")?,
+            io::ErrorKind::NotFound => f.write_str("its folder does not exist")?,
+            io::ErrorKind::PermissionDenied => f.write_str("permission denied")?,
+            io::ErrorKind::ReadOnlyFilesystem => f.write_str("the file system is read-only")?,
+            io::ErrorKind::IsADirectory => f.write_str("it is a folder")?,
+            _ => write!(f, "{}", self.reason)?,
+        }
+        f.write_str("; nothing there was changed")
     }
 }
 
