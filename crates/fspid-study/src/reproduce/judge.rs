@@ -2,8 +2,8 @@
 
 use super::claim::{CLAIMS, Claim, Printed, Quantity, Status, judge_change};
 use super::figures::{FIGURES, Fit, FlownFigure};
-use super::reading::{FigureFlight, claim, figure_of, number};
-use crate::metrics::Absent;
+use super::reading::{FigureFlight, claim, figure_of, number, readings};
+use crate::metrics::{Absent, Measure};
 
 /// A number of the paper and what came of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,10 @@ fn judge_claim(
     let figure = FIGURES.iter().find(|figure| figure.id == figure_of(claim));
     let note = match ours {
         Err(reason) => reason.to_string(),
-        Ok(_) => note(claim, claim.source),
+        Ok(_) => {
+            let parts = [note(claim, claim.source), unclaimed_overshoots(claim, own)];
+            parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
+        }
     };
     let assumptions = figure.map_or(&[][..], |figure| figure.assumptions);
     JudgedClaim { claim: *claim, ours, shared, status, shared_status, assumptions, note }
@@ -69,8 +72,8 @@ fn note(claim: &Claim, source: Quantity) -> String {
         "F5.2" => "read at the end of the window (A15); the proportional loop sags further later",
         "F5.3" => "a slow tail, not a steady state: with ki > 0 the error goes to zero in the end",
         "F8b.2.5" => {
-            "the paper's own 1.4 and 1.72 make 18.6 % of the later or 22.9 % of the first; with a \
-             downward overshoot below 10 % the search finds no fit that rounds to 18 as well"
+            "the paper's own 1.4 and 1.72 make 18.6 % of the later or 22.9 % of the first; with \
+             less than 10 % overshoot on the first step down no fit was found that rounds to 18 as well"
         }
         "F9.1.3" => "the paper's own 1.38 and 0.84 make 39.1 %",
         id if id.starts_with("F9.2") => {
@@ -90,6 +93,36 @@ fn note(claim: &Claim, source: Quantity) -> String {
         Quantity::Value(_) => "",
     };
     [special, reading].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// Overshoots above this, in per cent, are named wherever the paper does not show them.
+const NAMED_OVERSHOOT_PCT: f64 = 10.0;
+
+/// What the flights of an overshoot claim do on the steps that the paper does not speak of.
+fn unclaimed_overshoots(claim: &Claim, flights: &[FigureFlight<'_>]) -> String {
+    let readings = readings(claim);
+    let of_claim = |flight: &&FigureFlight<'_>| {
+        readings.iter().any(|reading| {
+            reading.measure == Measure::Overshoot
+                && reading.figure == flight.figure
+                && reading.controllers.contains(&flight.controller)
+        })
+    };
+    let mut named = Vec::new();
+    for flight in flights.iter().filter(of_claim) {
+        for (edge, step) in flight.metrics.edges.iter().zip(1_usize..) {
+            let overshoot = edge.step.overshoot_pct.unwrap_or(0.0);
+            let claimed = readings.iter().any(|reading| reading.edge + 1 == step);
+            if overshoot > NAMED_OVERSHOOT_PCT && !claimed {
+                let way = if edge.to_rad < edge.from_rad { "down" } else { "up" };
+                named.push(format!("step {step}, {way}: {overshoot:.1} %"));
+            }
+        }
+    }
+    if named.is_empty() {
+        return String::new();
+    }
+    format!("overshoots that the paper does not show: {}", named.join(", "))
 }
 
 /// Number and status of a claim.
