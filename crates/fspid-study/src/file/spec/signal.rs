@@ -14,6 +14,24 @@ const AT: Key = defaulted("at_s", not_negative("s"), Default::Number(0.0), "Star
 /// Rows that a set-point table may have.
 const MOST_ROWS: usize = 1_000_000;
 
+/// A ramp, of the command and of a disturbance alike.
+const RAMP: Variant = Variant {
+    name: "ramp",
+    table: plain(
+        "In a straight line from 0 to the amplitude, where it stays.",
+        &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
+    ),
+};
+
+/// A sine, of the command and of a disturbance alike.
+const SINE: Variant = Variant {
+    name: "sine",
+    table: plain(
+        "A sine wave from the start on.",
+        &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
+    ),
+};
+
 pub(super) static SETPOINT: Table = Table {
     doc: "The commanded pitch angle over time.",
     groups: &[],
@@ -47,20 +65,8 @@ pub(super) static SETPOINT: Table = Table {
                 &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of each half.")]],
             ),
         },
-        Variant {
-            name: "ramp",
-            table: plain(
-                "In a straight line from 0 to the amplitude, where it stays.",
-                &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
-            ),
-        },
-        Variant {
-            name: "sine",
-            table: plain(
-                "A sine wave from the start on.",
-                &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
-            ),
-        },
+        RAMP,
+        SINE,
         Variant {
             name: "table",
             table: plain(
@@ -118,20 +124,8 @@ pub(super) static DISTURBANCE: Table = Table {
                 &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length.")]],
             ),
         },
-        Variant {
-            name: "ramp",
-            table: plain(
-                "In a straight line from 0 to the amplitude, where it stays.",
-                &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
-            ),
-        },
-        Variant {
-            name: "sine",
-            table: plain(
-                "A sine wave from the start on.",
-                &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
-            ),
-        },
+        RAMP,
+        SINE,
         Variant {
             name: "noise",
             table: plain(
