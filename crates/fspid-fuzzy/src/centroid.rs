@@ -117,23 +117,27 @@ mod tests {
 
     #[test]
     fn a_single_full_label_answers_the_centroid_of_its_triangle() {
-        let mut strengths = [0.0; LABEL_COUNT];
+        let mut strengths = [0.0_f64; LABEL_COUNT];
         strengths[4] = 1.0;
         assert!((exact(&strengths) - 1.0).abs() < 1e-15);
         // Half a triangle at the upper end: a third of the way from the peak.
-        assert!((exact(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]) - (3.0 - 1.0 / 3.0)).abs() < 1e-15);
-        assert!((exact(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) + (3.0 - 1.0 / 3.0)).abs() < 1e-15);
+        assert!(
+            (exact(&[0.0_f64, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]) - (3.0 - 1.0 / 3.0)).abs() < 1e-15
+        );
+        assert!(
+            (exact(&[1.0_f64, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) + (3.0 - 1.0 / 3.0)).abs() < 1e-15
+        );
     }
 
     #[test]
     fn strengths_of_any_size_are_answered_with_full_relative_accuracy() {
-        let strengths = [0.0, 0.0, 1e-300, 0.0, 0.0, 1e-300, 0.0];
+        let strengths = [0.0_f64, 0.0, 1e-300, 0.0, 0.0, 1e-300, 0.0];
         assert!((exact(&strengths) - 0.5).abs() < 1e-15);
     }
 
     #[test]
     fn every_sampled_rule_tends_to_the_exact_centroid() {
-        let strengths = [0.9, 0.3, 0.55, 0.7, 0.1, 0.0, 0.62];
+        let strengths = [0.9_f64, 0.3, 0.55, 0.7, 0.1, 0.0, 0.62];
         for rule in RULES {
             let error = centroid(rule, &strengths) - exact(&strengths);
             assert!(error.abs() < 2e-4, "{rule}: {error}");

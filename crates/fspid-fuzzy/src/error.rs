@@ -23,6 +23,17 @@ pub enum FuzzyError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A membership function with too few or too many parameters.
+    ParameterCount {
+        /// The kind of membership function.
+        shape: &'static str,
+        /// How many were given.
+        found: usize,
+        /// How many it has.
+        expected: usize,
+        /// True if any multiple of that many would do.
+        repeats: bool,
+    },
     /// A sampled centroid with too few or too many samples.
     SampleCount {
         /// What was given.
@@ -54,6 +65,12 @@ impl fmt::Display for FuzzyError {
             ),
             Self::Parameter { name, found, allowed } => {
                 write!(f, "{name} is {found:?}; allowed is {allowed}")
+            }
+            Self::ParameterCount { shape, found, expected, repeats: false } => {
+                write!(f, "{shape} has {found} parameters; allowed are {expected}")
+            }
+            Self::ParameterCount { shape, found, expected, repeats: true } => {
+                write!(f, "{shape} has {found} parameters; allowed is a multiple of {expected}")
             }
             Self::SampleCount { found, least, most } => {
                 write!(f, "{found} samples for a centroid; allowed are {least} to {most}")

@@ -42,6 +42,7 @@ mod label;
 pub mod membership;
 mod real;
 mod rule_table;
+pub mod scalar;
 mod supervisor;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
@@ -49,4 +50,5 @@ pub use error::FuzzyError;
 pub use label::{LABEL_COUNT, Label};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
+pub use scalar::Scalar;
 pub use supervisor::{Increments, Inference, InferenceError, OutOfRange, Supervisor};

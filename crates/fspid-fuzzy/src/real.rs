@@ -1,7 +1,9 @@
 //! The two number types a controller can be built for.
 
-use core::fmt::{Debug, Display};
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use core::fmt::Display;
+use core::ops::AddAssign;
+
+use crate::scalar::Scalar;
 
 mod sealed {
     pub trait Sealed {}
@@ -14,21 +16,7 @@ mod sealed {
 /// Sealed: `f32` and `f64`. Deliberately absent are the platform's elementary functions, whose last
 /// bits differ between systems, and the fused multiply-add, which only some machines have.
 pub trait Real:
-    sealed::Sealed
-    + Copy
-    + Debug
-    + Display
-    + PartialEq
-    + PartialOrd
-    + Add<Output = Self>
-    + AddAssign
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + Send
-    + Sync
-    + 'static
+    sealed::Sealed + Scalar + Display + PartialEq + PartialOrd + AddAssign + Send + Sync + 'static
 {
     /// Zero.
     const ZERO: Self;
@@ -43,22 +31,8 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same number as `f64`; exact.
     fn to_f64(self) -> f64;
-    /// Magnitude.
-    fn abs(self) -> Self;
     /// True for everything but infinities and NaN.
     fn is_finite(self) -> bool;
-    /// $e^x$ by the project's own polynomial; within 1 unit in the last place.
-    fn exp(self) -> Self;
-
-    /// The smaller of two numbers; the second if either is NaN.
-    fn smaller(self, other: Self) -> Self {
-        if self < other { self } else { other }
-    }
-
-    /// The larger of two numbers; the second if either is NaN.
-    fn larger(self, other: Self) -> Self {
-        if self > other { self } else { other }
-    }
 
     /// The number moved into `[lower, upper]`; NaN stays NaN.
     fn limited(self, lower: Self, upper: Self) -> Self {
@@ -73,7 +47,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident, $exp:path) => {
+    ($float:ident) => {
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -92,20 +66,12 @@ macro_rules! real {
                 f64::from(self)
             }
 
-            fn abs(self) -> Self {
-                $float::abs(self)
-            }
-
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
-            }
-
-            fn exp(self) -> Self {
-                $exp(self)
             }
         }
     };
 }
 
-real!(f32, crate::exp::exp_f32);
-real!(f64, crate::exp::exp_f64);
+real!(f32);
+real!(f64);

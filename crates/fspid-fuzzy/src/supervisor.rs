@@ -10,7 +10,7 @@ use crate::centroid::centroid;
 use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
 use crate::label::{LABEL_COUNT, Label};
-use crate::membership::{Gaussian, Shape};
+use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
 use crate::real::Real;
 use crate::rule_table::{Grid, Output, RuleTable};
 
@@ -162,7 +162,8 @@ fn pairs() -> impl Iterator<Item = (Label, Label)> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supervisor<R> {
     consequents: [Consequents; 3],
-    sets: [Gaussian<R>; LABEL_COUNT],
+    /// Centre and sigma of each input set.
+    sets: [[R; 2]; LABEL_COUNT],
     range: R,
     spacing: R,
     defuzzifier: Defuzzifier,
@@ -188,9 +189,10 @@ impl<R: Real> Supervisor<R> {
             return Err(FuzzyError::Range { found });
         }
         let spacing = range / R::from_f64(3.0);
-        let mut sets = [Gaussian::spaced(R::ZERO, spacing); LABEL_COUNT];
+        let sigma = spacing * R::from_f64(SIGMA_PER_SPACING);
+        let mut sets = [[R::ZERO, sigma]; LABEL_COUNT];
         for (steps, set) in (-3_i8..).zip(&mut sets) {
-            *set = Gaussian::spaced(spacing * R::from_f64(f64::from(steps)), spacing);
+            *set = [spacing * R::from_f64(f64::from(steps)), sigma];
         }
         Ok(Self {
             consequents: Output::ALL.map(|output| Consequents::new(table, output)),
@@ -224,7 +226,7 @@ impl<R: Real> Supervisor<R> {
 
     /// Grades of an input in its seven sets, from `NB` to `PB`.
     pub fn grades(&self, input: R) -> [R; LABEL_COUNT] {
-        self.sets.map(|set| set.grade(input))
+        self.sets.map(|set| Gaussian::grade(&set, input))
     }
 
     /// Increments of the gains for an error and its change.

@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use fspid_fuzzy::{
-    Defuzzifier, LABEL_COUNT, Label, OutOfRange, Output, Real, RuleTable, Supervisor,
+    Defuzzifier, LABEL_COUNT, Label, OutOfRange, Output, RuleTable, Scalar, Supervisor,
 };
 
 /// Half the span times the rounding of a sum of a thousand samples.
@@ -92,7 +92,7 @@ fn exp_is_within_one_unit_in_the_last_place() {
     for row in rows {
         let bits = |text: &str| u64::from_str_radix(text, 16).expect("hexadecimal");
         let (x, rounded) = (f64::from_bits(bits(row[1])), f64::from_bits(bits(row[3])));
-        let ours = Real::exp(x);
+        let ours = Scalar::exp(x);
         if row[5].is_empty() || rounded == 0.0 {
             assert_eq!(ours, rounded, "{row:?}");
             continue;
@@ -112,7 +112,7 @@ fn exp_is_within_one_unit_in_the_last_place_in_single_precision() {
     for row in rows {
         let bits = |text: &str| u32::from_str_radix(text, 16).expect("hexadecimal");
         let (x, rounded) = (f32::from_bits(bits(row[1])), f32::from_bits(bits(row[3])));
-        let ours = Real::exp(x);
+        let ours = Scalar::exp(x);
         if row[5].is_empty() || rounded == 0.0 {
             assert_eq!(ours, rounded, "{row:?}");
             continue;
@@ -127,9 +127,9 @@ fn exp_is_within_one_unit_in_the_last_place_in_single_precision() {
 
 #[test]
 fn exp_of_what_is_no_number_is_no_number() {
-    assert!(Real::exp(f64::NAN).is_nan() && Real::exp(f32::NAN).is_nan());
-    assert_eq!((Real::exp(f64::INFINITY), Real::exp(f64::NEG_INFINITY)), (f64::INFINITY, 0.0));
-    assert_eq!((Real::exp(f32::INFINITY), Real::exp(f32::NEG_INFINITY)), (f32::INFINITY, 0.0));
+    assert!(Scalar::exp(f64::NAN).is_nan() && Scalar::exp(f32::NAN).is_nan());
+    assert_eq!((Scalar::exp(f64::INFINITY), Scalar::exp(f64::NEG_INFINITY)), (f64::INFINITY, 0.0));
+    assert_eq!((Scalar::exp(f32::INFINITY), Scalar::exp(f32::NEG_INFINITY)), (f32::INFINITY, 0.0));
 }
 
 #[test]

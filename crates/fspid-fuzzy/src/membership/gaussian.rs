@@ -1,28 +1,17 @@
 //! The bell curve of the paper's inputs.
 
-use super::{Param, Range, Shape, checked};
-use crate::error::FuzzyError;
-use crate::real::Real;
+use super::{Param, Range, Shape};
+use crate::scalar::Scalar;
 
 /// Width of Gaussian sets, as a fraction of their spacing, at which neighbours cross at 0.5:
 /// $1 / (2 \sqrt{2 \ln 2})$.
 pub(crate) const SIGMA_PER_SPACING: f64 = 0.424_660_900_144_009_53;
 
 /// $\mu(x) = e^{-\frac12 \left(\frac{x - c}{\sigma}\right)^2}$
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaussian<R> {
-    centre: R,
-    sigma: R,
-}
+#[derive(Clone, Copy, Debug)]
+pub enum Gaussian {}
 
-impl<R: Real> Gaussian<R> {
-    /// The set whose equal neighbours, `spacing` away on each side, cross it at a grade of 0.5.
-    pub(crate) fn spaced(centre: R, spacing: R) -> Self {
-        Self { centre, sigma: spacing * R::from_f64(SIGMA_PER_SPACING) }
-    }
-}
-
-impl<R: Real> Shape<R> for Gaussian<R> {
+impl Shape for Gaussian {
     const NAME: &'static str = "gaussian";
     const PARAMS: &'static [Param] = &[
         Param { name: "centre", unit: "variable", range: Range::Finite },
@@ -31,13 +20,10 @@ impl<R: Real> Shape<R> for Gaussian<R> {
     const EXAMPLE: &'static [f64] = &[0.0, 1.0];
     const C: &'static str = "exp(-0.5 * ((x - centre) / sigma) * ((x - centre) / sigma))";
 
-    fn new(params: &[f64]) -> Result<Self, FuzzyError> {
-        let [centre, sigma] = checked::<R, Self, 2>(params)?;
-        Ok(Self { centre, sigma })
-    }
-
-    fn grade(&self, x: R) -> R {
-        let z = (x - self.centre) / self.sigma;
-        (-R::HALF * (z * z)).exp()
+    #[inline]
+    fn grade<S: Scalar>(params: &[S], x: S) -> S {
+        let &[centre, sigma] = params else { return S::zero() };
+        let z = (x - centre) / sigma;
+        (-S::half() * (z * z)).exp()
     }
 }

@@ -1,6 +1,6 @@
 //! The fuzzy supervisor as figures and tables.
 
-use fspid_fuzzy::membership::{Shape as _, Triangle};
+use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::{
     Defuzzifier, Grid, Increments, Label, OutOfRange, Output, RuleTable, Supervisor,
 };
@@ -42,12 +42,12 @@ pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
     };
     let inputs = SEVEN.iter().enumerate().map(|(n, label)| ((*label).to_owned(), curve(n)));
     let spacing = range / 3.0;
-    let outputs = SEVEN.iter().zip(-3_i8..).filter_map(|(label, steps)| {
+    let outputs = SEVEN.iter().zip(-3_i8..).map(|(label, steps)| {
         let centre = f64::from(steps) * spacing;
-        let triangle = Triangle::<f64>::new(&[centre, spacing]).ok()?;
         let corners = [centre - spacing, centre, centre + spacing];
         let points = corners.into_iter().filter(|x| x.abs() <= range * (1.0 + 1e-9));
-        Some(((*label).to_owned(), points.map(|x| (x, triangle.grade(x))).collect()))
+        let grade = |x: f64| (x, ShapeKind::Triangle.grade(&corners, x));
+        ((*label).to_owned(), points.map(grade).collect())
     });
     let input_label = "error e, change of error ec (supervisor units)";
     let output_label = "increments \u{394}k_{p}, \u{394}k_{i}, \u{394}k_{d} (supervisor units)";

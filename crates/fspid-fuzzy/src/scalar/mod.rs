@@ -1,0 +1,228 @@
+//! Numbers that an equation can be asked with: plain floats, derivatives, intervals.
+//!
+//! Each equation of a fuzzy system (a membership function, a norm, a formula) is written once,
+//! generic over [`Scalar`]. Asked with `f64` it answers the value; with a dual number the value and
+//! its exact derivatives; with an interval everything that the value can be over a range of inputs.
+//!
+//! To make that possible an equation chooses between cases only by [`smaller`](Scalar::smaller),
+//! [`larger`](Scalar::larger), [`abs`](Scalar::abs) and [`if_less`](Scalar::if_less), never by `if`.
+
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number with the operations that equations may use.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The nearest number of this type, without derivatives and without width.
+    fn constant(value: f64) -> Self;
+
+    /// Zero.
+    #[must_use]
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+
+    /// One.
+    #[must_use]
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
+
+    /// One half.
+    #[must_use]
+    fn half() -> Self {
+        Self::constant(0.5)
+    }
+
+    /// The smaller of two numbers; the second if either is NaN.
+    #[must_use]
+    fn smaller(self, other: Self) -> Self;
+    /// The larger of two numbers; the second if either is NaN.
+    #[must_use]
+    fn larger(self, other: Self) -> Self;
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// `then` where `self < bound`, else `otherwise`; of an interval that holds both cases, the
+    /// hull of the two.
+    #[must_use]
+    fn if_less(self, bound: Self, then: Self, otherwise: Self) -> Self;
+
+    /// The number moved into `[0, 1]`.
+    #[must_use]
+    fn unit(self) -> Self {
+        self.larger(Self::zero()).smaller(Self::one())
+    }
+
+    /// The square.
+    #[must_use]
+    fn square(self) -> Self {
+        self * self
+    }
+
+    /// $e^x$.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// $\ln x$.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// $\sqrt x$.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// $x^p$.
+    #[must_use]
+    fn pow(self, power: Self) -> Self;
+    /// $\sin x$.
+    #[must_use]
+    fn sin(self) -> Self;
+    /// $\cos x$.
+    #[must_use]
+    fn cos(self) -> Self;
+    /// $\tan x$.
+    #[must_use]
+    fn tan(self) -> Self;
+    /// $\arcsin x$.
+    #[must_use]
+    fn asin(self) -> Self;
+    /// $\arccos x$.
+    #[must_use]
+    fn acos(self) -> Self;
+    /// $\arctan x$.
+    #[must_use]
+    fn atan(self) -> Self;
+    /// $\sinh x$.
+    #[must_use]
+    fn sinh(self) -> Self;
+    /// $\cosh x$.
+    #[must_use]
+    fn cosh(self) -> Self;
+    /// $\tanh x$.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// The largest whole number not above.
+    #[must_use]
+    fn floor(self) -> Self;
+
+    /// The smallest whole number not below.
+    #[must_use]
+    fn ceil(self) -> Self {
+        -(-self).floor()
+    }
+}
+
+macro_rules! float {
+    ($float:ident, $exp:path, $ln:path, $sqrt:path, $pow:path, $sin:path, $cos:path, $tan:path,
+     $asin:path, $acos:path, $atan:path, $sinh:path, $cosh:path, $tanh:path, $floor:path) => {
+        impl Scalar for $float {
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "rounding to the nearest f32 is what is meant"
+            )]
+            #[inline]
+            fn constant(value: f64) -> Self {
+                value as $float
+            }
+            #[inline]
+            fn smaller(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+            #[inline]
+            fn larger(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            #[inline]
+            fn if_less(self, bound: Self, then: Self, otherwise: Self) -> Self {
+                if self < bound { then } else { otherwise }
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            fn pow(self, power: Self) -> Self {
+                $pow(self, power)
+            }
+            fn sin(self) -> Self {
+                $sin(self)
+            }
+            fn cos(self) -> Self {
+                $cos(self)
+            }
+            fn tan(self) -> Self {
+                $tan(self)
+            }
+            fn asin(self) -> Self {
+                $asin(self)
+            }
+            fn acos(self) -> Self {
+                $acos(self)
+            }
+            fn atan(self) -> Self {
+                $atan(self)
+            }
+            fn sinh(self) -> Self {
+                $sinh(self)
+            }
+            fn cosh(self) -> Self {
+                $cosh(self)
+            }
+            fn tanh(self) -> Self {
+                $tanh(self)
+            }
+            fn floor(self) -> Self {
+                $floor(self)
+            }
+        }
+    };
+}
+
+float!(
+    f64,
+    crate::exp::exp_f64,
+    libm::log,
+    libm::sqrt,
+    libm::pow,
+    libm::sin,
+    libm::cos,
+    libm::tan,
+    libm::asin,
+    libm::acos,
+    libm::atan,
+    libm::sinh,
+    libm::cosh,
+    libm::tanh,
+    libm::floor
+);
+float!(
+    f32,
+    crate::exp::exp_f32,
+    libm::logf,
+    libm::sqrtf,
+    libm::powf,
+    libm::sinf,
+    libm::cosf,
+    libm::tanf,
+    libm::asinf,
+    libm::acosf,
+    libm::atanf,
+    libm::sinhf,
+    libm::coshf,
+    libm::tanhf,
+    libm::floorf
+);
