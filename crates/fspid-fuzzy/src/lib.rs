@@ -34,16 +34,25 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
 mod centroid;
 mod defuzzifier;
 mod error;
 mod exp;
+#[cfg(feature = "alloc")]
+pub mod formula;
+pub mod hedge;
 mod label;
 pub mod membership;
+pub mod norm;
 mod real;
 mod rule_table;
 pub mod scalar;
 mod supervisor;
+#[cfg(feature = "alloc")]
+pub mod system;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;

@@ -23,6 +23,16 @@ pub trait Scalar:
     /// The nearest number of this type, without derivatives and without width.
     fn constant(value: f64) -> Self;
 
+    /// Plain numbers as numbers of this type, written into `room`, which must be long enough; plain
+    /// numbers themselves stay where they are.
+    #[must_use]
+    fn lift<'a>(values: &'a [f64], room: &'a mut [Self]) -> &'a [Self] {
+        for (place, &value) in room.iter_mut().zip(values) {
+            *place = Self::constant(value);
+        }
+        room.get(..values.len()).unwrap_or_default()
+    }
+
     /// Zero.
     #[must_use]
     fn zero() -> Self {
@@ -118,7 +128,7 @@ pub trait Scalar:
 }
 
 macro_rules! float {
-    ($float:ident, $exp:path, $ln:path, $sqrt:path, $pow:path, $sin:path, $cos:path, $tan:path,
+    ($float:ident, [$($lift:item)?], $exp:path, $ln:path, $sqrt:path, $pow:path, $sin:path, $cos:path, $tan:path,
      $asin:path, $acos:path, $atan:path, $sinh:path, $cosh:path, $tanh:path, $floor:path) => {
         impl Scalar for $float {
             #[allow(
@@ -129,6 +139,7 @@ macro_rules! float {
             fn constant(value: f64) -> Self {
                 value as $float
             }
+            $(#[inline] $lift)?
             #[inline]
             fn smaller(self, other: Self) -> Self {
                 if self < other { self } else { other }
@@ -194,6 +205,9 @@ macro_rules! float {
 
 float!(
     f64,
+    [fn lift<'a>(values: &'a [f64], _: &'a mut [Self]) -> &'a [Self] {
+        values
+    }],
     crate::exp::exp_f64,
     libm::log,
     libm::sqrt,
@@ -211,6 +225,7 @@ float!(
 );
 float!(
     f32,
+    [],
     crate::exp::exp_f32,
     libm::logf,
     libm::sqrtf,
