@@ -44,6 +44,8 @@ mod exp;
 #[cfg(feature = "alloc")]
 pub mod formula;
 pub mod hedge;
+#[cfg(feature = "alloc")]
+pub mod karnik_mendel;
 mod label;
 pub mod membership;
 pub mod norm;
