@@ -38,6 +38,7 @@ mod centroid;
 mod defuzzifier;
 mod error;
 mod exp;
+mod hedge;
 mod label;
 pub mod membership;
 mod real;
@@ -47,6 +48,7 @@ mod supervisor;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
