@@ -31,6 +31,8 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
@@ -38,6 +40,8 @@ mod centroid;
 mod defuzzifier;
 mod error;
 mod exp;
+#[cfg(feature = "alloc")]
+mod formula;
 mod hedge;
 mod label;
 pub mod membership;
@@ -49,6 +53,8 @@ mod supervisor;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+#[cfg(feature = "alloc")]
+pub use formula::{Formula, FormulaError, FormulaErrorKind};
 pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
 pub use norm::{SNormKind, TNormKind};
