@@ -69,7 +69,7 @@ pub enum VelocityForm {
 }
 
 impl<M: ForceModel> Aircraft<M> {
-    /// Linear model around a trim, by central differences of fourth order in their error.
+    /// Linear model around a trim, by central differences.
     ///
     /// $$ \frac{\partial f}{\partial x} \approx \frac{f(x + h) - f(x - h)}{2 h}, \quad h = 10^{-5} \max(|x|, 1) $$
     ///
