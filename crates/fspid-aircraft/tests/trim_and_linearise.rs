@@ -4,12 +4,13 @@ use fspid_aircraft::aerodynamics::derivatives::{DerivativeModel, DragLaw, Thrust
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::derivation::{DerivationCondition, DimensionalDerivatives};
 use fspid_aircraft::{
-    Aircraft, Linearisation, ModeName, Trim, TrimTarget, VelocityForm, longitudinal_modes,
+    AirMotion, Aircraft, Linearisation, ModeName, RigidState, Trim, TrimTarget, Vector3,
+    VelocityForm, longitudinal_modes,
 };
 
 mod support;
 
-use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, derivative_data};
+use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG, derivative_data};
 
 struct Row {
     aircraft: &'static str,
@@ -169,4 +170,48 @@ fn at_the_reference_the_linear_model_is_that_of_the_books_equations() {
             }
         }
     }
+}
+
+/// Rates of V and α beside a trim, as they come out of the equations of motion.
+fn speed_and_angle_rates(
+    aircraft: &Aircraft<DerivativeModel>,
+    trim: &Trim,
+    speed: f64,
+    angle: f64,
+) -> [f64; 2] {
+    let (airspeed_m_s, alpha_rad) =
+        (trim.target.airspeed_m_s + speed, trim.point.alpha_rad + angle);
+    let (sin, cos) = libm::sincos(alpha_rad);
+    let velocity_body_m_s = airspeed_m_s * Vector3::new(cos, 0.0, sin);
+    let state = RigidState { velocity_body_m_s, ..trim.state };
+    let instant = aircraft.instant(&state, &trim.controls, &AirMotion::STILL);
+    let rate = instant.accelerations.velocity_rate_body_m_s2;
+    [velocity_body_m_s.dot(rate) / airspeed_m_s, instant.alpha_rate_rad_s]
+}
+
+#[test]
+fn speed_and_angle_of_attack_are_states_like_forward_and_downward_velocity() {
+    let aircraft = aircraft(NAVION, Laws::default());
+    let trim = aircraft.trim(target(NAVION, 130.0)).expect("a flight that can be held");
+    let system =
+        aircraft.linearise(&trim).longitudinal(VelocityForm::SpeedAndAngle).expect("finite");
+    for (column, (speed, angle)) in [(1e-3, 0.0), (0.0, 1e-5)].into_iter().enumerate() {
+        let above = speed_and_angle_rates(&aircraft, &trim, speed, angle);
+        let below = speed_and_angle_rates(&aircraft, &trim, -speed, -angle);
+        for row in 0..2 {
+            let difference = (above[row] - below[row]) / (2.0 * (speed + angle));
+            let found = system.a().get(row, column).expect("four states");
+            assert!((found - difference).abs() < 1e-7, "{row} {column}: {found} {difference}");
+        }
+    }
+}
+
+/// Worked by hand: Ixz = ½ (13.7 − 43.1) sin 17° + 0.83 cos 17° = −3.504 in 10⁶ slug ft², and so on.
+#[test]
+fn inertias_of_the_fuselage_are_turned_into_the_axes_of_the_derivatives() {
+    let mass = derivative_data("b747-approach").mass_properties();
+    let unit = 1e6 * SLUG_KG * FOOT_M * FOOT_M;
+    assert_row("Ixz", &[mass.ixz_kg_m2 / unit], &[-3.504], 5e-4);
+    assert_row("Ix", &[mass.ix_kg_m2 / unit], &[14.0996], 5e-4);
+    assert_row("Iz", &[mass.iz_kg_m2 / unit], &[42.7004], 5e-4);
 }
