@@ -7,7 +7,43 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
+
+use crate::exit::{Failure, note};
+use fspid_study::fuzzy_system::{self, Options, System};
+
+/// Which fuzzy system, and how it answers.
+#[derive(Debug, Args)]
+pub(crate) struct Loading {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    pub(crate) system: Option<String>,
+    /// Half range of a rule table's inputs and outputs (the paper uses 5 and 40).
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) range: Option<f64>,
+    /// How integrals are computed: `exact`, `endpoints:N` (MATLAB: 101), `midpoint:N`,
+    /// `trapezoid:N`, `left-end:N` or `vertices:N`; by default as the file's own tool does.
+    #[arg(long, value_name = "RULE")]
+    pub(crate) defuzzifier: Option<String>,
+    /// What to do with inputs beyond their range: `clamp`, `evaluate` or `error`.
+    #[arg(long, value_name = "POLICY")]
+    pub(crate) out_of_range: Option<String>,
+}
+
+impl Loading {
+    /// The system of that name; what had to be assumed is told as warnings.
+    pub(crate) fn load(&self, name: &str) -> Result<System, Failure> {
+        let options = Options {
+            range: self.range,
+            sampling: self.defuzzifier.as_deref(),
+            out_of_range: self.out_of_range.as_deref(),
+        };
+        let loaded = fuzzy_system::load(name, options).map_err(Failure::input)?;
+        for found in &loaded.notes {
+            note(format_args!("warning: {found}"));
+        }
+        Ok(loaded.system)
+    }
+}
 
 /// How an answer is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -34,3 +34,34 @@ impl SNormKind {
         }
     }
 }
+
+impl TNormKind {
+    /// all
+    pub const ALL: &[Self] = &[Self::Minimum, Self::AlgebraicProduct];
+    /// n
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Minimum => "minimum",
+            Self::AlgebraicProduct => "algebraic-product",
+        }
+    }
+    /// f
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|k| k.name() == name)
+    }
+}
+impl SNormKind {
+    /// all
+    pub const ALL: &[Self] = &[Self::Maximum, Self::AlgebraicSum];
+    /// n
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Maximum => "maximum",
+            Self::AlgebraicSum => "algebraic-sum",
+        }
+    }
+    /// f
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|k| k.name() == name)
+    }
+}

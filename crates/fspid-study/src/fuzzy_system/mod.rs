@@ -1,0 +1,17 @@
+//! General fuzzy systems for people: loading, asking, drawing, converting, explaining.
+//!
+//! One function per verb. A system comes from a file of any known format or is one of the shipped
+//! rule tables; how it computes is `fspid-fuzzy`'s business, how other tools write it down
+//! `fspid-formats`'.
+
+mod answer;
+mod load;
+mod table;
+mod toml_file;
+
+pub use fspid_fuzzy::system::System;
+
+pub use answer::{Asked, ask};
+pub use load::{Format, LoadError, Loaded, Options, load};
+pub use table::SystemTable;
+pub use toml_file::{parse, schema};
