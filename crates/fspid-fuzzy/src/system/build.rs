@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::Plan;
+use super::output::{Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
@@ -65,6 +65,8 @@ pub(crate) struct ResolvedOutput {
     /// Positions of its conclusions, in the order of the rules.
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
+    /// Its sets, if they make a polygon.
+    pub(crate) outline: Option<Outline>,
 }
 
 impl System {
@@ -102,8 +104,11 @@ impl System {
         }
         let outputs = parts.outputs.iter().zip(by_output).map(|(output, own)| {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
-            let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block)).collect();
-            ResolvedOutput { plan: Plan::new(output, &resolved, blocks), conclusions: own }
+            let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
+            let blocks: Vec<_> = blocks.collect();
+            let outline = Outline::of(output, &resolved, &blocks);
+            let plan = Plan::new(output, &resolved, &blocks, outline.as_ref());
+            ResolvedOutput { plan, outline, conclusions: own }
         });
         let outputs = outputs.collect();
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));

@@ -2,6 +2,8 @@
 //!
 //! How that is done best is decided once, when the system is built: a [`Plan`].
 
+mod joined;
+mod outline;
 mod partition;
 mod sampled;
 mod weighted;
@@ -14,6 +16,8 @@ use super::defuzzifier::{Defuzzifier, Sampling};
 use super::parts::{Conclusion, Membership, Output, RuleBlock};
 use super::workspace::Workspace;
 
+pub use joined::{Joined, Piece};
+pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 
 /// How the number of one output is found.
@@ -21,6 +25,8 @@ pub(crate) use partition::Partition;
 pub(crate) enum Plan {
     /// Centroid of evenly spaced triangles: the closed form of the fixed-size supervisor.
     Partition(Partition),
+    /// The outline of piecewise-linear sets, in closed form.
+    Outline,
     /// Anything that is integrated or searched over the universe.
     Integral,
     /// Weighted average or sum of the conclusions.
@@ -32,12 +38,15 @@ impl Plan {
     pub(crate) fn new(
         output: &Output,
         conclusions: &[&ResolvedConclusion],
-        blocks: Vec<&RuleBlock>,
+        blocks: &[&RuleBlock],
+        outline: Option<&Outline>,
     ) -> Self {
-        if output.defuzzifier.sampling().is_none() {
-            return Self::Weighted;
+        let Some(sampling) = output.defuzzifier.sampling() else { return Self::Weighted };
+        match (Partition::of(output, conclusions, blocks), outline) {
+            (Some(partition), _) => Self::Partition(partition),
+            (None, Some(_)) if sampling == Sampling::Exact => Self::Outline,
+            (None, _) => Self::Integral,
         }
-        Partition::of(output, conclusions, &blocks).map_or(Self::Integral, Self::Partition)
     }
 }
 
@@ -48,6 +57,8 @@ pub(crate) struct Scratch {
     pub(crate) room: Vec<f64>,
     /// Strength of each term of the output at hand.
     pub(crate) levels: Vec<f64>,
+    /// Of each output with an outline.
+    pub(crate) outlines: Vec<Option<Room>>,
 }
 
 impl Scratch {
@@ -64,6 +75,7 @@ impl Scratch {
         Self {
             room: vec![0.0; room.unwrap_or(0).max(inputs + 1)],
             levels: vec![0.0; terms.unwrap_or(0)],
+            outlines: system.outputs.iter().map(|o| Some(o.outline.as_ref()?.room())).collect(),
         }
     }
 }
@@ -82,6 +94,18 @@ impl System {
                 self.levels(index, workspace);
                 Some((partition.centroid(&workspace.scratch.levels)?, 0.0))
             }
+            (Plan::Outline, method) => {
+                let joined = self.outline(index, workspace)?;
+                let value = match method {
+                    Defuzzifier::Centroid(_) => joined.centroid()?,
+                    Defuzzifier::Bisector(_) => joined.bisector()?,
+                    Defuzzifier::SmallestOfMaximum(_) => joined.maximum()?[0],
+                    Defuzzifier::MeanOfMaximum(_) => joined.maximum()?[1],
+                    Defuzzifier::LargestOfMaximum(_) => joined.maximum()?[2],
+                    Defuzzifier::WeightedAverage(_) | Defuzzifier::WeightedSum(_) => return None,
+                };
+                Some((value, 0.0))
+            }
             (Plan::Weighted, method) => {
                 Some((self.weighted(index, output, method, workspace)?, 0.0))
             }
@@ -90,6 +114,16 @@ impl System {
                 Some((self.sampled(index, output, method, workspace)?, 0.0))
             }
         }
+    }
+
+    /// The outline of what the last evaluation in `workspace` concluded about an output: whatever
+    /// the output's defuzzifier, as long as its sets are piecewise linear and minimum or product,
+    /// maximum, bounded or unbounded sum keep them so; nothing otherwise.
+    pub fn outline<'w>(&self, output: usize, workspace: &'w mut Workspace) -> Option<&'w Joined> {
+        let resolved = self.outputs.get(output)?;
+        let room = workspace.scratch.outlines.get_mut(output)?.as_mut()?;
+        resolved.outline.as_ref()?.join(&resolved.conclusions, &workspace.degrees, room);
+        Some(&room.joined)
     }
 
     /// Strength of each term: the strongest of its conclusions.

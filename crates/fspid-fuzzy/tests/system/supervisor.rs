@@ -1,12 +1,9 @@
-//! General systems.
-
-#![cfg(feature = "alloc")]
-#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+//! The paper's supervisor as a general system.
 
 use fspid_fuzzy::system::{Parts, System};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 
-const PRINTED: &str = include_str!("../../../data/rule-tables/printed.toml");
+const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
 
 fn supervisor(range: f64, defuzzifier: Defuzzifier) -> Supervisor<f64> {
     let parts: Vec<&str> = PRINTED.split("\"\"\"").collect();
