@@ -14,4 +14,4 @@ pub use fspid_fuzzy::system::System;
 pub use answer::{Asked, ask};
 pub use load::{Format, LoadError, Loaded, Options, load};
 pub use table::SystemTable;
-pub use toml_file::{parse, schema};
+pub use toml_file::{parse, schema, write};

@@ -3,13 +3,40 @@
 use fspid_fuzzy::formula::Formula;
 use serde_json::{Value, json};
 
-use super::fields::Fields;
+use super::fields::{Fields, below};
+use crate::file::report::Place;
 
 /// The formula at a key that must be there, in these variables.
 pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -> Option<Formula> {
     let text = fields.text(name, "a formula in quotes")?;
-    let _ = (text, variables);
-    None
+    let place = fields.get(name)?.item.place;
+    match Formula::parse(text, variables) {
+        Ok(formula) => Some(formula),
+        Err(error) => {
+            let place = within(fields.report.text(place), text, place, error.position);
+            let message = format!("in the formula: {}", error.kind);
+            let path = below(fields.path, name);
+            fields.report.value(
+                place,
+                &path,
+                message,
+                format!("a formula in {}", variables.join(", ")),
+            );
+            None
+        }
+    }
+}
+
+/// Where the byte at `position` of a text stands in the file; all of it if it is written with escapes.
+pub(super) fn within(written: &str, text: &str, whole: Place, position: usize) -> Place {
+    let end = text.get(position..).and_then(|rest| rest.chars().next()).map_or(0, char::len_utf8);
+    match written.find(text) {
+        Some(begin) if !text.is_empty() => {
+            let start = whole.start + begin + position;
+            Place { start, end: start + end, ..whole }
+        }
+        _ => whole,
+    }
 }
 
 /// A table with a formula in it.

@@ -19,6 +19,7 @@ use serde_json::Value;
 use crate::file::schema::schema_of;
 
 pub use read::parse;
+pub use write::write;
 
 /// The JSON Schema (draft 2020-12) of a fuzzy system's file.
 #[must_use]

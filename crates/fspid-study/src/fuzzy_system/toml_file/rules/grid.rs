@@ -1,35 +1,18 @@
-//! Rules: in words, one a line, or as a grid for every pair of terms of two inputs.
+//! Rules as grids: for every pair of terms of two inputs the term of each output.
 
-use fspid_fuzzy::system::{Antecedent, Consequent, Input, Output, Rule, Statement, Variable};
-use serde_json::{Value, json};
+use fspid_fuzzy::system::{
+    Antecedent, Consequent, Input, Parts, Rule, RuleBlock, Statement, Variable,
+};
 
-use super::fields::{Fields, below, in_order, word};
+use super::super::fields::{Fields, below, in_order, word};
+use super::super::write::{key, quoted};
+use super::Vocabulary;
 use crate::file::document::{Item, Value as Written};
 use crate::file::report::{Place, Report};
 use crate::file::section::Section;
 
 /// The cell that stands for no rule.
-pub(super) const NO_RULE: &str = "-";
-
-/// The variables that rules may name.
-#[derive(Clone, Copy)]
-pub(super) struct Vocabulary<'a> {
-    pub(super) inputs: &'a [Input],
-    pub(super) outputs: &'a [Output],
-}
-
-/// The rules of a block with their places.
-pub(super) fn read(
-    report: &mut Report,
-    block: &Section,
-    vocabulary: Vocabulary<'_>,
-) -> Option<Vec<(Rule, Place)>> {
-    match (block.section("table"), block.item("lines")) {
-        (Some(table), _) => grids(report, table, vocabulary),
-        (None, Some(_)) => Some(Vec::new()),
-        (None, None) => None,
-    }
-}
+const NO_RULE: &str = "-";
 
 /// The position of a rule table's input.
 fn axis(report: &mut Report, table: &Section, key: &str, inputs: &[Input]) -> Option<usize> {
@@ -40,7 +23,7 @@ fn axis(report: &mut Report, table: &Section, key: &str, inputs: &[Input]) -> Op
     known.iter().position(|known| *known == name)
 }
 
-fn grids(
+pub(super) fn read(
     report: &mut Report,
     table: &Section,
     vocabulary: Vocabulary<'_>,
@@ -56,7 +39,7 @@ fn grids(
     let before = report.count();
     let size = [rows, columns].map(|n| vocabulary.inputs.get(n).map_or(0, |i| i.terms.len()));
     let path = table.path("cells");
-    let fields = Fields::of(report, table.item("cells")?, &path, &cells_in_words())?;
+    let fields = Fields::of(report, table.item("cells")?, &path, &in_words())?;
     let (members, report) = (fields.members, fields.report);
     let mut grids = Vec::new();
     for member in in_order(members) {
@@ -102,7 +85,7 @@ fn consequent(output: usize, term: usize) -> Consequent {
 }
 
 /// The rule of a cell of a rule table.
-pub(super) fn pair_rule(axes: [usize; 2], terms: [usize; 2], consequents: Vec<Consequent>) -> Rule {
+fn pair_rule(axes: [usize; 2], terms: [usize; 2], consequents: Vec<Consequent>) -> Rule {
     let [row, column] = [0, 1].map(|n: usize| {
         let (input, term) = (axes.get(n).copied(), terms.get(n).copied());
         let variable = Variable::Input(input.unwrap_or_default());
@@ -126,7 +109,7 @@ fn cells(
 ) -> Option<Vec<Cell>> {
     let Written::Text(_) = &item.value else {
         let message = format!("expected a text, not {}", item.value.type_name());
-        report.value(item.place, path, message, cells_in_words());
+        report.value(item.place, path, message, in_words());
         return None;
     };
     let before = report.count();
@@ -190,24 +173,82 @@ fn words_of(line: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-pub(super) fn in_words() -> String {
-    "rules such as \"if service is poor then tip is cheap\": a list of texts, or a text with one rule a line"
-        .to_owned()
-}
-
-pub(super) fn cells_in_words() -> String {
-    "for each output a text with a line for each row and a term (or `-`) for each column".to_owned()
-}
-
-pub(super) fn schema() -> Value {
-    let text = json!({ "type": "string" });
-    let table = json!({
-        "type": "object", "required": ["rule"], "additionalProperties": false,
-        "properties": { "rule": text, "name": text, "enabled": { "type": "boolean" } },
+/// The rules of a block as grids, if that is all they are: a rule without name for every pair of
+/// terms of two inputs, row by row, with the same outputs in each.
+pub(super) fn write(block: &RuleBlock, parts: &Parts) -> Option<String> {
+    let axes = axes(block)?;
+    let [rows, columns] = axes.map(|axis| parts.inputs.get(axis));
+    let (rows, columns) = (rows?, columns?);
+    let size = [rows.terms.len(), columns.terms.len()];
+    let pairs = (0..size[0]).flat_map(|row| (0..size[1]).map(move |column| [row, column]));
+    let concluded: Vec<usize> = block.rules.first()?.consequents.iter().map(|c| c.output).collect();
+    let as_pairs = pairs.zip(&block.rules).all(|(pair, rule)| {
+        let outputs = rule.consequents.iter().map(|consequent| consequent.output);
+        outputs.eq(concluded.iter().copied())
+            && *rule == pair_rule(axes, pair, rule.consequents.clone())
+            && rule.consequents.iter().all(|consequent| consequent.hedges.is_empty())
     });
-    json!({ "oneOf": [text, { "type": "array", "items": { "oneOf": [text, table] } }] })
+    if !as_pairs || size[0] * size[1] != block.rules.len() || size.contains(&1) {
+        return None;
+    }
+    let mut out = format!(
+        "\n[rules.table]\nrows = {}\ncolumns = {}\n\n[rules.table.cells]\n",
+        quoted(&rows.name),
+        quoted(&columns.name)
+    );
+    for (position, output) in concluded.iter().enumerate() {
+        let output = parts.outputs.get(*output)?;
+        let words = block.rules.iter().map(|rule| {
+            let consequent = rule.consequents.get(position)?;
+            Some(output.terms.get(consequent.term)?.name.as_str())
+        });
+        let words: Vec<&str> = words.collect::<Option<_>>()?;
+        out.push_str(&format!(
+            "{} = \"\"\"\n{}\"\"\"\n",
+            key(&output.name),
+            lines(&words, size[1])?
+        ));
+    }
+    Some(out)
 }
 
-pub(super) fn cells_schema() -> Value {
-    json!({ "type": "object", "additionalProperties": { "type": "string" } })
+/// The inputs of the rows and columns, by the first rule; each output may be concluded only once.
+fn axes(block: &RuleBlock) -> Option<[usize; 2]> {
+    let first = block.rules.first()?;
+    let Antecedent::All(pair) = &first.antecedent else { return None };
+    let input = |antecedent: &Antecedent| match antecedent {
+        Antecedent::Is(Statement { variable: Variable::Input(input), .. }) => Some(*input),
+        _ => None,
+    };
+    let mut outputs: Vec<usize> = first.consequents.iter().map(|c| c.output).collect();
+    outputs.sort_unstable();
+    let repeats = outputs.windows(2).any(|pair| pair.first() == pair.last());
+    match pair.as_slice() {
+        [row, column] if !repeats && input(row)? != input(column)? => {
+            Some([input(row)?, input(column)?])
+        }
+        _ => None,
+    }
+}
+
+/// Words in rows and aligned columns; nothing if one of them cannot stand in a grid.
+fn lines(words: &[&str], columns: usize) -> Option<String> {
+    let fits = |word: &&str| {
+        *word != NO_RULE
+            && !word.is_empty()
+            && !word.contains(|c: char| c.is_whitespace() || c.is_control() || "\"\\'".contains(c))
+    };
+    if !words.iter().all(fits) {
+        return None;
+    }
+    let width = words.iter().map(|word| word.chars().count()).max().unwrap_or(0);
+    let line = |row: &[&str]| {
+        let cells: Vec<String> = row.iter().map(|word| format!("{word:width$}")).collect();
+        format!("{}\n", cells.join(" ").trim_end())
+    };
+    Some(words.chunks(columns.max(1)).map(line).collect())
+}
+
+pub(in super::super) fn in_words() -> String {
+    "for each output a text with a line for each row and a term (or `-`) for each column".to_owned()
 }
