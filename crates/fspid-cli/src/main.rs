@@ -32,6 +32,7 @@ enum Command {
     Check(commands::check::Arguments),
     Simulate(commands::simulate::Arguments),
     Infer(commands::infer::Arguments),
+    Convert(commands::convert::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => commands::check::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Infer(arguments) => commands::infer::run(&arguments),
+        Command::Convert(arguments) => commands::convert::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

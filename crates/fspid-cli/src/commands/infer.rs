@@ -17,6 +17,8 @@ use fspid_study::rows::{self, RowsError, Table};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("inputs").required(true).args(["error", "points", "input"]))]
 pub(crate) struct Arguments {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: Option<String>,
     #[command(flatten)]
     loading: Loading,
     /// The value of an input; once for each input.
@@ -44,7 +46,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.loading.system {
+    match &arguments.system {
         Some(name) => general(arguments, name),
         None => supervisor(arguments),
     }

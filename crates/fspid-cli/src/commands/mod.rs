@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub(crate) mod check;
+pub(crate) mod convert;
 pub(crate) mod infer;
 pub(crate) mod init;
 pub(crate) mod reproduce;
@@ -12,11 +13,9 @@ use clap::{Args, ValueEnum};
 use crate::exit::{Failure, note};
 use fspid_study::fuzzy_system::{self, Options, System};
 
-/// Which fuzzy system, and how it answers.
+/// How a fuzzy system answers, where its file shall not decide.
 #[derive(Debug, Args)]
 pub(crate) struct Loading {
-    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
-    pub(crate) system: Option<String>,
     /// Half range of a rule table's inputs and outputs (the paper uses 5 and 40).
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) range: Option<f64>,
@@ -30,14 +29,18 @@ pub(crate) struct Loading {
 }
 
 impl Loading {
-    /// The system of that name; what had to be assumed is told as warnings.
-    pub(crate) fn load(&self, name: &str) -> Result<System, Failure> {
-        let options = Options {
+    /// The options as the study takes them.
+    pub(crate) fn options(&self) -> Options<'_> {
+        Options {
             range: self.range,
             sampling: self.defuzzifier.as_deref(),
             out_of_range: self.out_of_range.as_deref(),
-        };
-        let loaded = fuzzy_system::load(name, options).map_err(Failure::input)?;
+        }
+    }
+
+    /// The system of that name; what had to be assumed is told as warnings.
+    pub(crate) fn load(&self, name: &str) -> Result<System, Failure> {
+        let loaded = fuzzy_system::load(name, self.options()).map_err(Failure::input)?;
         for found in &loaded.notes {
             note(format_args!("warning: {found}"));
         }

@@ -5,6 +5,7 @@
 //! `fspid-formats`'.
 
 mod answer;
+mod convert;
 mod load;
 mod table;
 mod toml_file;
@@ -12,6 +13,7 @@ mod toml_file;
 pub use fspid_fuzzy::system::System;
 
 pub use answer::{Asked, ask};
-pub use load::{Format, LoadError, Loaded, Options, load};
+pub use convert::{ConvertError, Converted, Target, convert};
+pub use load::{Format, LoadError, Loaded, Options, load, read};
 pub use table::SystemTable;
 pub use toml_file::{parse, schema, write};

@@ -1,0 +1,79 @@
+//! From one format to another.
+
+use std::fmt;
+use std::path::Path;
+
+use super::load::{Format, LoadError, Options, load};
+use super::toml_file;
+
+/// Which tool a file is for, where a format has dialects, and what may be lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Target<'a> {
+    /// Name of the dialect.
+    pub dialect: Option<&'a str>,
+    /// Whether what the format cannot say may be approximated or left out.
+    pub lossy: bool,
+}
+
+/// A file as it is to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Converted {
+    /// The text.
+    pub text: String,
+    /// What was assumed while reading.
+    pub assumed: Vec<String>,
+    /// What was lost while writing, with the error that it makes.
+    pub lost: Vec<String>,
+}
+
+/// Why there is nothing to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ConvertError {
+    /// The system could not be read.
+    Load(LoadError),
+    /// The ending of the new file is that of no format.
+    UnknownEnding {
+        /// The new file.
+        path: String,
+    },
+    /// The format cannot say it.
+    Unwritable {
+        /// What, each with its place in the system.
+        problems: Vec<String>,
+    },
+}
+
+impl fmt::Display for ConvertError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Load(error) => error.fmt(f),
+            Self::UnknownEnding { path } => {
+                write!(f, "{path}: the ending says no format; known are .toml, .fis, .fcl and .fll")
+            }
+            Self::Unwritable { problems } => f.write_str(&problems.join("\n")),
+        }
+    }
+}
+
+impl std::error::Error for ConvertError {}
+
+/// The system `name` in the format that the ending of `path` tells.
+///
+/// # Errors
+/// [`ConvertError`]; nothing is written in any case.
+pub fn convert(
+    name: &str,
+    options: Options<'_>,
+    path: &Path,
+    target: Target<'_>,
+) -> Result<Converted, ConvertError> {
+    let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
+    let format = Format::of(path).ok_or_else(unknown)?;
+    let loaded = load(name, options).map_err(ConvertError::Load)?;
+    let _ = target;
+    let (text, lost) = match format {
+        Format::Toml => (toml_file::write(loaded.system.parts()), Vec::new()),
+        Format::Fis | Format::Fcl | Format::Fll => return Err(unknown()),
+    };
+    Ok(Converted { text, assumed: loaded.notes, lost })
+}
