@@ -33,6 +33,7 @@ enum Command {
     Simulate(commands::simulate::Arguments),
     Infer(commands::infer::Arguments),
     Convert(commands::convert::Arguments),
+    Surface(commands::surface::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Infer(arguments) => commands::infer::run(&arguments),
         Command::Convert(arguments) => commands::convert::run(&arguments),
+        Command::Surface(arguments) => commands::surface::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

@@ -183,7 +183,7 @@ fn heading(table: &impl Table) -> String {
 }
 
 /// A name as a cell of CSV.
-fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", name.replace('"', "\"\""))
     } else {

@@ -7,6 +7,7 @@ pub(crate) mod init;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
+pub(crate) mod surface;
 
 use clap::{Args, ValueEnum};
 

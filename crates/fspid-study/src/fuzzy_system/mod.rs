@@ -7,6 +7,7 @@
 mod answer;
 mod convert;
 mod load;
+mod slice;
 mod table;
 mod toml_file;
 
@@ -15,5 +16,6 @@ pub use fspid_fuzzy::system::System;
 pub use answer::{Asked, ask};
 pub use convert::{ConvertError, Converted, Target, convert};
 pub use load::{Format, LoadError, Loaded, Options, load, read};
+pub use slice::{Question as SliceQuestion, Slice, slice};
 pub use table::SystemTable;
 pub use toml_file::{parse, schema, write};

@@ -1,0 +1,106 @@
+//! `fspid surface`: a fuzzy system, drawn.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::Loading;
+use crate::exit::{Failure, note, print};
+use fspid_study::fuzzy_system::{SliceQuestion, slice};
+use fspid_study::output;
+
+/// Draw the outputs of a fuzzy system over two of its inputs, or over its only one.
+///
+/// Without --out the drawing of the one output goes to standard output.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: String,
+    #[command(flatten)]
+    loading: Loading,
+    /// The input to the right; the first one if left out.
+    #[arg(long, value_name = "NAME")]
+    x: Option<String>,
+    /// The input to the back; the next one if left out.
+    #[arg(long, value_name = "NAME")]
+    y: Option<String>,
+    /// Where another input stays; the middle of its range if left out.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    fix: Vec<String>,
+    /// The range over which an input is drawn; that of the file if left out.
+    #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
+    span: Vec<String>,
+    /// The output; all of them if left out.
+    #[arg(long, value_name = "NAME")]
+    output: Option<String>,
+    /// Nodes along each input.
+    #[arg(long, value_name = "N")]
+    nodes: Option<usize>,
+    /// The drawing, or the folder for one drawing an output.
+    #[arg(long, value_name = "FILE.svg or FOLDER")]
+    out: Option<PathBuf>,
+    /// Write the values at all nodes to this file; `-` is standard output.
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let system = arguments.loading.load(&arguments.system)?;
+    let question = SliceQuestion {
+        x: arguments.x.as_deref(),
+        y: arguments.y.as_deref(),
+        fixed: &arguments.fix,
+        spans: &arguments.span,
+        output: arguments.output.as_deref(),
+        nodes: arguments.nodes,
+    };
+    let slice = slice(&system, &question).map_err(Failure::input)?;
+    if let Some(path) = &arguments.csv {
+        match path == Path::new("-") {
+            true => print(&slice.csv())?,
+            false => output::write(path, slice.csv())?,
+        }
+    }
+    let figures = slice.figures();
+    let named = figures.iter().map(|(name, svg)| (*name, svg.as_str()));
+    match (&arguments.out, figures.as_slice()) {
+        (Some(path), _) => write(path, named.collect()),
+        (None, _) if arguments.csv.is_some() => Ok(()),
+        (None, [(_, svg)]) => print(svg.as_str()),
+        (None, _) => {
+            let names: Vec<&str> = named.map(|(name, _)| name).collect();
+            let names = names.join(", ");
+            Err(Failure::input(format_args!(
+                "there are several outputs ({names}); add --out FOLDER, or --output NAME"
+            )))
+        }
+    }
+}
+
+/// One drawing into its file; several into a folder, or beside each other if `path` is a file's.
+fn write(path: &Path, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
+    let is_drawing = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if !is_drawing {
+        output::make_folder(path)?;
+    }
+    let several = figures.len() > 1;
+    for (name, svg) in figures {
+        let file = match (is_drawing, several) {
+            (true, false) => path.to_owned(),
+            (true, true) => {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                path.with_file_name(format!("{stem}-{}.svg", file_name(name)))
+            }
+            (false, _) => path.join(format!("{}.svg", file_name(name))),
+        };
+        output::write(&file, svg)?;
+        note(format_args!("wrote {}", file.display()));
+    }
+    Ok(())
+}
+
+/// A name that every file system takes.
+fn file_name(name: &str) -> String {
+    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
+}
