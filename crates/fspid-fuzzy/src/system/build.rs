@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::{Outline, Plan};
+use super::output::{Actors, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
@@ -65,6 +65,8 @@ pub(crate) struct ResolvedOutput {
     /// Positions of its conclusions, in the order of the rules.
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
+    /// Who concludes what about it.
+    pub(crate) actors: Actors,
     /// Its sets, if they make a polygon.
     pub(crate) outline: Option<Outline>,
 }
@@ -106,9 +108,10 @@ impl System {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
             let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
             let blocks: Vec<_> = blocks.collect();
-            let outline = Outline::of(output, &resolved, &blocks);
-            let plan = Plan::new(output, &resolved, &blocks, outline.as_ref());
-            ResolvedOutput { plan, outline, conclusions: own }
+            let actors = Actors::of(output, &resolved, &blocks);
+            let outline = Outline::of(output, &actors);
+            let plan = Plan::new(output, &actors, outline.as_ref());
+            ResolvedOutput { plan, actors, outline, conclusions: own }
         });
         let outputs = outputs.collect();
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));

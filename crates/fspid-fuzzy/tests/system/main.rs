@@ -5,4 +5,6 @@
 
 mod build;
 mod outline;
+mod sampled;
 mod supervisor;
+mod tipper;
