@@ -25,8 +25,12 @@ impl Report {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) {
-        let (place, word) = (Some(place), clipped(word));
-        self.push(Problem { place, word, message: message.into(), expected: expected.into() });
+        self.push(wrong(place, word, message, expected));
+    }
+
+    /// The value, or nothing after noting down why there is none.
+    pub(crate) fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.push(problem)).ok()
     }
 
     /// The text as a whole is wrong.
@@ -84,6 +88,17 @@ impl Report {
         }
         Ok(self.notes)
     }
+}
+
+/// A problem with a word at a place.
+pub(crate) fn wrong(
+    place: Place,
+    word: &str,
+    message: impl Into<String>,
+    expected: impl Into<String>,
+) -> Problem {
+    let (place, word) = (Some(place), clipped(word));
+    Problem { place, word, message: message.into(), expected: expected.into() }
 }
 
 /// The beginning of a word, with control characters shown as escapes.
