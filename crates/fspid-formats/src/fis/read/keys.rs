@@ -33,8 +33,7 @@ const HARMLESS: &[&str] =
 const TYPE_2: &[&str] = &["TypeReductionMethod", "LowerScale", "LowerLag", "UpperMF", "LowerMF"];
 
 /// What is said about files of MATLAB's own type-2 systems.
-pub(super) const NO_TYPE_2: &str =
-    "interval type-2 systems of MATLAB R2019b and later are not read: their files are not described";
+pub(super) const NO_TYPE_2: &str = "interval type-2 systems of MATLAB R2019b and later are not read: their files are not described";
 
 /// Which of a pair of membership functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -60,7 +60,11 @@ pub(super) fn set(
         }
         _ => (&written.numbers[..], 1.0),
     };
-    let wanted = if row.kind.repeats() { !numbers.is_empty() && numbers.len() % count == 0 } else { numbers.len() == count };
+    let wanted = if row.kind.repeats() {
+        !numbers.is_empty() && numbers.len() % count == 0
+    } else {
+        numbers.len() == count
+    };
     if !wanted {
         let message = format!("has {} parameters", numbers.len());
         return Err(wrong(written.place, &written.name, message, row.usage));
@@ -124,7 +128,9 @@ fn degenerate(kind: ShapeKind, values: &[f64]) -> Option<(ShapeKind, Vec<f64>)> 
             Some((ShapeKind::Trapezoid, vec![a, b, b, c]))
         }
         (ShapeKind::Triangle | ShapeKind::Trapezoid, &[a, .., d])
-            if a.is_finite() && a.to_bits() == d.to_bits() && values.iter().all(|v| v.to_bits() == a.to_bits()) =>
+            if a.is_finite()
+                && a.to_bits() == d.to_bits()
+                && values.iter().all(|v| v.to_bits() == a.to_bits()) =>
         {
             Some((ShapeKind::Singleton, vec![a]))
         }
@@ -133,12 +139,7 @@ fn degenerate(kind: ShapeKind, values: &[f64]) -> Option<(ShapeKind, Vec<f64>)> 
 }
 
 /// Refuses parameters that no member has, at the one that is wrong.
-fn checked(
-    row: &Row,
-    kind: ShapeKind,
-    params: &[f64],
-    numbers: &[Number],
-) -> Result<(), Problem> {
+fn checked(row: &Row, kind: ShapeKind, params: &[f64], numbers: &[Number]) -> Result<(), Problem> {
     let Err(error) = kind.check(params) else { return Ok(()) };
     let at = match &error {
         FuzzyError::Parameter { name, found, .. } => culprit(row, kind, name, *found, numbers),

@@ -30,7 +30,9 @@ pub(super) fn settle(
 }
 
 /// `mf1`, `mf2`, … where a label is empty.
-fn numbered<'n>(names: impl Iterator<Item = &'n mut String>) -> impl Iterator<Item = &'n mut String> {
+fn numbered<'n>(
+    names: impl Iterator<Item = &'n mut String>,
+) -> impl Iterator<Item = &'n mut String> {
     names.enumerate().map(|(index, name)| {
         if name.trim().is_empty() {
             *name = format!("mf{}", index + 1);

@@ -1,9 +1,7 @@
 //! `[Output1]`: sets, numbers and linear functions.
 
 use fspid_fuzzy::SNormKind;
-use fspid_fuzzy::system::{
-    Conclusion, Defuzzifier, Fallback, FallbackValue, Output, OutputTerm,
-};
+use fspid_fuzzy::system::{Conclusion, Defuzzifier, Fallback, FallbackValue, Output, OutputTerm};
 
 use super::membership::Written;
 use super::value::Number;

@@ -1,9 +1,7 @@
 //! Rules: rows checked against the variables.
 
 use fspid_fuzzy::Hedge;
-use fspid_fuzzy::system::{
-    Antecedent, Consequent, Input, Output, Rule, Statement, Variable,
-};
+use fspid_fuzzy::system::{Antecedent, Consequent, Input, Output, Rule, Statement, Variable};
 
 use super::row::{Index, Row, row};
 use super::source::Source;
@@ -38,7 +36,9 @@ fn rule(
     counted(row.place, row.outputs.len(), outputs.len(), "outputs")?;
     let statements = row.inputs.iter().zip(inputs).enumerate();
     let statements: Vec<_> = statements
-        .filter_map(|(position, (index, input))| statement(index, position, input, report).transpose())
+        .filter_map(|(position, (index, input))| {
+            statement(index, position, input, report).transpose()
+        })
         .collect::<Result<_, _>>()?;
     let consequents = row.outputs.iter().zip(outputs).enumerate();
     let consequents: Vec<_> = consequents
@@ -49,7 +49,13 @@ fn rule(
         return Ok(None);
     }
     let antecedent = antecedent(row, statements, report);
-    Ok(Some(Rule { name: String::new(), enabled: true, antecedent, consequents, weight: row.weight }))
+    Ok(Some(Rule {
+        name: String::new(),
+        enabled: true,
+        antecedent,
+        consequents,
+        weight: row.weight,
+    }))
 }
 
 fn counted(place: Place, found: usize, wanted: usize, what: &str) -> Result<(), Problem> {

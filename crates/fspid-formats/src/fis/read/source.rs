@@ -140,8 +140,9 @@ fn header(line: Cursor) -> Result<Open, Problem> {
         let expected = one_of(SECTIONS.into_iter(), line.rest());
         wrong(line.place(), line.rest(), "unknown section", expected)
     };
-    let (name, _) =
-        inside.filter(|_| behind.is_empty() || behind.starts_with(['%', '#'])).ok_or_else(unknown)?;
+    let (name, _) = inside
+        .filter(|_| behind.is_empty() || behind.starts_with(['%', '#']))
+        .ok_or_else(unknown)?;
     let name = name.trim();
     let digits = name.trim_start_matches(|next: char| !next.is_ascii_digit());
     let word = name.strip_suffix(digits).unwrap_or(name).trim_end();

@@ -72,7 +72,8 @@ impl<'a> Header<'a> {
     /// MATLAB multiplies and adds in a Sugeno system, whatever is written.
     fn weigh(&mut self, report: &mut Report) {
         let ((_, product), (_, sum), _) = SUGENO;
-        let written = [("ImpMethod", self.implication != product), ("AggMethod", self.aggregation != sum)];
+        let written =
+            [("ImpMethod", self.implication != product), ("AggMethod", self.aggregation != sum)];
         for (key, _) in written.into_iter().filter(|(_, differs)| *differs) {
             if let Some(entry) = self.keys.get(key) {
                 report.note(entry.place, format!("`{key}` has no effect in a Sugeno system"));
@@ -101,13 +102,7 @@ impl<'a> Header<'a> {
     }
 
     /// Notes numbers in the file that are not what was found.
-    pub(super) fn counted(
-        &self,
-        inputs: usize,
-        outputs: usize,
-        rules: usize,
-        report: &mut Report,
-    ) {
+    pub(super) fn counted(&self, inputs: usize, outputs: usize, rules: usize, report: &mut Report) {
         told(&self.keys, "NumInputs", inputs, "inputs", report);
         told(&self.keys, "NumOutputs", outputs, "outputs", report);
         told(&self.keys, "NumRules", rules, "rules", report);

@@ -30,7 +30,12 @@ pub(super) fn over(mut cursor: Cursor) -> Result<(), Problem> {
     if is_over(cursor) {
         return Ok(());
     }
-    Err(wrong(cursor.place(), cursor.rest().trim_end(), "does not belong here", "the end of the line"))
+    Err(wrong(
+        cursor.place(),
+        cursor.rest().trim_end(),
+        "does not belong here",
+        "the end of the line",
+    ))
 }
 
 /// Passes `wanted`, blanks on both sides.

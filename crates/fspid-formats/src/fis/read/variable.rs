@@ -34,7 +34,12 @@ pub(super) struct Set<'a> {
 
 impl<'a> Variable<'a> {
     /// Reads a section; `word` is what an unnamed one is called.
-    pub(super) fn of(section: &Section<'a>, word: &str, number: usize, report: &mut Report) -> Self {
+    pub(super) fn of(
+        section: &Section<'a>,
+        word: &str,
+        number: usize,
+        report: &mut Report,
+    ) -> Self {
         let keys = Keys::of(section, VARIABLE, report);
         let name = keys.get("Name").and_then(|entry| report.keep(value::word(entry.value)));
         let name = name.filter(|name| !name.trim().is_empty()).unwrap_or_else(|| {
@@ -123,7 +128,12 @@ fn ends(entry: &Entry) -> Result<Universe, Problem> {
         [_, _] => "the lower end is not below the upper one",
         _ => "is no range",
     };
-    Err(wrong(entry.value.place(), entry.value.rest(), message, "`[lower upper]`, in ascending order"))
+    Err(wrong(
+        entry.value.place(),
+        entry.value.rest(),
+        message,
+        "`[lower upper]`, in ascending order",
+    ))
 }
 
 /// Notes a number in the file that is not what was found.
@@ -180,8 +190,12 @@ fn misfit(entries: [Option<Entry>; 3], number: usize, expected: usize) -> Option
         (Some(_), Some(entry), _) | (Some(_), None, Some(entry)) => {
             refused(entry, "stands beside one without a letter", format!("`MF{number}` alone"))
         }
-        (None, Some(entry), None) => refused(entry, "has no lower one", format!("`MF{number}L` too")),
-        (None, None, Some(entry)) => refused(entry, "has no upper one", format!("`MF{number}U` too")),
+        (None, Some(entry), None) => {
+            refused(entry, "has no lower one", format!("`MF{number}L` too"))
+        }
+        (None, None, Some(entry)) => {
+            refused(entry, "has no upper one", format!("`MF{number}U` too"))
+        }
         _ => None,
     }
 }
