@@ -1,0 +1,197 @@
+//! What a reader has to say, collected while it goes on reading.
+
+use crate::note::{Note, Place, Problem, Problems};
+
+/// Most problems, and most notes, that are told one by one.
+const MOST: usize = 50;
+/// Longest part of a word that is repeated, characters.
+const LONGEST_WORD: usize = 40;
+
+/// Problems and notes of a text.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    problems: Vec<Problem>,
+    notes: Vec<Note>,
+    more_problems: usize,
+    more_notes: usize,
+}
+
+impl Report {
+    /// A word at a place is wrong. `expected` may be empty.
+    pub(crate) fn problem(
+        &mut self,
+        place: Place,
+        word: &str,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) {
+        self.push(wrong(place, word, message, expected));
+    }
+
+    /// The value, or nothing after noting down why there is none.
+    pub(crate) fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.push(problem)).ok()
+    }
+
+    /// The text as a whole is wrong.
+    pub(crate) fn whole(&mut self, message: impl Into<String>) {
+        let (word, expected) = (String::new(), String::new());
+        self.push(Problem { place: None, word, message: message.into(), expected });
+    }
+
+    /// Adds a problem.
+    pub(crate) fn push(&mut self, problem: Problem) {
+        if self.problems.len() < MOST {
+            self.problems.push(problem);
+        } else {
+            self.more_problems += 1;
+        }
+    }
+
+    /// Something worth knowing about a place.
+    pub(crate) fn note(&mut self, place: Place, message: impl Into<String>) {
+        if self.notes.len() < MOST {
+            self.notes.push(Note { place: Some(place), message: message.into() });
+        } else {
+            self.more_notes += 1;
+        }
+    }
+
+    /// Something worth knowing about the whole; told before everything with a place.
+    pub(crate) fn note_whole(&mut self, message: impl Into<String>) {
+        self.notes.push(Note { place: None, message: message.into() });
+    }
+
+    /// True if nothing is wrong so far.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.problems.is_empty()
+    }
+
+    /// The notes in the order of their places.
+    ///
+    /// # Errors
+    /// The problems, if there are any, in the order of their places.
+    pub(crate) fn finish(mut self) -> Result<Vec<Note>, Problems> {
+        self.problems.sort_by_key(|problem| problem.place);
+        if self.more_problems > 0 {
+            let message = format!("and {} more problems", self.more_problems);
+            let (word, expected) = (String::new(), String::new());
+            self.problems.push(Problem { place: None, word, message, expected });
+        }
+        if !self.problems.is_empty() {
+            return Err(Problems(self.problems));
+        }
+        self.notes.sort_by_key(|note| note.place);
+        if self.more_notes > 0 {
+            let message = format!("and {} more notes", self.more_notes);
+            self.notes.push(Note { place: None, message });
+        }
+        Ok(self.notes)
+    }
+}
+
+/// A problem with a word at a place.
+pub(crate) fn wrong(
+    place: Place,
+    word: &str,
+    message: impl Into<String>,
+    expected: impl Into<String>,
+) -> Problem {
+    let (place, word) = (Some(place), clipped(word));
+    Problem { place, word, message: message.into(), expected: expected.into() }
+}
+
+/// The beginning of a word, with control characters shown as escapes.
+pub(crate) fn clipped(word: &str) -> String {
+    let mut shown: String = word.chars().take(LONGEST_WORD).map(visible).collect();
+    if word.chars().nth(LONGEST_WORD).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+fn visible(character: char) -> char {
+    if character.is_control() { '\u{fffd}' } else { character }
+}
+
+/// Known words as a sentence lists them, with the nearest one asked for first:
+/// ``one of `min`, `prod`; did you mean `min`?``
+pub(crate) fn one_of<'k>(known: impl Iterator<Item = &'k str> + Clone, found: &str) -> String {
+    let list = known.clone().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    match nearest(known, found) {
+        Some(word) => format!("one of {list}; did you mean `{word}`?"),
+        None => format!("one of {list}"),
+    }
+}
+
+/// The known word that takes fewest single-character changes, if they are few.
+pub(crate) fn nearest<'k>(known: impl Iterator<Item = &'k str>, found: &str) -> Option<&'k str> {
+    if found.len() > LONGEST_WORD {
+        return None;
+    }
+    let found = found.to_lowercase();
+    let most = (found.chars().count() / 3).max(1);
+    known
+        .map(|word| (distance(&word.to_lowercase(), &found), word))
+        .filter(|(changes, _)| *changes <= most)
+        .min_by_key(|(changes, _)| *changes)
+        .map(|(_, word)| word)
+}
+
+/// Single-character changes from one word to the other (Levenshtein).
+fn distance(from: &str, to: &str) -> usize {
+    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
+    for (index, left) in from.chars().enumerate() {
+        let mut diagonal = index;
+        let mut before = index + 1;
+        for (cell, right) in row.iter_mut().zip(std::iter::once(None).chain(to.chars().map(Some))) {
+            let Some(right) = right else {
+                *cell = before;
+                continue;
+            };
+            let changed = diagonal + usize::from(left != right);
+            diagonal = *cell;
+            before = changed.min(before + 1).min(diagonal + 1);
+            *cell = before;
+        }
+    }
+    row.last().copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: Place = Place { line: 1, column: 1 };
+
+    #[test]
+    fn distances_count_changes() {
+        for (from, to, changes) in
+            [("", "", 0), ("", "ab", 2), ("kitten", "sitting", 3), ("min", "mni", 2)]
+        {
+            assert_eq!(distance(from, to), changes, "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn a_near_word_is_asked_for_and_a_far_one_is_not() {
+        let known = ["min", "prod"].into_iter();
+        assert_eq!(one_of(known.clone(), "Prd"), "one of `min`, `prod`; did you mean `prod`?");
+        assert_eq!(one_of(known, "zebra"), "one of `min`, `prod`");
+    }
+
+    #[test]
+    fn beyond_fifty_only_the_number_is_told() {
+        let mut report = Report::default();
+        (0..60).for_each(|_| report.problem(HERE, "x", "is wrong", ""));
+        let problems = report.finish().unwrap_err().0;
+        assert_eq!(problems.len(), 51);
+        assert_eq!(problems.last().unwrap().to_string(), "and 10 more problems");
+    }
+
+    #[test]
+    fn long_and_invisible_words_are_shown_short_and_harmless() {
+        assert_eq!(clipped("a\0b"), "a\u{fffd}b");
+        assert_eq!(clipped(&"x".repeat(1000)).chars().count(), LONGEST_WORD + 1);
+    }
+}
