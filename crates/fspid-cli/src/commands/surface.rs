@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Loading;
-use crate::exit::{Failure, note, print};
+use super::{Loading, drawings};
+use crate::exit::{Failure, print};
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
 
@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let figures = slice.figures();
     let named = figures.iter().map(|(name, svg)| (*name, svg.as_str()));
     match (&arguments.out, figures.as_slice()) {
-        (Some(path), _) => write(path, named.collect()),
+        (Some(path), _) => drawings::write(path, named.collect()),
         (None, _) if arguments.csv.is_some() => Ok(()),
         (None, [(_, svg)]) => print(svg.as_str()),
         (None, _) => {
@@ -75,32 +75,4 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             )))
         }
     }
-}
-
-/// One drawing into its file; several into a folder, or beside each other if `path` is a file's.
-fn write(path: &Path, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
-    let is_drawing = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    if !is_drawing {
-        output::make_folder(path)?;
-    }
-    let several = figures.len() > 1;
-    for (name, svg) in figures {
-        let file = match (is_drawing, several) {
-            (true, false) => path.to_owned(),
-            (true, true) => {
-                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                path.with_file_name(format!("{stem}-{}.svg", file_name(name)))
-            }
-            (false, _) => path.join(format!("{}.svg", file_name(name))),
-        };
-        output::write(&file, svg)?;
-        note(format_args!("wrote {}", file.display()));
-    }
-    Ok(())
-}
-
-/// A name that every file system takes.
-fn file_name(name: &str) -> String {
-    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
 }

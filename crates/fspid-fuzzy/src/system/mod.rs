@@ -23,6 +23,7 @@ mod output;
 mod parts;
 mod program;
 mod supervisor;
+mod trace;
 mod workspace;
 
 pub use build::System;
@@ -35,4 +36,5 @@ pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
+pub use trace::{Contribution, Firing};
 pub use workspace::Workspace;

@@ -9,8 +9,8 @@ use crate::inference::Refused;
 /// A question with its answers.
 #[derive(Clone, Debug)]
 pub struct Asked<'a> {
-    system: &'a System,
-    workspace: Workspace,
+    pub(super) system: &'a System,
+    pub(super) workspace: Workspace,
 }
 
 /// Asks a system; `values` are `name=value`.
@@ -141,10 +141,10 @@ const fn remark(source: Source) -> Option<&'static str> {
     }
 }
 
-impl Asked<'_> {
+impl<'a> Asked<'a> {
     /// The system that was asked.
     #[must_use]
-    pub fn system(&self) -> &System {
+    pub fn system(&self) -> &'a System {
         self.system
     }
 

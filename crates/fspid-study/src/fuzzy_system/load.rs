@@ -8,7 +8,7 @@ use fspid_fuzzy::system::{Parts, Sampling, System};
 
 use super::toml_file;
 use crate::file::files::read_regular;
-use crate::file::{Problems, rule_table_names};
+use crate::file::{Problem, Problems, rule_table_names};
 use crate::inference::{Question, Refused};
 
 /// How a system is to answer, where its file shall not decide.
@@ -136,10 +136,37 @@ pub fn read(name: &str, text: &str, format: Format) -> Result<Loaded, LoadError>
             let system = toml_file::parse(text, name).map_err(LoadError::Problems)?;
             Ok(Loaded { system, notes: Vec::new() })
         }
-        Format::Fis | Format::Fcl | Format::Fll => {
-            Err(LoadError::UnknownFormat { name: name.to_owned() })
-        }
+        Format::Fis => of_tool(name, fspid_formats::fis::read(text)),
+        Format::Fcl | Format::Fll => Err(LoadError::UnknownFormat { name: name.to_owned() }),
     }
+}
+
+/// The system that a reader of another tool's format found.
+fn of_tool(
+    name: &str,
+    reading: Result<fspid_formats::Reading, fspid_formats::Problems>,
+) -> Result<Loaded, LoadError> {
+    let reading = reading.map_err(|problems| LoadError::Problems(in_our_words(name, problems)))?;
+    let note = |note: fspid_formats::Note| match note.place {
+        Some(place) => format!("{name}:{place}: {}", note.message),
+        None => format!("{name}: {}", note.message),
+    };
+    let notes = reading.notes.into_iter().map(note).collect();
+    Ok(Loaded { system: built(reading.parts)?, notes })
+}
+
+/// The problems of a reader as those of our own files are told.
+fn in_our_words(name: &str, problems: fspid_formats::Problems) -> Problems {
+    let problem = |found: fspid_formats::Problem| Problem {
+        origin: None,
+        path: String::new(),
+        line: found.place.map_or(1, |place| place.line),
+        column: found.place.map_or(1, |place| place.column),
+        message: found.message,
+        found: found.word,
+        allowed: found.expected,
+    };
+    Problems::new(name, problems.0.into_iter().map(problem).collect(), 0)
 }
 
 fn shipped(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {

@@ -6,15 +6,18 @@
 
 mod answer;
 mod convert;
+mod explain;
 mod load;
 mod slice;
 mod table;
 mod toml_file;
+mod words;
 
 pub use fspid_fuzzy::system::System;
 
 pub use answer::{Asked, ask};
 pub use convert::{ConvertError, Converted, Target, convert};
+pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
 pub use load::{Format, LoadError, Loaded, Options, load, read};
 pub use slice::{Question as SliceQuestion, Slice, slice};
 pub use table::SystemTable;

@@ -22,6 +22,7 @@ pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
+pub(crate) use weighted::value as number;
 
 /// How the number of one output is found.
 #[derive(Clone, Debug)]
