@@ -40,6 +40,7 @@ mod error;
 mod exp;
 mod label;
 pub mod membership;
+pub mod quadrature;
 mod real;
 mod rule_table;
 pub mod scalar;
