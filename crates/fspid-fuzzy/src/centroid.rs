@@ -5,16 +5,17 @@
 //! last. All functions here work in units of the spacing, with the peaks at $-3, -2, \dots, 3$.
 
 use crate::defuzzifier::Defuzzifier;
-use crate::label::LABEL_COUNT;
 use crate::real::Real;
 
-/// Number of spacings from the middle peak to the last.
-const HALF_SPAN: usize = (LABEL_COUNT - 1) / 2;
+/// Number of spacings from the middle of the universe to its ends.
+fn half_span<R: Real>(strengths: &[R]) -> R {
+    R::from_f64(strengths.len().saturating_sub(1) as f64 * 0.5)
+}
 
 /// The rule of a [`Defuzzifier`] for one output, answered in spacings.
 ///
 /// The strengths must lie in [0, 1] and at least one must be at least `R::MIN_POSITIVE`.
-pub(crate) fn centroid<R: Real>(rule: Defuzzifier, strengths: &[R; LABEL_COUNT]) -> R {
+pub(crate) fn centroid<R: Real>(rule: Defuzzifier, strengths: &[R]) -> R {
     match rule {
         Defuzzifier::Exact => exact(strengths),
         Defuzzifier::Endpoints(samples) => {
@@ -43,10 +44,10 @@ pub(crate) fn centroid<R: Real>(rule: Defuzzifier, strengths: &[R; LABEL_COUNT])
 ///
 /// where $g$ is the moment of half a cut triangle about its own peak (the universe ends at the
 /// outer peaks). The answer is $M / A$. Own derivation; agrees with a 40-digit polygon to 4e-15.
-pub(crate) fn exact<R: Real>(strengths: &[R; LABEL_COUNT]) -> R {
+pub(crate) fn exact<R: Real>(strengths: &[R]) -> R {
     let mut area = R::ZERO;
     let mut moment = R::ZERO;
-    let mut position = -R::from_f64(HALF_SPAN as f64);
+    let mut position = -half_span(strengths);
     for pair in strengths.windows(2) {
         let &[left, right] = pair else { continue };
         // Half of each triangle lies in this gap; both halves and the overlap at once.
@@ -60,7 +61,9 @@ pub(crate) fn exact<R: Real>(strengths: &[R; LABEL_COUNT]) -> R {
         position += R::ONE;
     }
     // The halves' own moments cancel at inner peaks; at the outer ones only one half is there.
-    moment += inner_moment(strengths[0]) - inner_moment(strengths[LABEL_COUNT - 1]);
+    if let (Some(&first), Some(&last)) = (strengths.first(), strengths.last()) {
+        moment += inner_moment(first) - inner_moment(last);
+    }
     moment / area
 }
 
@@ -71,14 +74,8 @@ fn inner_moment<R: Real>(s: R) -> R {
 
 /// $\sum x_n \mu(x_n) / \sum \mu(x_n)$ over `samples` points, the first `offset` cells from the
 /// lower end, `cells` cells in all, the two end samples counted with `end_weight`.
-fn sampled<R: Real>(
-    strengths: &[R; LABEL_COUNT],
-    samples: u32,
-    cells: u32,
-    offset: R,
-    end_weight: R,
-) -> R {
-    let half_span = R::from_f64(HALF_SPAN as f64);
+fn sampled<R: Real>(strengths: &[R], samples: u32, cells: u32, offset: R, end_weight: R) -> R {
+    let half_span = half_span(strengths);
     let cell = (half_span + half_span) / R::from_f64(f64::from(cells));
     let mut area = R::ZERO;
     let mut moment = R::ZERO;
@@ -94,9 +91,9 @@ fn sampled<R: Real>(
 }
 
 /// Grade of the union of the cut triangles at `x` spacings from the middle peak.
-fn union_grade<R: Real>(strengths: &[R; LABEL_COUNT], x: R) -> R {
+fn union_grade<R: Real>(strengths: &[R], x: R) -> R {
     let mut grade = R::ZERO;
-    let mut peak = -R::from_f64(HALF_SPAN as f64);
+    let mut peak = -half_span(strengths);
     for &strength in strengths {
         let triangle = R::ONE - (x - peak).abs();
         grade = grade.larger(triangle.smaller(strength));
@@ -108,6 +105,7 @@ fn union_grade<R: Real>(strengths: &[R; LABEL_COUNT], x: R) -> R {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::label::LABEL_COUNT;
 
     const RULES: [Defuzzifier; 3] = [
         Defuzzifier::Endpoints(60_001),

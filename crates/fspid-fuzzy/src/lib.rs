@@ -31,6 +31,8 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
@@ -38,17 +40,29 @@ mod centroid;
 mod defuzzifier;
 mod error;
 mod exp;
+#[cfg(feature = "alloc")]
+pub mod formula;
+pub mod hedge;
+#[cfg(feature = "alloc")]
+pub mod karnik_mendel;
 mod label;
 pub mod membership;
+pub mod norm;
 pub mod quadrature;
 mod real;
 mod rule_table;
 pub mod scalar;
 mod supervisor;
+#[cfg(feature = "alloc")]
+pub mod system;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+#[cfg(feature = "alloc")]
+pub use formula::{Formula, FormulaError, FormulaErrorKind};
+pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
+pub use norm::{SNormKind, TNormKind};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 pub use scalar::Scalar;

@@ -209,6 +209,11 @@ impl<R: Real> Supervisor<R> {
         self.range
     }
 
+    /// Centre and sigma of the Gaussian input sets, from `NB` to `PB`.
+    pub fn sets(&self) -> &[[R; 2]; LABEL_COUNT] {
+        &self.sets
+    }
+
     /// The rules.
     pub fn table(&self) -> RuleTable {
         RuleTable::new(self.consequents.each_ref().map(Consequents::grid))

@@ -33,6 +33,16 @@ pub trait Scalar:
     /// The nearest number of this type, without derivatives and without width.
     fn constant(value: f64) -> Self;
 
+    /// Plain numbers as numbers of this type, written into `room`, which must be long enough; plain
+    /// numbers themselves stay where they are.
+    #[must_use]
+    fn lift<'a>(values: &'a [f64], room: &'a mut [Self]) -> &'a [Self] {
+        for (place, &value) in room.iter_mut().zip(values) {
+            *place = Self::constant(value);
+        }
+        room.get(..values.len()).unwrap_or_default()
+    }
+
     /// Zero.
     #[must_use]
     fn zero() -> Self {
@@ -125,10 +135,88 @@ pub trait Scalar:
     fn ceil(self) -> Self {
         -(-self).floor()
     }
+
+    /// The whole number next towards 0.
+    #[must_use]
+    fn trunc(self) -> Self {
+        self.if_less(Self::zero(), self.ceil(), self.floor())
+    }
+
+    /// The nearest whole number; halves go away from 0.
+    #[must_use]
+    fn round(self) -> Self {
+        let magnitude = self.abs();
+        let below = magnitude.floor();
+        let rest = magnitude - below;
+        let nearest = rest.if_less(Self::half(), below, below + Self::one());
+        self.if_less(Self::zero(), -nearest, nearest)
+    }
+
+    /// -1, 0 or 1.
+    #[must_use]
+    fn sign(self) -> Self {
+        let positive = Self::zero().if_less(self, Self::one(), Self::zero());
+        self.if_less(Self::zero(), -Self::one(), positive)
+    }
+
+    /// $a - b \operatorname{trunc}\frac ab$, with the sign of $a$.
+    #[must_use]
+    fn remainder(self, divisor: Self) -> Self {
+        self - divisor * (self / divisor).trunc()
+    }
+
+    /// $\log_{10} x$.
+    #[must_use]
+    fn log10(self) -> Self {
+        self.ln() / Self::constant(core::f64::consts::LN_10)
+    }
+
+    /// $\ln(1 + x)$, without special care for small $x$.
+    #[must_use]
+    fn ln_1p(self) -> Self {
+        (Self::one() + self).ln()
+    }
+
+    /// $\operatorname{arsinh} x$.
+    #[must_use]
+    fn asinh(self) -> Self {
+        let magnitude = self.abs();
+        let value = (magnitude + (self.square() + Self::one()).sqrt()).ln();
+        self.if_less(Self::zero(), -value, value)
+    }
+
+    /// $\operatorname{arcosh} x$.
+    #[must_use]
+    fn acosh(self) -> Self {
+        (self + (self.square() - Self::one()).sqrt()).ln()
+    }
+
+    /// $\operatorname{artanh} x$.
+    #[must_use]
+    fn atanh(self) -> Self {
+        Self::half() * ((Self::one() + self) / (Self::one() - self)).ln()
+    }
+
+    /// The angle of the point $(x, y)$ with `self` as $y$, in $(-\pi, \pi]$; 0 at the origin.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self {
+        let pi = Self::constant(core::f64::consts::PI);
+        let angle = (self / x).atan();
+        let left = angle + self.if_less(Self::zero(), -pi, pi);
+        let upright = Self::half() * pi * self.sign();
+        x.if_less(Self::zero(), left, Self::zero().if_less(x, angle, upright))
+    }
+
+    /// 1 if the number is not 0, else 0; what formulas mean by true.
+    #[must_use]
+    fn truth(self) -> Self {
+        let positive = Self::zero().if_less(self, Self::one(), Self::zero());
+        self.if_less(Self::zero(), Self::one(), positive)
+    }
 }
 
 macro_rules! float {
-    ($float:ident, $exp:path, $ln:path, $sqrt:path, $pow:path, $sin:path, $cos:path, $tan:path,
+    ($float:ident, [$($lift:item)?], $exp:path, $ln:path, $sqrt:path, $pow:path, $sin:path, $cos:path, $tan:path,
      $asin:path, $acos:path, $atan:path, $sinh:path, $cosh:path, $tanh:path, $floor:path) => {
         impl Scalar for $float {
             #[allow(
@@ -139,6 +227,7 @@ macro_rules! float {
             fn constant(value: f64) -> Self {
                 value as $float
             }
+            $(#[inline] $lift)?
             #[inline]
             fn smaller(self, other: Self) -> Self {
                 if self < other { self } else { other }
@@ -204,6 +293,9 @@ macro_rules! float {
 
 float!(
     f64,
+    [fn lift<'a>(values: &'a [f64], _: &'a mut [Self]) -> &'a [Self] {
+        values
+    }],
     crate::exp::exp_f64,
     libm::log,
     libm::sqrt,
@@ -221,6 +313,7 @@ float!(
 );
 float!(
     f32,
+    [],
     crate::exp::exp_f32,
     libm::logf,
     libm::sqrtf,

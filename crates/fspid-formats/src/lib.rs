@@ -1,0 +1,16 @@
+//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`.
+//!
+//! Reading answers the parts of a system and says what it had to assume; nothing is dropped in
+//! silence. Writing refuses what the format cannot say, unless a loss is allowed, and then states
+//! the error that it makes. Texts are read in linear time; they are data and never run.
+//!
+//! What a tool computes is part of what its file means: a system that is read answers by the rule of
+//! the tool that the format belongs to (see [`Reading::notes`]).
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
+)]
+
+mod note;
+
+pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

@@ -1,0 +1,89 @@
+//! The centroid of evenly spaced triangles, by the formula of the fixed-size supervisor.
+
+use alloc::vec::Vec;
+
+use super::super::build::ResolvedConclusion;
+use super::super::defuzzifier::Defuzzifier;
+use super::super::parts::{Conclusion, Membership, Output, OutputTerm, RuleBlock};
+use crate::centroid::centroid;
+use crate::defuzzifier;
+use crate::membership::ShapeKind;
+use crate::norm::{SNormKind, TNormKind};
+
+/// Corners may be off by this many times the universe's span times the precision: what is lost when
+/// they are computed from the spacing, and written and read again.
+const SLACK: f64 = 8.0 * f64::EPSILON;
+/// Fewest and most triangles; beyond, the general method is as good.
+const COUNTS: core::ops::RangeInclusive<usize> = 2..=64;
+
+/// Triangles one spacing apart, crossing at one half, from one end of the universe to the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Partition {
+    rule: defuzzifier::Defuzzifier,
+    /// Positions of the terms from left to right.
+    order: Vec<usize>,
+    middle: f64,
+    spacing: f64,
+}
+
+impl Partition {
+    /// The partition that an output's terms make, if they do and are joined as the formula needs.
+    pub(crate) fn of(
+        output: &Output,
+        conclusions: &[&ResolvedConclusion],
+        blocks: &[&RuleBlock],
+    ) -> Option<Self> {
+        let Defuzzifier::Centroid(sampling) = output.defuzzifier else { return None };
+        let (rule, universe) = (sampling.fixed_size()?, output.universe?);
+        let joined = output.aggregation.is(SNormKind::Maximum)
+            && blocks.iter().all(|block| block.implication.is(TNormKind::Minimum));
+        if !joined || conclusions.is_empty() || !COUNTS.contains(&output.terms.len()) {
+            return None;
+        }
+        let mut order: Vec<usize> = (0..output.terms.len()).collect();
+        order.sort_by(|&a, &b| peak(output, a).total_cmp(&peak(output, b)));
+        let gaps = (order.len() - 1) as f64;
+        let (middle, spacing) = (universe.middle(), universe.span() / gaps);
+        let slack = SLACK * universe.span();
+        let fits = order.iter().enumerate().all(|(position, &term)| {
+            let centre = universe.lower + spacing * position as f64;
+            output.terms.get(term).and_then(triangle).is_some_and(|corners| {
+                let ideal = [centre - spacing, centre, centre + spacing];
+                corners.iter().zip(ideal).all(|(c, i)| (c - i).abs() <= slack)
+            })
+        });
+        fits.then_some(Self { rule, order, middle, spacing })
+    }
+
+    /// The centroid, given the strength of each term; nothing if none fires.
+    pub(crate) fn centroid(&self, levels: &[f64]) -> Option<f64> {
+        let mut sorted = [0.0_f64; 64];
+        let sorted = sorted.get_mut(..self.order.len())?;
+        let mut strongest = 0.0_f64;
+        for (place, &term) in sorted.iter_mut().zip(&self.order) {
+            *place = levels.get(term).copied().unwrap_or(0.0);
+            strongest = strongest.max(*place);
+        }
+        // Below the normal range the quotient of moments would lose its digits.
+        let answers = strongest >= f64::MIN_POSITIVE;
+        answers.then(|| self.middle + centroid(self.rule, sorted) * self.spacing)
+    }
+}
+
+fn peak(output: &Output, term: usize) -> f64 {
+    output.terms.get(term).and_then(triangle).map_or(f64::NAN, |[_, peak, _]| peak)
+}
+
+/// The corners of a full-height type-1 triangle.
+#[allow(clippy::float_cmp, reason = "a height of exactly 1 is what the formula needs")]
+fn triangle(term: &OutputTerm) -> Option<[f64; 3]> {
+    let Conclusion::Set {
+        membership: Membership::Shape { kind: ShapeKind::Triangle, params, height },
+        lower: None,
+    } = &term.conclusion
+    else {
+        return None;
+    };
+    let corners: [f64; 3] = params.as_slice().try_into().ok()?;
+    (*height == 1.0).then_some(corners)
+}

@@ -1,0 +1,71 @@
+//! The memory that an evaluation needs, allocated once.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::build::System;
+use super::evaluate::{Answer, Source};
+use super::output::Scratch;
+use super::program::STACK;
+
+/// Room for one evaluation at a time of the system that it was made for.
+///
+/// What it holds after an evaluation can be read: inputs as they were used, grades, strengths. It
+/// carries nothing from one evaluation to the next.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    /// Inputs as used: after clamping.
+    pub(crate) inputs: Vec<f64>,
+    /// Which inputs lay outside their universe.
+    pub(crate) outside: Vec<bool>,
+    /// Grades of the program's statements.
+    pub(crate) grades: Vec<f64>,
+    pub(crate) stack: Vec<f64>,
+    /// Strength of each rule as it fires, weight included.
+    pub(crate) strengths: Vec<f64>,
+    /// Strength of each rule as it acts: after the block's activation.
+    pub(crate) acting: Vec<f64>,
+    /// Strength of each conclusion: after the hedges of its consequent.
+    pub(crate) degrees: Vec<f64>,
+    pub(crate) scratch: Scratch,
+    pub(crate) answers: Vec<Answer>,
+}
+
+impl System {
+    /// Room for evaluations of this system.
+    #[must_use]
+    pub fn workspace(&self) -> Workspace {
+        let nothing = Answer { value: None, error_bound: 0.0, source: Source::Nothing };
+        Workspace {
+            inputs: vec![0.0; self.parts.inputs.len()],
+            outside: vec![false; self.parts.inputs.len()],
+            grades: vec![0.0; self.program.statements.len()],
+            stack: vec![0.0; STACK],
+            strengths: vec![0.0; self.rules.len()],
+            acting: vec![0.0; self.rules.len()],
+            degrees: vec![0.0; self.conclusions.len()],
+            scratch: Scratch::for_outputs(self),
+            answers: vec![nothing; self.parts.outputs.len()],
+        }
+    }
+}
+
+impl Workspace {
+    /// The inputs of the last evaluation as they were used: those to be clamped are clamped.
+    #[must_use]
+    pub fn inputs(&self) -> &[f64] {
+        &self.inputs
+    }
+
+    /// Which inputs of the last evaluation lay outside their universe.
+    #[must_use]
+    pub fn outside(&self) -> &[bool] {
+        &self.outside
+    }
+
+    /// The answers of the last evaluation, one for each output.
+    #[must_use]
+    pub fn answers(&self) -> &[Answer] {
+        &self.answers
+    }
+}
