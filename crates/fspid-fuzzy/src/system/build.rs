@@ -14,7 +14,7 @@ use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
 };
-use super::program::{MAX_DEPTH, Program};
+use super::program::{Form, MAX_DEPTH, Program};
 use crate::hedge::Hedge;
 
 /// Most rules of a system.
@@ -36,6 +36,8 @@ pub struct System {
     pub(crate) block_rules: Vec<Range<usize>>,
     /// True if some rule asks about an output.
     pub(crate) chained: bool,
+    /// True if some conclusion has a hedge.
+    pub(crate) hedged: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -45,6 +47,7 @@ pub(crate) struct ResolvedRule {
     pub(crate) rule: usize,
     /// Its steps in the program.
     pub(crate) steps: Range<usize>,
+    pub(crate) form: Form,
     pub(crate) weight: f64,
     /// Its conclusions.
     pub(crate) conclusions: Range<usize>,
@@ -115,7 +118,8 @@ impl System {
         });
         let outputs = outputs.collect();
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));
-        Self { parts, program, rules, conclusions, outputs, block_rules, chained }
+        let hedged = conclusions.iter().any(|conclusion| !conclusion.hedges.is_empty());
+        Self { parts, program, rules, conclusions, outputs, block_rules, chained, hedged }
     }
 }
 
@@ -152,10 +156,12 @@ impl Resolver {
         }
         let conclusions = begin..self.conclusions.len();
         let steps = self.program.append(&rule.antecedent);
+        let form = self.program.form(steps.clone());
         self.rules.push(ResolvedRule {
             block,
             rule: index,
             steps,
+            form,
             weight: rule.weight,
             conclusions,
         });

@@ -4,6 +4,7 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod build;
+mod integral;
 mod outline;
 mod sampled;
 mod supervisor;
