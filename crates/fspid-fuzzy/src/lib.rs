@@ -56,7 +56,9 @@ pub mod system;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
+pub use norm::{SNormKind, TNormKind};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 pub use scalar::Scalar;
