@@ -20,10 +20,19 @@
 #[allow(dead_code)]
 mod cursor;
 pub mod fis;
+#[allow(dead_code)]
+mod lexer;
+#[allow(dead_code)]
+mod names;
 mod note;
 #[allow(dead_code)]
 mod number;
 #[allow(dead_code)]
 mod report;
+#[allow(dead_code)]
+mod rule;
+pub mod rule_text;
+#[allow(dead_code)]
+mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

@@ -13,7 +13,7 @@ pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -
     match Formula::parse(text, variables) {
         Ok(formula) => Some(formula),
         Err(error) => {
-            let place = within(fields.report.text(place), text, place, error.position);
+            let place = within(fields.report.text(place), text, place, (error.position, 1));
             let message = format!("in the formula: {}", error.kind);
             let path = below(fields.path, name);
             fields.report.value(
@@ -27,13 +27,19 @@ pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -
     }
 }
 
-/// Where the byte at `position` of a text stands in the file; all of it if it is written with escapes.
-pub(super) fn within(written: &str, text: &str, whole: Place, position: usize) -> Place {
-    let end = text.get(position..).and_then(|rest| rest.chars().next()).map_or(0, char::len_utf8);
+/// Where so many bytes from `position` on of a text stand in the file; all of it if it is written
+/// with escapes.
+pub(super) fn within(
+    written: &str,
+    text: &str,
+    whole: Place,
+    (position, length): (usize, usize),
+) -> Place {
     match written.find(text) {
         Some(begin) if !text.is_empty() => {
             let start = whole.start + begin + position;
-            Place { start, end: start + end, ..whole }
+            let end = (start + length).min(whole.start + begin + text.len());
+            Place { start, end, ..whole }
         }
         _ => whole,
     }

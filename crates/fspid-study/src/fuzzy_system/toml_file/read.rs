@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fspid_formats::rule_text::RuleReader;
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{
     Defuzzifier, Fallback, FallbackValue, Input, Output, Parts, RuleBlock, Sampling, SetReading,
@@ -72,7 +73,8 @@ fn parts(report: &mut Report, section: &Section, places: &mut Places) -> Option<
     let complete = inputs.len() == names.len() && outputs.len() == section.sections("output").len();
     // Rules about variables that could not be read would only echo their problems.
     if complete {
-        let vocabulary = Vocabulary { inputs: &inputs, outputs: &outputs };
+        let reader = RuleReader::new(&inputs, &outputs);
+        let vocabulary = Vocabulary { inputs: &inputs, outputs: &outputs, reader: &reader };
         let sections = section.sections("rules");
         for (index, part) in sections.iter().enumerate() {
             blocks.extend(block(report, part, vocabulary, (index, sections.len()), places));

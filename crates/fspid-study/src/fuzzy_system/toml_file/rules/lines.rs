@@ -1,8 +1,10 @@
 //! Rules in words, one a line.
 
+use fspid_formats::rule_text::{self, RuleReader};
 use fspid_fuzzy::system::{Parts, Rule, RuleBlock};
 
 use super::super::fields::Fields;
+use super::super::formula::within;
 use super::super::write::quoted;
 use super::{Vocabulary, grid, tree};
 use crate::file::document::{Item, Value as Written};
@@ -73,30 +75,51 @@ fn one(report: &mut Report, item: &Item, path: &str, vocabulary: Vocabulary<'_>)
     Some(Rule { name, enabled, ..rule })
 }
 
-/// A rule in words.
+/// A rule in words; what is wrong is told at its own word.
 fn in_words(
     report: &mut Report,
     (place, path): (Place, &str),
     text: &str,
     vocabulary: Vocabulary<'_>,
 ) -> Option<Rule> {
-    let _ = (report, place, path, text, vocabulary);
+    let problems = match vocabulary.reader.read(text) {
+        Ok(rule) => return Some(rule),
+        Err(problems) => problems.0,
+    };
+    for problem in problems {
+        let position = problem.place.map_or(0, |at| byte(text, at.line, at.column));
+        let word = problem.word.len();
+        let place = within(report.text(place), text, place, (position, word));
+        if problem.word.is_empty() {
+            report.missing(place, path, problem.message, problem.expected);
+        } else {
+            report.value(place, path, problem.message, problem.expected);
+        }
+    }
     None
+}
+
+/// The byte at a line and column of a text.
+fn byte(text: &str, line: usize, column: usize) -> usize {
+    let before: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+    let rest = text.get(before..).unwrap_or_default();
+    before + rest.char_indices().nth(column - 1).map_or(rest.len(), |(at, _)| at)
 }
 
 /// The rules of a block as a list.
 pub(super) fn write(block: &RuleBlock, parts: &Parts) -> String {
-    let lines: Vec<String> =
-        block.rules.iter().map(|rule| format!("    {},\n", written(rule, parts))).collect();
+    let reader = RuleReader::new(&parts.inputs, &parts.outputs);
+    let line = |rule| format!("    {},\n", written(rule, parts, &reader));
+    let lines: Vec<String> = block.rules.iter().map(line).collect();
     match lines.is_empty() {
         true => "lines = []\n".to_owned(),
         false => format!("lines = [\n{}]\n", lines.concat()),
     }
 }
 
-fn written(rule: &Rule, parts: &Parts) -> String {
+fn written(rule: &Rule, parts: &Parts, reader: &RuleReader) -> String {
     let plain = Rule { name: String::new(), enabled: true, ..rule.clone() };
-    let words = words_of(&plain, parts);
+    let words = words_of(&plain, parts, reader);
     if let (Some(words), true, true) = (&words, rule.enabled, rule.name.is_empty()) {
         return quoted(words);
     }
@@ -115,7 +138,7 @@ fn written(rule: &Rule, parts: &Parts) -> String {
 }
 
 /// The rule in words, if it has words that are read back as the same rule.
-fn words_of(rule: &Rule, parts: &Parts) -> Option<String> {
-    let _ = (rule, parts);
-    None
+fn words_of(rule: &Rule, parts: &Parts, reader: &RuleReader) -> Option<String> {
+    let words = rule_text::write(rule, parts).ok()?;
+    reader.read(&words).is_ok_and(|found| found == *rule).then_some(words)
 }

@@ -4,6 +4,7 @@ mod grid;
 mod lines;
 mod tree;
 
+use fspid_formats::rule_text::RuleReader;
 use fspid_fuzzy::system::{Input, Output, Parts, Rule, RuleBlock};
 use serde_json::{Value, json};
 
@@ -17,6 +18,7 @@ pub(super) use grid::in_words as cells_in_words;
 pub(super) struct Vocabulary<'a> {
     pub(super) inputs: &'a [Input],
     pub(super) outputs: &'a [Output],
+    pub(super) reader: &'a RuleReader,
 }
 
 /// The rules of a block with their places.
