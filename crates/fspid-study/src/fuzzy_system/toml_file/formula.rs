@@ -14,14 +14,10 @@ pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -
         Ok(formula) => Some(formula),
         Err(error) => {
             let place = within(fields.report.text(place), text, place, (error.position, 1));
-            let message = format!("in the formula: {}", error.kind);
+            let kind = error.kind.to_string();
+            let (message, allowed) = kind.split_once("; ").unwrap_or((&kind, ""));
             let path = below(fields.path, name);
-            fields.report.value(
-                place,
-                &path,
-                message,
-                format!("a formula in {}", variables.join(", ")),
-            );
+            fields.report.value(place, &path, format!("in the formula: {message}"), allowed);
             None
         }
     }
