@@ -67,7 +67,7 @@ def weighted(system, terms, fired, inputs):
     total = moment = mpf(0)
     for level, (_, name, parameters) in fired:
         values = list(map(mpf, parameters))
-        value = values[-1] + sum(c * x for c, x in zip(values, inputs))
+        value = values[-1] + sum(c * x for c, x in zip(values[:-1], inputs))
         total += level
         moment += level * value
     if total == 0:

@@ -138,24 +138,37 @@ pub(crate) fn nearest<'k>(known: impl Iterator<Item = &'k str>, found: &str) -> 
         .map(|(_, word)| word)
 }
 
-/// Single-character changes from one word to the other (Levenshtein).
+/// Single characters that must be changed, put in, left out or swapped with their neighbour.
 fn distance(from: &str, to: &str) -> usize {
-    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
-    for (index, left) in from.chars().enumerate() {
-        let mut diagonal = index;
-        let mut before = index + 1;
-        for (cell, right) in row.iter_mut().zip(std::iter::once(None).chain(to.chars().map(Some))) {
-            let Some(right) = right else {
-                *cell = before;
-                continue;
-            };
-            let changed = diagonal + usize::from(left != right);
-            diagonal = *cell;
-            before = changed.min(before + 1).min(diagonal + 1);
-            *cell = before;
-        }
+    let to: Vec<char> = to.chars().collect();
+    let mut rows: Vec<Vec<usize>> = vec![(0..=to.len()).collect()];
+    let mut before = None;
+    for left in from.chars() {
+        let row = next_row(&rows, &to, left, before);
+        rows.push(row);
+        before = Some(left);
     }
-    row.last().copied().unwrap_or_default()
+    rows.last().and_then(|row| row.last()).copied().unwrap_or_default()
+}
+
+/// One more row of the table of distances: from the words up to `left` to each beginning of `to`.
+fn next_row(rows: &[Vec<usize>], to: &[char], left: char, before: Option<char>) -> Vec<usize> {
+    let cell = |up: usize, column: usize| {
+        let row = rows.len().checked_sub(up).and_then(|row| rows.get(row));
+        row.and_then(|row| row.get(column)).copied().unwrap_or(usize::MAX - 1)
+    };
+    let mut row = vec![rows.len()];
+    let mut behind = None;
+    for (column, &right) in to.iter().enumerate() {
+        let changed = cell(1, column) + usize::from(left != right);
+        let left_out = cell(1, column + 1) + 1;
+        let put_in = row.last().map_or(usize::MAX, |count| count + 1);
+        let swaps = column > 0 && before == Some(right) && behind == Some(left);
+        let swapped = if swaps { cell(2, column - 1) + 1 } else { usize::MAX };
+        row.push(changed.min(left_out).min(put_in).min(swapped));
+        behind = Some(right);
+    }
+    row
 }
 
 #[cfg(test)]
@@ -166,9 +179,13 @@ mod tests {
 
     #[test]
     fn distances_count_changes() {
-        for (from, to, changes) in
-            [("", "", 0), ("", "ab", 2), ("kitten", "sitting", 3), ("min", "mni", 2)]
-        {
+        for (from, to, changes) in [
+            ("", "", 0),
+            ("", "ab", 2),
+            ("kitten", "sitting", 3),
+            ("min", "mni", 1),
+            ("abcd", "badc", 2),
+        ] {
             assert_eq!(distance(from, to), changes, "{from} {to}");
         }
     }

@@ -16,5 +16,7 @@ mod hedge;
 mod read;
 mod shape;
 mod word;
+mod write;
 
 pub use read::read;
+pub use write::write;

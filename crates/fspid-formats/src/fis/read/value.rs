@@ -42,9 +42,10 @@ pub(super) fn over(mut cursor: Cursor) -> Result<(), Problem> {
 pub(super) fn sign(cursor: &mut Cursor, wanted: char, behind: &str) -> Result<(), Problem> {
     cursor.skip_blanks();
     if !cursor.eat(wanted) {
+        let place = cursor.place();
         let found = cursor.take_while(|next| !next.is_whitespace());
         let message = if found.is_empty() { "the line ends too early" } else { "is in the way" };
-        return Err(wrong(cursor.place(), found, message, format!("`{wanted}` {behind}")));
+        return Err(wrong(place, found, message, format!("`{wanted}` {behind}")));
     }
     cursor.skip_blanks();
     Ok(())
