@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
+use fspid_formats::{Problems, WriteOptions};
+
 use super::load::{Format, LoadError, Options, load};
 use super::toml_file;
 
@@ -70,10 +72,35 @@ pub fn convert(
     let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
     let format = Format::of(path).ok_or_else(unknown)?;
     let loaded = load(name, options).map_err(ConvertError::Load)?;
-    let _ = target;
-    let (text, lost) = match format {
-        Format::Toml => (toml_file::write(loaded.system.parts()), Vec::new()),
-        Format::Fis | Format::Fcl | Format::Fll => return Err(unknown()),
+    if let Some(dialect) = target.dialect
+        && format != Format::Fcl
+    {
+        let problem = format!("--to {dialect} goes with an .fcl file");
+        return Err(ConvertError::Unwritable { problems: vec![problem] });
+    }
+    let parts = loaded.system.parts();
+    let options = WriteOptions { lossy: target.lossy };
+    let written = match format {
+        Format::Toml => return Ok(Converted::whole(toml_file::write(parts), loaded.notes)),
+        Format::Fis => fspid_formats::fis::write(parts, options),
+        Format::Fcl | Format::Fll => return Err(unknown()),
     };
-    Ok(Converted { text, assumed: loaded.notes, lost })
+    let writing = written.map_err(|problems| unwritable(path, &problems))?;
+    let lost = writing.notes.iter().map(ToString::to_string).collect();
+    Ok(Converted { text: writing.text, assumed: loaded.notes, lost })
+}
+
+impl Converted {
+    /// A file in which everything could be said.
+    fn whole(text: String, assumed: Vec<String>) -> Self {
+        Self { text, assumed, lost: Vec::new() }
+    }
+}
+
+/// What the format cannot say, and how to go on.
+fn unwritable(path: &Path, problems: &Problems) -> ConvertError {
+    let path = path.display();
+    let mut told: Vec<String> = problems.0.iter().map(|found| format!("{path}: {found}")).collect();
+    told.push("nothing was written; --lossy writes the nearest that can be said, and a .toml file holds everything".to_owned());
+    ConvertError::Unwritable { problems: told }
 }
