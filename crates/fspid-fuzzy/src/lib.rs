@@ -37,6 +37,8 @@ extern crate std;
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
+pub mod audit;
 mod centroid;
 mod defuzzifier;
 mod error;
