@@ -10,10 +10,12 @@
 mod base;
 mod dual;
 mod interval;
+mod jet;
 
 pub use base::Base;
 pub use dual::Dual;
 pub use interval::Interval;
+pub use jet::Jet;
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
