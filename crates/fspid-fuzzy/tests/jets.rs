@@ -11,8 +11,11 @@ type Polynomial = Jet<Interval, COUNT>;
 /// `COUNT` coefficients as quotients of whole numbers.
 type Series = [(f64, f64); COUNT];
 
+/// A function by its name, with its series at a point.
+type Known = (&'static str, f64, fn(Polynomial) -> Polynomial, Series);
+
 /// Functions with their series at 0 or 1.
-const KNOWN: [(&str, f64, fn(Polynomial) -> Polynomial, Series); 14] = [
+const KNOWN: [Known; 14] = [
     (
         "exp",
         0.0,
