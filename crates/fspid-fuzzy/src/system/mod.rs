@@ -29,9 +29,11 @@ pub use build::System;
 pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
 pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
+pub(crate) use firing::hedged;
 pub use norms::{SNorm, TNorm};
 pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
+pub(crate) use program::{Program, STACK, Step};
 pub use workspace::Workspace;
