@@ -56,6 +56,27 @@ impl<'a> Field<'a> {
     /// All values of an output over a box, and all its slopes along an input if one is named.
     pub(super) fn ask(&mut self, index: usize, cell: &[Interval], along: Option<usize>) -> Slope {
         self.firing.fire(cell, along);
+        self.answer(index, along)
+    }
+
+    /// All slopes of an output over a box but for strips along lines on which grades tie.
+    pub(super) fn slope(&mut self, index: usize, cell: &[Interval], along: usize) -> Interval {
+        let ways = self.firing.prepare(cell, Some(along), true);
+        let mut hull: Option<Interval> = None;
+        for way in 0..ways {
+            if self.firing.fire_way(way, cell) {
+                let [slope] = self.answer(index, Some(along)).derivative;
+                hull = Some(hull.map_or(slope, |hull| hull.hull(slope)));
+            }
+        }
+        hull.unwrap_or_else(|| {
+            let [slope] = self.ask(index, cell, Some(along)).derivative;
+            slope
+        })
+    }
+
+    /// What the rules that were fired say about an output.
+    fn answer(&mut self, index: usize, along: Option<usize>) -> Slope {
         let Some(output) = self.firing.system.parts.outputs.get(index) else {
             return unknown_slope(Interval::ENTIRE);
         };

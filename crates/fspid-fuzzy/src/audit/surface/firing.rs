@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::continuity::{Continuity, Jumps};
+use super::ties::Ties;
 use crate::scalar::{Dual, Interval, Scalar};
 use crate::supervisor::OutOfRange;
 use crate::system::{Activation, Membership, STACK, System, Variable, hedged};
@@ -34,6 +35,9 @@ pub(super) struct Firing<'a> {
     atoms: Vec<u128>,
     /// Of these, the ones that may be the least in the box; 0 if nothing is known.
     least: Vec<u128>,
+    ties: Ties,
+    /// For each statement, those whose grade is known to be at least as large.
+    above: Vec<u128>,
 }
 
 impl<'a> Firing<'a> {
@@ -52,14 +56,39 @@ impl<'a> Firing<'a> {
             acting: vec![zero; rules],
             degrees: vec![zero; system.conclusions.len()],
             least: vec![0; rules],
+            ties: Ties::of(system),
+            above: vec![0; system.program.statements.len()],
             atoms,
         }
     }
 
     /// Fires the rules over a box; slopes are those along the input `along`.
     pub(super) fn fire(&mut self, cell: &[Interval], along: Option<usize>) {
+        self.prepare(cell, along, false);
+        self.ties.relate(cell, &mut self.above);
+        self.conclude();
+    }
+
+    /// Grades a box. Answers in how many ways lines on which grades tie may divide it, for
+    /// [`fire_way`](Self::fire_way); if `strips`, strips along those lines are left out.
+    pub(super) fn prepare(&mut self, cell: &[Interval], along: Option<usize>, strips: bool) -> u32 {
         self.take_inputs(cell, along);
         self.grade(cell);
+        self.ties.place(cell, strips);
+        self.ties.ways()
+    }
+
+    /// Fires the rules over a part of the box that was prepared; false if the part is empty.
+    pub(super) fn fire_way(&mut self, way: u32, cell: &[Interval]) -> bool {
+        let possible = self.ties.choose(way, cell);
+        if possible {
+            self.ties.relate(cell, &mut self.above);
+            self.conclude();
+        }
+        possible
+    }
+
+    fn conclude(&mut self) {
         self.strengthen();
         self.act();
         let conclusions = self.system.conclusions.iter();
@@ -112,31 +141,60 @@ impl<'a> Firing<'a> {
 
     fn strengthen(&mut self) {
         for rule in 0..self.strengths.len() {
-            let strength =
-                self.system.rule_strength(rule, &mut self.stack, |s| grade_of(&self.grades, s));
             let least = self.least_atoms(rule);
-            if let (Some(place), Some(mask), Some(known)) = (
-                self.strengths.get_mut(rule),
-                self.least.get_mut(rule),
-                self.system.rules.get(rule),
-            ) {
-                *place = within_unit(strength);
-                *mask = least;
-                if self.continuity.blocks.get(known.block) != Some(&true) {
-                    *place = unknown_slope(place.value.hull(Interval::ZERO));
-                }
+            let strength = if least == 0 { self.joined(rule) } else { self.minimum(rule, least) };
+            if let (Some(place), Some(mask)) =
+                (self.strengths.get_mut(rule), self.least.get_mut(rule))
+            {
+                (*place, *mask) = (strength, least);
             }
         }
     }
 
-    /// Those statements of a plain rule whose grade may be the least somewhere in the box.
+    /// Strength of any rule.
+    fn joined(&mut self, rule: usize) -> Slope {
+        let strength =
+            self.system.rule_strength(rule, &mut self.stack, |s| grade_of(&self.grades, s));
+        let strength = within_unit(strength);
+        let block = self.system.rules.get(rule).map(|rule| rule.block);
+        match block.and_then(|block| self.continuity.blocks.get(block)) {
+            Some(true) => strength,
+            _ => unknown_slope(strength.value.hull(Interval::ZERO)),
+        }
+    }
+
+    /// Strength of a plain rule: the least of its grades, with the slopes of those that may be it.
+    fn minimum(&self, rule: usize, least: u128) -> Slope {
+        let atoms = self.atoms.get(rule).copied().unwrap_or(0);
+        let grades = bits(atoms).map(|atom| grade_of(&self.grades, atom).value);
+        let value = grades.reduce(Interval::smaller).unwrap_or(Interval::UNIT);
+        let slopes = bits(least).map(|atom| {
+            let [slope] = grade_of(&self.grades, atom).derivative;
+            slope
+        });
+        let slope = slopes.reduce(Interval::hull).unwrap_or(Interval::ENTIRE);
+        Slope { value, derivative: [slope] }
+    }
+
+    /// Those statements of a plain rule whose grade may be the least somewhere in the box: all but
+    /// those with another that is never larger.
     fn least_atoms(&self, rule: usize) -> u128 {
         let atoms = self.atoms.get(rule).copied().unwrap_or(0);
-        let grades = || bits(atoms).filter_map(|atom| Some((atom, self.grades.get(atom)?.value)));
-        let bound = grades().fold(f64::INFINITY, |bound, (_, grade)| bound.min(grade.upper()));
-        grades()
-            .filter(|(_, grade)| grade.lower() <= bound)
-            .fold(0, |mask, (atom, _)| mask | (1 << atom))
+        let beaten = |one: usize| {
+            bits(atoms).any(|other| {
+                let smaller = other != one && self.grade_below(other, one);
+                smaller && (other < one || !self.grade_below(one, other))
+            })
+        };
+        bits(atoms).filter(|&one| !beaten(one)).fold(0, |mask, one| mask | (1 << one))
+    }
+
+    /// True if the first grade is nowhere in the box above the second.
+    fn grade_below(&self, one: usize, other: usize) -> bool {
+        let known = self.above.get(one).copied().unwrap_or(0);
+        known >> other & 1 == 1
+            || grade_of(&self.grades, one).value.upper()
+                <= grade_of(&self.grades, other).value.lower()
     }
 
     /// Grade of `x` in a set.
@@ -163,13 +221,15 @@ impl<'a> Firing<'a> {
         if left.upper() <= right.lower() {
             return true;
         }
-        // The other's strength is its least grade; each of them is one of ours or above all of us.
+        // The other's strength is its least grade; each of them is above one of ours.
         let mask = |rule: usize| self.least.get(rule).copied().unwrap_or(0);
         let (ours, theirs) = (mask(rule), mask(other));
-        let known = ours != 0 && theirs != 0;
-        known
-            && bits(theirs & !ours)
-                .all(|atom| grade_of(&self.grades, atom).value.lower() >= left.upper())
+        let covered = |atom: usize| {
+            ours >> atom & 1 == 1
+                || grade_of(&self.grades, atom).value.lower() >= left.upper()
+                || bits(ours).any(|own| self.grade_below(own, atom))
+        };
+        ours != 0 && theirs != 0 && bits(theirs & !ours).all(covered)
     }
 }
 

@@ -17,6 +17,7 @@ mod masses;
 mod objective;
 mod options;
 mod rules;
+mod ties;
 mod weighted;
 
 use alloc::vec::Vec;

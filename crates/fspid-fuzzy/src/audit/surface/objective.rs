@@ -53,8 +53,7 @@ pub(super) struct SlopeAlong<'f, 'a> {
 
 impl Objective for SlopeAlong<'_, '_> {
     fn enclose(&mut self, cell: &[Interval], _: Option<&mut [Interval]>) -> Interval {
-        let [slope] = self.field.ask(self.output, cell, Some(self.input)).derivative;
-        slope
+        self.field.slope(self.output, cell, self.input)
     }
 
     fn has_slopes(&self) -> bool {
@@ -146,7 +145,7 @@ impl Objective for Secant<'_, '_> {
         let Some(side) = place.get_mut(self.input) else { return Interval::ENTIRE };
         let rest = *side;
         *side = rest + distance.hull(Interval::ZERO);
-        let slope = self.value.slope(&place, self.input);
+        let slope = self.value.field.slope(self.value.output, &place, self.input);
         if distance.contains(0.0) {
             return slope;
         }
