@@ -30,6 +30,7 @@ pub use build::System;
 pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
 pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
+pub(crate) use firing::hedged;
 pub use norms::{SNorm, TNorm};
 pub use output::{Joined, Piece};
 pub use parts::{
@@ -37,4 +38,5 @@ pub use parts::{
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
 pub use trace::{Contribution, Firing};
+pub(crate) use program::{Program, STACK, Step};
 pub use workspace::Workspace;
