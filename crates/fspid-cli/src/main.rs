@@ -35,6 +35,7 @@ enum Command {
     Explain(commands::explain::Arguments),
     Convert(commands::convert::Arguments),
     Surface(commands::surface::Arguments),
+    Audit(commands::audit::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Command::Explain(arguments) => commands::explain::run(&arguments),
         Command::Convert(arguments) => commands::convert::run(&arguments),
         Command::Surface(arguments) => commands::surface::run(&arguments),
+        Command::Audit(arguments) => commands::audit::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

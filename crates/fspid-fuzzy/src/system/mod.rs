@@ -37,6 +37,6 @@ pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
-pub use trace::{Contribution, Firing};
 pub(crate) use program::{Program, STACK, Step};
+pub use trace::{Contribution, Firing};
 pub use workspace::Workspace;

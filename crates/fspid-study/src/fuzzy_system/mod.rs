@@ -5,6 +5,7 @@
 //! `fspid-formats`'.
 
 mod answer;
+mod audit;
 mod convert;
 mod explain;
 mod load;
@@ -16,6 +17,7 @@ mod words;
 pub use fspid_fuzzy::system::System;
 
 pub use answer::{Asked, ask};
+pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
 pub use convert::{ConvertError, Converted, Target, convert};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
 pub use load::{Format, LoadError, Loaded, Options, load, read};

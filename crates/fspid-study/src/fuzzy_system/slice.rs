@@ -163,6 +163,20 @@ impl<'a> Asking<'a> {
     }
 }
 
+/// The range of each input: as given, `name=lower..upper`, or that of the file.
+pub(super) fn spans(
+    system: &System,
+    given: &[String],
+    problems: &mut Vec<String>,
+) -> Vec<Universe> {
+    let mut asking = Asking { system, problems: Vec::new() };
+    let given = asking.spans(given);
+    let inputs = 0..system.parts().inputs.len();
+    let spans = inputs.filter_map(|input| asking.span(input, &given)).collect();
+    problems.append(&mut asking.problems);
+    spans
+}
+
 /// From the first to the last corner of an input's sets.
 fn extent(input: &Input) -> Option<Universe> {
     let (mut lower, mut upper) = (f64::INFINITY, f64::NEG_INFINITY);
