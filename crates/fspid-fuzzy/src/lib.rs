@@ -31,11 +31,10 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
-#[cfg(test)]
-extern crate std;
-
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 mod centroid;
 mod defuzzifier;
@@ -56,6 +55,8 @@ pub mod system;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+#[cfg(feature = "alloc")]
+pub use formula::{Formula, FormulaError, FormulaErrorKind};
 pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
 pub use norm::{SNormKind, TNormKind};
