@@ -16,13 +16,27 @@
     )
 )]
 
+mod adapt;
+mod check;
 // Until every format uses all of them.
 #[allow(dead_code)]
 mod cursor;
+pub mod fll;
+mod identifiers;
+#[allow(dead_code)]
+mod lexer;
+mod loss;
+#[allow(dead_code)]
+mod names;
 mod note;
 #[allow(dead_code)]
 mod number;
 #[allow(dead_code)]
 mod report;
+#[allow(dead_code)]
+mod rule;
+mod term;
+#[allow(dead_code)]
+mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};
