@@ -21,6 +21,7 @@ mod check;
 // Until every format uses all of them.
 #[allow(dead_code)]
 mod cursor;
+pub mod fcl;
 pub mod fll;
 mod identifiers;
 #[allow(dead_code)]
