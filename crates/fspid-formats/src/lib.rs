@@ -16,12 +16,18 @@
     )
 )]
 
+mod adapt;
+mod check;
 // Until every format uses all of them.
 #[allow(dead_code)]
 mod cursor;
+pub mod fcl;
 pub mod fis;
+pub mod fll;
+mod identifiers;
 #[allow(dead_code)]
 mod lexer;
+mod loss;
 #[allow(dead_code)]
 mod names;
 mod note;
@@ -32,6 +38,7 @@ mod report;
 #[allow(dead_code)]
 mod rule;
 pub mod rule_text;
+mod term;
 #[allow(dead_code)]
 mod vocabulary;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fspid_fuzzy::system::{Input, Output, Variable};
+use fspid_fuzzy::system::Variable;
 
 /// Names of one kind in the order of their positions.
 #[derive(Debug, Default)]
@@ -60,8 +60,8 @@ impl Index {
     }
 }
 
-impl<'n> FromIterator<&'n String> for Index {
-    fn from_iter<I: IntoIterator<Item = &'n String>>(names: I) -> Self {
+impl<'n> FromIterator<&'n str> for Index {
+    fn from_iter<I: IntoIterator<Item = &'n str>>(names: I) -> Self {
         let mut index = Self::default();
         for name in names {
             index.add(name);
@@ -82,17 +82,16 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    pub(crate) fn new(inputs: &[Input], outputs: &[Output], case_matters: bool) -> Self {
-        let of_inputs = inputs.iter().map(|input| input.terms.iter().map(|t| &t.name).collect());
-        let of_outputs =
-            outputs.iter().map(|output| output.terms.iter().map(|t| &t.name).collect());
-        let variables = inputs.iter().map(|i| &i.name).chain(outputs.iter().map(|o| &o.name));
-        Self {
-            variables: variables.collect(),
-            inputs: inputs.len(),
-            terms: of_inputs.chain(of_outputs).collect(),
-            case_matters,
-        }
+    /// No names so far.
+    pub(crate) fn empty(case_matters: bool) -> Self {
+        Self { variables: Index::default(), inputs: 0, terms: Vec::new(), case_matters }
+    }
+
+    /// Adds a variable with its terms; inputs come before outputs.
+    pub(crate) fn push(&mut self, name: &str, output: bool, terms: Index) {
+        self.variables.add(name);
+        self.inputs += usize::from(!output);
+        self.terms.push(terms);
     }
 
     /// The variable at a position of [`variables`](Self::variables).
@@ -120,8 +119,7 @@ mod tests {
 
     #[test]
     fn names_are_found_as_written_and_else_without_case_if_only_one_fits() {
-        let names = ["Low", "low", "High"].map(String::from);
-        let index: Index = names.iter().collect();
+        let index: Index = ["Low", "low", "High"].into_iter().collect();
         assert_eq!(index.find("low"), Found::Exact(1));
         assert_eq!(index.find("LOW"), Found::Nothing);
         assert_eq!(index.find("HIGH"), Found::Folded(2));

@@ -19,7 +19,16 @@ impl RuleReader {
     /// For rules about these variables.
     #[must_use]
     pub fn new(inputs: &[Input], outputs: &[Output]) -> Self {
-        Self { names: Names::new(inputs, outputs, true) }
+        let mut names = Names::empty(true);
+        for input in inputs {
+            let terms = input.terms.iter().map(|term| term.name.as_str());
+            names.push(&input.name, false, terms.collect());
+        }
+        for output in outputs {
+            let terms = output.terms.iter().map(|term| term.name.as_str());
+            names.push(&output.name, true, terms.collect());
+        }
+        Self { names }
     }
 
     /// The rule `if … then …`, perhaps with a weight.
@@ -29,7 +38,8 @@ impl RuleReader {
     pub fn read(&self, text: &str) -> Result<Rule, Problems> {
         let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
         let mut report = Report::default();
-        let mut reader = Reader::new(Tokens::new(Lexer::words(cursor)), &self.names, &mut report);
+        let tokens = Tokens::new(Lexer::words(cursor));
+        let mut reader = Reader::new(tokens, &self.names, &mut report, |_| false);
         let rule = reader.rule();
         let rest = reader.tokens.next;
         if rule.is_some() && !rest.text.is_empty() {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use super::Loading;
+use super::{Loading, Tool};
 use crate::exit::{Failure, note};
-use fspid_study::fuzzy_system::{self, Target};
+use fspid_study::fuzzy_system::{self, Dialect, Target};
 use fspid_study::output;
 
 /// Write a fuzzy system in another format; the ending of OUT says which.
@@ -31,29 +31,8 @@ pub(crate) struct Arguments {
     lossy: bool,
 }
 
-/// A tool with a dialect of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Tool {
-    /// The standard.
-    Iec,
-    /// fuzzylite.
-    Fuzzylite,
-    /// jFuzzyLogic.
-    Jfuzzylogic,
-}
-
-impl Tool {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Iec => "iec",
-            Self::Fuzzylite => "fuzzylite",
-            Self::Jfuzzylogic => "jfuzzylogic",
-        }
-    }
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let target = Target { dialect: arguments.to.map(Tool::name), lossy: arguments.lossy };
+    let target = Target { dialect: arguments.to.map(Dialect::from), lossy: arguments.lossy };
     let (name, options) = (&arguments.system, arguments.loading.options());
     let converted =
         fuzzy_system::convert(name, options, &arguments.out, target).map_err(Failure::input)?;

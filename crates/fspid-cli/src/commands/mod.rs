@@ -15,7 +15,7 @@ pub(crate) mod surface;
 use clap::{Args, ValueEnum};
 
 use crate::exit::{Failure, note};
-use fspid_study::fuzzy_system::{self, Options, System};
+use fspid_study::fuzzy_system::{self, Dialect, Options, System};
 
 /// How a fuzzy system answers, where its file shall not decide.
 #[derive(Debug, Args)]
@@ -30,6 +30,33 @@ pub(crate) struct Loading {
     /// What to do with inputs beyond their range: `clamp`, `evaluate` or `error`.
     #[arg(long, value_name = "POLICY")]
     pub(crate) out_of_range: Option<String>,
+    /// The tool that an .fcl file was written for, if it is not to be found out.
+    #[arg(long, value_enum, value_name = "TOOL")]
+    pub(crate) dialect: Option<Tool>,
+    /// The function block of an .fcl file, if there are several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) block: Option<String>,
+}
+
+/// A tool with a dialect of FCL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Tool {
+    /// IEC 61131-7, the standard.
+    Iec,
+    /// fuzzylite.
+    Fuzzylite,
+    /// jFuzzyLogic.
+    Jfuzzylogic,
+}
+
+impl From<Tool> for Dialect {
+    fn from(tool: Tool) -> Self {
+        match tool {
+            Tool::Iec => Self::Iec,
+            Tool::Fuzzylite => Self::Fuzzylite,
+            Tool::Jfuzzylogic => Self::JFuzzyLogic,
+        }
+    }
 }
 
 impl Loading {
@@ -39,6 +66,8 @@ impl Loading {
             range: self.range,
             sampling: self.defuzzifier.as_deref(),
             out_of_range: self.out_of_range.as_deref(),
+            dialect: self.dialect.map(Dialect::from),
+            block: self.block.as_deref(),
         }
     }
 

@@ -16,6 +16,8 @@ pub(crate) struct Reader<'r, 'a> {
     pub(crate) tokens: Tokens<'a>,
     pub(crate) names: &'r Names,
     pub(crate) report: &'r mut Report,
+    /// Words that no rule goes beyond.
+    ends: fn(&str) -> bool,
     /// First use of each of *and*, *or*.
     pub(crate) and: Option<Place>,
     pub(crate) or: Option<Place>,
@@ -30,8 +32,14 @@ struct Clause<'a> {
 }
 
 impl<'r, 'a> Reader<'r, 'a> {
-    pub(crate) fn new(tokens: Tokens<'a>, names: &'r Names, report: &'r mut Report) -> Self {
-        Self { tokens, names, report, and: None, or: None }
+    /// `ends` tells the words that no rule goes beyond.
+    pub(crate) fn new(
+        tokens: Tokens<'a>,
+        names: &'r Names,
+        report: &'r mut Report,
+        ends: fn(&str) -> bool,
+    ) -> Self {
+        Self { tokens, names, report, ends, and: None, or: None }
     }
 
     /// A rule from `if` up to its weight.
@@ -130,24 +138,23 @@ impl<'r, 'a> Reader<'r, 'a> {
 
     fn variable(&mut self) -> Option<Token<'a>> {
         let next = self.tokens.next;
-        if matches!(next.kind, Kind::Word | Kind::Number) && !next.is_any(&RESERVED) {
+        if self.is_name(&next) && !next.is_any(&RESERVED) {
             return Some(self.tokens.advance());
         }
-        self.wrong(
-            next,
-            "not the name of a variable",
-            known(self.names.variables.all(), next.text),
-        );
+        let expected = known(self.names.variables.all(), next.text);
+        self.wrong(next, "not the name of a variable", expected);
         None
+    }
+
+    fn is_name(&self, token: &Token) -> bool {
+        matches!(token.kind, Kind::Word | Kind::Number) && !(self.ends)(token.text)
     }
 
     /// The words up to the next keyword or sign.
     fn words(&mut self) -> Vec<Token<'a>> {
         let mut words = Vec::new();
-        let ends = ["if", "is", "and", "or", "then", "with"];
-        let wanted =
-            |next: &Token| matches!(next.kind, Kind::Word | Kind::Number) && !next.is_any(&ends);
-        while wanted(&self.tokens.next) {
+        let keywords = ["if", "is", "and", "or", "then", "with"];
+        while self.is_name(&self.tokens.next) && !self.tokens.next.is_any(&keywords) {
             words.push(self.tokens.advance());
         }
         words
@@ -219,7 +226,8 @@ impl<'r, 'a> Reader<'r, 'a> {
     }
 
     fn wrong(&mut self, token: Token, message: impl Into<String>, expected: impl Into<String>) {
-        let message = if token.kind == Kind::End { "the rule ends".into() } else { message.into() };
+        let over = token.kind == Kind::End || (self.ends)(token.text);
+        let message = if over { "the rule ends".into() } else { message.into() };
         self.report.problem(token.place(), token.text, message, expected);
     }
 }

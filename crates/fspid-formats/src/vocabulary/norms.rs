@@ -7,43 +7,39 @@ pub(crate) struct Row<K: 'static> {
     pub(crate) kind: K,
     pub(crate) class: &'static str,
     words: &'static [&'static str],
-    /// True if the standard knows the first word in this place.
-    pub(crate) standard: bool,
 }
 
-const fn row<K>(
-    kind: K,
-    class: &'static str,
-    words: &'static [&'static str],
-    standard: bool,
-) -> Row<K> {
-    Row { kind, class, words, standard }
+const fn row<K>(kind: K, class: &'static str, words: &'static [&'static str]) -> Row<K> {
+    Row { kind, class, words }
 }
 
 /// *And* and implications (`AND`, `ACT`; `conjunction`, `implication`).
 pub(crate) const T_NORMS: &[Row<TNormKind>] = &[
-    row(TNormKind::Minimum, "Minimum", &["MIN"], true),
-    row(TNormKind::AlgebraicProduct, "AlgebraicProduct", &["PROD"], true),
-    row(TNormKind::BoundedDifference, "BoundedDifference", &["BDIF"], true),
-    row(TNormKind::DrasticProduct, "DrasticProduct", &["DPROD", "DMIN", "DRASTIC"], false),
-    row(TNormKind::EinsteinProduct, "EinsteinProduct", &["EPROD", "EINSTEIN"], false),
-    row(TNormKind::HamacherProduct, "HamacherProduct", &["HPROD", "HAMACHER"], false),
-    row(TNormKind::NilpotentMinimum, "NilpotentMinimum", &["NMIN", "NILMIN", "NIPMIN"], false),
+    row(TNormKind::Minimum, "Minimum", &["MIN"]),
+    row(TNormKind::AlgebraicProduct, "AlgebraicProduct", &["PROD"]),
+    row(TNormKind::BoundedDifference, "BoundedDifference", &["BDIF"]),
+    row(TNormKind::DrasticProduct, "DrasticProduct", &["DPROD", "DMIN", "DRASTIC"]),
+    row(TNormKind::EinsteinProduct, "EinsteinProduct", &["EPROD", "EINSTEIN"]),
+    row(TNormKind::HamacherProduct, "HamacherProduct", &["HPROD", "HAMACHER"]),
+    row(TNormKind::NilpotentMinimum, "NilpotentMinimum", &["NMIN", "NILMIN", "NIPMIN"]),
 ];
 
 /// *Or* (`OR`; `disjunction`) and aggregations (`ACCU`; `aggregation`).
 pub(crate) const S_NORMS: &[Row<SNormKind>] = &[
-    row(SNormKind::Maximum, "Maximum", &["MAX"], true),
-    row(SNormKind::AlgebraicSum, "AlgebraicSum", &["ASUM", "PROBOR"], true),
-    row(SNormKind::BoundedSum, "BoundedSum", &["BSUM"], true),
-    row(SNormKind::DrasticSum, "DrasticSum", &["DSUM", "DMAX", "DRASTIC"], false),
-    row(SNormKind::EinsteinSum, "EinsteinSum", &["ESUM", "EINSTEIN"], false),
-    row(SNormKind::HamacherSum, "HamacherSum", &["HSUM", "HAMACHER"], false),
-    row(SNormKind::NilpotentMaximum, "NilpotentMaximum", &["NMAX", "NILMAX", "NIPMAX"], false),
-    row(SNormKind::NormalizedSum, "NormalizedSum", &["NSUM"], true),
-    row(SNormKind::UnboundedSum, "UnboundedSum", &["USUM", "SUM"], false),
+    row(SNormKind::Maximum, "Maximum", &["MAX"]),
+    row(SNormKind::AlgebraicSum, "AlgebraicSum", &["ASUM", "PROBOR"]),
+    row(SNormKind::BoundedSum, "BoundedSum", &["BSUM"]),
+    row(SNormKind::DrasticSum, "DrasticSum", &["DSUM", "DMAX", "DRASTIC"]),
+    row(SNormKind::EinsteinSum, "EinsteinSum", &["ESUM", "EINSTEIN"]),
+    row(SNormKind::HamacherSum, "HamacherSum", &["HSUM", "HAMACHER"]),
+    row(SNormKind::NilpotentMaximum, "NilpotentMaximum", &["NMAX", "NILMAX", "NIPMAX"]),
+    row(SNormKind::NormalizedSum, "NormalizedSum", &["NSUM"]),
+    row(SNormKind::UnboundedSum, "UnboundedSum", &["USUM", "SUM"]),
 ];
 
+/// Connectives *and* that the standard knows.
+pub(crate) const STANDARD_AND: [TNormKind; 3] =
+    [TNormKind::Minimum, TNormKind::AlgebraicProduct, TNormKind::BoundedDifference];
 /// Accumulations that the standard knows.
 pub(crate) const STANDARD_ACCU: [SNormKind; 3] =
     [SNormKind::Maximum, SNormKind::BoundedSum, SNormKind::NormalizedSum];

@@ -69,6 +69,9 @@ pub(crate) const JFUZZYLOGIC: &[Row] = &[
     row(ShapeKind::Cosine, "COSINE", Order::HalfWidth),
 ];
 
+/// A list of points, in every dialect of FCL.
+pub(crate) const POINTS: Row = row(ShapeKind::Points, "points", Order::Same);
+
 /// The row of a word, in any case.
 pub(crate) fn of_word(rows: &'static [Row], word: &str) -> Option<&'static Row> {
     rows.iter().find(|row| row.word.eq_ignore_ascii_case(word))

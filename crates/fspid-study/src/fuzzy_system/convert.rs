@@ -3,16 +3,17 @@
 use std::fmt;
 use std::path::Path;
 
-use fspid_formats::{Problems, WriteOptions};
+use fspid_formats::fcl::Dialect;
+use fspid_formats::{Problems, WriteOptions, fcl, fis, fll};
 
 use super::load::{Format, LoadError, Options, load};
 use super::toml_file;
 
 /// Which tool a file is for, where a format has dialects, and what may be lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Target<'a> {
-    /// Name of the dialect.
-    pub dialect: Option<&'a str>,
+pub struct Target {
+    /// The dialect of an `.fcl` file.
+    pub dialect: Option<Dialect>,
     /// Whether what the format cannot say may be approximated or left out.
     pub lossy: bool,
 }
@@ -67,7 +68,7 @@ pub fn convert(
     name: &str,
     options: Options<'_>,
     path: &Path,
-    target: Target<'_>,
+    target: Target,
 ) -> Result<Converted, ConvertError> {
     let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
     let format = Format::of(path).ok_or_else(unknown)?;
@@ -75,15 +76,16 @@ pub fn convert(
     if let Some(dialect) = target.dialect
         && format != Format::Fcl
     {
-        let problem = format!("--to {dialect} goes with an .fcl file");
+        let problem = format!("--to {} goes with an .fcl file", dialect.name());
         return Err(ConvertError::Unwritable { problems: vec![problem] });
     }
     let parts = loaded.system.parts();
     let options = WriteOptions { lossy: target.lossy };
     let written = match format {
         Format::Toml => return Ok(Converted::whole(toml_file::write(parts), loaded.notes)),
-        Format::Fis => fspid_formats::fis::write(parts, options),
-        Format::Fcl | Format::Fll => return Err(unknown()),
+        Format::Fis => fis::write(parts, options),
+        Format::Fll => fll::write(parts, options),
+        Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
     };
     let writing = written.map_err(|problems| unwritable(path, &problems))?;
     let lost = writing.notes.iter().map(ToString::to_string).collect();

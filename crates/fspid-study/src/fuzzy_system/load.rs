@@ -4,6 +4,8 @@ use std::fmt;
 use std::path::Path;
 
 use fspid_core::fuzzy::OutOfRange;
+use fspid_formats::fcl::{Dialect, ReadOptions};
+use fspid_formats::{fcl, fis, fll};
 use fspid_fuzzy::system::{Parts, Sampling, System};
 
 use super::toml_file;
@@ -20,6 +22,10 @@ pub struct Options<'a> {
     pub sampling: Option<&'a str>,
     /// What happens to inputs outside of their ranges.
     pub out_of_range: Option<&'a str>,
+    /// The dialect of an `.fcl` file, if it is not to be found out.
+    pub dialect: Option<Dialect>,
+    /// The function block of an `.fcl` file, if there are several.
+    pub block: Option<&'a str>,
 }
 
 /// A system and what is worth knowing about how it was read.
@@ -109,11 +115,17 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     }
     let path = Path::new(name);
     let format = Format::of(path).ok_or_else(|| LoadError::UnknownFormat { name: name.into() })?;
+    let mut misplaced = Vec::new();
     if options.range.is_some() {
-        let reason = "--range goes with a shipped rule table; a file says its own ranges";
-        return Err(LoadError::Refused(Refused::one(reason)));
+        misplaced.push("--range goes with a shipped rule table; a file says its own ranges".into());
     }
-    let loaded = read(name, &text(path)?, format)?;
+    if format != Format::Fcl && (options.dialect.is_some() || options.block.is_some()) {
+        misplaced.push("--dialect and --block go with an .fcl file".into());
+    }
+    if !misplaced.is_empty() {
+        return Err(LoadError::Refused(Refused::all(misplaced)));
+    }
+    let loaded = read(name, &text(path)?, format, options)?;
     Ok(Loaded { system: changed(loaded.system, options)?, notes: loaded.notes })
 }
 
@@ -130,14 +142,23 @@ fn text(path: &Path) -> Result<String, LoadError> {
 ///
 /// # Errors
 /// [`LoadError::Problems`].
-pub fn read(name: &str, text: &str, format: Format) -> Result<Loaded, LoadError> {
+pub fn read(
+    name: &str,
+    text: &str,
+    format: Format,
+    options: Options<'_>,
+) -> Result<Loaded, LoadError> {
     match format {
         Format::Toml => {
             let system = toml_file::parse(text, name).map_err(LoadError::Problems)?;
             Ok(Loaded { system, notes: Vec::new() })
         }
-        Format::Fis => of_tool(name, fspid_formats::fis::read(text)),
-        Format::Fcl | Format::Fll => Err(LoadError::UnknownFormat { name: name.to_owned() }),
+        Format::Fis => of_tool(name, fis::read(text)),
+        Format::Fll => of_tool(name, fll::read(text)),
+        Format::Fcl => {
+            let options = ReadOptions { dialect: options.dialect, block: options.block };
+            of_tool(name, fcl::read_with(text, options))
+        }
     }
 }
 

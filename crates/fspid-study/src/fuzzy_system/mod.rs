@@ -14,6 +14,7 @@ mod table;
 mod toml_file;
 mod words;
 
+pub use fspid_formats::fcl::Dialect;
 pub use fspid_fuzzy::system::System;
 
 pub use answer::{Asked, ask};

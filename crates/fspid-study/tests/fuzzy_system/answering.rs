@@ -53,7 +53,8 @@ fn an_option_overrides_the_rule_of_the_file() {
     let options = Options { out_of_range: Some("error"), ..Options::default() };
     let system = load(&name, options).expect("good").system;
     assert!(ask(&system, &values(&["food=11", "service=4"])).is_err());
-    let options = Options { sampling: Some("cog"), out_of_range: Some("wrap"), range: None };
+    let options =
+        Options { sampling: Some("cog"), out_of_range: Some("wrap"), ..Options::default() };
     let told = load(&name, options).expect_err("wrong").to_string();
     assert!(told.contains("vertices:N") && told.contains("clamp, evaluate, error"), "{told}");
 }
