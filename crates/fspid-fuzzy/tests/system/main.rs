@@ -6,6 +6,8 @@
 mod build;
 mod integral;
 mod outline;
+mod policies;
+mod rules;
 mod sampled;
 mod supervisor;
 mod tipper;
