@@ -64,6 +64,10 @@ pub(crate) struct Scratch {
     pub(crate) room: Vec<f64>,
     /// Levels of the actors of the output at hand.
     pub(crate) levels: Vec<Level>,
+    /// Strengths of terms from left to right.
+    pub(crate) sorted: Vec<f64>,
+    /// Actors that fire, in the order in which they are joined.
+    pub(crate) order: Vec<usize>,
     pub(crate) outline: Room,
     pub(crate) samples: Samples,
 }
@@ -79,9 +83,12 @@ impl Scratch {
         });
         let room = of_inputs.chain(of_outputs).map(|m: &Membership| m.room(inputs)).max();
         let actors = system.outputs.iter().map(|output| output.actors.len()).max();
+        let terms = system.parts.outputs.iter().map(|output| output.terms.len()).max();
         let mut scratch = Self {
             room: vec![0.0; room.unwrap_or(0).max(inputs + 1)],
             levels: vec![Level::default(); actors.unwrap_or(0)],
+            order: Vec::with_capacity(actors.unwrap_or(0)),
+            sorted: vec![0.0; terms.unwrap_or(0)],
             ..Self::default()
         };
         for output in &system.outputs {
@@ -124,8 +131,10 @@ impl System {
         let levels = actors.levels(conclusions, degrees, &mut scratch.levels);
         let concluded = Concluded { output, actors, levels, inputs };
         match plan {
-            Plan::Partition(partition) => Some((partition.centroid(levels)?, 0.0)),
-            Plan::Integral(integral) => integral.number(method, &concluded),
+            Plan::Partition(partition) => {
+                Some((partition.centroid(levels, &mut scratch.sorted)?, 0.0))
+            }
+            Plan::Integral(integral) => integral.number(method, &concluded, &mut scratch.order),
             Plan::Sampled(sampled) => {
                 let Scratch { room, samples, .. } = scratch;
                 Some((sampled.number(method, &concluded, room, samples)?, 0.0))
