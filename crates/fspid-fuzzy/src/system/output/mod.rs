@@ -58,7 +58,7 @@ impl Plan {
 }
 
 /// Memory that the plans need, shared by the outputs.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// Room for lifted parameters and the variables of formulas.
     pub(crate) room: Vec<f64>,
@@ -101,6 +101,22 @@ impl Scratch {
         }
         scratch
     }
+}
+
+impl Clone for Scratch {
+    /// A clone has as much room as the original.
+    fn clone(&self) -> Self {
+        let (outline, samples) = (self.outline.roomy_clone(), self.samples.roomy_clone());
+        let (room, levels, sorted) = (self.room.clone(), self.levels.clone(), self.sorted.clone());
+        Self { room, levels, sorted, order: roomy_clone(&self.order), outline, samples }
+    }
+}
+
+/// A clone with the same capacity.
+fn roomy_clone<T: Clone>(original: &Vec<T>) -> Vec<T> {
+    let mut clone = Vec::with_capacity(original.capacity());
+    clone.extend_from_slice(original);
+    clone
 }
 
 /// Grade of a set at `x`; 0 for a conclusion that is no set.
