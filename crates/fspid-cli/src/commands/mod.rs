@@ -24,7 +24,7 @@ pub(crate) struct Loading {
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) range: Option<f64>,
     /// How integrals are computed: `exact`, `endpoints:N` (MATLAB: 101), `midpoint:N`,
-    /// `trapezoid:N`, `left-end:N` or `vertices:N`; by default as the file's own tool does.
+    /// `trapezoid:N`, `left-end:N` or `vertices:N` (scikit-fuzzy); by default as the file's own tool does.
     #[arg(long, value_name = "RULE")]
     pub(crate) defuzzifier: Option<String>,
     /// What to do with inputs beyond their range: `clamp`, `evaluate` or `error`.
