@@ -9,12 +9,12 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::Plan;
+use super::output::{Actors, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
 };
-use super::program::{MAX_DEPTH, Program};
+use super::program::{Form, MAX_DEPTH, Program};
 use crate::hedge::Hedge;
 
 /// Most rules of a system.
@@ -36,6 +36,8 @@ pub struct System {
     pub(crate) block_rules: Vec<Range<usize>>,
     /// True if some rule asks about an output.
     pub(crate) chained: bool,
+    /// True if some conclusion has a hedge.
+    pub(crate) hedged: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -45,6 +47,7 @@ pub(crate) struct ResolvedRule {
     pub(crate) rule: usize,
     /// Its steps in the program.
     pub(crate) steps: Range<usize>,
+    pub(crate) form: Form,
     pub(crate) weight: f64,
     /// Its conclusions.
     pub(crate) conclusions: Range<usize>,
@@ -65,6 +68,10 @@ pub(crate) struct ResolvedOutput {
     /// Positions of its conclusions, in the order of the rules.
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
+    /// Who concludes what about it.
+    pub(crate) actors: Actors,
+    /// Its sets, if they make a polygon.
+    pub(crate) outline: Option<Outline>,
 }
 
 impl System {
@@ -102,12 +109,17 @@ impl System {
         }
         let outputs = parts.outputs.iter().zip(by_output).map(|(output, own)| {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
-            let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block)).collect();
-            ResolvedOutput { plan: Plan::new(output, &resolved, blocks), conclusions: own }
+            let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
+            let blocks: Vec<_> = blocks.collect();
+            let actors = Actors::of(output, &resolved, &blocks);
+            let outline = Outline::of(output, &actors);
+            let plan = Plan::new(output, &actors, outline.as_ref());
+            ResolvedOutput { plan, actors, outline, conclusions: own }
         });
         let outputs = outputs.collect();
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));
-        Self { parts, program, rules, conclusions, outputs, block_rules, chained }
+        let hedged = conclusions.iter().any(|conclusion| !conclusion.hedges.is_empty());
+        Self { parts, program, rules, conclusions, outputs, block_rules, chained, hedged }
     }
 }
 
@@ -144,10 +156,12 @@ impl Resolver {
         }
         let conclusions = begin..self.conclusions.len();
         let steps = self.program.append(&rule.antecedent);
+        let form = self.program.form(steps.clone());
         self.rules.push(ResolvedRule {
             block,
             rule: index,
             steps,
+            form,
             weight: rule.weight,
             conclusions,
         });

@@ -31,6 +31,7 @@ pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
 pub(crate) use firing::hedged;
 pub use norms::{SNorm, TNorm};
+pub use output::{Joined, Piece};
 pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
