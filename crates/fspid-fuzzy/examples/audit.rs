@@ -19,7 +19,11 @@ fn main() {
         rules.contradictions.len(),
         begin.elapsed()
     );
-    let audit = audit::surface(&system, &SurfaceOptions::default()).expect("universes are known");
+    let options = SurfaceOptions {
+        boxes: std::env::args().nth(1).map_or(20_000, |b| b.parse().expect("a number")),
+        ..SurfaceOptions::default()
+    };
+    let audit = audit::surface(&system, &options).expect("universes are known");
     for output in &audit.outputs {
         println!("value {:?} to {:?}, at rest {:?}", output.least, output.most, output.at_rest);
         println!("coverage {:?}", output.coverage);

@@ -8,7 +8,7 @@ use crate::system::{Antecedent, RuleBlock, SNorm, TNorm};
 
 /// The antecedent with nested conjunctions and disjunctions flattened, their parts in a fixed order
 /// and double negations removed, as far as the norms allow.
-pub(super) fn canonical(antecedent: &Antecedent, block: &RuleBlock) -> Antecedent {
+pub(in crate::audit) fn canonical(antecedent: &Antecedent, block: &RuleBlock) -> Antecedent {
     match antecedent {
         Antecedent::Always | Antecedent::Is(_) => antecedent.clone(),
         Antecedent::Not(part) => match canonical(part, block) {

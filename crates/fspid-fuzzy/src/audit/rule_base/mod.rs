@@ -12,7 +12,8 @@ use crate::norm::SNormKind;
 use crate::system::{
     Activation, Antecedent, Consequent, Defuzzifier, Rule, RuleBlock, System, Variable,
 };
-use antecedent::{canonical, implied_by};
+pub(super) use antecedent::canonical;
+use antecedent::implied_by;
 
 pub use grid::GridAudit;
 pub use labels::{AxisAudit, Direction, Exchange, LabelAudit, Neighbours, PairAudit};

@@ -112,7 +112,11 @@ impl Envelope {
 /// Where two straight functions of a slice meet inside it.
 #[inline]
 pub(super) fn meeting(slice: &Slice, one: [f64; 2], other: [f64; 2]) -> Option<f64> {
-    let place = slice.left + (other[0] - one[0]) / (one[1] - other[1]);
+    let (height, closing) = (other[0] - one[0], one[1] - other[1]);
+    // Most do not meet inside; that is told without the division.
+    let width = slice.right - slice.left;
+    let meets = height * closing > 0.0 && height.abs() <= 1.5 * width * closing.abs();
+    let place = if meets { slice.left + height / closing } else { slice.left };
     (place > slice.left && place < slice.right).then_some(place)
 }
 

@@ -5,9 +5,10 @@ use alloc::vec::Vec;
 use super::field::Field;
 use super::objective::{Departure, Image, Secant, SlopeAlong, Value};
 use super::options::SurfaceOptions;
+use super::symmetry::Mirror;
 use super::{AlongInput, Counterexample, Monotone, OutputSurface, Symmetry, coverage, ends};
 use crate::audit::Statement;
-use crate::audit::search::{Effort, Extreme, Magnitude, Objective, maximum, minimum, signs};
+use crate::audit::search::{self, Effort, Extreme, Magnitude, Objective, maximum, minimum, signs};
 use crate::scalar::Interval;
 
 /// What the halving of boxes may lose of a share by rounding.
@@ -160,9 +161,15 @@ impl Question<'_, '_> {
         let effort = Effort { tolerance: self.options.slope_tolerance, boxes: self.options.boxes };
         let universe = self.field.firing.system.parts.outputs.get(self.output);
         let middle = universe.and_then(|output| output.universe).map_or(0.0, |u| u.middle());
+        let about = odd.then_some(middle);
+        let mirror = Mirror { image, domain: self.domain, about };
+        if mirror.keeps(&self.field.firing.system.parts, self.output) {
+            let at = search::middle(self.domain);
+            let departure = Extreme { bounds: [0.0; 2], at, boxes: 0, settled: true };
+            return Symmetry { departure, statement: Statement::Proved };
+        }
         let half = half(self.domain, image);
         let value = Value { field: self.field, output: self.output };
-        let about = odd.then_some(middle);
         let mut departure = Departure { value, domain: self.domain, image, about };
         let departure = maximum(&mut Magnitude(&mut departure), &half, effort);
         let departure = self.counted(departure);

@@ -123,13 +123,12 @@ fn from_layers(
 ) -> (Slope, f64) {
     let slack = 2.0 * layers.slack;
     for (level, layer) in levels.iter_mut().zip(&layers.layers) {
-        let (strength, tops) = firing.strongest(layer.conclusions.iter().copied());
+        let strength = firing.strongest(&layer.conclusions, &mut level.tops);
         let [slope] = strength.derivative;
-        let (lower, upper) = (strength.value.lower() - slack, strength.value.upper() + slack);
-        *level = Level { lower: lower.max(0.0), upper, slope, tops };
-        if strength.value.upper() <= 0.0 {
-            *level = Level::nothing();
-        }
+        let fires = strength.value.upper() > 0.0;
+        level.lower = (strength.value.lower() - slack).max(0.0);
+        level.upper = if fires { strength.value.upper() + slack } else { 0.0 };
+        level.slope = slope;
     }
     let [lowers, uppers] = ends;
     lowers.clear();
@@ -151,26 +150,26 @@ fn from_layers(
 }
 
 impl Firing<'_> {
-    /// The strongest of some conclusions, and those of them that are it somewhere in the box.
-    pub(super) fn strongest(
-        &self,
-        conclusions: impl Iterator<Item = usize> + Clone,
-    ) -> (Slope, Vec<usize>) {
+    /// The strongest of some conclusions; `tops` become those of them that are it somewhere in the
+    /// box.
+    pub(super) fn strongest(&self, conclusions: &[usize], tops: &mut Vec<usize>) -> Slope {
         let degree = |c: usize| self.degrees.get(c).copied().unwrap_or(Slope::zero());
-        let least = conclusions.clone().map(|c| degree(c).value.lower()).fold(0.0, f64::max);
-        let mut tops: Vec<usize> =
-            conclusions.filter(|&c| degree(c).value.upper() >= least).collect();
-        if tops.len() > 1 {
-            let all = tops.clone();
-            tops.retain(|&one| {
-                !all.iter().any(|&other| {
-                    let below = other != one && self.conclusion_below(one, other);
-                    below && (other < one || !self.conclusion_below(other, one))
-                })
-            });
+        let least = conclusions.iter().map(|&c| degree(c).value.lower()).fold(0.0, f64::max);
+        tops.clear();
+        let mut value = Interval::ZERO;
+        for &one in conclusions.iter().filter(|&&c| degree(c).value.upper() >= least) {
+            value = value.larger(degree(one).value);
+            if !tops.iter().any(|&other| self.conclusion_below(one, other)) {
+                tops.retain(|&other| !self.conclusion_below(other, one));
+                tops.push(one);
+            }
         }
-        let strongest = tops.iter().map(|&c| degree(c)).reduce(Scalar::larger);
-        (strongest.unwrap_or(Slope::zero()), tops)
+        let slopes = tops.iter().map(|&c| {
+            let [slope] = degree(c).derivative;
+            slope
+        });
+        let slope = slopes.reduce(Interval::hull).unwrap_or(Interval::ZERO);
+        Slope { value, derivative: [slope] }
     }
 
     /// True if the first conclusion is nowhere in the box stronger than the second.

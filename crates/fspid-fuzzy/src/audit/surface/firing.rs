@@ -1,5 +1,6 @@
 //! How strongly everything fires over a box of inputs, and how fast that changes.
 
+use alloc::collections::BTreeSet;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -195,6 +196,18 @@ impl<'a> Firing<'a> {
         known >> other & 1 == 1
             || grade_of(&self.grades, one).value.upper()
                 <= grade_of(&self.grades, other).value.lower()
+    }
+
+    /// The largest grade of some statements over a box.
+    pub(super) fn largest_grade(
+        &mut self,
+        cell: &[Interval],
+        along: Option<usize>,
+        statements: &BTreeSet<usize>,
+    ) -> Slope {
+        self.prepare(cell, along, false);
+        let grades = statements.iter().map(|&statement| grade_of(&self.grades, statement));
+        grades.reduce(Scalar::larger).unwrap_or(Slope::zero())
     }
 
     /// Grade of `x` in a set.

@@ -205,14 +205,14 @@ impl Gradient {
             return;
         }
         let layer = |index: usize| slice.lines.get(index).map_or(usize::MAX, |line| line.layer);
-        let all = self.candidates.clone();
-        self.candidates.retain(|&one| {
+        let all = core::mem::take(&mut self.candidates);
+        self.candidates.extend(all.iter().filter(|&&one| {
             let one = layer(one);
             !all.iter().map(|&other| layer(other)).any(|other| {
                 let below = other != one && (known.below)(one, other);
                 below && (other < one || !(known.below)(other, one))
             })
-        });
+        }));
     }
 
     fn count_alone<Below: Fn(usize, usize) -> bool>(

@@ -300,12 +300,15 @@ fn smooth(system: &System, index: usize) -> bool {
 fn strongest(firing: &Firing<'_>, index: usize, output: &Output, terms: &mut Vec<Slope>) {
     terms.clear();
     terms.resize(output.terms.len(), Slope::zero());
-    let conclusions = firing.system.outputs.get(index).map_or(&[][..], |o| &o.conclusions);
+    let system = firing.system;
+    let conclusions = system.outputs.get(index).map_or(&[][..], |o| &o.conclusions);
     for (term, place) in terms.iter_mut().enumerate() {
-        let own = conclusions
+        let own: Vec<usize> = conclusions
             .iter()
-            .filter(|&&c| firing.system.conclusions.get(c).is_some_and(|found| found.term == term));
-        *place = firing.strongest(own.copied()).0;
+            .copied()
+            .filter(|&c| system.conclusions.get(c).is_some_and(|found| found.term == term))
+            .collect();
+        *place = firing.strongest(&own, &mut Vec::new());
     }
 }
 

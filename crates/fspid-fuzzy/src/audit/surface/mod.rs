@@ -17,6 +17,7 @@ mod masses;
 mod objective;
 mod options;
 mod rules;
+mod symmetry;
 mod ties;
 mod weighted;
 
@@ -82,6 +83,10 @@ pub struct Symmetry {
 }
 
 /// How an output goes along one input, the others held.
+///
+/// What is said of slopes leaves out strips of $10^{-12}$ of the distances in question along lines on
+/// which two Gaussian sets tie. Lines that differ only by the rounding of centres are taken for one;
+/// between them a slope may be anything, but no difference over a longer way shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlongInput {
     /// The smallest slope.

@@ -1,5 +1,6 @@
 //! What is searched for extremes: values, slopes, departures from symmetry, quotients.
 
+use alloc::collections::BTreeSet;
 use alloc::vec::Vec;
 
 use super::super::search::Objective;
@@ -87,7 +88,7 @@ impl Image {
     }
 
     /// The input along which the image moves when `input` does.
-    fn input(self, input: usize) -> usize {
+    pub(super) fn input(self, input: usize) -> usize {
         match self {
             Self::Exchanged([i, j]) if input == i => j,
             Self::Exchanged([i, j]) if input == j => i,
@@ -179,6 +180,24 @@ impl Objective for Coverage<'_, '_> {
             value = strongest.value;
         }
         value
+    }
+}
+
+/// The largest grade of some statements.
+pub(super) struct StrongestGrade<'f, 'a> {
+    pub(super) field: &'f mut Field<'a>,
+    pub(super) statements: &'f BTreeSet<usize>,
+}
+
+impl Objective for StrongestGrade<'_, '_> {
+    fn enclose(&mut self, cell: &[Interval], slopes: Option<&mut [Interval]>) -> Interval {
+        let firing = &mut self.field.firing;
+        let mut largest = firing.largest_grade(cell, None, self.statements);
+        for (input, place) in slopes.into_iter().flatten().enumerate() {
+            largest = firing.largest_grade(cell, Some(input), self.statements);
+            [*place] = largest.derivative;
+        }
+        largest.value
     }
 }
 

@@ -124,9 +124,9 @@ fn effect(field: &mut Field<'_>, rule: usize, domain: &[Interval], effort: Effor
     if all_none { RuleEffect::None { rule: position } } else { RuleEffect::Open { rule: position } }
 }
 
-/// A search that ends with the first point found.
+/// A search that is content with a point where the lead is nearly as large as it gets.
 fn best_lead(lead: &mut Lead<'_, '_>, domain: &[Interval], effort: Effort) -> Extreme {
-    let rough = maximum(lead, domain, Effort { tolerance: 1.0, boxes: 100 });
+    let rough = maximum(lead, domain, Effort { tolerance: 0.1, boxes: 300 });
     if rough.bounds[0] > 0.0 { rough } else { maximum(lead, domain, effort) }
 }
 

@@ -14,7 +14,7 @@
 use alloc::vec::Vec;
 
 use crate::membership::ShapeKind;
-use crate::scalar::{Interval, Scalar};
+use crate::scalar::Interval;
 use crate::system::{Membership, Statement, System, Variable};
 
 /// Width of the strips that are left out, as a share of the distances in question.

@@ -158,6 +158,11 @@ impl<'a> Audit<'a> {
         output.and_then(|output| output.terms.get(term)).map_or("", |term| &term.name)
     }
 
+    /// How long the range of an input is.
+    fn span(&self, input: usize) -> f64 {
+        self.surface.domain.get(input).map_or(1.0, |[lower, upper]| upper - lower)
+    }
+
     /// A point: `error = 4.167, change = 4.556`.
     fn point(&self, at: &[f64]) -> String {
         let inputs = self.system.parts().inputs.iter().zip(at);

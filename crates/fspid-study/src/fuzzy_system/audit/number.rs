@@ -26,6 +26,16 @@ pub(crate) fn between([lower, upper]: [f64; 2]) -> String {
     format!("between {} and {}", short(lower), short(upper))
 }
 
+/// A number beside others of the size `scale`; what is far smaller is 0.
+pub(crate) fn about(value: f64, scale: f64) -> String {
+    short(if value.abs() < 1e-9 * scale { 0.0 } else { value })
+}
+
+/// As [`between`], beside others of the size `scale`.
+pub(crate) fn between_about(bounds: [f64; 2], scale: f64) -> String {
+    between(bounds.map(|bound| if bound.abs() < 1e-9 * scale { 0.0 } else { bound }))
+}
+
 /// A share of the whole between proved bounds, in percent.
 pub(crate) fn percent([lower, upper]: [f64; 2]) -> String {
     let (lower, upper) = (100.0 * lower, 100.0 * upper);

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::audit::{Direction, GridAudit, OutputSurface, Statement, Symmetry};
 
-use super::number::{between, short};
+use super::number::{between, between_about, short};
 use super::{Audit, Finding, Mark, along, count, finding, first_few};
 
 pub(super) fn findings(audit: &Audit<'_>, index: usize) -> Vec<Finding> {
@@ -10,9 +10,11 @@ pub(super) fn findings(audit: &Audit<'_>, index: usize) -> Vec<Finding> {
     if let Some(surface) = audit.surface.outputs.get(index) {
         all.push(values(audit, index, surface));
         all.push(coverage(audit, surface));
-        all.push(at_rest(audit, surface));
-        for (input, along) in surface.along.iter().enumerate() {
-            all.push(along::finding_of(audit, input, along));
+        let unit = (surface.most.bounds[1] - surface.least.bounds[0]).abs();
+        all.push(at_rest(audit, surface, unit));
+        for (input, found) in surface.along.iter().enumerate() {
+            let meant = (labels_go_one_way(audit, index, input), unit);
+            all.extend(along::findings_of(audit, input, found, meant));
         }
         all.push(symmetry(audit, surface));
     }
@@ -48,8 +50,8 @@ fn coverage(audit: &Audit<'_>, surface: &OutputSurface) -> Finding {
         Statement::Proved => (
             Mark::Holds,
             format!(
-                "some rule fires everywhere, the strongest at least to {} at {}",
-                between(least.bounds),
+                "some rule fires everywhere, the strongest nowhere below {}; least at {}",
+                short(least.bounds[0]),
                 audit.point(&least.at)
             ),
         ),
@@ -64,9 +66,16 @@ fn coverage(audit: &Audit<'_>, surface: &OutputSurface) -> Finding {
     finding(mark, "coverage", format!("{sentence}{fallback}"))
 }
 
-fn at_rest(audit: &Audit<'_>, surface: &OutputSurface) -> Finding {
+/// True where the labels of the rule grid go one way along an input without exception.
+fn labels_go_one_way(audit: &Audit<'_>, output: usize, input: usize) -> bool {
+    let grid = audit.rules.outputs.get(output).and_then(|rules| rules.grid.as_ref());
+    let axis = grid.and_then(|grid| grid.labels.as_ref()?.along.get(input));
+    axis.is_some_and(|axis| axis.exceptions.is_empty() && axis.direction != Direction::Constant)
+}
+
+fn at_rest(audit: &Audit<'_>, surface: &OutputSurface, unit: f64) -> Finding {
     let rest = audit.point(&audit.surface.rest);
-    let sentence = format!("{} at {rest}", between(surface.at_rest));
+    let sentence = format!("{} at {rest}", between_about(surface.at_rest, unit));
     finding(Mark::Worth, "at rest", sentence)
 }
 
