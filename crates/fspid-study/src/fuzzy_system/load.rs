@@ -105,6 +105,16 @@ impl Format {
     }
 }
 
+/// True for a file that describes a fuzzy system: by its ending, and of a `.toml` file by its `kind`.
+#[must_use]
+pub fn is_system(path: &Path) -> bool {
+    match Format::of(path) {
+        None => false,
+        Some(Format::Toml) => text(path).is_ok_and(|text| toml_file::is_of_this_kind(&text)),
+        Some(_) => true,
+    }
+}
+
 /// The system in a file, or that of a shipped rule table with a half range.
 ///
 /// # Errors

@@ -21,7 +21,7 @@ pub use answer::{Asked, ask};
 pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
 pub use convert::{ConvertError, Converted, Target, convert};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
-pub use load::{Format, LoadError, Loaded, Options, load, read};
+pub use load::{Format, LoadError, Loaded, Options, is_system, load, read};
 pub use slice::{Question as SliceQuestion, Slice, slice};
 pub use table::SystemTable;
 pub use toml_file::{parse, schema, write};

@@ -2,8 +2,10 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod answering;
+mod auditing;
 mod explaining;
 mod messages;
+mod schema;
 mod writing;
 
 use fspid_study::fuzzy_system::{System, parse};

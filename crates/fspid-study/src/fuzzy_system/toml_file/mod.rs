@@ -26,3 +26,12 @@ pub use write::write;
 pub fn schema() -> Value {
     schema_of(&spec::FUZZY_SYSTEM, "fspid fuzzy system")
 }
+
+/// True for a text that says it is a fuzzy system; also for one with other mistakes.
+pub(super) fn is_of_this_kind(text: &str) -> bool {
+    let mut head = text.lines().map(str::trim).take_while(|line| !line.starts_with('['));
+    head.any(|line| {
+        let value = line.strip_prefix("kind").map(str::trim_start);
+        value.and_then(|rest| rest.strip_prefix('=')).is_some_and(|rest| rest.contains(spec::KIND))
+    })
+}
