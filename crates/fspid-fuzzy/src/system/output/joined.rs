@@ -69,6 +69,10 @@ impl Joined {
         Self { pieces: Vec::with_capacity(pieces), ..Self::default() }
     }
 
+    pub(crate) fn capacity(&self) -> usize {
+        self.pieces.capacity()
+    }
+
     pub(super) fn restart(&mut self, reference: f64) {
         self.pieces.clear();
         (self.top, self.reference) = (0.0, reference);

@@ -19,6 +19,7 @@ use super::workspace::Workspace;
 pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
+pub(crate) use weighted::value;
 
 /// How the number of one output is found.
 #[derive(Clone, Debug)]
@@ -88,6 +89,9 @@ impl System {
         output: &Output,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
+        if self.type2.is_some() {
+            return Some((self.middle_of_interval(index, output, workspace)?, 0.0));
+        }
         let plan = &self.outputs.get(index)?.plan;
         match (plan, output.defuzzifier) {
             (Plan::Partition(partition), _) => {

@@ -35,7 +35,7 @@ impl System {
     }
 
     /// Grade of the joined set at `x`.
-    pub(super) fn joined_grade(
+    pub(crate) fn joined_grade(
         &self,
         index: usize,
         output: &Output,
