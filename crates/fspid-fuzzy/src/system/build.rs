@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::{Outline, Plan};
+use super::output::{Actors, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
@@ -68,6 +68,8 @@ pub(crate) struct ResolvedOutput {
     /// Positions of its conclusions, in the order of the rules.
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
+    /// Who concludes what about it.
+    pub(crate) actors: Actors,
     /// Its sets, if they make a polygon.
     pub(crate) outline: Option<Outline>,
 }
@@ -106,16 +108,17 @@ impl System {
                 own.push(index);
             }
         }
-        let type2 = Type2::of(&parts, &conclusions, &by_output);
         let outputs = parts.outputs.iter().zip(by_output).map(|(output, own)| {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
             let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
             let blocks: Vec<_> = blocks.collect();
-            let outline = Outline::of(output, &resolved, &blocks);
-            let plan = Plan::new(output, &resolved, &blocks, outline.as_ref());
-            ResolvedOutput { plan, outline, conclusions: own }
+            let actors = Actors::of(output, &resolved, &blocks);
+            let outline = Outline::of(output, &actors);
+            let plan = Plan::new(output, &actors, outline.as_ref());
+            ResolvedOutput { plan, actors, outline, conclusions: own }
         });
-        let outputs = outputs.collect();
+        let outputs: Vec<_> = outputs.collect();
+        let type2 = Type2::of(&parts, &outputs);
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));
         Self { parts, program, rules, conclusions, outputs, block_rules, chained, type2 }
     }

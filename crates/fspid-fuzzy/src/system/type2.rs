@@ -8,7 +8,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::build::{ResolvedConclusion, System};
+use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, SetReading};
 use super::firing::hedged;
 use super::output::{Joined, Outline, Room, value};
@@ -25,8 +25,8 @@ pub(crate) type Bounds = [f64; 2];
 /// What an interval type-2 system needs beside its ordinary parts.
 #[derive(Clone, Debug)]
 pub(crate) struct Type2 {
-    /// Of each output, the outline of the lower sets.
-    outlines: Vec<Option<Outline>>,
+    /// Of each output, the outlines of the lower and of the upper sets.
+    outlines: Vec<[Option<Outline>; 2]>,
 }
 
 /// Memory for evaluations of an interval type-2 system.
@@ -38,7 +38,7 @@ pub(crate) struct Type2Room {
     degrees: Vec<Bounds>,
     /// Lower ends of `degrees`.
     lower: Vec<f64>,
-    rooms: Vec<Option<Room>>,
+    outline: Room,
     straight: [Vec<Straight>; 2],
     points: Vec<WeightedPoint>,
     pub(crate) intervals: Vec<Option<Bounds>>,
@@ -105,46 +105,34 @@ fn asks_output(antecedent: &Antecedent) -> bool {
 
 impl Type2 {
     /// What the system needs, if it is interval type-2.
-    pub(crate) fn of(
-        parts: &Parts,
-        conclusions: &[ResolvedConclusion],
-        by_output: &[Vec<usize>],
-    ) -> Option<Self> {
-        let outline = |(output, own): (&Output, &Vec<usize>)| {
-            let mut lowered = output.clone();
-            for term in &mut lowered.terms {
-                if let Conclusion::Set { membership, lower: Some(lower) } = &mut term.conclusion {
-                    *membership = lower.clone();
-                }
-            }
-            let own: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
-            let blocks: Vec<_> = own.iter().filter_map(|c| parts.blocks.get(c.block)).collect();
-            Outline::of(&lowered, &own, &blocks)
+    pub(crate) fn of(parts: &Parts, outputs: &[ResolvedOutput]) -> Option<Self> {
+        let outlines = |(output, resolved): (&Output, &ResolvedOutput)| {
+            [true, false].map(|lowered| Outline::of(&ordinary(output, lowered), &resolved.actors))
         };
         parts
             .is_interval_type2()
-            .then(|| Self { outlines: parts.outputs.iter().zip(by_output).map(outline).collect() })
+            .then(|| Self { outlines: parts.outputs.iter().zip(outputs).map(outlines).collect() })
     }
 
     /// Memory for evaluations.
     pub(crate) fn room(&self, system: &System) -> Type2Room {
         let most = system.outputs.iter().map(|o| o.conclusions.len()).max().unwrap_or(0);
         let sampled = system.parts.outputs.iter().filter_map(samples).map(|(count, _)| count).max();
-        let rooms: Vec<_> = self.outlines.iter().map(|o| Some(o.as_ref()?.room())).collect();
-        let pieces = rooms.iter().flatten().map(|room: &Room| room.joined.capacity()).max();
-        let upper = system.outputs.iter().filter_map(|o| Some(o.outline.as_ref()?.room()));
-        let upper_pieces = upper.map(|room| room.joined.capacity()).max();
+        let mut outline = Room::default();
+        for (output, both) in system.outputs.iter().zip(&self.outlines) {
+            for each in both.iter().flatten() {
+                each.reserve(&output.actors, &mut outline);
+            }
+        }
+        let pieces = outline.joined.capacity();
         Type2Room {
             grades: vec![[0.0; 2]; system.program.statements.len()],
             stack: vec![[0.0; 2]; STACK],
             strengths: vec![[0.0; 2]; system.rules.len()],
             degrees: vec![[0.0; 2]; system.conclusions.len()],
             lower: vec![0.0; system.conclusions.len()],
-            rooms,
-            straight: [
-                Vec::with_capacity(pieces.unwrap_or(0)),
-                Vec::with_capacity(upper_pieces.unwrap_or(0)),
-            ],
+            outline,
+            straight: [Vec::with_capacity(pieces), Vec::with_capacity(pieces)],
             points: Vec::with_capacity(most.max(sampled.unwrap_or(0) as usize)),
             intervals: vec![None; system.parts.outputs.len()],
         }
@@ -229,20 +217,17 @@ impl System {
     }
 
     fn exact_interval(&self, index: usize, workspace: &mut Workspace) -> Option<Bounds> {
-        let resolved = self.outputs.get(index)?;
-        let lower_outline = self.type2.as_ref()?.outlines.get(index)?.as_ref()?;
-        let mut straight = core::mem::take(&mut workspace.type2.as_mut()?.straight);
-        if let Some(upper) = self.outline(index, workspace) {
-            copy(upper, &mut straight[1]);
+        let ResolvedOutput { actors, conclusions, .. } = self.outputs.get(index)?;
+        let outlines = self.type2.as_ref()?.outlines.get(index)?;
+        let Workspace { scratch, type2, degrees, .. } = workspace;
+        let Type2Room { lower, outline, straight, .. } = type2.as_mut()?;
+        let ends = [lower.as_slice(), degrees.as_slice()];
+        for ((own, degrees), straight) in outlines.iter().zip(ends).zip(straight.iter_mut()) {
+            let levels = actors.levels(conclusions, degrees, &mut scratch.levels);
+            own.as_ref()?.join(actors, levels, outline);
+            copy(&outline.joined, straight);
         }
-        let room = workspace.type2.as_mut()?;
-        if let Some(own) = room.rooms.get_mut(index).and_then(Option::as_mut) {
-            lower_outline.join(&resolved.conclusions, &room.lower, own);
-            copy(&own.joined, &mut straight[0]);
-        }
-        let interval = centroid_end_points(&straight[0], &straight[1]);
-        room.straight = straight;
-        interval
+        centroid_end_points(&straight[0], &straight[1])
     }
 
     /// One point for each conclusion that fires.
@@ -309,6 +294,19 @@ impl System {
         }
         Some(())
     }
+}
+
+/// The output with its lower or its upper sets only.
+fn ordinary(output: &Output, lowered: bool) -> Output {
+    let mut ordinary = output.clone();
+    for term in &mut ordinary.terms {
+        if let Conclusion::Set { membership, lower } = &mut term.conclusion
+            && let (Some(lower), true) = (lower.take(), lowered)
+        {
+            *membership = lower;
+        }
+    }
+    ordinary
 }
 
 /// Number of samples of a sampled centroid; offset, number of cells, and how much a sample at either

@@ -61,7 +61,7 @@ impl Differentiator<'_> {
         workspace: &mut Workspace,
     ) -> Result<Vec<Node>, GradientError> {
         let mut nodes = self.quadrature(index, output, Some(value), workspace);
-        let grade = self.system.joined_grade(index, output, value, workspace).unwrap_or(0.0);
+        let grade = self.joined_grade(index, output, value, workspace).unwrap_or(0.0);
         if !(grade > 0.0) {
             return Err(jumps("the bisector lies in a gap of the set"));
         }
@@ -69,6 +69,29 @@ impl Differentiator<'_> {
             node.weight *= if node.x > value { 0.5 } else { -0.5 } / grade;
         }
         Ok(nodes)
+    }
+
+    /// Grade of the joined set at `x`.
+    fn joined_grade(
+        &self,
+        index: usize,
+        output: &Output,
+        x: f64,
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
+        let system = self.system;
+        let Workspace { inputs, degrees, scratch, .. } = workspace;
+        let mut joined = 0.0;
+        for &position in &system.outputs.get(index)?.conclusions {
+            let (resolved, &degree) = (system.conclusions.get(position)?, degrees.get(position)?);
+            let block = system.parts.blocks.get(resolved.block)?;
+            if let Conclusion::Set { membership, .. } = &output.terms.get(resolved.term)?.conclusion
+            {
+                let grade = membership.grade(x, inputs, &mut scratch.room);
+                joined = output.aggregation.apply(joined, block.implication.apply(degree, grade));
+            }
+        }
+        Some(joined)
     }
 
     fn area(
@@ -80,7 +103,7 @@ impl Differentiator<'_> {
     ) -> Result<f64, GradientError> {
         let mut area = 0.0_f64;
         for node in nodes {
-            let grade = self.system.joined_grade(index, output, node.x, workspace);
+            let grade = self.joined_grade(index, output, node.x, workspace);
             area += node.weight * grade.unwrap_or(0.0);
         }
         if area > 0.0 { Ok(area) } else { Err(GradientError::NoAnswer) }
@@ -127,11 +150,11 @@ impl Differentiator<'_> {
         let because = "the points of highest grade belong to no single piecewise-linear set";
         let joined = self.system.outline(index, workspace).ok_or_else(|| jumps(because))?;
         let highest = joined.top();
-        let flat = |p: &&Piece| p.cut && p.grade.iter().all(|&g| g >= highest);
+        let flat = |p: &&Piece| p.grade.iter().all(|&g| g >= highest);
         let plateau = joined.pieces().iter().find(flat);
         if let Some(piece) = plateau {
             let conclusion = piece.conclusion.ok_or_else(|| jumps(because))?;
-            return Ok(Top { ends: piece.x, conclusion, cut: true });
+            return Ok(Top { ends: piece.x, conclusion, cut: piece.cut });
         }
         let peak = joined.pieces().iter().find_map(|p| {
             let at_end = p.grade.iter().zip(p.x).find(|&(&grade, _)| grade >= highest);

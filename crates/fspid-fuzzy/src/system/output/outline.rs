@@ -5,13 +5,13 @@
 //! between the cuts every conclusion is a straight line, and the highest of them (or their sum) is
 //! the outline. No sample is taken.
 
-use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::super::build::{ResolvedConclusion, System};
+use super::super::build::System;
 use super::super::norms::SNorm;
-use super::super::parts::{Conclusion, Membership, Output, RuleBlock};
+use super::super::parts::{Conclusion, Membership, Output};
+use super::actors::{Actors, Level};
 use super::joined::{Joined, Piece};
 use crate::membership::Vertex;
 use crate::norm::{SNormKind, TNormKind};
@@ -20,11 +20,20 @@ use crate::norm::{SNormKind, TNormKind};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Join {
     Maximum,
+    Sum,
+    /// The sum, but no more than 1.
+    BoundedSum,
 }
 
 impl Join {
     fn of(norm: &SNorm) -> Option<Self> {
-        norm.is(SNormKind::Maximum).then_some(Self::Maximum)
+        match norm {
+            SNorm::Kind(SNormKind::Maximum) => Some(Self::Maximum),
+            SNorm::Kind(SNormKind::UnboundedSum) => Some(Self::Sum),
+            // Of two numbers, and so of any number of them, the same.
+            SNorm::Kind(SNormKind::BoundedSum | SNormKind::NormalizedSum) => Some(Self::BoundedSum),
+            _ => None,
+        }
     }
 }
 
@@ -44,35 +53,20 @@ struct Line {
     grade: [f64; 2],
 }
 
-/// Conclusions that can be told apart only by their strength: the strongest stands for all under
-/// maximum; otherwise each conclusion is an actor of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Actor {
-    term: usize,
-    /// True for product, false for minimum.
-    scales: bool,
-}
-
 /// The piecewise-linear sets of an output, cut into cells.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
     join: Join,
     cells: Vec<Cell>,
     lines: Vec<Line>,
-    /// By term.
-    actors: Vec<Actor>,
-    /// The actors of each term.
-    of_term: Vec<Range<usize>>,
-    /// The actor of each of the output's conclusions.
-    actor: Vec<usize>,
+    /// Whether each actor scales its set (product); the others cut theirs (minimum).
+    scales: Vec<bool>,
     middle: f64,
 }
 
 /// Memory for an outline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Room {
-    /// Strength of each actor and the conclusion that it is of.
-    levels: Vec<(f64, usize)>,
     active: Vec<Active>,
     cuts: Vec<f64>,
     edges: Vec<Edge>,
@@ -100,82 +94,53 @@ struct Edge {
 
 impl Outline {
     /// The outline of an output whose sets are all piecewise linear and stay so when joined.
-    pub(crate) fn of(
-        output: &Output,
-        conclusions: &[&ResolvedConclusion],
-        blocks: &[&RuleBlock],
-    ) -> Option<Self> {
+    pub(crate) fn of(output: &Output, actors: &Actors) -> Option<Self> {
         let (join, universe) = (Join::of(&output.aggregation)?, output.universe?);
         let polylines: Vec<Vec<Vertex>> =
             output.terms.iter().map(|term| polyline(&term.conclusion)).collect::<Option<_>>()?;
-        let acting = conclusions.iter().zip(blocks).map(|(conclusion, block)| {
-            let scales = block.implication.is(TNormKind::AlgebraicProduct);
-            let known = scales || block.implication.is(TNormKind::Minimum);
-            known.then_some(Actor { term: conclusion.term, scales })
+        let scales = actors.list().iter().map(|actor| {
+            let scales = actor.implication.is(TNormKind::AlgebraicProduct);
+            (scales || actor.implication.is(TNormKind::Minimum)).then_some(scales)
         });
-        let acting: Vec<Actor> = acting.collect::<Option<_>>()?;
-        let mut actors = acting.clone();
-        actors.sort_by_key(|actor| (actor.term, actor.scales));
-        actors.dedup();
-        let actor = acting.iter().filter_map(|own| actors.iter().position(|a| a == own)).collect();
-        let of_term = (0..output.terms.len()).map(|term| {
-            let begin = actors.partition_point(|actor| actor.term < term);
-            begin..actors.partition_point(|actor| actor.term <= term)
-        });
-        let of_term = of_term.collect();
+        let scales = scales.collect::<Option<_>>()?;
         let (cells, lines) = cells([universe.lower, universe.upper], &polylines);
-        Some(Self { join, cells, lines, actors, of_term, actor, middle: universe.middle() })
+        Some(Self { join, cells, lines, scales, middle: universe.middle() })
     }
 
-    /// Memory for it.
-    pub(crate) fn room(&self) -> Room {
+    /// Makes room for it.
+    pub(crate) fn reserve(&self, actors: &Actors, room: &mut Room) {
         let of_cell = |cell: &Cell| -> usize {
             let lines = self.lines.get(cell.lines.clone()).unwrap_or_default();
-            lines.iter().filter_map(|line| self.of_term.get(line.term)).map(Range::len).sum()
+            lines.iter().map(|line| actors.about(line.term).len()).sum()
         };
         let most = self.cells.iter().map(of_cell).max().unwrap_or(0);
         // The upper envelope of m conclusions of two segments each has fewer than 16 m pieces.
         let pieces = self.cells.iter().map(|cell| of_cell(cell).min(16) * of_cell(cell) + 2).sum();
-        Room {
-            levels: vec![(0.0, 0); self.actors.len()],
-            active: Vec::with_capacity(most),
-            cuts: Vec::with_capacity(most + 1),
-            edges: Vec::with_capacity(most),
-            joined: Joined::with_capacity(pieces),
-        }
+        room.active.reserve(most);
+        room.cuts.reserve(most + 1);
+        room.edges.reserve(most);
+        room.joined.reserve(pieces);
     }
 
-    /// Joins the conclusions at these positions with their degrees.
-    pub(crate) fn join(&self, conclusions: &[usize], degrees: &[f64], room: &mut Room) {
-        room.levels.fill((0.0, 0));
-        for (&conclusion, &actor) in conclusions.iter().zip(&self.actor) {
-            let degree = degrees.get(conclusion).copied().unwrap_or(0.0);
-            if let Some(level) = room.levels.get_mut(actor)
-                && degree > level.0
-            {
-                *level = (degree, conclusion);
-            }
-        }
+    /// Joins what the actors conclude at their levels.
+    pub(crate) fn join(&self, actors: &Actors, levels: &[Level], room: &mut Room) {
         room.joined.restart(self.middle);
         for cell in &self.cells {
-            self.join_cell(cell, room);
+            self.join_cell(cell, actors, levels, room);
         }
     }
 
-    fn join_cell(&self, cell: &Cell, room: &mut Room) {
-        let Room { levels, active, cuts, edges, joined } = room;
+    fn join_cell(&self, cell: &Cell, actors: &Actors, levels: &[Level], room: &mut Room) {
+        let Room { active, cuts, edges, joined } = room;
         active.clear();
         cuts.clear();
         for line in self.lines.get(cell.lines.clone()).unwrap_or_default() {
-            let actors = self.of_term.get(line.term).cloned().unwrap_or_default();
-            let (Some(levels), Some(actors)) =
-                (levels.get(actors.clone()), self.actors.get(actors))
-            else {
-                continue;
-            };
-            for (&(strength, conclusion), actor) in levels.iter().zip(actors) {
-                if strength > 0.0 {
-                    let own = Active::new(cell.x, line.grade, strength, conclusion, actor.scales);
+            let about = actors.about(line.term);
+            let (levels, scales) = (levels.get(about.clone()), self.scales.get(about));
+            let (Some(levels), Some(scales)) = (levels, scales) else { continue };
+            for (level, &scales) in levels.iter().zip(scales) {
+                if level.strength > 0.0 {
+                    let own = Active::new(cell.x, line.grade, level, scales);
                     cuts.extend(own.cut.into_iter().filter(|&x| cell.x[0] < x && x < cell.x[1]));
                     active.push(own);
                 }
@@ -193,6 +158,8 @@ impl Outline {
                 edges.extend(active.iter().map(|own| own.edge(from, to)));
                 match self.join {
                     Join::Maximum => highest([from, to], edges, first, joined),
+                    Join::Sum => sum([from, to], edges, f64::INFINITY, first, joined),
+                    Join::BoundedSum => sum([from, to], edges, 1.0, first, joined),
                 }
                 from = to;
             }
@@ -201,7 +168,8 @@ impl Outline {
 }
 
 impl Active {
-    fn new(x: [f64; 2], grade: [f64; 2], strength: f64, conclusion: usize, scales: bool) -> Self {
+    fn new(x: [f64; 2], grade: [f64; 2], level: &Level, scales: bool) -> Self {
+        let &Level { strength, conclusion } = level;
         let never = [f64::INFINITY; 2];
         if scales {
             let grade = grade.map(|g| g * strength);
@@ -275,6 +243,24 @@ fn highest(x: [f64; 2], edges: &[Edge], cell: usize, joined: &mut Joined) {
         joined.push(piece, cell);
         let Some((_, edge)) = next else { return };
         (current, begin, begin_grade) = (edge, end, end_grade);
+    }
+}
+
+/// The sum of straight lines over `x`, cut off at `limit`.
+fn sum(x: [f64; 2], edges: &[Edge], limit: f64, cell: usize, joined: &mut Joined) {
+    let grade = [0, 1].map(|end| edges.iter().filter_map(|edge| edge.grade.get(end)).sum::<f64>());
+    let (conclusion, cut) = match edges {
+        [only] => (Some(only.conclusion), only.cut),
+        _ => (None, false),
+    };
+    let mut push = |x, grade| joined.push(Piece { x, grade, conclusion, cut }, cell);
+    let limited = grade.map(|g| g.min(limit));
+    if grade.iter().any(|&g| g < limit) && grade.iter().any(|&g| g > limit) {
+        let middle = place(x, grade, limit);
+        push([x[0], middle], [limited[0], limit]);
+        push([middle, x[1]], [limit, limited[1]]);
+    } else {
+        push(x, limited);
     }
 }
 
