@@ -48,6 +48,7 @@ pub mod karnik_mendel;
 mod label;
 pub mod membership;
 pub mod norm;
+pub mod quadrature;
 mod real;
 mod rule_table;
 pub mod scalar;

@@ -14,7 +14,7 @@ use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
 };
-use super::program::{MAX_DEPTH, Program};
+use super::program::{Form, MAX_DEPTH, Program};
 use super::type2::{self, Type2};
 use crate::hedge::Hedge;
 
@@ -39,6 +39,8 @@ pub struct System {
     pub(crate) chained: bool,
     /// What an interval type-2 system needs beside.
     pub(crate) type2: Option<Type2>,
+    /// True if some conclusion has a hedge.
+    pub(crate) hedged: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -48,6 +50,7 @@ pub(crate) struct ResolvedRule {
     pub(crate) rule: usize,
     /// Its steps in the program.
     pub(crate) steps: Range<usize>,
+    pub(crate) form: Form,
     pub(crate) weight: f64,
     /// Its conclusions.
     pub(crate) conclusions: Range<usize>,
@@ -120,7 +123,8 @@ impl System {
         let outputs: Vec<_> = outputs.collect();
         let type2 = Type2::of(&parts, &outputs);
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));
-        Self { parts, program, rules, conclusions, outputs, block_rules, chained, type2 }
+        let hedged = conclusions.iter().any(|conclusion| !conclusion.hedges.is_empty());
+        Self { parts, program, rules, conclusions, outputs, block_rules, chained, hedged, type2 }
     }
 }
 
@@ -157,10 +161,12 @@ impl Resolver {
         }
         let conclusions = begin..self.conclusions.len();
         let steps = self.program.append(&rule.antecedent);
+        let form = self.program.form(steps.clone());
         self.rules.push(ResolvedRule {
             block,
             rule: index,
             steps,
+            form,
             weight: rule.weight,
             conclusions,
         });

@@ -4,5 +4,8 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod build;
+mod integral;
 mod outline;
+mod sampled;
 mod supervisor;
+mod tipper;

@@ -4,6 +4,10 @@ use fspid_fuzzy::system::{Parts, System};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 
 const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
+pub(crate) const TABLES: [(&str, &str); 2] = [
+    ("printed", PRINTED),
+    ("mirrored", include_str!("../../../../data/rule-tables/mirrored.toml")),
+];
 
 fn supervisor(range: f64, defuzzifier: Defuzzifier) -> Supervisor<f64> {
     let parts: Vec<&str> = PRINTED.split("\"\"\"").collect();

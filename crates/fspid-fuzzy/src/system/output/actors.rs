@@ -24,8 +24,11 @@ pub(crate) struct Actors {
     list: Vec<Actor>,
     /// Those of each term.
     of_term: Vec<Range<usize>>,
-    /// The actor of each of the output's conclusions.
-    of_conclusion: Vec<usize>,
+    /// The conclusions of the first actor, then those of the second, …, each in their order: their
+    /// positions in the output's list.
+    conclusions: Vec<usize>,
+    /// Where in that list each actor ends.
+    ends: Vec<usize>,
 }
 
 /// Strength of an actor, and the conclusion that it is of.
@@ -63,7 +66,11 @@ impl Actors {
             }
             of_term.push(begin..list.len());
         }
-        Self { list, of_term, of_conclusion }
+        let mut sorted: Vec<usize> = (0..conclusions.len()).collect();
+        let actor = |&position: &usize| of_conclusion.get(position).copied().unwrap_or(0);
+        sorted.sort_by_key(actor);
+        let ends = (1..=list.len()).map(|next| sorted.partition_point(|own| actor(own) < next));
+        Self { ends: ends.collect(), list, of_term, conclusions: sorted }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -90,14 +97,17 @@ impl Actors {
         levels: &'l mut [Level],
     ) -> &'l [Level] {
         let levels = levels.get_mut(..self.list.len()).unwrap_or_default();
-        levels.fill(Level::default());
-        for (&conclusion, &actor) in conclusions.iter().zip(&self.of_conclusion) {
-            let strength = degrees.get(conclusion).copied().unwrap_or(0.0);
-            if let Some(level) = levels.get_mut(actor)
-                && strength > level.strength
-            {
-                *level = Level { strength, conclusion };
+        let mut begin = 0;
+        for (level, &end) in levels.iter_mut().zip(&self.ends) {
+            *level = Level::default();
+            for &position in self.conclusions.get(begin..end).unwrap_or_default() {
+                let conclusion = conclusions.get(position).copied().unwrap_or(0);
+                let strength = degrees.get(conclusion).copied().unwrap_or(0.0);
+                let stronger = strength > level.strength;
+                level.conclusion = if stronger { conclusion } else { level.conclusion };
+                level.strength = if stronger { strength } else { level.strength };
             }
+            begin = end;
         }
         levels
     }

@@ -122,18 +122,9 @@ impl Joined {
         self.pieces.iter().map(Piece::area).sum()
     }
 
-    /// The factor, a power of two, that brings the highest grade into [1, 2), so that strengths of
-    /// any size keep their digits; nothing for a set without height.
-    fn scale(&self) -> Option<f64> {
-        let bits = self.top.to_bits() >> 52;
-        // 2^(1023 - e) of a grade in [2^e, 2^(e+1)); 2046 is twice the bias.
-        (self.top >= f64::MIN_POSITIVE && self.top.is_finite())
-            .then(|| f64::from_bits((2046 - bits).max(1) << 52))
-    }
-
-    /// The pieces, scaled so.
+    /// The pieces, scaled so that strengths of any size keep their digits.
     fn scaled(&self) -> Option<impl DoubleEndedIterator<Item = Piece> + Clone + '_> {
-        let scale = self.scale()?;
+        let scale = scale(self.top)?;
         Some(self.pieces.iter().map(move |piece| piece.scaled(scale)))
     }
 
@@ -154,7 +145,7 @@ impl Joined {
     /// number where there are only single points. Nothing for a set without area.
     #[must_use]
     pub fn maximum(&self) -> Option<[f64; 3]> {
-        self.scale()?;
+        scale(self.top)?;
         let is_top = |grade: f64| grade >= self.top * (1.0 - SLACK);
         let mut ends: Option<[f64; 2]> = None;
         let (mut length, mut moment, mut count, mut sum) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -187,6 +178,15 @@ fn continues(last: &Piece, piece: &Piece, same_cell: bool) -> bool {
     let meets = last.x[1] == piece.x[0] && last.grade[1] == piece.grade[0];
     let same = last.conclusion == piece.conclusion && last.cut == piece.cut;
     meets && same && last.conclusion.is_some() && (same_cell || piece.cut)
+}
+
+/// The factor, a power of two, that brings the highest grade into [1, 2); nothing for a set without
+/// height, which is one below the normal range of numbers, where digits are lost.
+pub(super) fn scale(top: f64) -> Option<f64> {
+    let exponent = top.to_bits() >> 52;
+    // Of 2^e the bits are e + 1023; 2046 is twice as much.
+    let fires = top >= f64::MIN_POSITIVE && top.is_finite();
+    fires.then(|| f64::from_bits((2046 - exponent).max(1) << 52))
 }
 
 /// Centre of gravity under pieces, computed about `reference`; nothing without area.

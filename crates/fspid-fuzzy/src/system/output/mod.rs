@@ -3,7 +3,10 @@
 //! How that is done best is decided once, when the system is built: a [`Plan`].
 
 mod actors;
+mod curve;
+mod integral;
 mod joined;
+mod maximum;
 mod outline;
 mod partition;
 mod sampled;
@@ -18,6 +21,7 @@ use super::parts::{Conclusion, Membership, Output};
 use super::workspace::Workspace;
 
 pub(crate) use actors::{Actors, Level};
+pub(crate) use integral::Integral;
 pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
@@ -34,7 +38,7 @@ pub(crate) enum Plan {
     /// Read off samples.
     Sampled(Sampled),
     /// Integrated with a certified bound on the error.
-    Integral,
+    Integral(Integral),
     /// Weighted average or sum of the conclusions.
     Weighted,
 }
@@ -42,16 +46,14 @@ pub(crate) enum Plan {
 impl Plan {
     /// The plan for an output and what is concluded about it.
     pub(crate) fn new(output: &Output, actors: &Actors, outline: Option<&Outline>) -> Self {
-        if output.defuzzifier.sampling().is_none() {
-            return Self::Weighted;
-        }
         if let Some(partition) = Partition::of(output, actors) {
             return Self::Partition(partition);
         }
-        match (Sampled::of(output), outline) {
-            (Some(sampled), _) => Self::Sampled(sampled),
-            (None, Some(_)) => Self::Outline,
-            (None, None) => Self::Integral,
+        match (Sampled::of(output), Integral::of(output), outline) {
+            (Some(sampled), _, _) => Self::Sampled(sampled),
+            (None, Some(_), Some(_)) => Self::Outline,
+            (None, Some(integral), None) => Self::Integral(integral),
+            (None, None, _) => Self::Weighted,
         }
     }
 }
@@ -124,14 +126,15 @@ impl System {
         }
         let Workspace { inputs, degrees, scratch, .. } = workspace;
         let levels = actors.levels(conclusions, degrees, &mut scratch.levels);
+        let concluded = Concluded { output, actors, levels, inputs };
         match plan {
             Plan::Partition(partition) => Some((partition.centroid(levels)?, 0.0)),
+            Plan::Integral(integral) => integral.number(method, &concluded),
             Plan::Sampled(sampled) => {
-                let concluded = Concluded { output, actors, levels, inputs };
                 let Scratch { room, samples, .. } = scratch;
                 Some((sampled.number(method, &concluded, room, samples)?, 0.0))
             }
-            _ => None,
+            Plan::Outline | Plan::Weighted => None,
         }
     }
 
