@@ -130,7 +130,7 @@ impl Differentiator<'_> {
         }
         let mut adjoint = Adjoint::new(self, inputs.len());
         if !self.is_clamped(output, value) {
-            self.from_answer(output, value, workspace, &mut adjoint)?;
+            self.through_answer(output, value, workspace, &mut adjoint)?;
             adjoint.through_rules(workspace);
         }
         for (derivative, (input, &outside)) in
@@ -151,7 +151,7 @@ impl Differentiator<'_> {
         })
     }
 
-    fn from_answer(
+    fn through_answer(
         &self,
         index: usize,
         value: f64,

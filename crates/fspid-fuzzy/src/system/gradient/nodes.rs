@@ -29,6 +29,8 @@ const GAUSS_10: [(f64, f64); 5] = [
 ];
 /// Panels over the universe of curved sets before kinks are looked for.
 const PANELS: u32 = 256;
+/// Most kinks that are looked for in one panel.
+const KINKS_PER_PANEL: u32 = 8;
 /// Halvings that find a kink to rounding.
 const HALVINGS: u32 = 60;
 
@@ -247,7 +249,7 @@ impl System {
         breaks
     }
 
-    /// The place within a panel where another conclusion comes on top, if there is one.
+    /// The places within a panel where another conclusion comes on top or begins to be cut.
     fn kinks(
         &self,
         index: usize,
@@ -258,20 +260,25 @@ impl System {
     ) {
         // A hair inside, so that corners at the ends do not count.
         let hair = 1e-9 * (panel[1] - panel[0]);
-        let [mut from, mut to] = [panel[0] + hair, panel[1] - hair];
-        let first = self.signature(index, output, from, workspace);
-        if first == self.signature(index, output, to, workspace) {
-            return;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * from + 0.5 * to;
-            if self.signature(index, output, middle, workspace) == first {
-                from = middle;
-            } else {
-                to = middle;
+        let [mut begin, end] = [panel[0] + hair, panel[1] - hair];
+        let last = self.signature(index, output, end, workspace);
+        for _ in 0..KINKS_PER_PANEL {
+            let first = self.signature(index, output, begin, workspace);
+            if first == last {
+                return;
             }
+            let [mut from, mut to] = [begin, end];
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * from + 0.5 * to;
+                if self.signature(index, output, middle, workspace) == first {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            kinks.push(to);
+            begin = to;
         }
-        kinks.push(to);
     }
 
     /// Which conclusion is highest at `x`, and whether its strength cuts it there.
