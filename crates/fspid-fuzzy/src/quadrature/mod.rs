@@ -12,6 +12,10 @@
 //! Where kinks lie is guessed with floats, which costs nothing if wrong but more panels. A kink
 //! enclosed in a panel of width $w$ adds an error of the order $w^2$.
 //!
+//! The bounds rest on what [`Interval`] rests on, and on a fingerprint of 64 bits that tells when two
+//! cases of a maximum are the same function. Where two different sets touch without crossing, many
+//! panels are needed; when they run out the bounds are wide, and the answer says so.
+//!
 //! ```
 //! use fspid_fuzzy::quadrature::{Curve, Quadrature};
 //! use fspid_fuzzy::scalar::Scalar;
@@ -50,8 +54,10 @@ pub trait Curve {
     fn at<S: Scalar>(&self, x: S) -> S;
 }
 
-/// Further attempts with a smaller error in mind if the first was not good enough.
-const RETRIES: u32 = 2;
+/// Attempts, each with half of the panels that are left and what was learnt from the one before.
+const ATTEMPTS: u32 = 5;
+/// How much coarser the next attempt is if the panels did not suffice.
+const COARSER: f64 = 1e3;
 /// Samples of the first guess of the area, which the relative tolerance refers to.
 const GUESS_SAMPLES: u32 = 64;
 
@@ -68,7 +74,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// What is aimed at unless said otherwise.
-    pub const USUAL: Self = Self { relative: 1e-13, absolute: 0.0, panels: 10_000 };
+    pub const USUAL: Self = Self { relative: 1e-13, absolute: f64::MIN_POSITIVE, panels: 10_000 };
 }
 
 impl Default for Accuracy {
@@ -102,6 +108,15 @@ pub struct Integrals {
 }
 
 impl Integrals {
+    /// Before anything was looked at.
+    const UNKNOWN: Self = Self {
+        area: Interval::ENTIRE,
+        moment: Interval::ENTIRE,
+        about: 0.0,
+        panels: 0,
+        complete: false,
+    };
+
     /// The centre of gravity; `None` if the area may be zero.
     #[must_use]
     pub fn centroid(&self) -> Option<Interval> {
@@ -142,16 +157,20 @@ impl<'a> Quadrature<'a> {
     /// Area and first moment of a curve.
     #[must_use]
     pub fn integrate<C: Curve>(&self, curve: &C) -> Integrals {
-        let mut tolerance = self.tolerance(curve);
-        let mut best = self.attempt(curve, tolerance, self.accuracy.panels);
-        for _ in 0..RETRIES {
-            let panels_left = self.accuracy.panels - best.panels;
-            if best.complete || panels_left == 0 {
+        let (mut tolerance, mut best) = (self.tolerance(curve), Integrals::UNKNOWN);
+        for _ in 0..ATTEMPTS {
+            let panels = (self.accuracy.panels - best.panels).div_ceil(2);
+            let next = self.attempt(curve, tolerance, panels);
+            best = self.common(next, best);
+            if best.complete || best.panels == self.accuracy.panels {
                 break;
             }
-            // Many kinks together, or a first guess of the area that was too high.
-            tolerance *= 0.5 * (self.allowed(best.area) / best.area.radius()).smaller(1.0);
-            best = self.common(best, self.attempt(curve, tolerance, panels_left));
+            tolerance *= if next.panels == panels {
+                COARSER
+            } else {
+                // Many kinks together, or a first guess of the area that was too high.
+                0.5 * (self.allowed(best.area) / best.area.radius()).smaller(1.0)
+            };
         }
         best
     }
