@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::build::System;
 use super::defuzzifier::Defuzzifier;
-use super::output::number;
+use super::output::value as number;
 use super::workspace::Workspace;
 
 /// A rule in an evaluation.

@@ -81,6 +81,10 @@ impl Joined {
         Self { pieces: roomy_clone(&self.pieces), ..*self }
     }
 
+    pub(crate) fn capacity(&self) -> usize {
+        self.pieces.capacity()
+    }
+
     pub(super) fn restart(&mut self, reference: f64) {
         self.pieces.clear();
         (self.top, self.reference) = (0.0, reference);

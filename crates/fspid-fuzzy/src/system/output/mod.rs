@@ -26,7 +26,7 @@ pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
-pub(crate) use weighted::value as number;
+pub(crate) use weighted::value;
 
 /// How the number of one output is found.
 #[derive(Clone, Debug)]
@@ -107,7 +107,7 @@ impl Scratch {
 impl Clone for Scratch {
     /// A clone has as much room as the original.
     fn clone(&self) -> Self {
-        let (outline, samples) = (self.outline.roomy_clone(), self.samples.roomy_clone());
+        let (outline, samples) = (self.outline.clone(), self.samples.clone());
         let (room, levels, sorted) = (self.room.clone(), self.levels.clone(), self.sorted.clone());
         Self { room, levels, sorted, order: roomy_clone(&self.order), outline, samples }
     }
@@ -136,6 +136,9 @@ impl System {
         output: &Output,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
+        if self.type2.is_some() {
+            return Some((self.middle_of_interval(index, output, workspace)?, 0.0));
+        }
         let ResolvedOutput { plan, actors, conclusions, .. } = self.outputs.get(index)?;
         let method = output.defuzzifier;
         if let Plan::Weighted = plan {
