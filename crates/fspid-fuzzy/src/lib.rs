@@ -31,19 +31,18 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
-#[cfg(test)]
-extern crate std;
-
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 mod centroid;
 mod defuzzifier;
 mod error;
 mod exp;
 #[cfg(feature = "alloc")]
-pub mod formula;
-pub mod hedge;
+mod formula;
+mod hedge;
 mod label;
 pub mod membership;
 pub mod norm;
@@ -56,7 +55,11 @@ pub mod system;
 
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
+#[cfg(feature = "alloc")]
+pub use formula::{Formula, FormulaError, FormulaErrorKind};
+pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
+pub use norm::{SNormKind, TNormKind};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 pub use scalar::Scalar;

@@ -1,5 +1,6 @@
 //! The triangle, also lopsided, and with a vertical side where two corners meet.
 
+use super::side::{above, at_least, fall, rise};
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
 use crate::scalar::Scalar;
@@ -8,6 +9,9 @@ use crate::scalar::Scalar;
 /// $\mu(x) = \max\left(0, \min\left(\frac{x - l}{p - l}, \frac{r - x}{r - p}\right)\right)$
 ///
 /// A side of no width is a jump; the peak itself belongs to the set.
+///
+/// # Source
+/// MATLAB's `trimf`, fuzzylite's `Triangle`, jFuzzyLogic's `TRIAN`.
 #[derive(Clone, Copy, Debug)]
 pub enum Triangle {}
 
@@ -20,27 +24,21 @@ impl Shape for Triangle {
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 0.0, 2.0];
     const C: &'static str = "x < peak ? fmax(0.0, (x - left) / (peak - left)) : \
-                             peak < x ? fmax(0.0, (right - x) / (right - peak)) : 1.0";
+                             peak < x ? fmax(0.0, (right - x) / (right - peak)) : \
+                             x == peak ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[left, peak, right] = params else { return Ok(()) };
-        let wrong = |name, found, allowed| Err(FuzzyError::Parameter { name, found, allowed });
-        if left > peak {
-            return wrong("peak", peak, "a finite number, at least left");
-        }
-        if peak > right {
-            return wrong("right", right, "a finite number, at least peak");
-        }
-        if left < right { Ok(()) } else { wrong("right", right, "a finite number above left") }
+        at_least(left, "peak", peak, "a number from left to left + 1.7e308")?;
+        at_least(peak, "right", right, "a number from peak to peak + 1.7e308")?;
+        above(left, "right", right, "a number above left, at most left + 1.7e308")
     }
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let &[left, peak, right] = params else { return S::zero() };
-        let rise = ((x - left) / (peak - left)).larger(S::zero());
-        let fall = ((right - x) / (right - peak)).larger(S::zero());
-        x.if_less(peak, rise, peak.if_less(x, fall, S::one()))
+        rise(x, left, peak).smaller(fall(x, peak, right))
     }
 
     fn vertices(params: &[f64], each: &mut dyn FnMut(Vertex)) {

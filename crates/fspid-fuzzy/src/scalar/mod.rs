@@ -125,6 +125,84 @@ pub trait Scalar:
     fn ceil(self) -> Self {
         -(-self).floor()
     }
+
+    /// The whole number next towards 0.
+    #[must_use]
+    fn trunc(self) -> Self {
+        self.if_less(Self::zero(), self.ceil(), self.floor())
+    }
+
+    /// The nearest whole number; halves go away from 0.
+    #[must_use]
+    fn round(self) -> Self {
+        let magnitude = self.abs();
+        let below = magnitude.floor();
+        let rest = magnitude - below;
+        let nearest = rest.if_less(Self::half(), below, below + Self::one());
+        self.if_less(Self::zero(), -nearest, nearest)
+    }
+
+    /// -1, 0 or 1.
+    #[must_use]
+    fn sign(self) -> Self {
+        let positive = Self::zero().if_less(self, Self::one(), Self::zero());
+        self.if_less(Self::zero(), -Self::one(), positive)
+    }
+
+    /// $a - b \operatorname{trunc}\frac ab$, with the sign of $a$.
+    #[must_use]
+    fn remainder(self, divisor: Self) -> Self {
+        self - divisor * (self / divisor).trunc()
+    }
+
+    /// $\log_{10} x$.
+    #[must_use]
+    fn log10(self) -> Self {
+        self.ln() / Self::constant(core::f64::consts::LN_10)
+    }
+
+    /// $\ln(1 + x)$, without special care for small $x$.
+    #[must_use]
+    fn ln_1p(self) -> Self {
+        (Self::one() + self).ln()
+    }
+
+    /// $\operatorname{arsinh} x$.
+    #[must_use]
+    fn asinh(self) -> Self {
+        let magnitude = self.abs();
+        let value = (magnitude + (self.square() + Self::one()).sqrt()).ln();
+        self.if_less(Self::zero(), -value, value)
+    }
+
+    /// $\operatorname{arcosh} x$.
+    #[must_use]
+    fn acosh(self) -> Self {
+        (self + (self.square() - Self::one()).sqrt()).ln()
+    }
+
+    /// $\operatorname{artanh} x$.
+    #[must_use]
+    fn atanh(self) -> Self {
+        Self::half() * ((Self::one() + self) / (Self::one() - self)).ln()
+    }
+
+    /// The angle of the point $(x, y)$ with `self` as $y$, in $(-\pi, \pi]$; 0 at the origin.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self {
+        let pi = Self::constant(core::f64::consts::PI);
+        let angle = (self / x).atan();
+        let left = angle + self.if_less(Self::zero(), -pi, pi);
+        let upright = Self::half() * pi * self.sign();
+        x.if_less(Self::zero(), left, Self::zero().if_less(x, angle, upright))
+    }
+
+    /// 1 if the number is not 0, else 0; what formulas mean by true.
+    #[must_use]
+    fn truth(self) -> Self {
+        let positive = Self::zero().if_less(self, Self::one(), Self::zero());
+        self.if_less(Self::zero(), Self::one(), positive)
+    }
 }
 
 macro_rules! float {

@@ -1,0 +1,195 @@
+//! What a formula is made of, once read.
+
+use crate::scalar::Scalar;
+
+/// One step of computing a formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Operation {
+    /// Put down a number.
+    Number(f64),
+    /// Put down the value of a variable.
+    Variable(usize),
+    /// Replace the last number.
+    One(One),
+    /// Replace the last two numbers.
+    Two(Two),
+}
+
+/// A function of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum One {
+    Abs,
+    Acos,
+    Acosh,
+    Asin,
+    Asinh,
+    Atan,
+    Atanh,
+    Ceil,
+    Cos,
+    Cosh,
+    Cube,
+    Exp,
+    Floor,
+    Log,
+    Log10,
+    Log1p,
+    Negate,
+    Not,
+    Round,
+    Sign,
+    Sin,
+    Sinh,
+    Sqrt,
+    Square,
+    Tan,
+    Tanh,
+}
+
+/// A function of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Two {
+    Add,
+    And,
+    Atan2,
+    Divide,
+    Equal,
+    Greater,
+    GreaterOrEqual,
+    Less,
+    LessOrEqual,
+    Max,
+    Min,
+    Multiply,
+    NotEqual,
+    Or,
+    Power,
+    Remainder,
+    Subtract,
+}
+
+/// A function that can be called by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Function {
+    One(One),
+    Two(Two),
+}
+
+impl Function {
+    pub(super) const fn arguments(self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Two(_) => 2,
+        }
+    }
+
+    pub(super) const fn operation(self) -> Operation {
+        match self {
+            Self::One(function) => Operation::One(function),
+            Self::Two(function) => Operation::Two(function),
+        }
+    }
+}
+
+/// Every function by name.
+pub(super) const FUNCTIONS: &[(&str, Function)] = &[
+    ("abs", Function::One(One::Abs)),
+    ("acos", Function::One(One::Acos)),
+    ("acosh", Function::One(One::Acosh)),
+    ("asin", Function::One(One::Asin)),
+    ("asinh", Function::One(One::Asinh)),
+    ("atan", Function::One(One::Atan)),
+    ("atan2", Function::Two(Two::Atan2)),
+    ("atanh", Function::One(One::Atanh)),
+    ("ceil", Function::One(One::Ceil)),
+    ("cos", Function::One(One::Cos)),
+    ("cosh", Function::One(One::Cosh)),
+    ("eq", Function::Two(Two::Equal)),
+    ("exp", Function::One(One::Exp)),
+    ("fabs", Function::One(One::Abs)),
+    ("floor", Function::One(One::Floor)),
+    ("fmod", Function::Two(Two::Remainder)),
+    ("ge", Function::Two(Two::GreaterOrEqual)),
+    ("gt", Function::Two(Two::Greater)),
+    ("le", Function::Two(Two::LessOrEqual)),
+    ("log", Function::One(One::Log)),
+    ("log10", Function::One(One::Log10)),
+    ("log1p", Function::One(One::Log1p)),
+    ("lt", Function::Two(Two::Less)),
+    ("max", Function::Two(Two::Max)),
+    ("min", Function::Two(Two::Min)),
+    ("neq", Function::Two(Two::NotEqual)),
+    ("pow", Function::Two(Two::Power)),
+    ("round", Function::One(One::Round)),
+    ("sign", Function::One(One::Sign)),
+    ("sin", Function::One(One::Sin)),
+    ("sinh", Function::One(One::Sinh)),
+    ("sqrt", Function::One(One::Sqrt)),
+    ("tan", Function::One(One::Tan)),
+    ("tanh", Function::One(One::Tanh)),
+];
+
+/// Every constant by name.
+pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", core::f64::consts::PI)];
+
+impl One {
+    pub(super) fn apply<S: Scalar>(self, a: S) -> S {
+        match self {
+            Self::Abs => a.abs(),
+            Self::Acos => a.acos(),
+            Self::Acosh => a.acosh(),
+            Self::Asin => a.asin(),
+            Self::Asinh => a.asinh(),
+            Self::Atan => a.atan(),
+            Self::Atanh => a.atanh(),
+            Self::Ceil => a.ceil(),
+            Self::Cos => a.cos(),
+            Self::Cosh => a.cosh(),
+            Self::Cube => a * a.square(),
+            Self::Exp => a.exp(),
+            Self::Floor => a.floor(),
+            Self::Log => a.ln(),
+            Self::Log10 => a.log10(),
+            Self::Log1p => a.ln_1p(),
+            Self::Negate => -a,
+            Self::Not => S::one() - a.truth(),
+            Self::Round => a.round(),
+            Self::Sign => a.sign(),
+            Self::Sin => a.sin(),
+            Self::Sinh => a.sinh(),
+            Self::Sqrt => a.sqrt(),
+            Self::Square => a.square(),
+            Self::Tan => a.tan(),
+            Self::Tanh => a.tanh(),
+        }
+    }
+}
+
+impl Two {
+    pub(super) fn apply<S: Scalar>(self, a: S, b: S) -> S {
+        match self {
+            Self::Add => a + b,
+            Self::And => a.truth().smaller(b.truth()),
+            Self::Atan2 => a.atan2(b),
+            Self::Divide => a / b,
+            Self::Equal => less(a, b, S::zero(), less(b, a, S::zero(), S::one())),
+            Self::Greater => less(b, a, S::one(), S::zero()),
+            Self::GreaterOrEqual => less(a, b, S::zero(), S::one()),
+            Self::Less => less(a, b, S::one(), S::zero()),
+            Self::LessOrEqual => less(b, a, S::zero(), S::one()),
+            Self::Max => a.larger(b),
+            Self::Min => a.smaller(b),
+            Self::Multiply => a * b,
+            Self::NotEqual => less(a, b, S::one(), less(b, a, S::one(), S::zero())),
+            Self::Or => a.truth().larger(b.truth()),
+            Self::Power => a.pow(b),
+            Self::Remainder => a.remainder(b),
+            Self::Subtract => a - b,
+        }
+    }
+}
+
+/// `then` where `a < b`, else `otherwise`.
+fn less<S: Scalar>(a: S, b: S, then: S, otherwise: S) -> S {
+    a.if_less(b, then, otherwise)
+}

@@ -1,0 +1,22 @@
+//! Algebraic product.
+
+use super::{SNormKind, TNorm};
+use crate::scalar::Scalar;
+
+/// $a \otimes b = ab$
+///
+/// # Source
+/// Zadeh, 1965.
+#[derive(Clone, Copy, Debug)]
+pub enum AlgebraicProduct {}
+
+impl TNorm for AlgebraicProduct {
+    const NAME: &'static str = "algebraic-product";
+    const C: &'static str = "a * b";
+    const DUAL: SNormKind = SNormKind::AlgebraicSum;
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        a * b
+    }
+}

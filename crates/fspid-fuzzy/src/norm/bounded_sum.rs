@@ -1,0 +1,23 @@
+//! Bounded sum.
+
+use super::SNorm;
+use crate::scalar::Scalar;
+
+/// $a \oplus b = \min(1, a + b)$
+///
+/// Łukasiewicz's s-norm.
+///
+/// # Source
+/// IEC 61131-7, `BSUM`.
+#[derive(Clone, Copy, Debug)]
+pub enum BoundedSum {}
+
+impl SNorm for BoundedSum {
+    const NAME: &'static str = "bounded-sum";
+    const C: &'static str = "fmin(1.0, a + b)";
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        (a + b).smaller(S::one())
+    }
+}

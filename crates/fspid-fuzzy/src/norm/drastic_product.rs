@@ -1,0 +1,24 @@
+//! Drastic product.
+
+use super::{SNormKind, TNorm};
+use crate::scalar::Scalar;
+
+/// $a \otimes b = \min(a, b)$ if $\max(a, b) = 1$, else 0
+///
+/// The smallest t-norm of all.
+///
+/// # Source
+/// fuzzylite's `DrasticProduct`.
+#[derive(Clone, Copy, Debug)]
+pub enum DrasticProduct {}
+
+impl TNorm for DrasticProduct {
+    const NAME: &'static str = "drastic-product";
+    const C: &'static str = "fmax(a, b) < 1.0 ? 0.0 : fmin(a, b)";
+    const DUAL: SNormKind = SNormKind::DrasticSum;
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        a.larger(b).if_less(S::one(), S::zero(), a.smaller(b))
+    }
+}

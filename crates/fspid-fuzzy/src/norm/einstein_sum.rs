@@ -1,0 +1,22 @@
+//! Einstein sum.
+
+use super::SNorm;
+use crate::scalar::Scalar;
+
+/// $a \oplus b = \frac{a + b}{1 + ab}$
+///
+/// # Source
+/// fuzzylite's `EinsteinSum`.
+#[derive(Clone, Copy, Debug)]
+pub enum EinsteinSum {}
+
+impl SNorm for EinsteinSum {
+    const NAME: &'static str = "einstein-sum";
+    const C: &'static str = "(a + b) / (1.0 + a * b)";
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        let sum = (a + b) / (S::one() + a * b);
+        sum.larger(a.larger(b)).smaller(S::one())
+    }
+}

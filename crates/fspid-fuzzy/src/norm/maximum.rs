@@ -1,0 +1,23 @@
+//! Maximum.
+
+use super::SNorm;
+use crate::scalar::Scalar;
+
+/// $a \oplus b = \max(a, b)$
+///
+/// The smallest s-norm of all.
+///
+/// # Source
+/// Zadeh, *Fuzzy Sets*, 1965.
+#[derive(Clone, Copy, Debug)]
+pub enum Maximum {}
+
+impl SNorm for Maximum {
+    const NAME: &'static str = "maximum";
+    const C: &'static str = "fmax(a, b)";
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        a.larger(b)
+    }
+}

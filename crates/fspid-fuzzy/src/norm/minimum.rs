@@ -1,0 +1,24 @@
+//! Minimum.
+
+use super::{SNormKind, TNorm};
+use crate::scalar::Scalar;
+
+/// $a \otimes b = \min(a, b)$
+///
+/// The largest t-norm of all.
+///
+/// # Source
+/// Zadeh, *Fuzzy Sets*, 1965.
+#[derive(Clone, Copy, Debug)]
+pub enum Minimum {}
+
+impl TNorm for Minimum {
+    const NAME: &'static str = "minimum";
+    const C: &'static str = "fmin(a, b)";
+    const DUAL: SNormKind = SNormKind::Maximum;
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        a.smaller(b)
+    }
+}

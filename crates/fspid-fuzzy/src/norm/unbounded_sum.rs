@@ -1,0 +1,23 @@
+//! Unbounded sum.
+
+use super::SNorm;
+use crate::scalar::Scalar;
+
+/// $a \oplus b = a + b$
+///
+/// Not an s-norm: it leaves [0, 1]. For aggregations that add areas.
+///
+/// # Source
+/// fuzzylite's `UnboundedSum`, MATLAB's `sum`.
+#[derive(Clone, Copy, Debug)]
+pub enum UnboundedSum {}
+
+impl SNorm for UnboundedSum {
+    const NAME: &'static str = "unbounded-sum";
+    const C: &'static str = "a + b";
+
+    #[inline]
+    fn apply<S: Scalar>(a: S, b: S) -> S {
+        a + b
+    }
+}
