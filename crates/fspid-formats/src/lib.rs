@@ -19,6 +19,7 @@
 // Until every format uses all of them.
 #[allow(dead_code)]
 mod cursor;
+pub mod fis;
 mod note;
 #[allow(dead_code)]
 mod number;
