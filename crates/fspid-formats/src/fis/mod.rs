@@ -15,7 +15,7 @@
 //! # Example
 //!
 //! ```
-//! use fspid_formats::fis;
+//! use fspid_formats::{WriteOptions, fis};
 //!
 //! let text = "[System]\nType='sugeno'\nDefuzzMethod='wtaver'\n\
 //!             [Input1]\nName='x'\nRange=[0 1]\nMF1='all':'trapmf',[0 0 1 1]\n\
@@ -23,6 +23,8 @@
 //!             [Rules]\n1, 1 (1) : 1\n";
 //! let reading = fis::read(text)?;
 //! assert_eq!(reading.notes[0].to_string(), "`AndMethod` is missing; `min` is assumed");
+//! let writing = fis::write(&reading.parts, WriteOptions::default())?;
+//! assert!(writing.text.contains("MF1='line':'linear',[2 5]"));
 //! # Ok::<(), fspid_formats::Problems>(())
 //! ```
 
@@ -30,5 +32,7 @@ mod hedge;
 mod read;
 mod shape;
 mod word;
+mod write;
 
 pub use read::read;
+pub use write::write;
