@@ -1,5 +1,7 @@
 //! Every dialect and every quirk of `.fis` files, by example.
 
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+
 use fspid_formats::{Note, Reading, fis};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
@@ -142,6 +144,7 @@ fn pairs_of_membership_functions_are_interval_sets() {
     assert_eq!(*conclusions[0], Conclusion::Interval([-1.0, -0.75]));
     assert_eq!(*conclusions[1], Conclusion::Constant(0.0));
     assert!(noted(&reading, "type reduction ends at the same two points"));
+    assert!(noted(&reading, "16:1: labels of lower membership functions are not kept"));
 }
 
 #[test]
@@ -151,6 +154,20 @@ fn a_type_reduction_that_answers_otherwise_is_refused() {
         "13:15: `NT`: this type reduction is not computed here and would answer other numbers; \
          expected one of `Karnik-Mendel`, `KM`"
     ));
+}
+
+#[test]
+fn a_missing_type_reduction_is_assumed_as_the_toolbox_assumes_it() {
+    let reading = read(&TYPE_2.replace("TypeRedMethod='EIASC'\n", ""));
+    assert!(noted(&reading, "`TypeRedMethod` is missing; `Karnik-Mendel` is assumed"));
+}
+
+#[test]
+fn a_step_without_a_direction_is_refused() {
+    let problems = fis::read(&FUZZYLITE.replace("[5.000 -inf]", "[5.000 0]")).unwrap_err();
+    let message =
+        "25:27: `0`: `binarymf` [threshold direction]: direction is 0.0; allowed is 1 or -1";
+    assert_eq!(problems.to_string(), message);
 }
 
 #[test]

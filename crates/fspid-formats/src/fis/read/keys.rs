@@ -63,6 +63,9 @@ impl<'a> Keys<'a> {
     ) -> Self {
         let mut keys = Self::default();
         for &entry in &section.entries {
+            if report.is_full() {
+                break;
+            }
             let taken = keys.take(entry, known, report);
             report.keep(taken);
         }

@@ -101,7 +101,9 @@ fn repaired(row: &Row, numbers: &[Number], report: &mut Report) -> (ShapeKind, V
         return other;
     }
     if let (ShapeKind::Step, &[threshold, direction]) = (row.kind, &values[..]) {
-        return (row.kind, vec![threshold, direction.signum()]);
+        // fuzzylite writes infinities; 0 is no direction and stays, to be refused.
+        let sign = if direction.abs() > 0.0 { direction.signum() } else { direction };
+        return (row.kind, vec![threshold, sign]);
     }
     if row.kind.repeats() {
         return (row.kind, values);

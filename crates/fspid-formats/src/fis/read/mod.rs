@@ -25,7 +25,7 @@ use variable::Variable;
 /// The system that a file describes.
 ///
 /// # Errors
-/// Every problem of the file (up to fifty, then how many more), each with line, column and what
+/// Every problem of the file (up to fifty, then that there are more), each with line, column and what
 /// was expected.
 pub fn read(text: &str) -> Result<Reading, Problems> {
     let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
@@ -77,6 +77,9 @@ fn variables<'a>(
     let mut before = 0;
     let mut variables = Vec::new();
     for (&number, section) in sections {
+        if report.is_full() {
+            break;
+        }
         if number != before + 1 {
             let message = format!("{word} {} is left out", before + 1);
             report.problem(section.place, &format!("{word} {number}"), message, "");

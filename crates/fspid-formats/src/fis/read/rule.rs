@@ -19,11 +19,14 @@ pub(super) fn rules(
     if source.rules.is_none() {
         report.whole("there is no section `[Rules]`");
     }
-    let rules = source.rows.iter().filter_map(|line| {
+    let rules = source.rows.iter().map_while(|line| {
+        if report.is_full() {
+            return None;
+        }
         let rule = row(*line).and_then(|row| rule(&row, inputs, outputs, report));
-        report.keep(rule).flatten()
+        Some(report.keep(rule).flatten())
     });
-    rules.collect()
+    rules.flatten().collect()
 }
 
 fn rule(

@@ -55,7 +55,7 @@ impl<'a> Source<'a> {
     pub(super) fn of(mut text: Cursor<'a>, report: &mut Report) -> Self {
         let mut source = Self::default();
         let mut open = Open::Nowhere;
-        while let Some(line) = text.take_line() {
+        while let Some(line) = text.take_line().filter(|_| !report.is_full()) {
             let mut line = line.trimmed_end();
             line.skip_blanks();
             match line.peek() {

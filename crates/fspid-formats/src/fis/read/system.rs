@@ -120,9 +120,12 @@ impl<'a> Header<'a> {
                      their range as they are"
                 .into(),
         });
+        let matters = interval(inputs, outputs);
         if let Some(entry) = self.keys.get("TypeRedMethod") {
-            let reducer = reducer(entry, interval(inputs, outputs), report);
+            let reducer = reducer(entry, matters, report);
             report.keep(reducer);
+        } else if matters {
+            report.note_whole("`TypeRedMethod` is missing; `Karnik-Mendel` is assumed");
         }
     }
 }

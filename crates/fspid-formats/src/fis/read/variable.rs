@@ -50,6 +50,9 @@ impl<'a> Variable<'a> {
         let enabled = keys.get("Enabled").is_none_or(|entry| switch(&entry, report));
         let sets = sets(&keys, report);
         told(&keys, "NumMFs", sets.len(), "membership functions", report);
+        if sets.iter().any(|set| set.lower.as_ref().is_some_and(|low| low.label != set.label)) {
+            report.note(section.place, "labels of lower membership functions are not kept");
+        }
         Self { name, place: section.place, enabled, universe, sets }
     }
 
@@ -155,6 +158,9 @@ fn sets<'a>(keys: &Keys<'a>, report: &mut Report) -> Vec<Set<'a>> {
     let mut before = 0;
     let mut sets = Vec::new();
     for number in numbers {
+        if report.is_full() {
+            break;
+        }
         sets.push(set(keys, number, before + 1, report));
         before = number;
     }

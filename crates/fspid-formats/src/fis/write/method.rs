@@ -51,6 +51,7 @@ impl Methods {
             },
             implication: match one("implication", implication, losses) {
                 None if sugeno => weighs,
+                None => idle(parts.blocks.first().map(|block| &block.implication)),
                 found => t_norm("implication", found, losses),
             },
             aggregation: match one("aggregation", aggregation, losses) {
