@@ -18,26 +18,21 @@
 
 mod adapt;
 mod check;
-// Until every format uses all of them.
-#[allow(dead_code)]
 mod cursor;
 pub mod fcl;
 pub mod fll;
+#[doc(hidden)]
+pub mod fuzzing;
 mod identifiers;
-#[allow(dead_code)]
 mod lexer;
 mod loss;
-#[allow(dead_code)]
 mod names;
 mod note;
-#[allow(dead_code)]
 mod number;
-#[allow(dead_code)]
 mod report;
-#[allow(dead_code)]
 mod rule;
 mod term;
-#[allow(dead_code)]
+mod tokens;
 mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

@@ -25,7 +25,11 @@ fn read(text: &str) -> Parts {
 }
 
 fn shape(parts: &Parts, input: usize, term: &str) -> (ShapeKind, Vec<f64>, f64) {
-    let term = parts.inputs[input].terms.iter().find(|found| found.name == term).unwrap();
+    let term = parts.inputs[input]
+        .terms
+        .iter()
+        .find(|found| found.name == term)
+        .expect("a term of that name");
     match &term.membership {
         Membership::Shape { kind, params, height } => (*kind, params.clone(), *height),
         Membership::Formula { .. } => panic!("a formula"),
