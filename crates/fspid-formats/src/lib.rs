@@ -20,6 +20,7 @@ mod adapt;
 mod check;
 mod cursor;
 pub mod fcl;
+pub mod fis;
 pub mod fll;
 #[doc(hidden)]
 pub mod fuzzing;

@@ -12,7 +12,8 @@ const LONGEST_WORD: usize = 40;
 pub(crate) struct Report {
     problems: Vec<Problem>,
     notes: Vec<Note>,
-    more_problems: usize,
+    /// Whether more problems have been met than are told.
+    full: bool,
     more_notes: usize,
 }
 
@@ -25,8 +26,12 @@ impl Report {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) {
-        let (place, word) = (Some(place), clipped(word));
-        self.push(Problem { place, word, message: message.into(), expected: expected.into() });
+        self.push(wrong(place, word, message, expected));
+    }
+
+    /// The value, or nothing after noting down why there is none.
+    pub(crate) fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.push(problem)).ok()
     }
 
     /// The text as a whole is wrong.
@@ -40,8 +45,13 @@ impl Report {
         if self.problems.len() < MOST {
             self.problems.push(problem);
         } else {
-            self.more_problems += 1;
+            self.full = true;
         }
+    }
+
+    /// True once there is no use in looking for further problems.
+    pub(crate) fn is_full(&self) -> bool {
+        self.full
     }
 
     /// Something worth knowing about a place.
@@ -69,9 +79,9 @@ impl Report {
     /// The problems, if there are any, in the order of their places.
     pub(crate) fn finish(mut self) -> Result<Vec<Note>, Problems> {
         self.problems.sort_by_key(|problem| problem.place);
-        if self.more_problems > 0 {
-            let message = format!("and {} more problems", self.more_problems);
+        if self.full {
             let (word, expected) = (String::new(), String::new());
+            let message = "and more problems".into();
             self.problems.push(Problem { place: None, word, message, expected });
         }
         if !self.problems.is_empty() {
@@ -84,6 +94,17 @@ impl Report {
         }
         Ok(self.notes)
     }
+}
+
+/// A problem with a word at a place.
+pub(crate) fn wrong(
+    place: Place,
+    word: &str,
+    message: impl Into<String>,
+    expected: impl Into<String>,
+) -> Problem {
+    let (place, word) = (Some(place), clipped(word));
+    Problem { place, word, message: message.into(), expected: expected.into() }
 }
 
 /// The beginning of a word, with control characters shown as escapes.
@@ -123,24 +144,37 @@ pub(crate) fn nearest<'k>(known: impl Iterator<Item = &'k str>, found: &str) -> 
         .map(|(_, word)| word)
 }
 
-/// Single-character changes from one word to the other (Levenshtein).
+/// Single characters that must be changed, put in, left out or swapped with their neighbour.
 fn distance(from: &str, to: &str) -> usize {
-    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
-    for (index, left) in from.chars().enumerate() {
-        let mut diagonal = index;
-        let mut before = index + 1;
-        for (cell, right) in row.iter_mut().zip(std::iter::once(None).chain(to.chars().map(Some))) {
-            let Some(right) = right else {
-                *cell = before;
-                continue;
-            };
-            let changed = diagonal + usize::from(left != right);
-            diagonal = *cell;
-            before = changed.min(before + 1).min(diagonal + 1);
-            *cell = before;
-        }
+    let to: Vec<char> = to.chars().collect();
+    let mut rows: Vec<Vec<usize>> = vec![(0..=to.len()).collect()];
+    let mut before = None;
+    for left in from.chars() {
+        let row = next_row(&rows, &to, left, before);
+        rows.push(row);
+        before = Some(left);
     }
-    row.last().copied().unwrap_or_default()
+    rows.last().and_then(|row| row.last()).copied().unwrap_or_default()
+}
+
+/// One more row of the table of distances: from the words up to `left` to each beginning of `to`.
+fn next_row(rows: &[Vec<usize>], to: &[char], left: char, before: Option<char>) -> Vec<usize> {
+    let cell = |up: usize, column: usize| {
+        let row = rows.len().checked_sub(up).and_then(|row| rows.get(row));
+        row.and_then(|row| row.get(column)).copied().unwrap_or(usize::MAX - 1)
+    };
+    let mut row = vec![rows.len()];
+    let mut behind = None;
+    for (column, &right) in to.iter().enumerate() {
+        let changed = cell(1, column) + usize::from(left != right);
+        let left_out = cell(1, column + 1) + 1;
+        let put_in = row.last().map_or(usize::MAX, |count| count + 1);
+        let swaps = column > 0 && before == Some(right) && behind == Some(left);
+        let swapped = if swaps { cell(2, column - 1) + 1 } else { usize::MAX };
+        row.push(changed.min(left_out).min(put_in).min(swapped));
+        behind = Some(right);
+    }
+    row
 }
 
 #[cfg(test)]
@@ -151,9 +185,13 @@ mod tests {
 
     #[test]
     fn distances_count_changes() {
-        for (from, to, changes) in
-            [("", "", 0), ("", "ab", 2), ("kitten", "sitting", 3), ("min", "mni", 2)]
-        {
+        for (from, to, changes) in [
+            ("", "", 0),
+            ("", "ab", 2),
+            ("kitten", "sitting", 3),
+            ("min", "mni", 1),
+            ("abcd", "badc", 2),
+        ] {
             assert_eq!(distance(from, to), changes, "{from} {to}");
         }
     }
@@ -166,12 +204,12 @@ mod tests {
     }
 
     #[test]
-    fn beyond_fifty_only_the_number_is_told() {
+    fn beyond_fifty_it_is_only_told_that_there_are_more() {
         let mut report = Report::default();
         (0..60).for_each(|_| report.problem(HERE, "x", "is wrong", ""));
         let problems = report.finish().unwrap_err().0;
         assert_eq!(problems.len(), 51);
-        assert_eq!(problems.last().unwrap().to_string(), "and 10 more problems");
+        assert_eq!(problems.last().unwrap().to_string(), "and more problems");
     }
 
     #[test]

@@ -164,7 +164,7 @@ fn unknown_names_among_many_are_told_in_time() {
     let [fcl, fll] = large(5000);
     let (fcl, fll) = (fcl.replace("IF v", "IF w"), fll.replace("if v", "if w"));
     let start = Instant::now();
-    assert!(problems(fcl::read(&fcl)).contains("and 4950 more problems"));
-    assert!(problems(fll::read(&fll)).contains("and 4950 more problems"));
+    assert!(problems(fcl::read(&fcl)).contains("and more problems"));
+    assert!(problems(fll::read(&fll)).contains("and more problems"));
     assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
