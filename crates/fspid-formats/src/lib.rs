@@ -6,11 +6,24 @@
 //!
 //! What a tool computes is part of what its file means: a system that is read answers by the rule of
 //! the tool that the format belongs to (see [`Reading::notes`]).
+#![warn(clippy::indexing_slicing)]
 #![cfg_attr(
     test,
-    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
+    allow(
+        clippy::float_cmp,
+        clippy::indexing_slicing,
+        reason = "tests ask for exact bits where they compare floats, and may panic"
+    )
 )]
 
+// Until every format uses all of them.
+#[allow(dead_code)]
+mod cursor;
+pub mod fis;
 mod note;
+#[allow(dead_code)]
+mod number;
+#[allow(dead_code)]
+mod report;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};
