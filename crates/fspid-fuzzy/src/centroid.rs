@@ -25,6 +25,8 @@ pub(crate) fn centroid<R: Real>(rule: Defuzzifier, strengths: &[R]) -> R {
         Defuzzifier::Trapezoid(samples) => {
             sampled(strengths, samples, samples - 1, R::ZERO, R::HALF)
         }
+        Defuzzifier::LeftEnd(cells) => sampled(strengths, cells, cells, R::ZERO, R::ONE),
+        Defuzzifier::Vertices(samples) => vertices(strengths, samples),
     }
 }
 
@@ -102,15 +104,66 @@ fn union_grade<R: Real>(strengths: &[R], x: R) -> R {
     grade
 }
 
+/// Centroid under the line through `samples` points and those where a triangle, itself sampled and
+/// straight between the samples, is cut.
+fn vertices<R: Real>(strengths: &[R], samples: u32) -> R {
+    let half_span = half_span(strengths);
+    let cell = (half_span + half_span) / R::from_f64(f64::from(samples - 1));
+    let (mut area, mut moment) = (R::ZERO, R::ZERO);
+    for n in 1..samples {
+        let ends = [n - 1, n].map(|n| R::from_f64(f64::from(n)) * cell - half_span);
+        let (mut from, mut from_grade) = (R::ZERO, cut_line_grade(strengths, ends, R::ZERO));
+        while from < R::ONE {
+            let to = next_cut(strengths, ends, from);
+            let (to_grade, width) = (cut_line_grade(strengths, ends, to), (to - from) * cell);
+            let middle = ends[0] + R::HALF * (from + to) * cell;
+            let slice = R::HALF * width * (from_grade + to_grade);
+            let tilt = width * width * (to_grade - from_grade) / R::from_f64(12.0);
+            area += slice;
+            moment += middle * slice + tilt;
+            (from, from_grade) = (to, to_grade);
+        }
+    }
+    moment / area
+}
+
+/// Grades of the triangles at both ends of a cell, with the height at which each is cut.
+fn lines<R: Real>(strengths: &[R], ends: [R; 2]) -> impl Iterator<Item = ([R; 2], R)> {
+    let mut peak = -half_span(strengths);
+    strengths.iter().map(move |&strength| {
+        let grades = ends.map(|x| (R::ONE - (x - peak).abs()).larger(R::ZERO));
+        peak += R::ONE;
+        (grades, strength)
+    })
+}
+
+/// Grade of the union of the cut lines at the fraction `t` of a cell.
+fn cut_line_grade<R: Real>(strengths: &[R], ends: [R; 2], t: R) -> R {
+    lines(strengths, ends).fold(R::ZERO, |joined, ([begin, end], strength)| {
+        joined.larger((begin * (R::ONE - t) + end * t).smaller(strength))
+    })
+}
+
+/// The first fraction of a cell beyond `from` at which a line is cut; 1 if there is none.
+fn next_cut<R: Real>(strengths: &[R], ends: [R; 2], from: R) -> R {
+    lines(strengths, ends).fold(R::ONE, |next, ([begin, end], strength)| {
+        let crosses = (begin < strength && strength < end) || (end < strength && strength < begin);
+        let t = (strength - begin) / (end - begin);
+        if crosses && from < t && t < next { t } else { next }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::label::LABEL_COUNT;
 
-    const RULES: [Defuzzifier; 3] = [
+    const RULES: [Defuzzifier; 5] = [
         Defuzzifier::Endpoints(60_001),
         Defuzzifier::Midpoint(60_000),
         Defuzzifier::Trapezoid(60_001),
+        Defuzzifier::LeftEnd(60_000),
+        Defuzzifier::Vertices(6_001),
     ];
 
     #[test]

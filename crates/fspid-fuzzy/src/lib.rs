@@ -43,9 +43,12 @@ mod exp;
 #[cfg(feature = "alloc")]
 pub mod formula;
 pub mod hedge;
+#[cfg(feature = "alloc")]
+pub mod karnik_mendel;
 mod label;
 pub mod membership;
 pub mod norm;
+pub mod quadrature;
 mod real;
 mod rule_table;
 pub mod scalar;

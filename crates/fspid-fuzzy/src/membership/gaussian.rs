@@ -24,6 +24,6 @@ impl Shape for Gaussian {
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let &[centre, sigma] = params else { return S::zero() };
         let z = (x - centre) / sigma;
-        (-S::half() * (z * z)).exp()
+        (-S::half() * z.square()).exp()
     }
 }

@@ -7,6 +7,16 @@
 //! To make that possible an equation chooses between cases only by [`smaller`](Scalar::smaller),
 //! [`larger`](Scalar::larger), [`abs`](Scalar::abs) and [`if_less`](Scalar::if_less), never by `if`.
 
+mod base;
+mod dual;
+mod interval;
+mod jet;
+
+pub use base::Base;
+pub use dual::Dual;
+pub use interval::Interval;
+pub use jet::Jet;
+
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
