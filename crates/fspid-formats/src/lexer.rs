@@ -68,7 +68,8 @@ pub(crate) struct Comments {
 /// Reads tokens; a copy of it remembers a place to come back to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lexer<'a> {
-    cursor: Cursor<'a>,
+    /// Where it stands.
+    pub(crate) cursor: Cursor<'a>,
     alphabet: Alphabet,
     /// The comments so far.
     pub(crate) comments: Comments,
@@ -143,8 +144,8 @@ impl<'a> Lexer<'a> {
 
     /// Two points in a row end a number, for `0..1` is a range.
     fn fcl_number(&mut self) -> Kind {
-        self.cursor.bump();
-        let signed_word = self.cursor.peek().is_some_and(char::is_alphabetic);
+        let signed = matches!(self.cursor.bump(), Some('+' | '-'));
+        let signed_word = signed && self.cursor.peek().is_some_and(char::is_alphabetic);
         self.digits();
         if self.cursor.peek() == Some('.') && self.second() != Some('.') {
             self.cursor.bump();
@@ -222,51 +223,6 @@ fn is_name(found: char) -> bool {
 
 fn is_separator(found: char) -> bool {
     matches!(found, '(' | ')' | ',')
-}
-
-/// A lexer with the next token at hand.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tokens<'a> {
-    lexer: Lexer<'a>,
-    /// The next token.
-    pub(crate) next: Token<'a>,
-}
-
-impl<'a> Tokens<'a> {
-    pub(crate) fn new(mut lexer: Lexer<'a>) -> Self {
-        let next = lexer.next();
-        Self { lexer, next }
-    }
-
-    /// Passes the next token and tells it.
-    pub(crate) fn advance(&mut self) -> Token<'a> {
-        let passed = self.next;
-        self.next = self.lexer.next();
-        passed
-    }
-
-    /// Passes the keyword or sign if it is next, and says whether it was.
-    pub(crate) fn eat(&mut self, word: &str) -> bool {
-        let next = self.next.is(word);
-        if next {
-            self.advance();
-        }
-        next
-    }
-
-    /// Takes the text from the next token up to `end`, which is not passed, or the end of the line.
-    pub(crate) fn take_raw(&mut self, end: char) -> Token<'a> {
-        let mut token = self.next;
-        self.lexer.cursor = token.start;
-        token.text = self.lexer.cursor.take_while(|next| next != end && next != '\n').trim_end();
-        self.next = self.lexer.next();
-        token
-    }
-
-    /// The comments so far.
-    pub(crate) fn comments(&self) -> Comments {
-        self.lexer.comments
-    }
 }
 
 #[cfg(test)]

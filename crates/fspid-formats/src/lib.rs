@@ -18,28 +18,23 @@
 
 mod adapt;
 mod check;
-// Until every format uses all of them.
-#[allow(dead_code)]
 mod cursor;
 pub mod fcl;
 pub mod fis;
 pub mod fll;
+#[doc(hidden)]
+pub mod fuzzing;
 mod identifiers;
-#[allow(dead_code)]
 mod lexer;
 mod loss;
-#[allow(dead_code)]
 mod names;
 mod note;
-#[allow(dead_code)]
 mod number;
-#[allow(dead_code)]
 mod report;
-#[allow(dead_code)]
 mod rule;
 pub mod rule_text;
 mod term;
-#[allow(dead_code)]
+mod tokens;
 mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

@@ -479,3 +479,13 @@ fn a_system_that_is_none_is_refused() {
     let told = fcl::write(&Parts::default(), Dialect::Iec, LOSSY).unwrap_err().to_string();
     assert!(told.contains("has no input"), "{told}");
 }
+
+/// Both have a word for it, but mean different widths: found by writing random systems.
+#[test]
+fn fuzzylite_s_cosine_is_not_jfuzzylogic_s() {
+    let width = |word: &str| {
+        let text = IEC.replace("poor := (0, 1) (4, 0)", &format!("poor := {word} 0 2"));
+        shape(&read(&text), 0, 0).1[1]
+    };
+    assert_eq!([width("Cosine"), width("COSINE"), width("cosine")], [2.0, 4.0, 4.0]);
+}

@@ -25,7 +25,11 @@ fn read(text: &str) -> Parts {
 }
 
 fn shape(parts: &Parts, input: usize, term: &str) -> (ShapeKind, Vec<f64>, f64) {
-    let term = parts.inputs[input].terms.iter().find(|found| found.name == term).unwrap();
+    let term = parts.inputs[input]
+        .terms
+        .iter()
+        .find(|found| found.name == term)
+        .expect("a term of that name");
     match &term.membership {
         Membership::Shape { kind, params, height } => (*kind, params.clone(), *height),
         Membership::Formula { .. } => panic!("a formula"),
@@ -249,7 +253,7 @@ fn norms_that_are_missing_are_told_only_where_they_are_used() {
     assert!(told.contains("has no implication, but concludes fuzzy sets"), "{told}");
     let told = problems(fll::read(&TIPPER.replace("aggregation: Maximum", "")));
     assert!(
-        told.contains("21:1: `tip`: has no aggregation, but its defuzzifier integrates"),
+        told.contains("18:1: `tip`: has no aggregation, but its defuzzifier integrates"),
         "{told}"
     );
     assert!(fll::read(TSUKAMOTO).is_ok(), "none is needed");

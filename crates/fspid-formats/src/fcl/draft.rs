@@ -6,11 +6,12 @@ use fspid_fuzzy::system::{Membership, Sampling, Universe};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
 use super::dialect::Evidence;
-use crate::lexer::{Token, Tokens};
+use crate::lexer::Token;
 use crate::names::Index;
 use crate::note::Place;
 use crate::report::Report;
 use crate::term::Number;
+use crate::tokens::Tokens;
 use crate::vocabulary::methods;
 
 /// A function block.

@@ -2,9 +2,10 @@
 
 use super::draft::Draft;
 use crate::cursor::Cursor;
-use crate::lexer::{Kind, Lexer, Token, Tokens};
+use crate::lexer::{Kind, Lexer, Token};
 use crate::note::Problems;
 use crate::report::Report;
+use crate::tokens::Tokens;
 use crate::vocabulary::known;
 
 /// The parser of a text. A method that answers `None` has reported why.

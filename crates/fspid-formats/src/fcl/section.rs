@@ -151,11 +151,12 @@ impl<'a> Parser<'a> {
             self.expect(")")?;
         }
         let unbounded = lower == f64::NEG_INFINITY && upper == f64::INFINITY;
-        if !unbounded && !(lower < upper && (upper - lower).is_finite()) {
+        let bounded = lower < upper && (upper - lower).is_finite();
+        if !(unbounded || bounded) {
             self.wrong(start, "not a range", "two finite numbers in ascending order");
             return None;
         }
-        self.variable()?.universe = (!unbounded).then_some(Universe { lower, upper });
+        self.variable()?.universe = bounded.then_some(Universe { lower, upper });
         self.end()
     }
 

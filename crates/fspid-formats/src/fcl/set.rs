@@ -43,8 +43,10 @@ impl<'a> Parser<'a> {
         Some(Set::Fuzzy(recognised(shape)))
     }
 
+    /// Both tools have a cosine; fuzzylite's is written as its class is, and twice as wide.
     fn named(&mut self, word: Token<'a>) -> Option<Set<'a>> {
-        if let Some(row) = shapes::of_word(JFUZZYLOGIC, word.text) {
+        let is_class = FUZZYLITE.iter().any(|row| row.word == word.text);
+        if let Some(row) = shapes::of_word(JFUZZYLOGIC, word.text).filter(|_| !is_class) {
             self.draft.evidence.jfuzzylogic(word.place(), "a word for a set");
             let numbers = self.numbers()?;
             return term::shape(row, word, &numbers, self.report()).map(Set::Fuzzy);

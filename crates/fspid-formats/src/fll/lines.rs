@@ -1,9 +1,10 @@
 //! Lines of keys and values.
 
 use crate::cursor::Cursor;
-use crate::lexer::{Kind, Lexer, Token, Tokens};
+use crate::lexer::{Kind, Lexer, Token};
 use crate::report::Report;
 use crate::term::{self, Number};
+use crate::tokens::Tokens;
 use crate::vocabulary::known;
 
 /// `key: value`

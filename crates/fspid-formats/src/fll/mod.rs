@@ -12,6 +12,7 @@
 //! # Source
 //! The language as documented by fuzzylite; numbers and names only, no program text.
 
+mod activation;
 mod lines;
 mod output;
 mod read;
@@ -24,3 +25,10 @@ pub use write::write;
 
 /// Cells of an integral if a file does not say.
 const RESOLUTION: u32 = 1000;
+
+/// A name that rules can use.
+fn readable(name: &str) -> bool {
+    let fits = |c: char| !c.is_whitespace() && !c.is_control() && !"(),#".contains(c);
+    let reserved = crate::rule::RESERVED.iter().any(|word| word.eq_ignore_ascii_case(name));
+    !name.is_empty() && name.chars().all(fits) && !reserved
+}

@@ -7,13 +7,15 @@ use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
 use super::lines::{self, Line, numbers};
 use super::output;
+use super::readable;
 use super::sections::{HEADINGS, Kindred, Section};
 use crate::cursor::Cursor;
-use crate::lexer::{Kind, Lexer, Token, Tokens};
+use crate::lexer::{Kind, Lexer, Token};
 use crate::names::Names;
 use crate::note::{Problems, Reading};
 use crate::report::Report;
 use crate::term::{formula, shape};
+use crate::tokens::Tokens;
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{known, norms};
 use crate::{check, rule};
@@ -115,9 +117,7 @@ pub(super) fn distinct<'a>(names: impl Iterator<Item = Cursor<'a>>, report: &mut
     let mut seen = BTreeSet::new();
     for name in names {
         let text = name.rest();
-        let usable = |c: char| !c.is_whitespace() && !"(),".contains(c);
-        let reserved = rule::RESERVED.iter().any(|word| word.eq_ignore_ascii_case(text));
-        if text.is_empty() || reserved || !text.chars().all(usable) {
+        if !readable(text) {
             let expected = "one word without brackets and commas that means nothing in rules";
             report.problem(name.place(), text, "cannot be a name", expected);
         } else if !seen.insert(text) {

@@ -1,19 +1,19 @@
 //! Writing.
 
 use fspid_fuzzy::system::{
-    Activation, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output, Parts,
-    RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe,
+    Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output, Parts, RuleBlock, SNorm,
+    Sampling, SetReading, TNorm, Universe,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::RESOLUTION;
-use super::sections::COMPARISONS;
+use super::{activation, readable};
 use crate::adapt;
 use crate::identifiers;
 use crate::loss::Loss;
 use crate::note::{Problems, WriteOptions, Writing};
 use crate::number::{written as number, written_all};
-use crate::rule::{self, RESERVED, Style};
+use crate::rule::{self, Style};
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{methods, norms};
 
@@ -33,12 +33,6 @@ const NAMES: identifiers::Rule = identifiers::Rule {
     documented: |name| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
     description: "letters, digits and underscores",
 };
-
-fn readable(name: &str) -> bool {
-    let fits = |c: char| !c.is_whitespace() && !c.is_control() && !"(),#".contains(c);
-    let reserved = RESERVED.iter().any(|word| word.eq_ignore_ascii_case(name));
-    !name.is_empty() && name.chars().all(fits) && !reserved
-}
 
 /// The nearest system that the language can say.
 fn adapted(parts: &Parts, loss: &mut Loss) -> Parts {
@@ -193,7 +187,7 @@ impl Writer<'_> {
             ("conjunction", self.t_norm(&block.name, &block.and)),
             ("disjunction", self.s_norm(&block.name, &block.or)),
             ("implication", self.t_norm(&block.name, &block.implication)),
-            ("activation", activation(block.activation)),
+            ("activation", activation::written(block.activation)),
         ];
         text.extend(properties.iter().map(|(key, value)| property(key, value)));
         for (index, rule) in block.rules.iter().enumerate() {
@@ -275,20 +269,5 @@ fn defuzzifier(output: &Output) -> String {
             Some(Sampling::Midpoint(count)) => format!("{class} {count}"),
             _ => class.into(),
         },
-    }
-}
-
-fn activation(activation: Activation) -> String {
-    match activation {
-        Activation::General => "General".into(),
-        Activation::First { count, threshold } => format!("First {count} {}", number(threshold)),
-        Activation::Last { count, threshold } => format!("Last {count} {}", number(threshold)),
-        Activation::Highest { count } => format!("Highest {count}"),
-        Activation::Lowest { count } => format!("Lowest {count}"),
-        Activation::Proportional => "Proportional".into(),
-        Activation::Threshold { comparison, threshold } => {
-            let sign = COMPARISONS.iter().find(|row| row.1 == comparison).map_or(">=", |row| row.0);
-            format!("Threshold {sign} {}", number(threshold))
-        }
     }
 }

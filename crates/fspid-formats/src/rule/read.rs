@@ -4,11 +4,12 @@ use fspid_fuzzy::Hedge;
 use fspid_fuzzy::system::{Antecedent, Consequent, Rule, Statement, Variable};
 
 use super::{MAX_DEPTH, RESERVED};
-use crate::lexer::{Kind, Token, Tokens};
+use crate::lexer::{Kind, Token};
 use crate::names::{Found, Index, Names};
 use crate::note::Place;
 use crate::number;
 use crate::report::Report;
+use crate::tokens::Tokens;
 use crate::vocabulary::known;
 
 /// Reads rules from tokens. What it cannot read is reported; then it answers nothing.
@@ -171,6 +172,16 @@ impl<'r, 'a> Reader<'r, 'a> {
             self.wrong(self.tokens.next, "the term is missing", known(terms.all(), ""));
             return None;
         };
+        let begun = before.iter().position(|word| terms.find(word.text) != Found::Nothing);
+        if let (Some(term), Found::Nothing) = (begun, terms.find(last.text)) {
+            let after = words.get(term + 1).copied().unwrap_or(last);
+            self.wrong(
+                after,
+                "does not fit behind a term",
+                "`and`, `or`, `then`, `with` or the end",
+            );
+            return None;
+        }
         let hedges = before.iter().map(|&word| self.hedge(word)).collect::<Option<Vec<_>>>()?;
         if terms.find(last.text) == Found::Nothing && last.is("any") {
             return Some((hedges.into_iter().chain([Hedge::Any]).collect(), None));

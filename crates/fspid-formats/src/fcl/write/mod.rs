@@ -2,6 +2,8 @@
 
 mod adapt;
 mod fit;
+mod norm;
+mod options;
 mod set;
 mod text;
 

@@ -49,6 +49,8 @@ fn by_word(kind: ShapeKind, params: &[f64], height: f64, dialect: Dialect) -> Op
         return None;
     }
     let row = shapes::of_kind(rows(dialect), kind)?;
+    // Half of the smallest width is none.
+    row.kind.check(&row.ours(row.theirs(params))).ok()?;
     let height = (height < 1.0).then_some(height);
     let numbers = row.theirs(params).into_iter().chain(height).map(number);
     Some(format!("{} {}", row.word, numbers.collect::<Vec<_>>().join(" ")))
@@ -56,8 +58,14 @@ fn by_word(kind: ShapeKind, params: &[f64], height: f64, dialect: Dialect) -> Op
 
 /// The corners of a piecewise-linear set.
 fn by_points(kind: ShapeKind, params: &[f64], height: f64) -> Option<String> {
-    let mut points = Vec::new();
-    kind.vertices(params, &mut |vertex| points.extend([vertex.x, height * vertex.grade]));
+    let mut points: Vec<f64> = Vec::new();
+    kind.vertices(params, &mut |vertex| {
+        let point = [vertex.x, height * vertex.grade];
+        // Corners that fall together are one; points stay as they are.
+        if kind == ShapeKind::Points || !points.ends_with(&point) {
+            points.extend(point);
+        }
+    });
     let fits = !points.is_empty() && ShapeKind::Points.check(&points).is_ok();
     fits.then(|| listed(&points))
 }

@@ -1,21 +1,18 @@
 //! The text of a system that a dialect can say.
 
 use fspid_fuzzy::system::{
-    Conclusion, FallbackValue, Input, Output, Parts, RuleBlock, SNorm, Sampling, TNorm, Universe,
+    Conclusion, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling, Universe,
 };
-use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
+use fspid_fuzzy::{OutOfRange, SNormKind};
 
-use super::set;
+use super::{options, set};
 use crate::adapt::{check_formula, input_names};
 use crate::fcl::Dialect;
-use crate::fcl::option::OUT_OF_RANGE;
 use crate::loss::Loss;
 use crate::number::{written as number, written_all};
 use crate::rule::{self, Style};
 use crate::vocabulary::methods;
-use crate::vocabulary::norms::{
-    self, Row, S_NORMS, STANDARD_ACCU, STANDARD_ACT, STANDARD_AND, STANDARD_OR, T_NORMS,
-};
+use crate::vocabulary::norms::{STANDARD_ACCU, STANDARD_ACT, STANDARD_AND, STANDARD_OR};
 
 /// Writes a system whose parts have been adapted.
 pub(super) struct Writer<'w> {
@@ -36,7 +33,7 @@ impl Writer<'_> {
         parts.outputs.iter().for_each(|output| text += &self.output(output));
         parts.blocks.iter().for_each(|block| text += &self.block(block));
         if self.dialect == Dialect::Iec {
-            text += &options(parts);
+            text += &options::written(parts);
         }
         text + "\nEND_FUNCTION_BLOCK\n"
     }
@@ -64,7 +61,7 @@ impl Writer<'_> {
         }
     }
 
-    fn extended(&self) -> bool {
+    pub(super) fn extended(&self) -> bool {
         self.dialect == Dialect::Fuzzylite
     }
 
@@ -141,8 +138,8 @@ impl Writer<'_> {
         }
     }
 
-    fn formulas(&mut self, name: &str, membership: &fspid_fuzzy::system::Membership) {
-        if let fspid_fuzzy::system::Membership::Formula { formula, .. } = membership {
+    fn formulas(&mut self, name: &str, membership: &Membership) {
+        if let Membership::Formula { formula, .. } = membership {
             let names: Vec<&str> = ["x"].into_iter().chain(input_names(self.parts)).collect();
             check_formula(name, formula, &names, self.loss);
         }
@@ -203,38 +200,9 @@ impl Writer<'_> {
         }
         statement("ACCU : ", &self.s_norm(&block.name, &first.aggregation.clone(), &STANDARD_ACCU))
     }
-
-    /// The word of a norm; beside fuzzylite's dialect only those of the standard.
-    fn t_norm(&mut self, name: &str, norm: &TNorm, standard: &[TNormKind]) -> String {
-        let row = match norm {
-            TNorm::Kind(kind) => norms::row_of(T_NORMS, kind),
-            TNorm::Formula(_) => None,
-        };
-        let fits = |row: &&Row<TNormKind>| self.extended() || standard.contains(&row.kind);
-        let word = row.filter(fits).map(Row::word);
-        self.word(name, word)
-    }
-
-    fn s_norm(&mut self, name: &str, norm: &SNorm, standard: &[SNormKind]) -> String {
-        let row = match norm {
-            SNorm::Kind(kind) => norms::row_of(S_NORMS, kind),
-            SNorm::Formula(_) => None,
-        };
-        let fits = |row: &&Row<SNormKind>| self.extended() || standard.contains(&row.kind);
-        let word = row.filter(fits).map(Row::word);
-        self.word(name, word)
-    }
-
-    fn word(&mut self, name: &str, word: Option<&'static str>) -> String {
-        if word.is_none() {
-            let message = "a norm has no word in this dialect";
-            self.loss.cannot(name, message, "fuzzylite's dialect, or a norm of the standard");
-        }
-        word.unwrap_or_default().into()
-    }
 }
 
-fn statement(begin: &str, end: &str) -> String {
+pub(super) fn statement(begin: &str, end: &str) -> String {
     format!("  {begin}{end};\n")
 }
 
@@ -248,7 +216,7 @@ fn switches(enabled: bool, locked: bool) -> String {
     enabled + &if locked { statement("LOCK : ", "RANGE") } else { String::new() }
 }
 
-fn range(universe: Option<Universe>) -> String {
+pub(super) fn range(universe: Option<Universe>) -> String {
     let ends = universe.map_or([f64::NEG_INFINITY, f64::INFINITY], |u| [u.lower, u.upper]);
     format!("({})", ends.map(number).join(" .. "))
 }
@@ -268,50 +236,4 @@ fn default(output: &Output, dialect: Dialect) -> String {
         (false, None) => return String::new(),
     };
     statement("DEFAULT := ", &text)
-}
-
-/// What the standard has no words for.
-fn options(parts: &Parts) -> String {
-    let inputs = parts.inputs.iter().map(input_options);
-    let outputs = parts.outputs.iter().map(output_options);
-    let lines: String = inputs.chain(outputs).collect();
-    if lines.is_empty() { lines } else { format!("\nOPTION\n{lines}END_OPTION\n") }
-}
-
-fn input_options(input: &Input) -> String {
-    let mut text = String::new();
-    let name = &input.name;
-    if input.universe.is_some() {
-        text += &statement(&format!("FSPID_RANGE {name} := "), &range(input.universe));
-    }
-    if input.out_of_range != OutOfRange::Evaluate {
-        let word = OUT_OF_RANGE.iter().find(|row| row.1 == input.out_of_range);
-        text += &statement(&format!("FSPID_OUT_OF_RANGE {name} : "), word.map_or("", |row| row.0));
-    }
-    text + &disabled(name, input.enabled)
-}
-
-fn disabled(name: &str, enabled: bool) -> String {
-    if enabled { String::new() } else { statement(&format!("FSPID_ENABLED {name} : "), "FALSE") }
-}
-
-fn output_options(output: &Output) -> String {
-    let mut text = String::new();
-    let name = &output.name;
-    if let Some(sampling) = output.defuzzifier.sampling().filter(|s| *s != Sampling::Exact) {
-        let words = sampling.to_string().to_uppercase().replace('-', "_").replace(':', " ");
-        text += &statement(&format!("FSPID_SAMPLING {name} : "), &words);
-    }
-    if output.clamp {
-        text += &statement(&format!("FSPID_LIMIT {name} : "), "RANGE");
-    }
-    let begin = format!("FSPID_DEFAULT {name} : ");
-    match output.fallback.value {
-        FallbackValue::Middle => text += &statement(&begin, "MIDDLE"),
-        FallbackValue::Number(value) if output.fallback.previous => {
-            text += &statement(&begin, &number(value));
-        }
-        _ => {}
-    }
-    text + &disabled(name, output.enabled)
 }
