@@ -3,11 +3,12 @@
 use fspid_fuzzy::system::{Input, Output, Parts, Rule};
 
 use crate::cursor::Cursor;
-use crate::lexer::{Lexer, Tokens};
+use crate::lexer::Lexer;
 use crate::names::Names;
 use crate::note::{Problem, Problems};
 use crate::report::Report;
 use crate::rule::{Reader, Style, written};
+use crate::tokens::Tokens;
 
 /// Reads rules about the variables of one system; case matters in names, not in keywords.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{EVERY_KEY, TIP};
+use super::{EVERY_KEY, TIP, TYPE_2};
 
 /// What is wrong with a value: the part of draft 2020-12 that the schema uses. A word that is not
 /// known here fails the test.
@@ -100,7 +100,7 @@ fn json(text: &str) -> Value {
 #[test]
 fn the_schema_allows_every_key_and_refuses_what_is_wrong() {
     let schema = fspid_study::fuzzy_system::schema();
-    for text in [TIP, EVERY_KEY] {
+    for text in [TIP, EVERY_KEY, TYPE_2] {
         assert_eq!(fault(&schema, &json(text), "$"), None);
     }
     for (from, to) in [
