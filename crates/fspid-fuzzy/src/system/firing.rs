@@ -177,6 +177,9 @@ impl System {
         else {
             return 1.0;
         };
+        if !part.enabled {
+            return 0.0;
+        }
         let before = resolved.conclusions.iter().filter(|&&index| {
             self.conclusions.get(index).is_some_and(|c| c.rule < rule && c.term == term)
         });
@@ -195,7 +198,9 @@ impl System {
         for (rule, &strength) in resolved.iter().zip(strengths) {
             let Some(degrees) = degrees.get_mut(rule.conclusions.clone()) else { continue };
             degrees.fill(strength);
+            // A rule that does not fire concludes nothing, not even `not`.
             if self.hedged
+                && strength > 0.0
                 && let Some(conclusions) = self.conclusions.get(rule.conclusions.clone())
             {
                 for (degree, conclusion) in degrees.iter_mut().zip(conclusions) {

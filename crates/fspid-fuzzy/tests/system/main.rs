@@ -5,7 +5,13 @@
 
 mod build;
 mod integral;
+mod oracle;
 mod outline;
+mod policies;
+mod properties;
+mod random;
+mod relations;
+mod rules;
 mod sampled;
 mod supervisor;
 mod tipper;

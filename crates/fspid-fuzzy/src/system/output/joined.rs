@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use super::roomy_clone;
+
 /// Areas that differ by this fraction count as halves of the same size, and grades that differ by
 /// it as equally high: a few roundings.
 const SLACK: f64 = 16.0 * f64::EPSILON;
@@ -77,6 +79,10 @@ impl Joined {
 
     pub(crate) fn capacity(&self) -> usize {
         self.pieces.capacity()
+    }
+
+    pub(super) fn roomy_clone(&self) -> Self {
+        Self { pieces: roomy_clone(&self.pieces), ..*self }
     }
 
     pub(super) fn restart(&mut self, reference: f64) {
