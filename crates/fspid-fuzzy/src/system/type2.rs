@@ -53,7 +53,7 @@ impl Clone for Type2Room {
             degrees: self.degrees.clone(),
             lower: self.lower.clone(),
             outline: self.outline.roomy_clone(),
-            straight: self.straight.each_ref().map(|pieces| roomy_clone(pieces)),
+            straight: self.straight.each_ref().map(roomy_clone),
             points: roomy_clone(&self.points),
             intervals: self.intervals.clone(),
         }

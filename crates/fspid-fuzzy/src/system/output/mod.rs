@@ -107,7 +107,7 @@ impl Scratch {
 impl Clone for Scratch {
     /// A clone has as much room as the original.
     fn clone(&self) -> Self {
-        let (outline, samples) = (self.outline.roomy_clone(), self.samples.roomy_clone());
+        let (outline, samples) = (self.outline.clone(), self.samples.clone());
         let (room, levels, sorted) = (self.room.clone(), self.levels.clone(), self.sorted.clone());
         Self { room, levels, sorted, order: roomy_clone(&self.order), outline, samples }
     }

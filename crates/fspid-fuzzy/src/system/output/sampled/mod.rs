@@ -47,8 +47,9 @@ pub(crate) struct Samples {
     cuts: Vec<f64>,
 }
 
-impl Samples {
-    pub(super) fn roomy_clone(&self) -> Self {
+impl Clone for Samples {
+    /// A clone has as much room as the original.
+    fn clone(&self) -> Self {
         Self {
             terms: self.terms.clone(),
             joined: roomy_clone(&self.joined),
