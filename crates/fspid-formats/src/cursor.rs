@@ -110,6 +110,19 @@ impl<'a> Cursor<'a> {
         Some(Self { rest, place })
     }
 
+    /// Only what stands before the first `sign`, if there is one.
+    pub(crate) fn before(mut self, sign: char) -> Self {
+        self.rest = self.rest.split(sign).next().unwrap_or_default();
+        self
+    }
+
+    /// What stands before a cursor further on in the same text.
+    pub(crate) fn up_to(mut self, after: Self) -> Self {
+        let length = self.rest.len().saturating_sub(after.rest.len());
+        self.rest = self.rest.get(..length).unwrap_or_default();
+        self
+    }
+
     /// Without blanks at the end.
     pub(crate) fn trimmed_end(mut self) -> Self {
         self.rest = self.rest.trim_end();

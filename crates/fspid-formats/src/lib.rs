@@ -16,14 +16,24 @@
     )
 )]
 
-// Until every format uses all of them.
-#[allow(dead_code)]
+mod adapt;
+mod check;
 mod cursor;
+pub mod fcl;
 pub mod fis;
+pub mod fll;
+#[doc(hidden)]
+pub mod fuzzing;
+mod identifiers;
+mod lexer;
+mod loss;
+mod names;
 mod note;
-#[allow(dead_code)]
 mod number;
-#[allow(dead_code)]
 mod report;
+mod rule;
+mod term;
+mod tokens;
+mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};
