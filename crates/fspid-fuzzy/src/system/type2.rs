@@ -52,7 +52,7 @@ impl Clone for Type2Room {
             strengths: self.strengths.clone(),
             degrees: self.degrees.clone(),
             lower: self.lower.clone(),
-            outline: self.outline.roomy_clone(),
+            outline: self.outline.clone(),
             straight: self.straight.each_ref().map(roomy_clone),
             points: roomy_clone(&self.points),
             intervals: self.intervals.clone(),

@@ -77,21 +77,12 @@ impl Joined {
         self.pieces.reserve(pieces);
     }
 
-<<<<<<< HEAD
-    pub(crate) fn capacity(&self) -> usize {
-        self.pieces.capacity()
-    }
-
-    pub(super) fn roomy_clone(&self) -> Self {
-        Self { pieces: roomy_clone(&self.pieces), ..*self }
-=======
     pub(super) fn roomy_clone(&self) -> Self {
         Self { pieces: roomy_clone(&self.pieces), ..*self }
     }
 
     pub(crate) fn capacity(&self) -> usize {
         self.pieces.capacity()
->>>>>>> evaluate
     }
 
     pub(super) fn restart(&mut self, reference: f64) {

@@ -62,14 +62,9 @@ pub(crate) struct Room {
     pub(crate) joined: Joined,
 }
 
-<<<<<<< HEAD
-impl Room {
-    pub(crate) fn roomy_clone(&self) -> Self {
-=======
 impl Clone for Room {
     /// A clone has as much room as the original.
     fn clone(&self) -> Self {
->>>>>>> evaluate
         Self {
             active: roomy_clone(&self.active),
             cuts: roomy_clone(&self.cuts),
