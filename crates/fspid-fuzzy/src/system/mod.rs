@@ -31,6 +31,7 @@ pub use build::System;
 pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
 pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
+pub(crate) use firing::hedged;
 pub use gradient::{Differentiator, Gradient, GradientError, Parameter};
 pub use norms::{SNorm, TNorm};
 pub use output::{Joined, Piece};
@@ -38,4 +39,5 @@ pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
+pub(crate) use program::{Program, STACK, Step};
 pub use workspace::Workspace;
