@@ -35,10 +35,12 @@
 extern crate std;
 
 mod centroid;
+mod consequents;
 mod defuzzifier;
 mod error;
 mod exp;
 mod label;
+mod lanes;
 pub mod membership;
 mod real;
 mod rule_table;

@@ -3,10 +3,36 @@
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+use crate::exp;
+use crate::lanes::{Lanes, One};
+
+pub(crate) mod sealed {
+    use super::{Lanes, Real};
+
+    pub trait Sealed: Sized {
+        /// Adding and subtracting this rounds a small number to the nearest integer, which then
+        /// stands in the low bits of the sum.
+        const ROUND: Self;
+        /// Bits below the exponent.
+        const MANTISSA_BITS: u32;
+
+        /// $e^x$ in each lane.
+        fn exp_of<L: Lanes<Number = Self>>(x: L) -> L
+        where
+            Self: Real;
+
+        /// [`exp_of`](Self::exp_of) for numbers from -100 to 0: the same bits, sooner.
+        fn exp_inside_of<L: Lanes<Number = Self>>(x: L) -> L
+        where
+            Self: Real;
+
+        /// $2^k$ for an integer `k` between the least and the greatest normal exponent.
+        fn power_of_two(self) -> Self;
+
+        /// $2^k$ times the number, by its exponent, for a `k` shifted by [`ROUND`](Self::ROUND);
+        /// the number and the answer must be normal.
+        fn raised(self, shifted: Self) -> Self;
+    }
 }
 
 /// A floating-point number with only the operations that give the same bits on every platform.
@@ -51,11 +77,13 @@ pub trait Real:
     fn exp(self) -> Self;
 
     /// The smaller of two numbers; the second if either is NaN.
+    #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
     /// The larger of two numbers; the second if either is NaN.
+    #[inline(always)]
     fn larger(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -73,7 +101,34 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident, $exp:path) => {
+    ($float:ident, $round:expr, $exp:path, $exp_inside:path) => {
+        impl sealed::Sealed for $float {
+            const ROUND: Self = $round;
+            const MANTISSA_BITS: u32 = $float::MANTISSA_DIGITS - 1;
+
+            #[inline(always)]
+            fn exp_of<L: Lanes<Number = Self>>(x: L) -> L {
+                $exp(x)
+            }
+
+            #[inline(always)]
+            fn exp_inside_of<L: Lanes<Number = Self>>(x: L) -> L {
+                $exp_inside(x)
+            }
+
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                let one: Self = 1.0;
+                one.raised(self + $round)
+            }
+
+            #[inline(always)]
+            fn raised(self, shifted: Self) -> Self {
+                let exponent = shifted.to_bits() << Self::MANTISSA_BITS;
+                $float::from_bits(self.to_bits().wrapping_add(exponent))
+            }
+        }
+
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -100,12 +155,14 @@ macro_rules! real {
                 $float::is_finite(self)
             }
 
+            #[inline(always)]
             fn exp(self) -> Self {
-                $exp(self)
+                let One(value) = $exp(One(self));
+                value
             }
         }
     };
 }
 
-real!(f32, crate::exp::exp_f32);
-real!(f64, crate::exp::exp_f64);
+real!(f32, exp::ROUND_F32, exp::exp_f32, exp::exp_f32);
+real!(f64, exp::ROUND_F64, exp::exp_f64, exp::exp_normal_f64);

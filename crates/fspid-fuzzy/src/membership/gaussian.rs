@@ -2,6 +2,7 @@
 
 use super::{Param, Range, Shape, checked};
 use crate::error::FuzzyError;
+use crate::lanes::{Lanes, One};
 use crate::real::Real;
 
 /// Width of Gaussian sets, as a fraction of their spacing, at which neighbours cross at 0.5:
@@ -20,6 +21,13 @@ impl<R: Real> Gaussian<R> {
     pub(crate) fn spaced(centre: R, spacing: R) -> Self {
         Self { centre, sigma: spacing * R::from_f64(SIGMA_PER_SPACING) }
     }
+
+    /// What the exponential is taken of, in each lane.
+    #[inline(always)]
+    pub(crate) fn exponent<L: Lanes<Number = R>>(&self, x: L) -> L {
+        let z = (x - x.same(self.centre)) / x.same(self.sigma);
+        x.same(-R::HALF) * (z * z)
+    }
 }
 
 impl<R: Real> Shape<R> for Gaussian<R> {
@@ -37,7 +45,7 @@ impl<R: Real> Shape<R> for Gaussian<R> {
     }
 
     fn grade(&self, x: R) -> R {
-        let z = (x - self.centre) / self.sigma;
-        (-R::HALF * (z * z)).exp()
+        let One(exponent) = self.exponent(One(x));
+        exponent.exp()
     }
 }
