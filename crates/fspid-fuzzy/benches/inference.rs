@@ -12,9 +12,10 @@
 )]
 
 use std::hint::black_box;
+use std::ops::Range;
 use std::time::Instant;
 
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, Increments, OutOfRange, Real, RuleTable, Supervisor};
 
 const INPUTS: usize = 1_000_000;
 const BLOCK: usize = 10_000;
@@ -22,62 +23,116 @@ const ROUNDS: usize = 7;
 const RANGE: f64 = 5.0;
 
 fn main() {
-    let inputs = Inputs::new();
-    let supervisor = supervisor();
+    let inputs = Inputs::<f64>::new();
     let samples = FixedLoop::new();
-    let fixed = report("101 samples, fixed loop", None, &inputs, |sum, error, change| {
-        samples.infer_all(sum, error, change)
+    let fixed = report("101 samples, fixed loop", None, |block, answers| {
+        for (place, (error, change)) in inputs.pairs(block).enumerate() {
+            answers.put(place, black_box(&samples).infer(error, change));
+        }
     });
-    report("exact, scalar", Some(fixed), &inputs, |sum, error, change| {
-        infer_all(&supervisor, sum, error, change)
+    let supervisor = supervisor(Defuzzifier::Exact);
+    report("exact, one by one", Some(fixed), |block, answers| {
+        for (place, (error, change)) in inputs.pairs(block).enumerate() {
+            if let Ok(answer) = black_box(&supervisor).infer(error, change) {
+                let Increments { kp, ki, kd } = answer.delta;
+                answers.put(place, [kp, ki, kd]);
+            }
+        }
     });
+    #[cfg(feature = "batch")]
+    {
+        report_batches("f64", fixed, &inputs);
+        report_batches("f32", fixed, &Inputs::<f32>::new());
+    }
+    #[cfg(not(feature = "batch"))]
+    println!("batches are not built; add --features batch");
 }
 
-/// Times `work`, which adds to a checksum, over all inputs, block by block, and prints the best rate.
-fn report(
+/// Batches by each instruction set of this machine.
+#[cfg(feature = "batch")]
+fn report_batches<R: Real>(precision: &str, fixed: f64, inputs: &Inputs<R>) {
+    let supervisor = supervisor(Defuzzifier::Exact);
+    for set in fspid_fuzzy::InstructionSet::available() {
+        report(&format!("exact, batch of {precision}, {set}"), Some(fixed), |block, answers| {
+            let (error, change) = (&inputs.error[block.clone()], &inputs.change[block]);
+            let answered = supervisor.infer_many_by(set, error, change, answers.as_batch());
+            assert!(answered.is_ok(), "inputs within the range");
+        });
+    }
+}
+
+/// Times `work` over all inputs, block by block, and prints the best rate in millions per second.
+fn report<R: Real>(
     what: &str,
     reference: Option<f64>,
-    inputs: &Inputs,
-    mut work: impl FnMut(f64, &[f64], &[f64]) -> f64,
+    mut work: impl FnMut(Range<usize>, &mut Places<R>),
 ) -> f64 {
+    let mut places = Places::new();
     let mut best = 0.0_f64;
     let mut checksums = [0.0; ROUNDS];
     for checksum in &mut checksums {
-        let blocks = inputs.error.chunks(BLOCK).zip(inputs.change.chunks(BLOCK));
-        for (error, change) in blocks {
+        for begin in (0..INPUTS).step_by(BLOCK) {
             let start = Instant::now();
-            *checksum = black_box(work(*checksum, error, change));
+            work(begin..begin + BLOCK, black_box(&mut places));
             best = best.max(BLOCK as f64 / start.elapsed().as_secs_f64() / 1e6);
+            *checksum = places.added_to(*checksum);
         }
     }
     let [checksum, others @ ..] = checksums.map(f64::to_bits);
     assert!(others.iter().all(|&other| other == checksum), "a round gave another answer");
     let times = reference.map_or(String::new(), |fixed| format!("{:.1} times, ", best / fixed));
     let checksum = f64::from_bits(checksum);
-    println!("{what:<28} {best:7.2} million/s, {times}checksum {checksum:?}");
+    println!("{what:<31} {best:7.2} million/s, {times}checksum {checksum:?}");
     best
 }
 
-/// A sum in which each gain's increment has another weight.
-fn weighted(kp: f64, ki: f64, kd: f64) -> f64 {
-    kp + 3.0 * ki + 7.0 * kd
+/// Answers of a block.
+struct Places<R> {
+    kp: [R; BLOCK],
+    ki: [R; BLOCK],
+    kd: [R; BLOCK],
+    #[cfg(feature = "batch")]
+    flags: [[bool; BLOCK]; 2],
 }
 
-fn infer_all(supervisor: &Supervisor<f64>, mut sum: f64, error: &[f64], change: &[f64]) -> f64 {
-    for (&error, &change) in error.iter().zip(change) {
-        if let Ok(answer) = black_box(supervisor).infer(error, change) {
-            sum += weighted(answer.delta.kp, answer.delta.ki, answer.delta.kd);
+impl<R: Real> Places<R> {
+    fn new() -> Self {
+        let none = [R::ZERO; BLOCK];
+        Self {
+            kp: none,
+            ki: none,
+            kd: none,
+            #[cfg(feature = "batch")]
+            flags: [[false; BLOCK]; 2],
         }
     }
-    sum
+
+    fn put(&mut self, place: usize, [kp, ki, kd]: [R; 3]) {
+        (self.kp[place], self.ki[place], self.kd[place]) = (kp, ki, kd);
+    }
+
+    #[cfg(feature = "batch")]
+    fn as_batch(&mut self) -> fspid_fuzzy::Answers<'_, R> {
+        let [clamped, underflowed] = &mut self.flags;
+        let Self { kp, ki, kd, .. } = self;
+        fspid_fuzzy::Answers { kp, ki, kd, clamped, underflowed }
+    }
+
+    /// A sum in which the increment of each gain has another weight.
+    fn added_to(&self, mut sum: f64) -> f64 {
+        for ((kp, ki), kd) in self.kp.iter().zip(&self.ki).zip(&self.kd) {
+            sum += kp.to_f64() + 3.0 * ki.to_f64() + 7.0 * kd.to_f64();
+        }
+        sum
+    }
 }
 
-struct Inputs {
-    error: Vec<f64>,
-    change: Vec<f64>,
+struct Inputs<R> {
+    error: Vec<R>,
+    change: Vec<R>,
 }
 
-impl Inputs {
+impl<R: Real> Inputs<R> {
     /// Evenly spread over the range: splitmix64 (Steele, Lea and Flood 2014).
     fn new() -> Self {
         let mut state = 42_u64;
@@ -87,10 +142,15 @@ impl Inputs {
             z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
             z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
             let unit = ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0;
-            RANGE * (2.0 * unit - 1.0)
+            R::from_f64(RANGE * (2.0 * unit - 1.0))
         };
         let (error, change) = (0..INPUTS).map(|_| (random(), random())).unzip();
         Self { error, change }
+    }
+
+    fn pairs(&self, block: Range<usize>) -> impl Iterator<Item = (R, R)> {
+        let pairs = self.error[block.clone()].iter().zip(&self.change[block]);
+        pairs.map(|(&error, &change)| (error, change))
     }
 }
 
@@ -100,8 +160,8 @@ fn table() -> RuleTable {
     RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table")
 }
 
-fn supervisor() -> Supervisor<f64> {
-    Supervisor::new(&table(), RANGE, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
+fn supervisor<R: Real>(rule: Defuzzifier) -> Supervisor<R> {
+    Supervisor::new(&table(), R::from_f64(RANGE), rule, OutOfRange::Clamp).expect("allowed")
 }
 
 /// What stands in most programs in place of the exact centroid: the union of the cut output sets
@@ -132,25 +192,16 @@ impl FixedLoop {
             let peak = (label as f64 - 3.0) * spacing;
             places.map(|place: f64| (1.0 - (place - peak).abs() / spacing).max(0.0))
         });
-        let loops = Self { supervisor: supervisor(), rules, sets, places };
+        let loops = Self { supervisor: supervisor(Defuzzifier::Exact), rules, sets, places };
         loops.assert_right();
         loops
     }
 
     fn assert_right(&self) {
-        let rule = Defuzzifier::Endpoints(101);
-        let sampled = Supervisor::new(&table(), RANGE, rule, OutOfRange::Clamp).expect("allowed");
+        let sampled = supervisor(Defuzzifier::Endpoints(101));
         let [kp, _, kd] = self.infer(1.0, -2.0);
         let theirs = sampled.infer(1.0, -2.0).expect("inside").delta;
         assert!((kp - theirs.kp).abs() < 1e-12 && (kd - theirs.kd).abs() < 1e-12);
-    }
-
-    fn infer_all(&self, mut sum: f64, error: &[f64], change: &[f64]) -> f64 {
-        for (&error, &change) in error.iter().zip(change) {
-            let [kp, ki, kd] = black_box(self).infer(error, change);
-            sum += weighted(kp, ki, kd);
-        }
-        sum
     }
 
     fn infer(&self, error: f64, change: f64) -> [f64; 3] {

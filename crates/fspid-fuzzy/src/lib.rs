@@ -5,6 +5,9 @@
 //! input, seven triangular sets on each output, 49 rules) and answers with the **exact** centroid;
 //! the sampled centroids of other tools are there by name ([`Defuzzifier`]) for comparison.
 //!
+//! The feature `batch` adds `Supervisor::infer_many`: the same bits for arrays of inputs, with the
+//! vectors of the machine. It needs `std`; without it the crate depends on nothing.
+//!
 //! It knows nothing of time, plants or files: the self-tuning law is in `fspid-core`, the reading
 //! of rule tables from files in `fspid-study`.
 //!
@@ -34,6 +37,8 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "batch")]
+mod batch;
 mod centroid;
 mod consequents;
 mod defuzzifier;
@@ -46,6 +51,8 @@ mod real;
 mod rule_table;
 mod supervisor;
 
+#[cfg(feature = "batch")]
+pub use batch::{Answers, BatchError, InstructionSet};
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
 pub use label::{LABEL_COUNT, Label};

@@ -32,6 +32,13 @@ pub(crate) mod sealed {
         /// $2^k$ times the number, by its exponent, for a `k` shifted by [`ROUND`](Self::ROUND);
         /// the number and the answer must be normal.
         fn raised(self, shifted: Self) -> Self;
+
+        /// Answers a batch with the vectors of numbers of this type.
+        #[cfg(feature = "batch")]
+        fn answer<S: fearless_simd::Simd>(
+            simd: S,
+            batch: &mut crate::batch::Batch<'_, Self>,
+        ) -> Result<(), crate::batch::BatchError>;
     }
 }
 
@@ -101,7 +108,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident, $round:expr, $exp:path, $exp_inside:path) => {
+    ($float:ident, $vector:ident, $round:expr, $exp:path, $exp_inside:path) => {
         impl sealed::Sealed for $float {
             const ROUND: Self = $round;
             const MANTISSA_BITS: u32 = $float::MANTISSA_DIGITS - 1;
@@ -126,6 +133,15 @@ macro_rules! real {
             fn raised(self, shifted: Self) -> Self {
                 let exponent = shifted.to_bits() << Self::MANTISSA_BITS;
                 $float::from_bits(self.to_bits().wrapping_add(exponent))
+            }
+
+            #[cfg(feature = "batch")]
+            #[inline(always)]
+            fn answer<S: fearless_simd::Simd>(
+                simd: S,
+                batch: &mut crate::batch::Batch<'_, Self>,
+            ) -> Result<(), crate::batch::BatchError> {
+                batch.answer::<S, S::$vector>(simd)
             }
         }
 
@@ -164,5 +180,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, exp::ROUND_F32, exp::exp_f32, exp::exp_f32);
-real!(f64, exp::ROUND_F64, exp::exp_f64, exp::exp_normal_f64);
+real!(f32, f32s, exp::ROUND_F32, exp::exp_f32, exp::exp_f32);
+real!(f64, f64s, exp::ROUND_F64, exp::exp_f64, exp::exp_normal_f64);

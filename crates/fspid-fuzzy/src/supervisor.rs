@@ -11,6 +11,8 @@ use crate::consequents::{Consequents, Firing};
 use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
 use crate::label::LABEL_COUNT;
+#[cfg(feature = "batch")]
+use crate::lanes::Lanes;
 use crate::lanes::{One, Two};
 use crate::membership::{Gaussian, Shape};
 use crate::real::Real;
@@ -195,8 +197,7 @@ impl<R: Real> Supervisor<R> {
 
     #[cold]
     fn infer_outside(&self, error: R, change: R) -> Result<Inference<R>, InferenceError> {
-        self.refuse("error", error)?;
-        self.refuse("change", change)?;
+        self.refuse_any(error, change)?;
         if self.out_of_range == OutOfRange::Evaluate {
             let mut grades = self.exponents(error, change);
             for grade in &mut grades.0 {
@@ -213,6 +214,12 @@ impl<R: Real> Supervisor<R> {
         let inference = self.infer_inside(ends(error), ends(change));
         let underflowed = self.out_of_range == OutOfRange::Evaluate;
         Ok(Inference { clamped: !underflowed, underflowed, ..inference })
+    }
+
+    /// An error for the first of two inputs that has no answer.
+    pub(crate) fn refuse_any(&self, error: R, change: R) -> Result<(), InferenceError> {
+        self.refuse("error", error)?;
+        self.refuse("change", change)
     }
 
     fn refuse(&self, input: &'static str, value: R) -> Result<(), InferenceError> {
@@ -253,6 +260,26 @@ impl<R: Real> Supervisor<R> {
         let Two(kp, ki) = exact(&two) * Two(self.spacing, self.spacing);
         let One(kd) = exact(&kd) * One(self.spacing);
         Increments { kp, ki, kd }
+    }
+
+    /// As within [`infer_inside`](Self::infer_inside), in each lane.
+    #[cfg(feature = "batch")]
+    #[inline(always)]
+    pub(crate) fn increments_in_lanes<L: Lanes<Number = R>>(&self, error: L, change: L) -> [L; 3] {
+        let (mut error_grades, mut change_grades) = ([error; LABEL_COUNT], [change; LABEL_COUNT]);
+        for (grade, set) in error_grades.iter_mut().zip(&self.sets) {
+            *grade = R::exp_inside_of(set.exponent(error));
+        }
+        for (grade, set) in change_grades.iter_mut().zip(&self.sets) {
+            *grade = R::exp_inside_of(set.exponent(change));
+        }
+        let firing = Firing::new(&error_grades, &change_grades);
+        let mut increments = [error; 3];
+        for (increment, consequents) in increments.iter_mut().zip(&self.consequents) {
+            let centre = centroid(self.defuzzifier, &consequents.strengths(&firing));
+            *increment = centre * error.same(self.spacing);
+        }
+        increments
     }
 
     /// Increments by a sampled centroid.

@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Hash, RANGES_F32, RANGES_F64, RULES, Random, tables};
+use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{Defuzzifier, Inference, InferenceError, OutOfRange, Real, Supervisor};
 
 /// Hashes of all answers: a row for each rule of [`RULES`], a column for each policy.
@@ -107,5 +107,25 @@ fn add_answer<R: Real>(hash: &mut Hash, answer: Result<Inference<R>, InferenceEr
             hash.add_number(found);
             hash.add_number(range);
         }
+    }
+}
+
+/// FNV-1a over words.
+#[derive(Clone, Copy)]
+struct Hash(u64);
+
+impl Hash {
+    const START: Self = Self(0xCBF2_9CE4_8422_2325);
+
+    fn add(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3);
+        }
+    }
+
+    /// A number by its bits; all that are not numbers count as one.
+    fn add_number<R: Real>(&mut self, number: R) {
+        let number = number.to_f64();
+        self.add(if number.is_nan() { f64::NAN } else { number }.to_bits());
     }
 }

@@ -1,4 +1,4 @@
-//! What the tests of the supervisor's bits share: rule tables, inputs of every kind, a hash.
+//! What the tests of the supervisor's bits share: rule tables and inputs of every kind.
 
 use fspid_fuzzy::{Defuzzifier, Grid, LABEL_COUNT, Label, Real, RuleTable};
 
@@ -45,26 +45,6 @@ impl Random {
 /// 2^-60 to 2^60.
 fn power_of_two(step: u64) -> f64 {
     f64::from_bits((1023 + step - 60) << 52)
-}
-
-/// FNV-1a over words.
-#[derive(Clone, Copy)]
-pub(crate) struct Hash(pub(crate) u64);
-
-impl Hash {
-    pub(crate) const START: Self = Self(0xCBF2_9CE4_8422_2325);
-
-    pub(crate) fn add(&mut self, word: u64) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3);
-        }
-    }
-
-    /// A number by its bits; all that are not numbers count as one.
-    pub(crate) fn add_number<R: Real>(&mut self, number: R) {
-        let number = number.to_f64();
-        self.add(if number.is_nan() { f64::NAN } else { number }.to_bits());
-    }
 }
 
 pub(crate) const RULES: [Defuzzifier; 4] = [
