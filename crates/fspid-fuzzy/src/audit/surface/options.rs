@@ -90,7 +90,7 @@ impl core::error::Error for SurfaceError {}
 impl SurfaceOptions {
     pub(super) fn domain(&self, system: &System) -> Result<Vec<Interval>, SurfaceError> {
         let expected = system.parts.inputs.len();
-        let given = self.domain.as_ref().map(|domain| domain.as_slice());
+        let given = self.domain.as_deref();
         if let Some(found) = given.map(<[_]>::len).filter(|&found| found != expected) {
             return Err(SurfaceError::Count { found, expected });
         }
