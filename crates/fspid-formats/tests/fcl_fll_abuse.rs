@@ -79,7 +79,7 @@ fn every_beginning_of_a_file_is_answered() {
 fn every_file_with_one_character_changed_is_answered() {
     for text in [include_str!("data/fcl/sugeno.fcl"), include_str!("data/fll/sugeno.fll")] {
         for (at, old) in text.char_indices() {
-            for new in ["", "(", "\0", "-", "9", "\n", "(*", "#", "é", "\u{1}"] {
+            for new in ["", "(", "-", "9", "(*", "#", "\u{1}"] {
                 both(&format!("{}{new}{}", &text[..at], &text[at + old.len_utf8()..]));
             }
         }

@@ -253,7 +253,7 @@ fn norms_that_are_missing_are_told_only_where_they_are_used() {
     assert!(told.contains("has no implication, but concludes fuzzy sets"), "{told}");
     let told = problems(fll::read(&TIPPER.replace("aggregation: Maximum", "")));
     assert!(
-        told.contains("21:1: `tip`: has no aggregation, but its defuzzifier integrates"),
+        told.contains("18:1: `tip`: has no aggregation, but its defuzzifier integrates"),
         "{told}"
     );
     assert!(fll::read(TSUKAMOTO).is_ok(), "none is needed");
