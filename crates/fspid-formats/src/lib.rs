@@ -32,6 +32,7 @@ mod note;
 mod number;
 mod report;
 mod rule;
+pub mod rule_text;
 mod term;
 mod tokens;
 mod vocabulary;

@@ -24,6 +24,7 @@ mod output;
 mod parts;
 mod program;
 mod supervisor;
+mod trace;
 mod type2;
 mod workspace;
 
@@ -40,4 +41,5 @@ pub use parts::{
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
 pub(crate) use program::{Program, STACK, Step};
+pub use trace::{Contribution, Firing};
 pub use workspace::Workspace;

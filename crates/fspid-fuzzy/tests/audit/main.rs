@@ -3,6 +3,7 @@
 #![cfg(feature = "alloc")]
 
 mod rule_base;
+mod soundness;
 mod surface;
 
 use fspid_fuzzy::system::{Parts, System};

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::field::Field;
 use super::firing::{Firing, Slope};
 use super::options::SurfaceOptions;
-use crate::audit::rule_base::RulePosition;
+use crate::audit::rule_base::{RulePosition, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
 use crate::norm::SNormKind;
 use crate::scalar::{Interval, Scalar};
@@ -96,15 +96,25 @@ pub(super) fn effects(
     options: &SurfaceOptions,
 ) -> Vec<RuleEffect> {
     let effort = Effort { tolerance: TOLERANCE, boxes: BOXES.min(options.boxes) };
-    let rules = 0..field.firing.system.rules.len();
-    rules.map(|rule| effect(field, rule, domain, effort)).collect()
+    let system = field.firing.system;
+    let redundant = rule_base(system).redundant;
+    let each = system.rules.iter().enumerate().map(|(rule, resolved)| {
+        let position = RulePosition { block: resolved.block, rule: resolved.rule };
+        if redundant.iter().any(|known| known.rule == position) {
+            return RuleEffect::None { rule: position };
+        }
+        effect(field, (rule, position), domain, effort)
+    });
+    each.collect()
 }
 
-fn effect(field: &mut Field<'_>, rule: usize, domain: &[Interval], effort: Effort) -> RuleEffect {
+fn effect(
+    field: &mut Field<'_>,
+    (rule, position): (usize, RulePosition),
+    domain: &[Interval],
+    effort: Effort,
+) -> RuleEffect {
     let system = field.firing.system;
-    let position = system.rules.get(rule).map_or(RulePosition { block: 0, rule: 0 }, |r| {
-        RulePosition { block: r.block, rule: r.rule }
-    });
     let mut all_none = true;
     for rivals in rivals(system, rule) {
         let mut lead = Lead { firing: &mut field.firing, rule, rivals: &rivals };
@@ -126,7 +136,7 @@ fn effect(field: &mut Field<'_>, rule: usize, domain: &[Interval], effort: Effor
 
 /// A search that is content with a point where the lead is nearly as large as it gets.
 fn best_lead(lead: &mut Lead<'_, '_>, domain: &[Interval], effort: Effort) -> Extreme {
-    let rough = maximum(lead, domain, Effort { tolerance: 0.1, boxes: 300 });
+    let rough = maximum(lead, domain, Effort { tolerance: 0.1, boxes: effort.boxes.min(300) });
     if rough.bounds[0] > 0.0 { rough } else { maximum(lead, domain, effort) }
 }
 
