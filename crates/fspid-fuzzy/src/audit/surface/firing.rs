@@ -193,9 +193,8 @@ impl<'a> Firing<'a> {
     /// True if the first grade is nowhere in the box above the second.
     fn grade_below(&self, one: usize, other: usize) -> bool {
         let known = self.above.get(one).copied().unwrap_or(0);
-        known >> other & 1 == 1
-            || grade_of(&self.grades, one).value.upper()
-                <= grade_of(&self.grades, other).value.lower()
+        let value = |statement: usize| grade_of(&self.grades, statement).value;
+        known >> other & 1 == 1 || nowhere_above(value(one), value(other))
     }
 
     /// The largest grade of some statements over a box.
@@ -231,7 +230,7 @@ impl<'a> Firing<'a> {
     pub(super) fn never_stronger(&self, rule: usize, other: usize) -> bool {
         let strength = |rule: usize| self.acting.get(rule).map(|s| s.value);
         let (Some(left), Some(right)) = (strength(rule), strength(other)) else { return false };
-        if left.upper() <= right.lower() {
+        if nowhere_above(left, right) {
             return true;
         }
         // The other's strength is its least grade; each of them is above one of ours.
@@ -248,6 +247,13 @@ impl<'a> Firing<'a> {
 
 fn grade_of(grades: &[Slope], statement: usize) -> Slope {
     grades.get(statement).copied().unwrap_or(Slope::zero())
+}
+
+/// True if the first is nowhere larger. A tie of two single numbers is a kink that was hit exactly:
+/// both sides count.
+fn nowhere_above(one: Interval, other: Interval) -> bool {
+    let tie = one.is_point() && other.is_point() && one.upper() >= other.lower();
+    one.upper() <= other.lower() && !tie
 }
 
 /// The positions of the bits that are set.
