@@ -27,7 +27,8 @@ pub(crate) struct Arguments {
     /// Answer every row of this CSV file (columns `e,ec`) with a row of CSV.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["error", "change", "format"])]
     points: Option<PathBuf>,
-    /// Centroid: `exact`, or `endpoints:N` (MATLAB: 101), `midpoint:N`, `trapezoid:N`.
+    /// Centroid: `exact`, or `endpoints:N` (MATLAB: 101), `midpoint:N`, `trapezoid:N`, `left-end:N`,
+    /// `vertices:N` (scikit-fuzzy).
     #[arg(long, default_value = "exact")]
     defuzzifier: String,
     /// What to do with inputs beyond the range: `clamp`, `evaluate` or `error`.

@@ -101,6 +101,7 @@ impl System {
     ) -> Result<&'w [Answer], InputError> {
         self.take_inputs(inputs, workspace)?;
         self.fire(workspace);
+        self.fire_bounds(workspace);
         for (index, output) in self.parts.outputs.iter().enumerate() {
             let previous = previous.get(index).copied().flatten();
             let answer = self.answer(index, output, previous, workspace);

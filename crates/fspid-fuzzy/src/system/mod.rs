@@ -18,11 +18,13 @@ mod defuzzifier;
 mod error;
 mod evaluate;
 mod firing;
+mod gradient;
 mod norms;
 mod output;
 mod parts;
 mod program;
 mod supervisor;
+mod type2;
 mod workspace;
 
 pub use build::System;
@@ -30,6 +32,7 @@ pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
 pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
 pub(crate) use firing::hedged;
+pub use gradient::{Differentiator, Gradient, GradientError, Parameter};
 pub use norms::{SNorm, TNorm};
 pub use output::{Joined, Piece};
 pub use parts::{

@@ -5,6 +5,7 @@
 
 mod build;
 mod integral;
+mod oracle;
 mod outline;
 mod policies;
 mod properties;

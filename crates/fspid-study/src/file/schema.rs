@@ -114,7 +114,7 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
         }
         Kind::Grid => json!({ "type": "string" }),
         Kind::Defuzzifier => {
-            json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid):[0-9]+)$" })
+            json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid|left-end|vertices):[0-9]+)$" })
         }
         Kind::Numbers { range, least, most, .. } => {
             json!({ "type": "array", "items": number(*range), "minItems": least, "maxItems": most })

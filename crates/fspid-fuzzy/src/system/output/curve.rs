@@ -1,9 +1,11 @@
 //! The joined set as a function that can be asked with any kind of number.
 
 use alloc::vec;
+use alloc::vec::Vec;
 
 use super::super::norms::{SNorm, TNorm};
 use super::super::parts::{Conclusion, Membership};
+use super::actors::Actor;
 use super::sampled::Concluded;
 use crate::norm::{SNormKind, TNormKind};
 use crate::quadrature::Curve;
@@ -15,29 +17,64 @@ const ROOM: usize = 8;
 /// The joined set, scaled.
 #[derive(Clone, Copy)]
 pub(super) struct JoinedCurve<'a> {
-    pub(super) concluded: Concluded<'a>,
+    concluded: Concluded<'a>,
+    /// Actors that fire, those of one term from strong to weak.
+    order: &'a [usize],
     /// A power of two.
-    pub(super) scale: f64,
+    scale: f64,
+}
+
+impl<'a> JoinedCurve<'a> {
+    /// `order` is memory for as many numbers as there are actors.
+    pub(super) fn new(concluded: Concluded<'a>, order: &'a mut Vec<usize>, scale: f64) -> Self {
+        let Concluded { actors, levels, .. } = concluded;
+        let strength = |&own: &usize| levels.get(own).map_or(0.0, |level| level.strength);
+        let term = |&own: &usize| actors.list().get(own).map_or(0, |actor| actor.term);
+        order.clear();
+        order.extend((0..actors.len()).filter(|own| strength(own) > 0.0));
+        order.sort_unstable_by(|a, b| {
+            let stronger = strength(b).total_cmp(&strength(a));
+            term(a).cmp(&term(b)).then(stronger).then(a.cmp(b))
+        });
+        Self { concluded, order, scale }
+    }
+
+    /// An actor and what implication leaves of its set.
+    fn implied<S: Scalar>(&self, own: usize, x: S) -> Option<(&'a Actor, S)> {
+        let Concluded { output, actors, levels, inputs } = self.concluded;
+        let (actor, level) = (actors.list().get(own)?, levels.get(own)?);
+        match &output.terms.get(actor.term)?.conclusion {
+            Conclusion::Set { membership, .. } => {
+                let grade = grade(membership, x, inputs);
+                Some((actor, imply(&actor.implication, S::constant(level.strength), grade)))
+            }
+            _ => None,
+        }
+    }
 }
 
 impl Curve for JoinedCurve<'_> {
     fn at<S: Scalar>(&self, x: S) -> S {
-        let Concluded { output, actors, levels, inputs } = self.concluded;
-        let mut joined: Option<S> = None;
-        for (actor, level) in actors.list().iter().zip(levels) {
-            let conclusion = output.terms.get(actor.term).map(|term| &term.conclusion);
-            if level.strength > 0.0
-                && let Some(Conclusion::Set { membership, .. }) = conclusion
-            {
-                let (strength, grade) = (S::constant(level.strength), grade(membership, x, inputs));
-                let grade = imply(&actor.implication, strength, grade);
-                joined = Some(match joined {
-                    Some(joined) => aggregate(&output.aggregation, joined, grade),
-                    None => begin(&output.aggregation, grade),
-                });
-            }
+        let norm = &self.concluded.output.aggregation;
+        let (mut joined, mut last): (Option<S>, Option<(&Actor, S)>) = (None, None);
+        for (actor, grade) in self.order.iter().filter_map(|&own| self.implied(own, x)) {
+            last = match last {
+                Some((before, strong)) if before == actor => {
+                    Some((actor, aggregate_ordered(norm, strong, grade)))
+                }
+                Some((_, done)) => {
+                    joined = Some(joined.map_or(done, |joined| aggregate(norm, joined, done)));
+                    Some((actor, grade))
+                }
+                None => Some((actor, begin(norm, grade))),
+            };
         }
-        joined.unwrap_or_else(S::zero) * S::constant(self.scale)
+        let joined = match (joined, last) {
+            (Some(joined), Some((_, done))) => aggregate(norm, joined, done),
+            (None, Some((_, done))) => done,
+            (_, None) => S::zero(),
+        };
+        joined * S::constant(self.scale)
     }
 }
 
@@ -79,6 +116,21 @@ fn aggregate<S: Scalar>(norm: &SNorm, joined: S, grade: S) -> S {
         SNorm::Kind(SNormKind::BoundedSum | SNormKind::NormalizedSum) => sum.smaller(S::one()),
         SNorm::Kind(SNormKind::UnboundedSum) => sum,
         _ => norm.apply(joined, grade),
+    }
+}
+
+/// What joining makes of two grades of one set, of which the weaker is nowhere above the stronger:
+/// to ask which is larger would be a kink wherever both follow the set.
+fn aggregate_ordered<S: Scalar>(norm: &SNorm, strong: S, weak: S) -> S {
+    let rest = S::one() - strong;
+    match norm {
+        SNorm::Kind(SNormKind::DrasticSum) => S::zero().if_less(weak, S::one(), strong),
+        SNorm::Kind(SNormKind::NilpotentMaximum) => weak.if_less(rest, strong, S::one()),
+        SNorm::Kind(SNormKind::HamacherSum) => {
+            let both = (S::one() - weak * strong).larger(S::constant(f64::MIN_POSITIVE));
+            strong + weak * rest * (rest / both)
+        }
+        _ => aggregate(norm, strong, weak),
     }
 }
 

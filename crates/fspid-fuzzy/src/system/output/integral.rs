@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::super::defuzzifier::{Defuzzifier, Sampling};
 use super::super::parts::{Conclusion, Membership, Output};
 use super::curve::JoinedCurve;
+use super::joined::scale;
 use super::maximum::Search;
 use super::sampled::Concluded;
 use crate::quadrature::Quadrature;
@@ -44,9 +45,10 @@ impl Integral {
         &self,
         method: Defuzzifier,
         concluded: &Concluded<'_>,
+        order: &mut Vec<usize>,
     ) -> Option<(f64, f64)> {
         let strongest = concluded.levels.iter().fold(0.0_f64, |top, l| top.max(l.strength));
-        let curve = JoinedCurve { concluded: *concluded, scale: super::joined::scale(strongest)? };
+        let curve = JoinedCurve::new(*concluded, order, scale(strongest)?);
         let quadrature = Quadrature::new(self.lower, self.upper)?.with_corners(&self.corners);
         let search = || Search::new(&curve, [self.lower, self.upper], &self.corners);
         match method {

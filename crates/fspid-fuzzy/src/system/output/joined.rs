@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use super::roomy_clone;
+
 /// Areas that differ by this fraction count as halves of the same size, and grades that differ by
 /// it as equally high: a few roundings.
 const SLACK: f64 = 16.0 * f64::EPSILON;
@@ -73,6 +75,14 @@ impl Joined {
     /// Makes room for so many pieces.
     pub(super) fn reserve(&mut self, pieces: usize) {
         self.pieces.reserve(pieces);
+    }
+
+    pub(super) fn roomy_clone(&self) -> Self {
+        Self { pieces: roomy_clone(&self.pieces), ..*self }
+    }
+
+    pub(crate) fn capacity(&self) -> usize {
+        self.pieces.capacity()
     }
 
     pub(super) fn restart(&mut self, reference: f64) {

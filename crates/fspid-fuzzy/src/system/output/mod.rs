@@ -26,6 +26,7 @@ pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
+pub(crate) use weighted::value;
 
 /// How the number of one output is found.
 #[derive(Clone, Debug)]
@@ -58,12 +59,16 @@ impl Plan {
 }
 
 /// Memory that the plans need, shared by the outputs.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// Room for lifted parameters and the variables of formulas.
     pub(crate) room: Vec<f64>,
     /// Levels of the actors of the output at hand.
     pub(crate) levels: Vec<Level>,
+    /// Strengths of terms from left to right.
+    pub(crate) sorted: Vec<f64>,
+    /// Actors that fire, in the order in which they are joined.
+    pub(crate) order: Vec<usize>,
     pub(crate) outline: Room,
     pub(crate) samples: Samples,
 }
@@ -79,9 +84,12 @@ impl Scratch {
         });
         let room = of_inputs.chain(of_outputs).map(|m: &Membership| m.room(inputs)).max();
         let actors = system.outputs.iter().map(|output| output.actors.len()).max();
+        let terms = system.parts.outputs.iter().map(|output| output.terms.len()).max();
         let mut scratch = Self {
             room: vec![0.0; room.unwrap_or(0).max(inputs + 1)],
             levels: vec![Level::default(); actors.unwrap_or(0)],
+            order: Vec::with_capacity(actors.unwrap_or(0)),
+            sorted: vec![0.0; terms.unwrap_or(0)],
             ..Self::default()
         };
         for output in &system.outputs {
@@ -94,6 +102,22 @@ impl Scratch {
         }
         scratch
     }
+}
+
+impl Clone for Scratch {
+    /// A clone has as much room as the original.
+    fn clone(&self) -> Self {
+        let (outline, samples) = (self.outline.clone(), self.samples.clone());
+        let (room, levels, sorted) = (self.room.clone(), self.levels.clone(), self.sorted.clone());
+        Self { room, levels, sorted, order: roomy_clone(&self.order), outline, samples }
+    }
+}
+
+/// A clone with the same capacity.
+fn roomy_clone<T: Clone>(original: &Vec<T>) -> Vec<T> {
+    let mut clone = Vec::with_capacity(original.capacity());
+    clone.extend_from_slice(original);
+    clone
 }
 
 /// Grade of a set at `x`; 0 for a conclusion that is no set.
@@ -112,6 +136,9 @@ impl System {
         output: &Output,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
+        if self.type2.is_some() {
+            return Some((self.middle_of_interval(index, output, workspace)?, 0.0));
+        }
         let ResolvedOutput { plan, actors, conclusions, .. } = self.outputs.get(index)?;
         let method = output.defuzzifier;
         if let Plan::Weighted = plan {
@@ -124,8 +151,10 @@ impl System {
         let levels = actors.levels(conclusions, degrees, &mut scratch.levels);
         let concluded = Concluded { output, actors, levels, inputs };
         match plan {
-            Plan::Partition(partition) => Some((partition.centroid(levels)?, 0.0)),
-            Plan::Integral(integral) => integral.number(method, &concluded),
+            Plan::Partition(partition) => {
+                Some((partition.centroid(levels, &mut scratch.sorted)?, 0.0))
+            }
+            Plan::Integral(integral) => integral.number(method, &concluded, &mut scratch.order),
             Plan::Sampled(sampled) => {
                 let Scratch { room, samples, .. } = scratch;
                 Some((sampled.number(method, &concluded, room, samples)?, 0.0))

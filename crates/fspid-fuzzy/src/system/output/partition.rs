@@ -52,9 +52,9 @@ impl Partition {
         fits.then_some(Self { rule, actors: own, middle, spacing })
     }
 
-    /// The centroid, given the level of each actor; nothing if none fires.
-    pub(crate) fn centroid(&self, levels: &[Level]) -> Option<f64> {
-        let mut sorted = [0.0_f64; 64];
+    /// The centroid, given the level of each actor; nothing if none fires. `sorted` has room for as
+    /// many numbers as there are terms.
+    pub(crate) fn centroid(&self, levels: &[Level], sorted: &mut [f64]) -> Option<f64> {
         let sorted = sorted.get_mut(..self.actors.len())?;
         let mut strongest = 0.0_f64;
         for (place, actor) in sorted.iter_mut().zip(&self.actors) {

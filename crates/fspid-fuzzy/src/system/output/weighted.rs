@@ -40,7 +40,7 @@ impl System {
 }
 
 /// The number that a conclusion stands for at a strength.
-pub(super) fn value(
+pub(crate) fn value(
     conclusion: &Conclusion,
     reading: SetReading,
     strength: f64,

@@ -10,7 +10,7 @@ use super::super::defuzzifier::{Defuzzifier, Sampling};
 use super::super::norms::TNorm;
 use super::super::parts::{Conclusion, Membership, Output};
 use super::actors::{Actors, Level};
-use super::set_grade;
+use super::{roomy_clone, set_grade};
 use crate::norm::{SNormKind, TNormKind};
 
 /// Most grades that are computed once and for all.
@@ -35,7 +35,7 @@ pub(crate) struct Sampled {
 }
 
 /// Memory for samples.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Samples {
     /// Grades of all terms at the sample at hand, if they are not known.
     terms: Vec<f64>,
@@ -45,6 +45,18 @@ pub(crate) struct Samples {
     corners: Vec<[f64; 2]>,
     /// Where sets are cut within a cell.
     cuts: Vec<f64>,
+}
+
+impl Clone for Samples {
+    /// A clone has as much room as the original.
+    fn clone(&self) -> Self {
+        Self {
+            terms: self.terms.clone(),
+            joined: roomy_clone(&self.joined),
+            corners: roomy_clone(&self.corners),
+            cuts: roomy_clone(&self.cuts),
+        }
+    }
 }
 
 /// What is concluded, and how it is joined.
