@@ -1,9 +1,9 @@
 //! What is true of a rule base and of its surface, with proof.
 //!
-//! [`rule_base`] looks at the rules as written: holes, contradictions, rules that repeat others,
+//! [`rule_base()`] looks at the rules as written: holes, contradictions, rules that repeat others,
 //! terms that nobody uses, symmetry and monotonicity of the labels. Nothing there is approximate.
 //!
-//! [`surface`] proves bounds of values and slopes, shares of the domain where an output goes the
+//! [`surface()`] proves bounds of values and slopes, shares of the domain where an output goes the
 //! wrong way, and departures from symmetry, by interval arithmetic and branch and bound. A bound that
 //! could not be proved as close as was asked for is told wider, never guessed.
 //!

@@ -81,14 +81,6 @@ impl<S: Base, const N: usize> Dual<S, N> {
         then.join(otherwise, value, |then, otherwise| left.choose(right, then, otherwise))
     }
 
-    /// True if this number is at least the other and may be above it. Where the two are equal on the
-    /// face of a box only, the larger of them is this one inside.
-    #[inline]
-    fn nowhere_below(self, other: Self) -> bool {
-        let never = |left: S, right: S| left.is_less(right) == Some(false);
-        never(self.value, other.value) && !never(other.value, self.value)
-    }
-
     /// The slope of a power with respect to its exponent, $x^p \ln x$, which is at least
     /// $-1 / (e p)$ for $p > 0$; zero where the power is.
     fn power_slope(base: S, power: S, value: S) -> S {
@@ -153,22 +145,12 @@ impl<S: Base, const N: usize> Scalar for Dual<S, N> {
 
     #[inline]
     fn smaller(self, other: Self) -> Self {
-        let value = self.value.smaller(other.value);
-        if other.nowhere_below(self) {
-            Self { value, ..self }
-        } else {
-            self.pick(other, value, self, other)
-        }
+        self.pick(other, self.value.smaller(other.value), self, other)
     }
 
     #[inline]
     fn larger(self, other: Self) -> Self {
-        let value = self.value.larger(other.value);
-        if self.nowhere_below(other) {
-            Self { value, ..self }
-        } else {
-            other.pick(self, value, self, other)
-        }
+        other.pick(self, self.value.larger(other.value), self, other)
     }
 
     #[inline]

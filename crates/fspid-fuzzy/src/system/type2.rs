@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, SetReading};
 use super::firing::hedged;
-use super::output::{Joined, Outline, Room, value};
+use super::output::{Joined, Outline, Room, roomy_clone, value};
 use super::parts::{Activation, Variable};
 use super::parts::{Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement};
 use super::program::{STACK, Step};
@@ -30,7 +30,7 @@ pub(crate) struct Type2 {
 }
 
 /// Memory for evaluations of an interval type-2 system.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Type2Room {
     grades: Vec<Bounds>,
     stack: Vec<Bounds>,
@@ -42,6 +42,22 @@ pub(crate) struct Type2Room {
     straight: [Vec<Straight>; 2],
     points: Vec<WeightedPoint>,
     pub(crate) intervals: Vec<Option<Bounds>>,
+}
+
+impl Clone for Type2Room {
+    fn clone(&self) -> Self {
+        Self {
+            grades: self.grades.clone(),
+            stack: roomy_clone(&self.stack),
+            strengths: self.strengths.clone(),
+            degrees: self.degrees.clone(),
+            lower: self.lower.clone(),
+            outline: self.outline.clone(),
+            straight: self.straight.each_ref().map(roomy_clone),
+            points: roomy_clone(&self.points),
+            intervals: self.intervals.clone(),
+        }
+    }
 }
 
 impl Parts {

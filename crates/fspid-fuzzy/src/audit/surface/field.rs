@@ -102,6 +102,11 @@ impl<'a> Field<'a> {
 
 fn method(system: &System, index: usize) -> Method {
     let Some(output) = system.parts.outputs.get(index) else { return Method::Unknown };
+    // Of type-2 sets there is no telling here how their two grades are used.
+    let mut terms = system.parts.inputs.iter().flat_map(|input| &input.terms);
+    if terms.any(|term| term.lower.is_some()) {
+        return Method::Unknown;
+    }
     if output.defuzzifier.sampling().is_none() {
         return Method::Weighted;
     }

@@ -6,9 +6,10 @@ use alloc::vec::Vec;
 
 use super::continuity::{Continuity, Jumps};
 use super::ties::Ties;
+use crate::membership::Vertex;
 use crate::scalar::{Dual, Interval, Scalar};
 use crate::supervisor::OutOfRange;
-use crate::system::{Activation, Membership, STACK, System, Variable, hedged};
+use crate::system::{Activation, Membership, STACK, Statement, System, Variable, hedged};
 
 /// All values over a box, and all slopes along one input.
 pub(super) type Slope = Dual<Interval, 1>;
@@ -125,7 +126,10 @@ impl<'a> Firing<'a> {
                 *place = unknown_slope(Interval::UNIT);
                 continue;
             }
-            let grade = self.system.input_grade(statement, &self.inputs, &mut self.room);
+            let grade = match straight_grade(self.system, statement, &self.inputs, &mut self.room) {
+                Some(grade) => grade,
+                None => self.system.input_grade(statement, &self.inputs, &mut self.room),
+            };
             *place = within_unit(grade);
             let Variable::Input(input) = statement.variable else { continue };
             match jumps {
@@ -193,9 +197,8 @@ impl<'a> Firing<'a> {
     /// True if the first grade is nowhere in the box above the second.
     fn grade_below(&self, one: usize, other: usize) -> bool {
         let known = self.above.get(one).copied().unwrap_or(0);
-        known >> other & 1 == 1
-            || grade_of(&self.grades, one).value.upper()
-                <= grade_of(&self.grades, other).value.lower()
+        let value = |statement: usize| grade_of(&self.grades, statement).value;
+        known >> other & 1 == 1 || nowhere_above(value(one), value(other))
     }
 
     /// The largest grade of some statements over a box.
@@ -231,7 +234,7 @@ impl<'a> Firing<'a> {
     pub(super) fn never_stronger(&self, rule: usize, other: usize) -> bool {
         let strength = |rule: usize| self.acting.get(rule).map(|s| s.value);
         let (Some(left), Some(right)) = (strength(rule), strength(other)) else { return false };
-        if left.upper() <= right.lower() {
+        if nowhere_above(left, right) {
             return true;
         }
         // The other's strength is its least grade; each of them is above one of ours.
@@ -248,6 +251,51 @@ impl<'a> Firing<'a> {
 
 fn grade_of(grades: &[Slope], statement: usize) -> Slope {
     grades.get(statement).copied().unwrap_or(Slope::zero())
+}
+
+/// Grade of a statement about a piecewise-linear set, with the slopes of just those pieces that reach
+/// into the box: a corner on its face does not count.
+fn straight_grade(
+    system: &System,
+    statement: &Statement,
+    inputs: &[Slope],
+    room: &mut [Slope],
+) -> Option<Slope> {
+    let Variable::Input(index) = statement.variable else { return None };
+    let (input, &x) = (system.parts.inputs.get(index)?, inputs.get(index)?);
+    let set = &input.terms.get(statement.term?)?.membership;
+    let Membership::Shape { kind, params, height } = set else { return None };
+    if !input.enabled || !kind.is_piecewise_linear() || x.value.is_point() {
+        return None;
+    }
+    let mut slopes: Option<Interval> = None;
+    let mut last: Option<Vertex> = None;
+    let mut add = |slope: Interval| slopes = Some(slopes.map_or(slope, |s| s.hull(slope)));
+    kind.vertices(params, &mut |vertex| {
+        match last {
+            None if x.value.lower() < vertex.x => add(Interval::ZERO),
+            Some(before) if x.value.lower() < vertex.x && before.x < x.value.upper() => {
+                let point = Interval::point;
+                add((point(vertex.grade) - point(before.grade))
+                    / (point(vertex.x) - point(before.x)));
+            }
+            _ => {}
+        }
+        last = Some(vertex);
+    });
+    if x.value.upper() > last?.x {
+        add(Interval::ZERO);
+    }
+    let [along] = x.derivative;
+    let derivative = [slopes? * Interval::point(*height) * along];
+    Some(hedged(&statement.hedges, Slope { derivative, ..set.grade(x, inputs, room) }))
+}
+
+/// True if the first is nowhere larger. A tie of two single numbers is a kink that was hit exactly:
+/// both sides count.
+fn nowhere_above(one: Interval, other: Interval) -> bool {
+    let tie = one.is_point() && other.is_point() && one.upper() >= other.lower();
+    one.upper() <= other.lower() && !tie
 }
 
 /// The positions of the bits that are set.

@@ -2,7 +2,7 @@
 //!
 //! Every number here is a pair of bounds that hold for every input of the domain and for every
 //! rounding on the way; nothing is sampled. Boxes of inputs are enclosed by interval arithmetic
-//! ([`field`]) and divided until the bounds are close ([`search`](super::search)) or the budget is
+//! and divided until the bounds are close or the budget is
 //! used up, in which case the bounds are simply wider.
 
 mod continuity;

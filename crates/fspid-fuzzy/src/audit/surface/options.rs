@@ -31,7 +31,7 @@ impl Default for SurfaceOptions {
             value_tolerance: 1e-7,
             slope_tolerance: 1e-3,
             share_tolerance: 2e-3,
-            boxes: 20_000,
+            boxes: 40_000,
         }
     }
 }

@@ -28,6 +28,8 @@ struct Line {
     inputs: [usize; 2],
     ratio: f64,
     offset: f64,
+    /// Distances of which the lines that were taken for this one may be off by a small share.
+    scale: f64,
     ties: Vec<Tie>,
 }
 
@@ -92,7 +94,7 @@ impl Ties {
     }
 
     fn add(&mut self, one: Bell, other: Bell) {
-        let alike = |a: f64, b: f64| (a - b).abs() <= STRIP * a.abs();
+        let alike = |a: f64, b: f64| a.total_cmp(&b).is_eq();
         if !alike(one.height, other.height) {
             return;
         }
@@ -140,13 +142,18 @@ impl Ties {
                 && near(line.offset, offset, scale)
         });
         match known {
-            Some(line) => line.ties.push(tie),
-            None => self.lines.push(Line { inputs, ratio, offset, ties: Vec::from([tie]) }),
+            Some(line) => {
+                line.ties.push(tie);
+                line.scale = line.scale.max(scale);
+            }
+            None => {
+                self.lines.push(Line { inputs, ratio, offset, scale, ties: Vec::from([tie]) });
+            }
         }
     }
 
-    /// Finds where a box lies. If `whole`, a box that only touches a line counts as on one side,
-    /// strips aside; if not, lines that are merely near are not decided.
+    /// Finds where a box lies. With `strips` left out, a box that only touches a line counts as on
+    /// one side; otherwise lines that are merely near are not decided.
     pub(super) fn place(&mut self, cell: &[Interval], strips: bool) {
         self.sides.clear();
         self.crossing.clear();
@@ -226,7 +233,7 @@ impl Line {
         let offset = Interval::point(self.offset);
         let place = if a == b { x } else { x + y * Interval::point(self.ratio) };
         let distance = place - offset;
-        let reach = x.magnitude() + y.magnitude() * self.ratio.abs() + self.offset.abs();
+        let reach = x.magnitude() + y.magnitude() * self.ratio.abs() + self.scale;
         let strip = if strips { -STRIP * reach } else { STRIP * reach };
         if distance.lower() >= strip {
             Side::Above

@@ -19,6 +19,7 @@ use super::build::{ResolvedOutput, System};
 use super::defuzzifier::Defuzzifier;
 use super::parts::{Conclusion, Membership, Output};
 use super::workspace::Workspace;
+use crate::lanes::One;
 
 pub(crate) use actors::{Actors, Level};
 pub(crate) use integral::Integral;
@@ -66,7 +67,7 @@ pub(crate) struct Scratch {
     /// Levels of the actors of the output at hand.
     pub(crate) levels: Vec<Level>,
     /// Strengths of terms from left to right.
-    pub(crate) sorted: Vec<f64>,
+    pub(crate) sorted: Vec<One<f64>>,
     /// Actors that fire, in the order in which they are joined.
     pub(crate) order: Vec<usize>,
     pub(crate) outline: Room,
@@ -89,7 +90,7 @@ impl Scratch {
             room: vec![0.0; room.unwrap_or(0).max(inputs + 1)],
             levels: vec![Level::default(); actors.unwrap_or(0)],
             order: Vec::with_capacity(actors.unwrap_or(0)),
-            sorted: vec![0.0; terms.unwrap_or(0)],
+            sorted: vec![One(0.0); terms.unwrap_or(0)],
             ..Self::default()
         };
         for output in &system.outputs {
@@ -114,7 +115,7 @@ impl Clone for Scratch {
 }
 
 /// A clone with the same capacity.
-fn roomy_clone<T: Clone>(original: &Vec<T>) -> Vec<T> {
+pub(crate) fn roomy_clone<T: Clone>(original: &Vec<T>) -> Vec<T> {
     let mut clone = Vec::with_capacity(original.capacity());
     clone.extend_from_slice(original);
     clone

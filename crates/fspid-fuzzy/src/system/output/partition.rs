@@ -7,6 +7,7 @@ use super::super::parts::{Conclusion, Membership, Output, OutputTerm};
 use super::actors::{Actors, Level};
 use crate::centroid::centroid;
 use crate::defuzzifier;
+use crate::lanes::One;
 use crate::membership::ShapeKind;
 use crate::norm::{SNormKind, TNormKind};
 
@@ -54,16 +55,20 @@ impl Partition {
 
     /// The centroid, given the level of each actor; nothing if none fires. `sorted` has room for as
     /// many numbers as there are terms.
-    pub(crate) fn centroid(&self, levels: &[Level], sorted: &mut [f64]) -> Option<f64> {
+    pub(crate) fn centroid(&self, levels: &[Level], sorted: &mut [One<f64>]) -> Option<f64> {
         let sorted = sorted.get_mut(..self.actors.len())?;
         let mut strongest = 0.0_f64;
         for (place, actor) in sorted.iter_mut().zip(&self.actors) {
-            *place = actor.and_then(|actor| levels.get(actor)).map_or(0.0, |level| level.strength);
-            strongest = strongest.max(*place);
+            let level = actor.and_then(|actor| levels.get(actor));
+            *place = One(level.map_or(0.0, |level| level.strength));
+            strongest = strongest.max(place.0);
         }
         // Below the normal range the quotient of moments would lose its digits.
         let answers = strongest >= f64::MIN_POSITIVE;
-        answers.then(|| self.middle + centroid(self.rule, sorted) * self.spacing)
+        answers.then(|| {
+            let One(centre) = centroid(self.rule, sorted, One(0.0));
+            self.middle + centre * self.spacing
+        })
     }
 }
 
