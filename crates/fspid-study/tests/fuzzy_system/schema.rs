@@ -19,7 +19,13 @@ fn word_fault(
     let members = || value.as_object().into_iter().flatten();
     let inner = |rule: &Value, item: &Value, key: &str| fault(rule, item, &format!("{path}.{key}"));
     let good = match word {
-        "$schema" | "title" | "description" | "default" => true,
+        "$ref" => {
+            let name = rule.as_str().and_then(|path| path.strip_prefix("#/$defs/"));
+            let definitions = &fspid_study::fuzzy_system::schema()["$defs"];
+            let found = name.and_then(|name| definitions.get(name)).expect("it is defined");
+            return fault(found, value, path);
+        }
+        "$defs" | "$schema" | "title" | "description" | "default" => true,
         "properties" => {
             return members().find_map(|(key, item)| inner(rule.get(key)?, item, key));
         }
