@@ -8,36 +8,44 @@ use crate::error::FuzzyError;
 /// Most samples a sampled centroid may take; more only costs time.
 pub const MAX_SAMPLES: u32 = 1_000_000;
 
-/// A rule for the centre of gravity of the output set.
+/// How an integral over an output's universe is computed: the centre of gravity, or what other tools
+/// compute in its place.
 ///
-/// Only [`Exact`](Self::Exact) is the centre of gravity; the others are what other tools compute in
-/// its place, and they differ from it by up to 1.7 % of the half range on the paper's rule base.
+/// Only [`Exact`](Self::Exact) is the integral: in closed form where all sets are piecewise linear,
+/// else with a certified error bound. On the paper's rule base the others differ from it by up to
+/// 1.7 % of the half range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Defuzzifier {
-    /// The centroid in closed form, without samples.
+    /// The integral itself, without samples.
     #[default]
     Exact,
     /// Sum over N equally spaced samples, both ends included and fully counted (MATLAB: 101).
     Endpoints(u32),
     /// Sum over the midpoints of N equal cells (fuzzylite: 100 or 1000).
     Midpoint(u32),
-    /// Trapezoidal integral over N equally spaced samples, both ends included.
+    /// Trapezoidal rule over N equally spaced samples, both ends included.
     Trapezoid(u32),
+    /// Sum over the left ends of N equal cells (jFuzzyLogic: 1000).
+    LeftEnd(u32),
+    /// Trapezoidal rule over N equally spaced samples and the points where each set is cut, but
+    /// not those where two sets cross (scikit-fuzzy).
+    Vertices(u32),
 }
 
 impl Defuzzifier {
     /// What can be written for a defuzzifier.
-    pub const NAMES: &'static str = "exact, endpoints:N, midpoint:N, trapezoid:N";
+    pub const NAMES: &'static str =
+        "exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N, vertices:N";
 
     /// The rule itself if its number of samples is usable.
     ///
     /// # Errors
-    /// [`FuzzyError::SampleCount`] below 2 (below 1 for midpoints) or above [`MAX_SAMPLES`].
+    /// [`FuzzyError::SampleCount`] below 2 (below 1 for midpoints and left ends) or above [`MAX_SAMPLES`].
     pub fn checked(self) -> Result<Self, FuzzyError> {
         let (found, least) = match self {
             Self::Exact => return Ok(self),
-            Self::Endpoints(n) | Self::Trapezoid(n) => (n, 2),
-            Self::Midpoint(n) => (n, 1),
+            Self::Endpoints(n) | Self::Trapezoid(n) | Self::Vertices(n) => (n, 2),
+            Self::Midpoint(n) | Self::LeftEnd(n) => (n, 1),
         };
         if (least..=MAX_SAMPLES).contains(&found) {
             Ok(self)
@@ -54,6 +62,8 @@ impl fmt::Display for Defuzzifier {
             Self::Endpoints(n) => write!(f, "endpoints:{n}"),
             Self::Midpoint(n) => write!(f, "midpoint:{n}"),
             Self::Trapezoid(n) => write!(f, "trapezoid:{n}"),
+            Self::LeftEnd(n) => write!(f, "left-end:{n}"),
+            Self::Vertices(n) => write!(f, "vertices:{n}"),
         }
     }
 }
@@ -71,6 +81,8 @@ impl FromStr for Defuzzifier {
             "endpoints" => Self::Endpoints(samples),
             "midpoint" => Self::Midpoint(samples),
             "trapezoid" => Self::Trapezoid(samples),
+            "left-end" => Self::LeftEnd(samples),
+            "vertices" => Self::Vertices(samples),
             _ => return Err(FuzzyError::UnknownDefuzzifier),
         }
         .checked()
@@ -84,7 +96,9 @@ mod tests {
 
     #[test]
     fn every_name_reads_back_as_written() {
-        for name in ["exact", "endpoints:101", "midpoint:1000", "trapezoid:2"] {
+        for name in
+            ["exact", "endpoints:101", "midpoint:1000", "trapezoid:2", "left-end:1", "vertices:26"]
+        {
             let parsed: Result<Defuzzifier, _> = name.parse();
             assert_eq!(parsed.map(|d| d.to_string()), Ok(name.to_string()));
         }

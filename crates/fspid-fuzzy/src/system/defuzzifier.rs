@@ -1,119 +1,25 @@
 //! How the joined conclusions of a general system become a number, by name.
 
-use core::fmt;
-use core::str::FromStr;
-
-use crate::defuzzifier::{self, MAX_SAMPLES};
-use crate::error::FuzzyError;
-
-/// How an integral over an output's universe is computed.
-///
-/// Only [`Exact`](Self::Exact) is the integral: in closed form where all sets are piecewise linear,
-/// else with a certified error bound. The others are what tools compute in its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Sampling {
-    /// The integral itself.
-    #[default]
-    Exact,
-    /// Sum over N equally spaced samples, both ends included and fully counted (MATLAB: 101).
-    Endpoints(u32),
-    /// Sum over the midpoints of N equal cells (fuzzylite: 1000, formerly 100).
-    Midpoint(u32),
-    /// Trapezoidal rule over N equally spaced samples, both ends included.
-    Trapezoid(u32),
-    /// Sum over the left ends of N equal cells (jFuzzyLogic: 1000).
-    LeftEnd(u32),
-    /// Trapezoidal rule over N equally spaced samples and the points where each set is cut, but not
-    /// those where two sets cross (scikit-fuzzy).
-    Vertices(u32),
-}
-
-impl Sampling {
-    /// The names, as written in files and options.
-    pub const NAMES: &'static str =
-        "exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N, vertices:N";
-
-    /// The number of samples and the fewest allowed.
-    fn samples(self) -> Option<(u32, u32)> {
-        match self {
-            Self::Exact => None,
-            Self::Midpoint(n) | Self::LeftEnd(n) => Some((n, 1)),
-            Self::Endpoints(n) | Self::Trapezoid(n) | Self::Vertices(n) => Some((n, 2)),
-        }
-    }
-
-    /// The same if its number of samples is allowed.
-    ///
-    /// # Errors
-    /// [`FuzzyError::SampleCount`].
-    pub fn checked(self) -> Result<Self, FuzzyError> {
-        match self.samples() {
-            Some((found, least)) if !(least..=MAX_SAMPLES).contains(&found) => {
-                Err(FuzzyError::SampleCount { found, least, most: MAX_SAMPLES })
-            }
-            _ => Ok(self),
-        }
-    }
-
-    /// The rule of the fixed-size supervisor that computes the same, if there is one.
-    #[must_use]
-    pub fn fixed_size(self) -> Option<defuzzifier::Defuzzifier> {
-        match self {
-            Self::Exact => Some(defuzzifier::Defuzzifier::Exact),
-            Self::Endpoints(n) => Some(defuzzifier::Defuzzifier::Endpoints(n)),
-            Self::Midpoint(n) => Some(defuzzifier::Defuzzifier::Midpoint(n)),
-            Self::Trapezoid(n) => Some(defuzzifier::Defuzzifier::Trapezoid(n)),
-            Self::LeftEnd(_) | Self::Vertices(_) => None,
-        }
-    }
-}
-
-impl fmt::Display for Sampling {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Exact => f.write_str("exact"),
-            Self::Endpoints(n) => write!(f, "endpoints:{n}"),
-            Self::Midpoint(n) => write!(f, "midpoint:{n}"),
-            Self::Trapezoid(n) => write!(f, "trapezoid:{n}"),
-            Self::LeftEnd(n) => write!(f, "left-end:{n}"),
-            Self::Vertices(n) => write!(f, "vertices:{n}"),
-        }
-    }
-}
-
-impl FromStr for Sampling {
-    type Err = FuzzyError;
-
-    fn from_str(text: &str) -> Result<Self, FuzzyError> {
-        if text == "exact" {
-            return Ok(Self::Exact);
-        }
-        let (kind, samples) = text.split_once(':').ok_or(FuzzyError::UnknownDefuzzifier)?;
-        let samples: u32 = samples.parse().map_err(|_| FuzzyError::UnknownDefuzzifier)?;
-        match kind {
-            "endpoints" => Self::Endpoints(samples),
-            "midpoint" => Self::Midpoint(samples),
-            "trapezoid" => Self::Trapezoid(samples),
-            "left-end" => Self::LeftEnd(samples),
-            "vertices" => Self::Vertices(samples),
-            _ => return Err(FuzzyError::UnknownDefuzzifier),
-        }
-        .checked()
-    }
-}
+/// How an integral over an output's universe is computed: the rules of the fixed-size supervisor,
+/// for every method that integrates.
+pub use crate::defuzzifier::Defuzzifier as Sampling;
 
 /// How the joined conclusions of an output become a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defuzzifier {
     /// Centre of gravity.
     Centroid(Sampling),
-    /// The point that halves the area.
+    /// The point that halves the area; of [`Endpoints`](Sampling::Endpoints) the first sample at
+    /// which the sum of grades reaches half.
     Bisector(Sampling),
-    /// The smallest of the points of highest grade.
+    /// The smallest of the points of highest grade; of [`Endpoints`](Sampling::Endpoints) the one
+    /// nearest to 0 (MATLAB).
     SmallestOfMaximum(Sampling),
-    /// Half way between the smallest and the largest point of highest grade; of samples their mean.
+    /// The mean of the points of highest grade: by length, or by number where there are only single
+    /// points; of samples their mean.
     MeanOfMaximum(Sampling),
-    /// The largest of the points of highest grade.
+    /// The largest of the points of highest grade; of [`Endpoints`](Sampling::Endpoints) the one
+    /// farthest from 0 (MATLAB).
     LargestOfMaximum(Sampling),
     /// $\sum w_i z_i / \sum w_i$ over the conclusions $z_i$ of the rules (Takagi–Sugeno, Tsukamoto).
     WeightedAverage(SetReading),

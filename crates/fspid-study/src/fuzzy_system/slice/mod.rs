@@ -1,0 +1,179 @@
+//! A system seen along one or two of its inputs while the others stay where they are.
+
+mod question;
+
+use std::fmt::Write as _;
+
+use fspid_fuzzy::system::System;
+
+use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
+use crate::inference::Refused;
+
+use question::Asking;
+pub(super) use question::spans;
+
+/// Which part of a system is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Question<'a> {
+    /// The input to the right; the first that is free if left out.
+    pub x: Option<&'a str>,
+    /// The input to the back; the next that is free if left out.
+    pub y: Option<&'a str>,
+    /// Values of other inputs, `name=value`; the middle of their ranges if left out.
+    pub fixed: &'a [String],
+    /// Ranges to draw over, `name=lower..upper`; those of the file if left out.
+    pub spans: &'a [String],
+    /// The output; all of them if left out.
+    pub output: Option<&'a str>,
+    /// Nodes along each input.
+    pub nodes: Option<usize>,
+}
+
+/// A slice that was evaluated.
+#[derive(Clone, Debug)]
+pub struct Slice<'a> {
+    system: &'a System,
+    /// One or two inputs, with their nodes.
+    axes: Vec<(usize, Vec<f64>)>,
+    /// Values of the other inputs.
+    fixed: Vec<(usize, f64)>,
+    outputs: Vec<usize>,
+    /// For each output its values, the first axis running fastest; NaN where there is no answer.
+    values: Vec<Vec<f64>>,
+}
+
+/// Evaluates a slice.
+///
+/// # Errors
+/// [`Refused`] with everything that is wrong with the question.
+pub fn slice<'a>(system: &'a System, question: &Question<'_>) -> Result<Slice<'a>, Refused> {
+    let mut asking = Asking { system, problems: Vec::new() };
+    let slice = asking.slice(question);
+    match slice {
+        Some(slice) if asking.problems.is_empty() => Ok(slice.evaluated()),
+        _ => Err(Refused::all(asking.problems)),
+    }
+}
+
+impl Slice<'_> {
+    fn evaluated(mut self) -> Self {
+        let inputs = self.system.parts().inputs.len();
+        let mut values = vec![Vec::new(); self.outputs.len()];
+        let mut workspace = self.system.workspace();
+        for point in self.points() {
+            let mut row = vec![0.0; inputs];
+            let drawn = self.axes.iter().map(|axis| axis.0).zip(point);
+            for (input, value) in drawn.chain(self.fixed.iter().copied()) {
+                if let Some(place) = row.get_mut(input) {
+                    *place = value;
+                }
+            }
+            let answers = self.system.evaluate(&row, &mut workspace).unwrap_or_default();
+            for (values, output) in values.iter_mut().zip(&self.outputs) {
+                let answer = answers.get(*output).and_then(|answer| answer.value);
+                values.push(answer.unwrap_or(f64::NAN));
+            }
+        }
+        self.values = values;
+        self
+    }
+
+    /// The nodes of the grid, the first axis running fastest.
+    fn points(&self) -> Vec<Vec<f64>> {
+        match self.axes.as_slice() {
+            [(_, xs)] => xs.iter().map(|x| vec![*x]).collect(),
+            [(_, xs), (_, ys)] => ys.iter().flat_map(|y| xs.iter().map(|x| vec![*x, *y])).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn input_name(&self, input: usize) -> &str {
+        self.system.parts().inputs.get(input).map_or("", |input| input.name.as_str())
+    }
+
+    fn output_name(&self, output: usize) -> &str {
+        self.system.parts().outputs.get(output).map_or("", |output| output.name.as_str())
+    }
+
+    /// What stays where it is: `food = 5, wine = 3`; empty if nothing does.
+    #[must_use]
+    pub fn fixed_in_words(&self) -> String {
+        let pair = |(input, value): &(usize, f64)| format!("{} = {value}", self.input_name(*input));
+        self.fixed.iter().map(pair).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A figure for each output, with its name: a surface over two inputs, a curve over one.
+    #[must_use]
+    pub fn figures(&self) -> Vec<(&str, Svg)> {
+        let figure = |(output, values): (&usize, &Vec<f64>)| {
+            let name = self.output_name(*output);
+            (name, self.figure(name, values))
+        };
+        self.outputs.iter().zip(&self.values).map(figure).collect()
+    }
+
+    fn figure(&self, name: &str, values: &[f64]) -> Svg {
+        let fixed = self.fixed_in_words();
+        let title = if fixed.is_empty() { name.to_owned() } else { format!("{name} at {fixed}") };
+        match self.axes.as_slice() {
+            [(x, xs), (y, ys)] => {
+                let surface = Surface {
+                    title,
+                    x_label: self.input_name(*x).to_owned(),
+                    y_label: self.input_name(*y).to_owned(),
+                    z_label: name.to_owned(),
+                    xs: xs.clone(),
+                    ys: ys.clone(),
+                    values: values.chunks(xs.len().max(1)).map(<[f64]>::to_vec).collect(),
+                    limit: None,
+                };
+                surface.render(SurfaceKind::Relief)
+            }
+            axes => curve(title, name, (axes, self), values),
+        }
+    }
+
+    /// The grid as CSV: the inputs that are drawn along, then the outputs.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let drawn = self.axes.iter().map(|axis| self.input_name(axis.0));
+        let names = drawn.chain(self.outputs.iter().map(|output| self.output_name(*output)));
+        let mut csv = names.map(crate::rows::quoted).collect::<Vec<_>>().join(",");
+        csv.push('\n');
+        for (index, point) in self.points().iter().enumerate() {
+            let answers = self.values.iter().map(|values| values.get(index).copied());
+            let cells = point.iter().copied().map(Some).chain(answers);
+            let cells: Vec<String> = cells
+                .map(|cell| {
+                    cell.filter(|x| !x.is_nan()).map_or(String::new(), |x| format!("{x:?}"))
+                })
+                .collect();
+            // Writing to a string cannot fail.
+            let _ = writeln!(csv, "{}", cells.join(","));
+        }
+        csv
+    }
+}
+
+fn curve(
+    title: String,
+    name: &str,
+    (axes, slice): (&[(usize, Vec<f64>)], &Slice<'_>),
+    values: &[f64],
+) -> Svg {
+    let (input, xs) = axes.first().map_or((0, [].as_slice()), |(n, xs)| (*n, xs.as_slice()));
+    let series = Series {
+        name: String::new(),
+        style: SeriesStyle::Numbered(0),
+        x: xs.to_vec(),
+        y: values.to_vec(),
+        stairs: false,
+    };
+    let panel = LinePanel {
+        y_label: name.to_owned(),
+        x_label: slice.input_name(input).to_owned(),
+        series: vec![series],
+        ..LinePanel::default()
+    };
+    LineFigure { title, panels: vec![panel], width_px: 720.0 }.render()
+}
