@@ -12,6 +12,7 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod actuator;
 pub mod air;
 mod closed_loop;
 mod controller;
