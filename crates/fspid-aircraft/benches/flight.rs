@@ -1,0 +1,3 @@
+//! How fast one core trims and flies.
+
+fn main() {}

@@ -1,0 +1,243 @@
+//! An aircraft as its source describes it, in SI units, before anything is made of it.
+
+use fspid_lti::Matrix;
+
+use crate::aerodynamics::derivatives::{
+    DerivativeModel, DragLaw, Geometry, Lateral, Longitudinal, ThrustLaw,
+};
+use crate::aircraft::Aircraft;
+use crate::atmosphere::Environment;
+use crate::error::AircraftError;
+use crate::mass::MassProperties;
+use crate::validity::{Travel, Validity};
+
+/// What is known about an aircraft, and from where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AircraftData {
+    /// Name in scenarios.
+    pub name: String,
+    /// What it is, in a line.
+    pub title: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// What else should be known.
+    pub notes: String,
+    /// The numbers.
+    pub model: ModelData,
+}
+
+/// How much of an aircraft its source tells.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelData {
+    /// Stability derivatives: it can be trimmed and flown around its reference.
+    Derivatives(Box<DerivativeData>),
+    /// A linear model at one condition, and nothing else.
+    Linear(LinearData),
+}
+
+/// Flight condition to which derivatives belong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference {
+    /// True airspeed.
+    pub airspeed_m_s: f64,
+    /// Geopotential altitude.
+    pub altitude_m: f64,
+    /// Density of the air there.
+    pub density_kg_m3: f64,
+    /// Dynamic pressure as the source prints it; it may differ from that of density and airspeed in the last digit.
+    pub dynamic_pressure_pa: f64,
+    /// Mach number as the source prints it.
+    pub mach: f64,
+    /// Gravity with which the source makes masses of weights.
+    pub gravity_m_s2: f64,
+    /// Angle of attack of the fuselage there: between the axes of the inertia and those of the derivatives.
+    pub alpha_rad: f64,
+}
+
+/// An aircraft described by derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DerivativeData {
+    /// Flight condition.
+    pub reference: Reference,
+    /// Lengths.
+    pub geometry: Geometry,
+    /// Weight.
+    pub weight_n: f64,
+    /// Moments of inertia in fuselage axes; the mass among them is not read, the weight is.
+    pub inertia: Inertia,
+    /// Lift, drag, pitching moment; $C_{L_1}$ as the source prints it.
+    pub longitudinal: Longitudinal,
+    /// Side force, roll, yaw, if the source has them.
+    pub lateral: Option<Lateral>,
+    /// Where the derivatives are worth something.
+    pub validity: Validity,
+    /// Stops of the controls.
+    pub travel: Travel,
+}
+
+/// Moments of inertia about the centre of gravity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertia {
+    /// About the forward axis.
+    pub ix_kg_m2: f64,
+    /// About the right axis.
+    pub iy_kg_m2: f64,
+    /// About the downward axis.
+    pub iz_kg_m2: f64,
+    /// Product of inertia.
+    pub ixz_kg_m2: f64,
+}
+
+/// A longitudinal linear model: states and elevator.
+///
+/// $$ \dot x = A x + b\, \delta_e $$
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearData {
+    /// What the states are, in the order of the rows.
+    pub states: Vec<LinearState>,
+    /// State matrix.
+    pub a: Matrix,
+    /// Input column.
+    pub b: Matrix,
+}
+
+/// A longitudinal state, as a deviation from the condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinearState {
+    /// Forward velocity in m/s.
+    ForwardVelocity,
+    /// Downward velocity in m/s.
+    DownwardVelocity,
+    /// Angle of attack in rad.
+    Alpha,
+    /// Pitch rate in rad/s.
+    PitchRate,
+    /// Pitch in rad.
+    Theta,
+}
+
+/// How an aircraft is to behave away from the flight condition of its data.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Laws {
+    /// Drag by lift.
+    pub drag: DragLaw,
+    /// Thrust by speed.
+    pub thrust: ThrustLaw,
+}
+
+impl AircraftData {
+    /// The derivatives.
+    ///
+    /// # Errors
+    /// An aircraft of which only a linear model is known.
+    pub fn derivatives(&self) -> Result<&DerivativeData, AircraftError> {
+        match &self.model {
+            ModelData::Derivatives(data) => Ok(data),
+            ModelData::Linear(_) => Err(AircraftError::LinearOnly { name: self.name.clone() }),
+        }
+    }
+
+    /// An aircraft that can be trimmed and flown.
+    ///
+    /// # Errors
+    /// An aircraft of which only a linear model is known; numbers that no aircraft has.
+    pub fn aircraft(
+        &self,
+        laws: Laws,
+        environment: Environment,
+    ) -> Result<Aircraft<DerivativeModel>, AircraftError> {
+        self.derivatives()?.aircraft(laws, environment)
+    }
+}
+
+impl DerivativeData {
+    /// Mass by the source's gravity.
+    ///
+    /// $$ m = W / g $$
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.weight_n / self.reference.gravity_m_s2
+    }
+
+    /// Mass properties in the stability axes of the reference.
+    #[must_use]
+    pub fn mass_properties(&self) -> MassProperties {
+        let Inertia { ix_kg_m2, iy_kg_m2, iz_kg_m2, ixz_kg_m2 } = self.inertia;
+        MassProperties {
+            mass_kg: self.mass_kg(),
+            ix_kg_m2,
+            iy_kg_m2,
+            iz_kg_m2,
+            ixz_kg_m2,
+            engine_kg_m2_s: 0.0,
+        }
+        .turned_nose_up(-self.reference.alpha_rad)
+    }
+
+    /// The reference as an environment: its gravity, and its density everywhere.
+    ///
+    /// In it the reference is an equilibrium exactly.
+    #[must_use]
+    pub fn reference_environment(&self) -> Environment {
+        let Reference { density_kg_m3, airspeed_m_s, mach, gravity_m_s2, .. } = self.reference;
+        let speed_of_sound_m_s = airspeed_m_s / mach;
+        Environment::uniform(gravity_m_s2, density_kg_m3, speed_of_sound_m_s)
+    }
+
+    /// Dynamic pressure of the reference's density and airspeed.
+    fn dynamic_pressure_pa(&self) -> f64 {
+        let Reference { density_kg_m3, airspeed_m_s, .. } = self.reference;
+        0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s
+    }
+
+    /// Forces, with the lift of the reference made equal to the weight so that the reference is an equilibrium.
+    ///
+    /// $$ C_{L_1} = \frac{W}{\bar q S}, \quad T_1 = \bar q S\, C_{D_1} $$
+    #[must_use]
+    pub fn force_model(&self, laws: Laws) -> DerivativeModel {
+        let scale_n = self.dynamic_pressure_pa() * self.geometry.area_m2;
+        let mut longitudinal = self.longitudinal;
+        longitudinal.lift.reference = self.weight_n / scale_n;
+        DerivativeModel {
+            geometry: self.geometry,
+            longitudinal,
+            lateral: self.lateral.unwrap_or_default(),
+            reference_airspeed_m_s: self.reference.airspeed_m_s,
+            reference_thrust_n: scale_n * longitudinal.drag.reference,
+            drag_law: laws.drag,
+            thrust_law: laws.thrust,
+            validity: self.validity,
+            travel: self.travel,
+        }
+    }
+
+    /// An aircraft that can be trimmed and flown.
+    ///
+    /// # Errors
+    /// Numbers that no aircraft has.
+    pub fn aircraft(
+        &self,
+        laws: Laws,
+        environment: Environment,
+    ) -> Result<Aircraft<DerivativeModel>, AircraftError> {
+        self.validate()?;
+        Aircraft::new(self.mass_properties(), self.force_model(laws), environment)
+    }
+
+    fn validate(&self) -> Result<(), AircraftError> {
+        let Geometry { area_m2, span_m, chord_m } = self.geometry;
+        let positive = [
+            ("wing area in m²", area_m2),
+            ("span in m", span_m),
+            ("chord in m", chord_m),
+            ("weight in N", self.weight_n),
+            ("reference airspeed in m/s", self.reference.airspeed_m_s),
+            ("reference density in kg/m³", self.reference.density_kg_m3),
+            ("reference Mach number", self.reference.mach),
+            ("reference gravity in m/s²", self.reference.gravity_m_s2),
+        ];
+        positive
+            .into_iter()
+            .try_for_each(|(what, value)| AircraftError::unless_positive(what, value))
+    }
+}

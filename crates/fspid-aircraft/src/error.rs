@@ -1,0 +1,93 @@
+//! What can be wrong with an aircraft, as one enum whose variants hold the values found and allowed.
+
+use fspid_lti::LtiError;
+use thiserror::Error;
+
+/// Why an aircraft could not be built or a question about it not be answered.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum AircraftError {
+    /// A quantity that must be above zero and finite.
+    #[error("the {what} is {value}; it must be above zero and finite")]
+    NotPositive {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A quantity that is NaN or infinite.
+    #[error("the {what} is {value}; it must be a finite number")]
+    NotFinite {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A range whose ends are the wrong way round or not numbers.
+    #[error("the range of {what} goes from {min} to {max}; the first must be below the second")]
+    EmptyRange {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// Lower end found.
+        min: f64,
+        /// Upper end found.
+        max: f64,
+    },
+    /// A value outside of what is known.
+    #[error("the {what} is {value}; it must be between {min} and {max}")]
+    Outside {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+        /// Lowest value allowed.
+        min: f64,
+        /// Highest value allowed.
+        max: f64,
+    },
+    /// Moments of inertia that no body has.
+    #[error(
+        "Ix {ix_kg_m2}, Iz {iz_kg_m2} and Ixz {ixz_kg_m2} kg m² belong to no body: Ix Iz must exceed Ixz²"
+    )]
+    ImpossibleInertia {
+        /// About the forward axis.
+        ix_kg_m2: f64,
+        /// About the downward axis.
+        iz_kg_m2: f64,
+        /// Product of inertia.
+        ixz_kg_m2: f64,
+    },
+    /// An aircraft known only by a linear model.
+    #[error(
+        "{name} is known only by its linear model at one flight condition; it has no forces to trim or to fly elsewhere"
+    )]
+    LinearOnly {
+        /// Which aircraft.
+        name: String,
+    },
+    /// An aircraft whose source has no lateral derivatives.
+    #[error("the source of {name} has no lateral derivatives")]
+    NoLateral {
+        /// Which aircraft.
+        name: String,
+    },
+    /// A linear system that could not be made or solved.
+    #[error(transparent)]
+    Linear(#[from] LtiError),
+}
+
+impl AircraftError {
+    /// `Ok` when the value is above zero and finite.
+    pub(crate) fn unless_positive(what: &'static str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::NotPositive { what, value })
+        }
+    }
+
+    /// `Ok` when the value is finite.
+    pub(crate) fn unless_finite(what: &'static str, value: f64) -> Result<(), Self> {
+        if value.is_finite() { Ok(()) } else { Err(Self::NotFinite { what, value }) }
+    }
+}

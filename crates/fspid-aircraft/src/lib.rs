@@ -1,0 +1,46 @@
+//! Aircraft that fly: atmosphere, rigid body, forces, trim, linearisation and modes.
+//!
+//! For whoever has an aircraft as a textbook describes it and wants to fly it away from the condition of the textbook,
+//! or to know its linear model anywhere in its envelope. The Earth is flat and does not turn. Pure mathematics: no
+//! file, no controller, no clock.
+//!
+//! # Conventions
+//! SI units and radians. Body axes point forward, right, down; the ground's north, east, down. Elevator trailing edge
+//! down is positive and turns the nose down. A model of forces states its own reference for the angle of attack.
+//!
+//! # The same bits on every machine
+//! As in `fspid-lti`: sums in a fixed order, nothing fused, elementary functions from `libm`, nothing random.
+
+pub mod aerodynamics;
+mod aircraft;
+pub mod airspeed;
+pub mod atmosphere;
+mod controls;
+pub mod data;
+pub mod derivation;
+mod error;
+mod flow;
+pub mod integrate;
+pub mod linearise;
+mod mass;
+mod quaternion;
+mod rigid_body;
+mod transfer;
+pub mod trim;
+mod validity;
+mod vector;
+
+pub use aerodynamics::{ForceModel, Loads};
+pub use aircraft::{Aircraft, Instant};
+pub use atmosphere::{Air, AirModel, Environment};
+pub use controls::{CONTROLS, Controls};
+pub use error::AircraftError;
+pub use flow::{AirMotion, Flow};
+pub use linearise::{Linearisation, VelocityForm};
+pub use mass::MassProperties;
+pub use quaternion::{EulerAngles, Quaternion};
+pub use rigid_body::{Accelerations, RIGID_STATES, RigidState};
+pub use transfer::transfer_function;
+pub use trim::{Trim, TrimFailure, TrimPoint, TrimTarget};
+pub use validity::{Departure, Quantity, Range, Travel, Validity};
+pub use vector::Vector3;

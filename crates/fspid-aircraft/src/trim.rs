@@ -1,0 +1,356 @@
+//! Straight flight at constant speed: which angle of attack, elevator and throttle hold it, or what stands in the way.
+//!
+//! Wings level, no sideslip, aileron and rudder at rest: for an aircraft that is symmetric. Not for turns.
+
+use std::fmt;
+
+use fspid_lti::Matrix;
+use thiserror::Error;
+
+use crate::aerodynamics::ForceModel;
+use crate::aircraft::Aircraft;
+use crate::controls::Controls;
+use crate::flow::AirMotion;
+use crate::quaternion::{EulerAngles, Quaternion};
+use crate::rigid_body::RigidState;
+use crate::validity::{Departure, Range, Travel};
+use crate::vector::Vector3;
+
+/// Largest acceleration left in a trim: 10⁻⁹ ft/s².
+pub const ACCELERATION_LEFT_M_S2: f64 = 3.048e-10;
+
+/// Largest angular acceleration left in a trim.
+pub const ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-9;
+
+/// Iterations after which a search gives up; from any start that works it takes fewer than ten.
+const ITERATIONS_MAX: usize = 60;
+
+/// Smallest part of a Newton step that is tried.
+const DAMPING_MIN: f64 = 1e-6;
+
+/// Flight that a trim is to hold, in still air.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrimTarget {
+    /// True airspeed.
+    pub airspeed_m_s: f64,
+    /// Geopotential altitude.
+    pub altitude_m: f64,
+    /// Angle of the flight path over the horizon, climbing positive.
+    pub flight_path_rad: f64,
+}
+
+/// The three unknowns of a trim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrimPoint {
+    /// Angle of attack.
+    pub alpha_rad: f64,
+    /// Elevator.
+    pub elevator_rad: f64,
+    /// Throttle, in the measure of the model.
+    pub throttle: f64,
+}
+
+/// What keeps a point from being an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrimResidual {
+    /// Rate of u.
+    pub forward_m_s2: f64,
+    /// Rate of w.
+    pub downward_m_s2: f64,
+    /// Rate of q.
+    pub pitch_rad_s2: f64,
+}
+
+/// An equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trim {
+    /// What was asked.
+    pub target: TrimTarget,
+    /// What holds it.
+    pub point: TrimPoint,
+    /// Thrust at it.
+    pub thrust_n: f64,
+    /// The state to start a flight from, heading north over the origin.
+    pub state: RigidState,
+    /// The controls to start with.
+    pub controls: Controls,
+    /// What is left of the accelerations.
+    pub residual: TrimResidual,
+    /// Newton steps taken.
+    pub iterations: usize,
+}
+
+/// Why there is no trim.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub struct TrimFailure {
+    /// What was asked.
+    pub target: TrimTarget,
+    /// What stood in the way.
+    pub reason: TrimObstacle,
+    /// Limits that are left or met at the point; none where the forces alone have no equilibrium.
+    pub limits: Vec<Departure>,
+    /// How far the search came.
+    pub point: TrimPoint,
+    /// What is left of the accelerations there.
+    pub residual: TrimResidual,
+    /// Newton steps taken.
+    pub iterations: usize,
+}
+
+/// Kind of obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrimObstacle {
+    /// The point is an equilibrium, but beyond limits of the model or stops of the controls.
+    BeyondLimits,
+    /// No equilibrium was found, within limits or beyond.
+    NoEquilibrium,
+}
+
+impl fmt::Display for TrimFailure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let TrimTarget { airspeed_m_s, altitude_m, flight_path_rad } = self.target;
+        write!(
+            formatter,
+            "no trim at {airspeed_m_s} m/s, {altitude_m} m, flight path {flight_path_rad} rad: "
+        )?;
+        match self.reason {
+            TrimObstacle::BeyondLimits => write!(formatter, "it would take")?,
+            TrimObstacle::NoEquilibrium => {
+                let TrimResidual { forward_m_s2, downward_m_s2, pitch_rad_s2 } = self.residual;
+                write!(
+                    formatter,
+                    "no equilibrium; nearest has {forward_m_s2:.3e} m/s² forward, {downward_m_s2:.3e} m/s² down, {pitch_rad_s2:.3e} rad/s² in pitch at"
+                )?;
+            }
+        }
+        self.limits.iter().enumerate().try_for_each(|(index, limit)| {
+            let separator = if index == 0 { "" } else { ";" };
+            write!(formatter, "{separator} {limit}")
+        })?;
+        if self.limits.is_empty() {
+            write!(formatter, " angle of attack {} rad", self.point.alpha_rad)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl TrimTarget {
+    /// State of a flight at the target with an angle of attack.
+    ///
+    /// $$ \theta = \alpha + \gamma $$
+    #[must_use]
+    pub fn state(&self, alpha_rad: f64) -> RigidState {
+        let theta_rad = alpha_rad + self.flight_path_rad;
+        let (sin, cos) = libm::sincos(alpha_rad);
+        RigidState {
+            position_ned_m: Vector3::new(0.0, 0.0, -self.altitude_m),
+            velocity_body_m_s: self.airspeed_m_s * Vector3::new(cos, 0.0, sin),
+            attitude: Quaternion::from_euler(EulerAngles { theta_rad, ..EulerAngles::default() }),
+            rates_rad_s: Vector3::ZERO,
+        }
+    }
+}
+
+impl TrimPoint {
+    fn controls(&self) -> Controls {
+        let Self { elevator_rad, throttle, .. } = *self;
+        Controls { elevator_rad, throttle, ..Controls::default() }
+    }
+
+    fn from_array([alpha_rad, elevator_rad, throttle]: [f64; 3]) -> Self {
+        Self { alpha_rad, elevator_rad, throttle }
+    }
+
+    fn to_array(self) -> [f64; 3] {
+        [self.alpha_rad, self.elevator_rad, self.throttle]
+    }
+}
+
+impl TrimResidual {
+    /// Size in multiples of what is accepted; a NaN counts as infinite.
+    fn size(&self) -> f64 {
+        let Self { forward_m_s2, downward_m_s2, pitch_rad_s2 } = self;
+        let along = forward_m_s2.abs().max(downward_m_s2.abs()) / ACCELERATION_LEFT_M_S2;
+        let size = along.max(pitch_rad_s2.abs() / ANGULAR_ACCELERATION_LEFT_RAD_S2);
+        let sum = forward_m_s2 + downward_m_s2 + pitch_rad_s2;
+        if sum.is_nan() { f64::INFINITY } else { size }
+    }
+
+    fn accepted(&self) -> bool {
+        self.size() <= 1.0
+    }
+
+    fn to_array(self) -> [f64; 3] {
+        [self.forward_m_s2, self.downward_m_s2, self.pitch_rad_s2]
+    }
+}
+
+impl<M: ForceModel> Aircraft<M> {
+    /// Trim for straight flight.
+    ///
+    /// Newton's method with central differences on $\dot u, \dot w, \dot q$ as functions of angle of attack, elevator
+    /// and throttle; steps are shortened until they help. It is tried within all limits first. If that fails, it is
+    /// tried without limits, to say what the flight would take.
+    ///
+    /// # Errors
+    /// A flight that cannot be held, with the limits in its way and the nearest point found.
+    pub fn trim(&self, target: TrimTarget) -> Result<Trim, TrimFailure> {
+        let within = self.search(target, self.trim_limits());
+        if within.residual.accepted() && self.trim_departures(target, &within.point).is_empty() {
+            return Ok(self.trim_at(target, within));
+        }
+        let beyond = self.search(target, [Range::ALL; 3]);
+        let limits = self.trim_departures(target, &beyond.point);
+        match (beyond.residual.accepted(), limits.is_empty()) {
+            (true, true) => Ok(self.trim_at(target, beyond)),
+            (true, false) => Err(failure(target, TrimObstacle::BeyondLimits, limits, beyond)),
+            (false, _) => {
+                let limits = self.trim_stops(target, &within.point);
+                Err(failure(target, TrimObstacle::NoEquilibrium, limits, within))
+            }
+        }
+    }
+
+    /// What is left of the accelerations at a point.
+    #[must_use]
+    pub fn trim_residual(&self, target: TrimTarget, point: TrimPoint) -> TrimResidual {
+        let state = target.state(point.alpha_rad);
+        let instant = self.instant(&state, &point.controls(), &AirMotion::STILL);
+        TrimResidual {
+            forward_m_s2: instant.accelerations.velocity_rate_body_m_s2.x,
+            downward_m_s2: instant.accelerations.velocity_rate_body_m_s2.z,
+            pitch_rad_s2: instant.accelerations.angular_rad_s2.y,
+        }
+    }
+
+    fn trim_limits(&self) -> [Range; 3] {
+        let Travel { elevator_rad, throttle, .. } = *self.model().travel();
+        [self.model().validity().alpha_rad, elevator_rad, throttle]
+    }
+
+    /// Limits of flow and controls that a point is beyond.
+    fn trim_departures(&self, target: TrimTarget, point: &TrimPoint) -> Vec<Departure> {
+        let flow = self.flow(&target.state(point.alpha_rad), &AirMotion::STILL);
+        let stops = self.model().travel().departures(&point.controls());
+        self.model().validity().departures(&flow).chain(stops).collect()
+    }
+
+    /// Limits that a point within them rests on, after those that it is beyond.
+    fn trim_stops(&self, target: TrimTarget, point: &TrimPoint) -> Vec<Departure> {
+        use crate::validity::Quantity::{Alpha, Elevator, Throttle};
+        let mut limits = self.trim_departures(target, point);
+        let values = [Alpha, Elevator, Throttle].into_iter().zip(point.to_array());
+        for ((quantity, value), allowed) in values.zip(self.trim_limits()) {
+            let stopped = value <= allowed.min || value >= allowed.max;
+            if stopped && limits.iter().all(|limit| limit.quantity != quantity) {
+                limits.push(Departure { quantity, value, allowed });
+            }
+        }
+        limits
+    }
+
+    fn trim_at(&self, target: TrimTarget, found: Search) -> Trim {
+        let state = target.state(found.point.alpha_rad);
+        let controls = found.point.controls();
+        let flow = self.flow(&state, &AirMotion::STILL);
+        Trim {
+            target,
+            point: found.point,
+            thrust_n: self.model().thrust_n(&flow, &controls),
+            state,
+            controls,
+            residual: found.residual,
+            iterations: found.iterations,
+        }
+    }
+
+    /// Newton's method within ranges of the unknowns, from the middle of them.
+    fn search(&self, target: TrimTarget, limits: [Range; 3]) -> Search {
+        let throttle = Range { min: limits[2].min.max(0.0), max: limits[2].max.min(2.0) };
+        let start = [0.0, 0.0, 0.5 * (throttle.min + throttle.max)];
+        let mut found = self.found(target, clamped(start, &limits), 0);
+        while !found.residual.accepted() && found.iterations < ITERATIONS_MAX {
+            let Some(next) = self.newton_step(target, &found, &limits) else { break };
+            found = next;
+        }
+        found
+    }
+
+    fn found(&self, target: TrimTarget, point: [f64; 3], iterations: usize) -> Search {
+        let point = TrimPoint::from_array(point);
+        Search { point, residual: self.trim_residual(target, point), iterations }
+    }
+
+    /// The next point, if there is a step that helps.
+    fn newton_step(
+        &self,
+        target: TrimTarget,
+        from: &Search,
+        limits: &[Range; 3],
+    ) -> Option<Search> {
+        let step = self.newton_direction(target, from)?;
+        let mut part = 1.0;
+        while part >= DAMPING_MIN {
+            let mut point = from.point.to_array();
+            for (value, step) in point.iter_mut().zip(&step) {
+                *value += part * step;
+            }
+            let next = self.found(target, clamped(point, limits), from.iterations + 1);
+            if next.residual.size() < (1.0 - 1e-4 * part) * from.residual.size() {
+                return Some(next);
+            }
+            part *= 0.5;
+        }
+        None
+    }
+
+    fn newton_direction(&self, target: TrimTarget, from: &Search) -> Option<[f64; 3]> {
+        let mut jacobian = Matrix::zeros(3, 3);
+        for column in 0..3 {
+            let (ahead, behind) =
+                (self.beside(target, from, column, 1.0), self.beside(target, from, column, -1.0));
+            let span = 2.0 * step_size(from.point.to_array()[column]);
+            for row in 0..3 {
+                jacobian.set(row, column, (ahead[row] - behind[row]) / span).ok()?;
+            }
+        }
+        let rest = from.residual.to_array().map(|value| [-value]);
+        let step = jacobian.solve(&Matrix::from_rows(&rest).ok()?).ok()?;
+        step.data().try_into().ok()
+    }
+
+    /// Residual a small step beside a point in one unknown.
+    fn beside(&self, target: TrimTarget, from: &Search, column: usize, sign: f64) -> [f64; 3] {
+        let mut point = from.point.to_array();
+        point[column] += sign * step_size(point[column]);
+        self.trim_residual(target, TrimPoint::from_array(point)).to_array()
+    }
+}
+
+/// Where a search is.
+#[derive(Debug, Clone, Copy)]
+struct Search {
+    point: TrimPoint,
+    residual: TrimResidual,
+    iterations: usize,
+}
+
+fn step_size(value: f64) -> f64 {
+    1e-5 * value.abs().max(1.0)
+}
+
+fn clamped(point: [f64; 3], limits: &[Range; 3]) -> [f64; 3] {
+    let [alpha, elevator, throttle] = point;
+    [limits[0].clamp(alpha), limits[1].clamp(elevator), limits[2].clamp(throttle)]
+}
+
+fn failure(
+    target: TrimTarget,
+    reason: TrimObstacle,
+    limits: Vec<Departure>,
+    found: Search,
+) -> TrimFailure {
+    let Search { point, residual, iterations } = found;
+    TrimFailure { target, reason, limits, point, residual, iterations }
+}

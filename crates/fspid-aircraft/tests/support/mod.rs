@@ -1,0 +1,210 @@
+//! The shipped aircraft, for tests: a reader without messages for mistakes in a file.
+
+#![allow(dead_code, reason = "no test uses everything")]
+
+use fspid_aircraft::aerodynamics::derivatives::{
+    Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
+};
+use fspid_aircraft::data::{
+    AircraftData, DerivativeData, Inertia, LinearData, LinearState, ModelData, Reference,
+};
+use fspid_aircraft::{Range, Travel, Validity};
+use fspid_lti::Matrix;
+use toml::{Table, Value};
+
+pub(crate) const FOOT_M: f64 = 0.3048;
+pub(crate) const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
+pub(crate) const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
+pub(crate) const DEG_RAD: f64 = core::f64::consts::PI / 180.0;
+
+/// Unit at the end of a key, and its size in SI.
+const UNITS: [(&str, f64); 10] = [
+    ("slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
+    ("slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
+    ("ft_s2", FOOT_M),
+    ("ft_s", FOOT_M),
+    ("ft2", FOOT_M * FOOT_M),
+    ("ft", FOOT_M),
+    ("lbf", POUND_FORCE_N),
+    ("psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
+    ("deg", DEG_RAD),
+    ("rad", 1.0),
+];
+
+const FILES: [(&str, &str); 7] = [
+    ("navion", include_str!("../../../../data/aircraft/navion.toml")),
+    ("b747-approach", include_str!("../../../../data/aircraft/b747-approach.toml")),
+    ("b747-cruise-low", include_str!("../../../../data/aircraft/b747-cruise-low.toml")),
+    ("b747-cruise-high", include_str!("../../../../data/aircraft/b747-cruise-high.toml")),
+    ("cessna-172", include_str!("../../../../data/aircraft/cessna-172.toml")),
+    ("etkin-747", include_str!("../../../../data/aircraft/etkin-747.toml")),
+    ("ctms-transport", include_str!("../../../../data/aircraft/ctms-transport.toml")),
+];
+
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    FILES.iter().map(|(name, _)| *name)
+}
+
+pub(crate) fn aircraft(name: &str) -> AircraftData {
+    let (_, text) = FILES.iter().find(|(known, _)| *known == name).expect("a shipped aircraft");
+    let file: Table = text.parse().expect("a shipped file is TOML");
+    let model = match string(&file, "model").as_str() {
+        "linear" => ModelData::Linear(linear(table(&file, "linear"))),
+        _ => ModelData::Derivatives(Box::new(derivatives(&file))),
+    };
+    let [name, title, source, notes] =
+        ["name", "title", "source", "notes"].map(|key| string(&file, key));
+    AircraftData { name, title, source, notes, model }
+}
+
+pub(crate) fn derivative_data(name: &str) -> DerivativeData {
+    *aircraft(name).derivatives().expect("an aircraft with derivatives")
+}
+
+fn derivatives(file: &Table) -> DerivativeData {
+    let [reference, geometry, mass, travel, validity] =
+        ["reference", "geometry", "mass", "travel", "validity"].map(|key| table(file, key));
+    DerivativeData {
+        reference: Reference {
+            airspeed_m_s: number(reference, "airspeed"),
+            altitude_m: number(reference, "altitude"),
+            density_kg_m3: number(reference, "density"),
+            dynamic_pressure_pa: number(reference, "dynamic_pressure"),
+            mach: number(reference, "mach"),
+            gravity_m_s2: number(reference, "gravity"),
+            alpha_rad: number(reference, "alpha"),
+        },
+        geometry: Geometry {
+            area_m2: number(geometry, "area"),
+            span_m: number(geometry, "span"),
+            chord_m: number(geometry, "chord"),
+        },
+        weight_n: number(mass, "weight"),
+        inertia: Inertia {
+            ix_kg_m2: number(mass, "ix"),
+            iy_kg_m2: number(mass, "iy"),
+            iz_kg_m2: number(mass, "iz"),
+            ixz_kg_m2: number(mass, "ixz"),
+        },
+        longitudinal: longitudinal(table(file, "longitudinal")),
+        lateral: Some(lateral(table(file, "lateral"))),
+        validity: Validity {
+            airspeed_m_s: range(validity, "airspeed"),
+            mach: range(validity, "mach"),
+            alpha_rad: range(validity, "alpha"),
+            beta_rad: range(validity, "beta"),
+            altitude_m: range(validity, "altitude"),
+        },
+        travel: Travel {
+            elevator_rad: range(travel, "elevator"),
+            aileron_rad: range(travel, "aileron"),
+            rudder_rad: range(travel, "rudder"),
+            throttle: range(travel, "throttle"),
+        },
+    }
+}
+
+fn longitudinal(section: &Table) -> Longitudinal {
+    let coefficient = |key: &str| {
+        let row = table(section, key);
+        LongitudinalCoefficient {
+            reference: plain(row, "reference"),
+            alpha: plain(row, "alpha"),
+            alpha_rate: plain(row, "alpha_rate"),
+            pitch_rate: plain(row, "pitch_rate"),
+            speed: plain(row, "speed"),
+            elevator: plain(row, "elevator"),
+        }
+    };
+    let [lift, drag, pitch] = ["lift", "drag", "pitch"].map(coefficient);
+    Longitudinal { lift, drag, pitch, thrust_speed: plain(section, "thrust_speed") }
+}
+
+fn lateral(section: &Table) -> Lateral {
+    let coefficient = |key: &str| {
+        let row = table(section, key);
+        LateralCoefficient {
+            beta: plain(row, "beta"),
+            roll_rate: plain(row, "roll_rate"),
+            yaw_rate: plain(row, "yaw_rate"),
+            aileron: plain(row, "aileron"),
+            rudder: plain(row, "rudder"),
+        }
+    };
+    let [side, roll, yaw] = ["side", "roll", "yaw"].map(coefficient);
+    Lateral { side, roll, yaw }
+}
+
+/// Feet become metres in the states and in their rates; angles stay.
+fn linear(section: &Table) -> LinearData {
+    let names: Vec<String> =
+        array(section, "states").iter().map(|name| name.as_str().expect("a name").into()).collect();
+    let scale = |name: &String| if name.ends_with("_ft_s") { FOOT_M } else { 1.0 };
+    let scales: Vec<f64> = names.iter().map(scale).collect();
+    let values = |value: &Value| -> Vec<f64> {
+        value.as_array().expect("a row").iter().map(float).collect()
+    };
+    let a = array(section, "a").iter().map(values).zip(&scales).map(|(row, rate)| {
+        row.iter().zip(&scales).map(|(value, state)| value * rate / state).collect::<Vec<_>>()
+    });
+    let b = array(section, "b_elevator_rad").iter().map(float).zip(&scales);
+    let (a, b): (Vec<_>, Vec<_>) = (a.collect(), b.map(|(value, rate)| [value * rate]).collect());
+    LinearData {
+        states: names.iter().map(|name| state(name)).collect(),
+        a: Matrix::from_rows(&a).expect("a matrix"),
+        b: Matrix::from_rows(&b).expect("a column"),
+    }
+}
+
+fn state(name: &str) -> LinearState {
+    match name {
+        "u_ft_s" => LinearState::ForwardVelocity,
+        "w_ft_s" => LinearState::DownwardVelocity,
+        "alpha_rad" => LinearState::Alpha,
+        "q_rad_s" => LinearState::PitchRate,
+        "theta_rad" => LinearState::Theta,
+        other => panic!("{other} is not a longitudinal state"),
+    }
+}
+
+fn table<'a>(parent: &'a Table, key: &str) -> &'a Table {
+    parent.get(key).and_then(Value::as_table).unwrap_or_else(|| panic!("no section {key}"))
+}
+
+fn array<'a>(parent: &'a Table, key: &str) -> &'a Vec<Value> {
+    parent.get(key).and_then(Value::as_array).unwrap_or_else(|| panic!("no list {key}"))
+}
+
+fn string(parent: &Table, key: &str) -> String {
+    parent.get(key).and_then(Value::as_str).unwrap_or_else(|| panic!("no text {key}")).into()
+}
+
+fn float(value: &Value) -> f64 {
+    value.as_float().expect("a number")
+}
+
+/// A number without unit, 0 if it is not there.
+fn plain(section: &Table, key: &str) -> f64 {
+    section.get(key).map_or(0.0, float)
+}
+
+/// The value of a key that begins with a name and ends with a unit, and the unit's size.
+fn entry<'a>(section: &'a Table, name: &str) -> (&'a Value, f64) {
+    let with_unit = section.iter().find_map(|(key, value)| {
+        let unit = key.strip_prefix(name)?.strip_prefix('_').unwrap_or("");
+        let (_, size) = UNITS.iter().find(|(known, _)| *known == unit)?;
+        Some((value, *size))
+    });
+    with_unit.or(section.get(name).map(|value| (value, 1.0))).unwrap_or_else(|| panic!("no {name}"))
+}
+
+fn number(section: &Table, name: &str) -> f64 {
+    let (value, unit) = entry(section, name);
+    float(value) * unit
+}
+
+fn range(section: &Table, name: &str) -> Range {
+    let (value, unit) = entry(section, name);
+    let ends: Vec<f64> = value.as_array().expect("two ends").iter().map(float).collect();
+    Range::new("range of a file", ends[0] * unit, ends[1] * unit).expect("ends in order")
+}
