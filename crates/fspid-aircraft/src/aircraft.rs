@@ -5,6 +5,7 @@ use crate::atmosphere::Environment;
 use crate::controls::Controls;
 use crate::error::AircraftError;
 use crate::flow::{AirMotion, Flow};
+use crate::integrate::rk4;
 use crate::mass::MassProperties;
 use crate::rigid_body::{Accelerations, RIGID_STATES, RigidState};
 use crate::validity::Departure;
@@ -134,6 +135,22 @@ impl<M: ForceModel> Aircraft<M> {
     ) -> [f64; RIGID_STATES] {
         let state = RigidState::from_array(state);
         state.rate(&self.instant(&state, controls, motion).accelerations)
+    }
+
+    /// State after `dt_s` with controls and air held, by one step of the classical method of Runge and Kutta.
+    ///
+    /// The attitude comes back with length one. Controls are not limited here: what moves them does that.
+    #[must_use]
+    pub fn step(
+        &self,
+        state: &RigidState,
+        controls: &Controls,
+        motion: &AirMotion,
+        dt_s: f64,
+    ) -> RigidState {
+        let rate = |_: f64, state: &[f64; RIGID_STATES]| self.rate(state, controls, motion);
+        let end = RigidState::from_array(&rk4::step(rate, 0.0, &state.to_array(), dt_s));
+        RigidState { attitude: end.attitude.normalised(), ..end }
     }
 
     /// First limit of the model by which the flow is outside.

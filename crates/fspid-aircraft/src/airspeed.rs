@@ -149,6 +149,13 @@ mod tests {
         assert!((impact_ratio(1.0 + 1e-12) - SONIC_RATIO).abs() < 1e-11);
     }
 
+    /// NACA Report 1135, table II: total behind the shock over static pressure 5.640 at Mach 2, 12.06 at Mach 3.
+    #[test]
+    fn beyond_mach_one_the_shock_is_in_the_impact_pressure() {
+        assert!((impact_ratio(2.0) - 4.640).abs() < 5.01e-4, "{}", impact_ratio(2.0));
+        assert!((impact_ratio(3.0) - 11.06).abs() < 5.01e-3, "{}", impact_ratio(3.0));
+    }
+
     #[test]
     fn speeds_without_a_calibrated_airspeed_are_refused() {
         assert!(calibrated_m_s(f64::NAN, &air(0.0)).is_err());

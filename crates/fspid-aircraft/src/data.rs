@@ -1,6 +1,6 @@
 //! An aircraft as its source describes it, in SI units, before anything is made of it.
 
-use fspid_lti::Matrix;
+use fspid_lti::{Matrix, StateSpace, TransferFunction};
 
 use crate::aerodynamics::derivatives::{
     DerivativeModel, DragLaw, Geometry, Lateral, Longitudinal, ThrustLaw,
@@ -9,6 +9,7 @@ use crate::aircraft::Aircraft;
 use crate::atmosphere::Environment;
 use crate::error::AircraftError;
 use crate::mass::MassProperties;
+use crate::transfer::transfer_function;
 use crate::validity::{Travel, Validity};
 
 /// What is known about an aircraft, and from where.
@@ -147,6 +148,28 @@ impl AircraftData {
         environment: Environment,
     ) -> Result<Aircraft<DerivativeModel>, AircraftError> {
         self.derivatives()?.aircraft(laws, environment)
+    }
+}
+
+impl LinearData {
+    /// The model as a system: elevator in, all states out.
+    ///
+    /// # Errors
+    /// Matrices that do not fit each other.
+    pub fn system(&self) -> Result<StateSpace, AircraftError> {
+        let states = self.states.len();
+        let (c, d) = (Matrix::identity(states), Matrix::zeros(states, 1));
+        Ok(StateSpace::new(self.a.clone(), self.b.clone(), c, d)?)
+    }
+
+    /// Pitch over elevator.
+    ///
+    /// # Errors
+    /// Matrices that do not fit each other; a model without pitch among its states, or one that the elevator does not
+    /// reach.
+    pub fn theta_over_elevator(&self) -> Result<TransferFunction, AircraftError> {
+        let theta = self.states.iter().position(|state| *state == LinearState::Theta);
+        transfer_function(&self.system()?, 0, theta.ok_or(AircraftError::NoPitch)?)
     }
 }
 

@@ -65,12 +65,9 @@ pub enum AircraftError {
         /// Which aircraft.
         name: String,
     },
-    /// An aircraft whose source has no lateral derivatives.
-    #[error("the source of {name} has no lateral derivatives")]
-    NoLateral {
-        /// Which aircraft.
-        name: String,
-    },
+    /// A linear model in which nothing is the pitch angle.
+    #[error("none of the states of the linear model is the pitch angle")]
+    NoPitch,
     /// A linear system that could not be made or solved.
     #[error(transparent)]
     Linear(#[from] LtiError),

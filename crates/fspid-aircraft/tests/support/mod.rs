@@ -48,8 +48,8 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
 pub(crate) fn aircraft(name: &str) -> AircraftData {
     let (_, text) = FILES.iter().find(|(known, _)| *known == name).expect("a shipped aircraft");
     let file: Table = text.parse().expect("a shipped file is TOML");
-    let model = match string(&file, "model").as_str() {
-        "linear" => ModelData::Linear(linear(table(&file, "linear"))),
+    let model = match string(&file, "kind").as_str() {
+        "linear" => ModelData::Linear(linear(&file)),
         _ => ModelData::Derivatives(Box::new(derivatives(&file))),
     };
     let [name, title, source, notes] =
@@ -136,23 +136,22 @@ fn lateral(section: &Table) -> Lateral {
 }
 
 /// Feet become metres in the states and in their rates; angles stay.
-fn linear(section: &Table) -> LinearData {
-    let names: Vec<String> =
-        array(section, "states").iter().map(|name| name.as_str().expect("a name").into()).collect();
+fn linear(file: &Table) -> LinearData {
+    let equations: Vec<&Table> =
+        array(file, "equations").iter().map(|row| row.as_table().expect("an equation")).collect();
+    let names: Vec<String> = equations.iter().map(|row| string(row, "state")).collect();
     let scale = |name: &String| if name.ends_with("_ft_s") { FOOT_M } else { 1.0 };
     let scales: Vec<f64> = names.iter().map(scale).collect();
-    let values = |value: &Value| -> Vec<f64> {
-        value.as_array().expect("a row").iter().map(float).collect()
-    };
-    let a = array(section, "a").iter().map(values).zip(&scales).map(|(row, rate)| {
-        row.iter().zip(&scales).map(|(value, state)| value * rate / state).collect::<Vec<_>>()
+    let rows = equations.iter().zip(&scales);
+    let a = rows.clone().map(|(row, rate)| {
+        let values = array(row, "by_states").iter().zip(&scales);
+        values.map(|(value, state)| float(value) * rate / state).collect::<Vec<_>>()
     });
-    let b = array(section, "b_elevator_rad").iter().map(float).zip(&scales);
-    let (a, b): (Vec<_>, Vec<_>) = (a.collect(), b.map(|(value, rate)| [value * rate]).collect());
+    let b = rows.map(|(row, rate)| [plain(row, "by_elevator") * rate]);
     LinearData {
         states: names.iter().map(|name| state(name)).collect(),
-        a: Matrix::from_rows(&a).expect("a matrix"),
-        b: Matrix::from_rows(&b).expect("a column"),
+        a: Matrix::from_rows(&a.collect::<Vec<_>>()).expect("a matrix"),
+        b: Matrix::from_rows(&b.collect::<Vec<_>>()).expect("a column"),
     }
 }
 
