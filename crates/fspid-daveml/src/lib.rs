@@ -43,6 +43,7 @@ mod compile;
 pub mod document;
 mod expression;
 mod finding;
+pub mod flight;
 mod model;
 mod number;
 mod problem;
