@@ -59,6 +59,7 @@ pub enum One {
     Root,
     Sin,
     Sinh,
+    Square,
     Tan,
     Tanh,
 }
@@ -138,11 +139,16 @@ impl Function {
         found.map(|&(_, function)| function)
     }
 
-    /// Name of the MathML element; empty for a negative, which is written as `minus` of one operand.
+    /// Name of the MathML element; empty for a negative and a square, which are written as `minus` and `power`.
     #[must_use]
     pub fn name(self) -> &'static str {
         let found = FUNCTIONS.iter().find(|(_, function)| *function == self);
         found.map_or("", |&(name, _)| name)
+    }
+
+    /// All names, with commas.
+    pub(crate) fn names() -> String {
+        FUNCTIONS.iter().map(|&(name, _)| name).collect::<Vec<_>>().join(", ")
     }
 
     /// How many operands it takes if it does not take that many.
@@ -183,6 +189,7 @@ impl One {
             Self::Root => a.sqrt(),
             Self::Sin => a.sin(),
             Self::Sinh => a.sinh(),
+            Self::Square => a.square(),
             Self::Tan => a.tan(),
             Self::Tanh => a.tanh(),
         }

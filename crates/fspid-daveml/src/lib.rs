@@ -40,6 +40,7 @@
 )]
 
 mod compile;
+pub mod data;
 pub mod document;
 mod expression;
 mod finding;

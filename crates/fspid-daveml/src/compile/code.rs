@@ -54,6 +54,10 @@ impl Writer<'_, '_> {
             Function::Minus if operands.len() == 1 => self.folded(operands, One::Negate.into()),
             Function::Minus => self.folded(operands, Two::Subtract.into()),
             Function::One(one) => self.folded(operands, one.into()),
+            // Exact, and quicker than a general power.
+            Function::Two(Two::Power) if operands.get(1) == Some(&Expression::Number(2.0)) => {
+                self.folded(operands.get(..1).unwrap_or_default(), One::Square.into());
+            }
             Function::Two(two) => self.folded(operands, two.into()),
             Function::Fold(two @ (Two::And | Two::Or)) if operands.len() == 1 => {
                 // A single condition becomes 0 or 1 as several do.

@@ -2,6 +2,7 @@
 
 mod code;
 mod names;
+mod numbers;
 mod order;
 mod shots;
 mod tables;
@@ -30,6 +31,7 @@ impl Model {
 
 /// The model, or problems.
 pub(crate) fn compile(document: &Document, findings: &mut Findings) -> Option<Model> {
+    numbers::check(document, findings);
     let names = Names::of(document, findings);
     limited(document.variables.len(), "variables", findings);
     let definitions = variables::definitions(document, &names, findings);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::data::is_name;
 use crate::document::{Document, Mention};
 use crate::finding::{Findings, Origin};
 
@@ -16,6 +17,11 @@ pub(super) struct Names<'a> {
 impl<'a> Names<'a> {
     /// All identifiers; each may occur once in its kind.
     pub(super) fn of(document: &'a Document, findings: &mut Findings) -> Self {
+        for variable in document.variables.iter().filter(|variable| !is_name(&variable.id)) {
+            let expected = "a letter or _ first; no white space, comma or bracket";
+            let message = "this cannot be the identifier of a variable";
+            findings.problem(variable.origin, &variable.id, message, expected);
+        }
         let variables = document.variables.iter();
         let breakpoints = document.breakpoints.iter();
         let tables = document.tables.iter();

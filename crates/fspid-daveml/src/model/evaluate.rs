@@ -122,7 +122,8 @@ impl Model {
         match step {
             Step::Formula { slot, range } => {
                 let code = self.code.get(range.clone()).unwrap_or_default();
-                memory.set(*slot, calculated(code, memory));
+                let value = memory.calculated(code);
+                memory.set(*slot, value);
             }
             Step::Locate { axis } => {
                 if let (Some(axis), index) = (self.axes.get(*axis), *axis) {
@@ -141,16 +142,18 @@ impl Model {
     }
 }
 
-/// Values of variables and places on axes.
+/// Values of variables, places on axes, and numbers that wait for an operation.
 struct Memory<N, const ROOM: usize> {
     values: [N; ROOM],
     locations: [Location<N>; ROOM],
+    stack: Stack<N>,
 }
 
 impl<N: Number, const ROOM: usize> Memory<N, ROOM> {
     fn new() -> Self {
         let location = Location { cell: 0, part: N::zero() };
-        Self { values: [N::zero(); ROOM], locations: [location; ROOM] }
+        let stack = Stack { numbers: [N::zero(); STACK], count: 0 };
+        Self { values: [N::zero(); ROOM], locations: [location; ROOM], stack }
     }
 
     #[inline]
@@ -170,33 +173,33 @@ impl<N: Number, const ROOM: usize> Memory<N, ROOM> {
             *place = location;
         }
     }
-}
 
-/// The value of a formula.
-fn calculated<N: Number, const ROOM: usize>(code: &[Operation], memory: &Memory<N, ROOM>) -> N {
-    let mut stack = Stack { numbers: [N::zero(); STACK], count: 0 };
-    for operation in code {
-        match *operation {
-            Operation::Number(value) => stack.push(N::constant(value)),
-            Operation::Variable(slot) => stack.push(memory.get(slot)),
-            Operation::One(function) => {
-                let a = stack.pop();
-                stack.push(function.apply(a));
-            }
-            Operation::Two(function) => {
-                let b = stack.pop();
-                let a = stack.pop();
-                stack.push(function.apply(a, b));
-            }
-            Operation::Choose => {
-                let condition = stack.pop();
-                let value = stack.pop();
-                let otherwise = stack.pop();
-                stack.push(if is_true(condition) { value } else { otherwise });
+    /// The value of a formula.
+    fn calculated(&mut self, code: &[Operation]) -> N {
+        self.stack.count = 0;
+        for operation in code {
+            match *operation {
+                Operation::Number(value) => self.stack.push(N::constant(value)),
+                Operation::Variable(slot) => self.stack.push(self.get(slot)),
+                Operation::One(function) => {
+                    let a = self.stack.pop();
+                    self.stack.push(function.apply(a));
+                }
+                Operation::Two(function) => {
+                    let b = self.stack.pop();
+                    let a = self.stack.pop();
+                    self.stack.push(function.apply(a, b));
+                }
+                Operation::Choose => {
+                    let condition = self.stack.pop();
+                    let value = self.stack.pop();
+                    let otherwise = self.stack.pop();
+                    self.stack.push(if is_true(condition) { value } else { otherwise });
+                }
             }
         }
+        self.stack.pop()
     }
-    stack.pop()
 }
 
 /// Numbers that wait for an operation.

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{E, PI};
 
-use crate::expression::{Expression, FUNCTIONS, Function};
+use crate::expression::{Expression, Function};
 use crate::finding::Findings;
 use crate::xml::element::{Element, number};
 
@@ -109,8 +109,7 @@ fn function(head: Element<'_, '_>, findings: &mut Findings) -> Option<Function> 
     let name = if head.name() == "csymbol" { symbol.as_str() } else { head.name() };
     let found = Function::named(name).filter(|&function| function != Function::Piecewise);
     if found.is_none() {
-        let known: Vec<_> = FUNCTIONS.iter().map(|&(name, _)| name).collect();
-        findings.problem(head.origin(), name, "unknown function", known.join(", "));
+        findings.problem(head.origin(), name, "unknown function", Function::names());
     }
     found
 }
