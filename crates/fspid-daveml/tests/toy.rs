@@ -120,3 +120,19 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_is_assumed_and_left_out_is_noted_with_its_place() {
+    let reading = fspid_daveml::read(include_str!("data/notes.dml")).unwrap();
+    let notes: Vec<_> = reading.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        notes,
+        [
+            "3:3: `a` has neither value nor calculation: taken as an input; say <isInput/> if it is one",
+            "5:5: <uncertainty> is left out: values are taken as certain",
+            "10:5: `a` may be extrapolated, but min holds it inside of the breakpoints",
+            "13:14: check case `s`: `b` is taken as 3",
+        ]
+    );
+    assert!(reading.model.check().passed());
+}
