@@ -1,0 +1,83 @@
+//! Between the throttle and the power of an engine.
+
+/// What the throttle does to the power that an engine is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gearing {
+    /// Power is the throttle's part of its travel. Also for an engine with a lag, whose power comes in as throttle.
+    #[default]
+    Proportional,
+    /// That of the F-16 model: dry power up to 0.77 of the travel, afterburner above.
+    StevensLewis,
+}
+
+impl Gearing {
+    /// Power, 0 to 1, that is asked for by a throttle from 0 to 1.
+    ///
+    /// $$ P = 0.6494\, \delta \ \text{for}\ \delta \le 0.77, \quad 2.1738\, \delta - 1.1738 \ \text{above} $$
+    ///
+    /// # Source
+    /// Stevens and Lewis, *Aircraft Control and Simulation*, appendix A, `TGEAR`; NASA TM-2003-212145.
+    #[must_use]
+    pub fn power(self, throttle: f64) -> f64 {
+        match self {
+            Self::Proportional => throttle,
+            Self::StevensLewis if throttle <= 0.77 => 0.6494 * throttle,
+            Self::StevensLewis => 2.1738 * throttle - 1.1738,
+        }
+    }
+}
+
+/// Rate in 1/s at which the power of the F-16's engine follows the one that is asked for, both from 0 to 1.
+///
+/// Across the border of the afterburner at 0.5 the engine is first led to 0.4 or 0.6.
+///
+/// $$ \dot P = \frac{P_t - P}{\tau}, \quad \frac{1}{\tau} = 5 \ \text{with afterburner, else}\ 1 \ldots 0.1
+///    \ \text{as}\ P_t - P \ \text{goes from}\ 0.25 \ \text{to}\ 0.5 $$
+///
+/// # Source
+/// Stevens and Lewis, *Aircraft Control and Simulation*, appendix A, `PDOT` and `RTAU`; NASA TM-2003-212145.
+#[must_use]
+pub fn power_rate_per_s(power: f64, asked: f64) -> f64 {
+    let (target, quick) = match (asked >= 0.5, power >= 0.5) {
+        (true, true) => (asked, true),
+        (true, false) => (0.6, false),
+        (false, true) => (0.4, true),
+        (false, false) => (asked, false),
+    };
+    let per_s = if quick { 5.0 } else { dry_rate(target - power) };
+    per_s * (target - power)
+}
+
+/// Inverse of the time constant without afterburner.
+fn dry_rate(missing: f64) -> f64 {
+    if missing <= 0.25 {
+        1.0
+    } else if missing >= 0.5 {
+        0.1
+    } else {
+        1.9 - 3.6 * missing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_parts_of_the_gearing_meet_within_the_digits_of_the_source() {
+        let (dry, wet): (f64, f64) = (0.6494 * 0.77, 2.1738 * 0.77 - 1.1738);
+        assert!((dry - wet).abs() < 2e-5);
+        assert_eq!(Gearing::StevensLewis.power(1.0), 1.0);
+        assert_eq!(Gearing::Proportional.power(0.3), 0.3);
+    }
+
+    #[test]
+    fn power_follows_what_is_asked_and_then_rests() {
+        assert_eq!(power_rate_per_s(0.3, 0.3), 0.0);
+        assert!((power_rate_per_s(0.2, 0.3) - 0.1).abs() < 1e-15);
+        assert!((power_rate_per_s(0.0, 0.45) - 0.45 * (1.9 - 3.6 * 0.45)).abs() < 1e-15);
+        assert!((power_rate_per_s(0.0, 1.0) - 0.06).abs() < 1e-15);
+        assert!((power_rate_per_s(0.8, 0.2) - -2.0).abs() < 1e-12);
+        assert!((power_rate_per_s(0.8, 1.0) - 1.0).abs() < 1e-12);
+    }
+}
