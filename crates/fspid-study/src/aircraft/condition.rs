@@ -1,8 +1,9 @@
 //! The flight that a question is about: which aircraft, how fast, how high, in which air.
 
 use fspid_aircraft::aerodynamics::derivatives::{DerivativeModel, DragLaw, ThrustLaw};
+use fspid_aircraft::atmosphere::{ALTITUDE_MAX_M, ALTITUDE_MIN_M};
 use fspid_aircraft::data::{AircraftData, DerivativeData, Laws};
-use fspid_aircraft::{Aircraft, Environment, Trim, TrimTarget};
+use fspid_aircraft::{Air, Aircraft, Environment, Trim, TrimTarget};
 
 use super::failure::AircraftFailure;
 use super::load::load;
@@ -130,6 +131,12 @@ impl Question<'_> {
         let flight_path_rad = read("--climb-angle", self.climb_angle, &ANGLES, Kind::Angle, 0.0);
         if !(airspeed_m_s > 0.0) {
             problems.push("--speed must be above 0".to_owned());
+        }
+        if self.air == AirChoice::Standard && Air::standard(altitude_m).is_err() {
+            let (min, max) = (ALTITUDE_MIN_M / 1000.0, ALTITUDE_MAX_M / 1000.0);
+            problems.push(format!(
+                "--altitude: the standard atmosphere is known from {min} to {max} km"
+            ));
         }
         if !(flight_path_rad.abs() < std::f64::consts::FRAC_PI_2) {
             problems.push("--climb-angle must be between -90 and 90 deg".to_owned());

@@ -95,8 +95,11 @@ fn trim_failure(f: &mut fmt::Formatter<'_>, failure: &TrimFailure, units: Units)
     let target = &failure.target;
     let (speed, altitude) =
         (told(Kind::Speed, target.airspeed_m_s), told(Kind::Length, target.altitude_m));
-    let path = told(Kind::Angle, target.flight_path_rad);
-    writeln!(f, "no trim at {speed}, {altitude}, climbing {path}: {}", obstacle(failure))?;
+    let climb = match target.flight_path_rad == 0.0 {
+        true => String::new(),
+        false => format!(", climbing {}", told(Kind::Angle, target.flight_path_rad)),
+    };
+    writeln!(f, "no trim at {speed}, {altitude}{climb}: {}", obstacle(failure))?;
     for limit in &failure.limits {
         writeln!(f, "  {}", departure(limit, units))?;
     }

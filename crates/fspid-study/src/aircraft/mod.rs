@@ -5,8 +5,10 @@
 
 mod condition;
 
+mod derive;
 mod facts;
 mod failure;
+mod import;
 mod linearise;
 mod list;
 mod load;
@@ -25,7 +27,9 @@ pub use fspid_aircraft::VelocityForm;
 
 pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, flight};
 
+pub use derive::{Derivation, derive};
 pub use failure::AircraftFailure;
+pub use import::{ImportFailure, Imported, import};
 pub use linearise::{Linear, linearise};
 pub use list::{List, list};
 pub use load::load;

@@ -2,7 +2,7 @@
 
 use fspid_aircraft::data::{AircraftData, ModelData};
 use fspid_aircraft::{AircraftMode, Growth, VelocityForm, lateral_modes, longitudinal_modes};
-use fspid_lti::{Complex, Mode, StateSpace};
+use fspid_lti::{Complex, Mode, StateSpace, modulus};
 use serde_json::{Map, Value, json};
 
 use super::condition::Question;
@@ -70,8 +70,8 @@ fn longitudinal(system: &StateSpace) -> Result<Vec<Motion>, AircraftFailure> {
     if system.states() == 4 {
         return Ok(named(longitudinal_modes(system)?));
     }
-    let poles = system.poles()?.into_iter().filter(|pole| pole.im >= 0.0);
-    let name = |pole: &Complex| match (pole.im > 0.0, pole.re.abs() < 1e-12) {
+    let poles = system.poles()?.into_iter().filter(|pole| pole.im >= 0.0).map(at_origin);
+    let name = |pole: &Complex| match (pole.im > 0.0, pole.re == 0.0) {
         (true, _) => "short period",
         (false, true) => "attitude",
         (false, false) => "real pole",
@@ -81,6 +81,11 @@ fn longitudinal(system: &StateSpace) -> Result<Vec<Motion>, AircraftFailure> {
         Motion { name: name(&pole), ..Motion::of(&mode) }
     };
     Ok(poles.map(of_pole).collect())
+}
+
+/// A pole that rounding alone keeps from the origin is there: pitch that is the sum of its rate.
+fn at_origin(pole: Complex) -> Complex {
+    if modulus(pole) < 1e-12 { Complex::new(0.0, 0.0) } else { pole }
 }
 
 fn named(modes: Vec<AircraftMode>) -> Vec<Motion> {

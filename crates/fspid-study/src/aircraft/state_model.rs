@@ -13,6 +13,9 @@ use super::units::{Kind, Units};
 /// Significant digits of an entry.
 const DIGITS: usize = 7;
 
+/// An entry below this part of the largest of its row is what rounding left of a difference.
+const ROUNDING: f64 = 1e-11;
+
 /// A state or input: its letter and what it measures; angles are in radians.
 type Name = (&'static str, Kind);
 
@@ -85,7 +88,11 @@ impl StateModel {
         let columns = names.iter().map(String::as_str).chain(self.inputs.iter().copied());
         let headings: Vec<&str> = std::iter::once("rate of").chain(columns).collect();
         let cells = |(name, values): (&String, Vec<f64>)| {
-            let numbers = values.iter().map(|value| significant(*value, DIGITS));
+            let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let numbers = values.iter().map(|value| match value.abs() < ROUNDING * largest {
+                true => "0".to_owned(),
+                false => significant(*value, DIGITS),
+            });
             std::iter::once(name.clone()).chain(numbers).collect()
         };
         let rows: Vec<Vec<String>> = names.iter().zip(self.rows(units)).map(cells).collect();

@@ -1,5 +1,7 @@
 //! `fspid aircraft`: aircraft that fly, one file a subcommand.
 
+mod derive;
+mod import;
 mod linearise;
 mod list;
 mod modes;
@@ -30,6 +32,8 @@ enum Command {
     Trim(trim::Arguments),
     Linearise(linearise::Arguments),
     Modes(modes::Arguments),
+    Derive(derive::Arguments),
+    Import(import::Arguments),
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -39,6 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Trim(arguments) => trim::run(arguments),
         Command::Linearise(arguments) => linearise::run(arguments),
         Command::Modes(arguments) => modes::run(arguments),
+        Command::Derive(arguments) => derive::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
     }
 }
 
