@@ -6,6 +6,7 @@
 mod condition;
 
 mod derive;
+mod envelope;
 mod facts;
 mod failure;
 mod import;
@@ -28,6 +29,7 @@ pub use fspid_aircraft::VelocityForm;
 pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, flight};
 
 pub use derive::{Derivation, derive};
+pub use envelope::{Envelope, EnvelopeQuestion, envelope};
 pub use failure::AircraftFailure;
 pub use import::{ImportFailure, Imported, import};
 pub use linearise::{Linear, linearise};

@@ -1,6 +1,7 @@
 //! `fspid aircraft`: aircraft that fly, one file a subcommand.
 
 mod derive;
+mod envelope;
 mod import;
 mod linearise;
 mod list;
@@ -32,6 +33,7 @@ enum Command {
     Trim(trim::Arguments),
     Linearise(linearise::Arguments),
     Modes(modes::Arguments),
+    Envelope(envelope::Arguments),
     Derive(derive::Arguments),
     Import(import::Arguments),
 }
@@ -43,6 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Trim(arguments) => trim::run(arguments),
         Command::Linearise(arguments) => linearise::run(arguments),
         Command::Modes(arguments) => modes::run(arguments),
+        Command::Envelope(arguments) => envelope::run(arguments),
         Command::Derive(arguments) => derive::run(arguments),
         Command::Import(arguments) => import::run(arguments),
     }
