@@ -24,6 +24,7 @@ pub mod integrate;
 pub mod linearise;
 mod mass;
 pub mod modes;
+pub mod qualities;
 mod quaternion;
 mod rigid_body;
 mod transfer;
@@ -39,7 +40,10 @@ pub use error::AircraftError;
 pub use flow::{AirMotion, Flow};
 pub use linearise::{Linearisation, VelocityForm};
 pub use mass::MassProperties;
-pub use modes::{AircraftMode, Growth, ModeName, lateral_modes, longitudinal_modes};
+pub use modes::{
+    AircraftMode, Growth, ModeName, lateral_modes, longitudinal_modes, modes_of_poles,
+};
+pub use qualities::{PitchModel, Qualities};
 pub use quaternion::{EulerAngles, Quaternion};
 pub use rigid_body::{Accelerations, RIGID_STATES, RigidState};
 pub use transfer::transfer_function;

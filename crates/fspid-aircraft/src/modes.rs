@@ -114,8 +114,16 @@ impl AircraftMode {
 /// # Errors
 /// A system that has not four states; eigenvalues that do not converge.
 pub fn longitudinal_modes(system: &StateSpace) -> Result<Vec<AircraftMode>, LtiError> {
+    modes_of_poles(&system.poles()?)
+}
+
+/// Modes of a longitudinal motion of which the four poles are known, the fastest first; as [`longitudinal_modes`].
+///
+/// # Errors
+/// Another number of poles.
+pub fn modes_of_poles(poles: &[Complex]) -> Result<Vec<AircraftMode>, LtiError> {
     use ModeName::{Phugoid, ShortPeriod, ThirdOscillation};
-    let poles = fastest_first(system)?;
+    let poles = fastest_first(poles.to_vec())?;
     let names = if conjugate(poles[1], poles[2]) {
         [ShortPeriod, ThirdOscillation, ThirdOscillation, Phugoid]
     } else {
@@ -133,7 +141,7 @@ pub fn longitudinal_modes(system: &StateSpace) -> Result<Vec<AircraftMode>, LtiE
 /// As [`longitudinal_modes`].
 pub fn lateral_modes(system: &StateSpace) -> Result<Vec<AircraftMode>, LtiError> {
     use ModeName::{DutchRoll, Roll, RollSpiral, Spiral};
-    let poles = fastest_first(system)?;
+    let poles = fastest_first(system.poles()?)?;
     let pairs = [0, 1, 2].map(|first| conjugate(poles[first], poles[first + 1]));
     let names = match pairs {
         [true, _, true] => [DutchRoll, DutchRoll, RollSpiral, RollSpiral],
@@ -145,8 +153,7 @@ pub fn lateral_modes(system: &StateSpace) -> Result<Vec<AircraftMode>, LtiError>
 }
 
 /// The four poles by falling distance from the origin, the two of a pair next to each other.
-fn fastest_first(system: &StateSpace) -> Result<[Complex; 4], LtiError> {
-    let mut poles = system.poles()?;
+fn fastest_first(mut poles: Vec<Complex>) -> Result<[Complex; 4], LtiError> {
     let size = |pole: &Complex| modulus(*pole);
     poles.sort_by(|left, right| {
         size(right).total_cmp(&size(left)).then(right.im.total_cmp(&left.im))

@@ -36,6 +36,7 @@ enum Command {
     Convert(commands::convert::Arguments),
     Surface(commands::surface::Arguments),
     Audit(commands::audit::Arguments),
+    Aircraft(commands::aircraft::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => commands::convert::run(&arguments),
         Command::Surface(arguments) => commands::surface::run(&arguments),
         Command::Audit(arguments) => commands::audit::run(&arguments),
+        Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

@@ -128,6 +128,25 @@ pub enum LtiError {
         /// What was found.
         value: f64,
     },
+    /// A quantity that must be finite and not negative.
+    #[error("the {what} is {value}; it must be a finite number, zero or above")]
+    Negative {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A loop whose output follows its input at once.
+    #[error("the loop passes its input on at once; it must have more poles than zeros")]
+    Feedthrough,
+    /// A loop with more integrators than are understood.
+    #[error("the loop has {found} integrators; at most {allowed} are supported")]
+    TooManyIntegrators {
+        /// How many it has.
+        found: usize,
+        /// How many it may have.
+        allowed: usize,
+    },
     /// An iteration that used up its limit.
     #[error("the {what} had not converged after {iterations} iterations, the most allowed")]
     NotConverged {

@@ -12,6 +12,7 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod aircraft;
 pub mod figure;
 pub mod file;
 pub mod fuzzy_system;

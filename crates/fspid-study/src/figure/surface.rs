@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, extent, short_number};
 use super::contour::Grid;
+use super::gaps;
 use super::page::{self, EDGE, LABEL_PX};
 use super::plot::TICK_PX;
 use super::style::{Rgb, Role, diverging, sequential};
@@ -112,7 +113,7 @@ impl Surface {
         page::title(&mut canvas, &self.title);
         self.draw_view(&mut canvas, top + 12.0, WIDTH - 2.0 * EDGE, Light::FromTheLeft);
         canvas.begin_shift(WIDTH, 0.0);
-        self.draw_map(&mut canvas, top + 4.0);
+        self.draw_map(&mut canvas, top + 4.0, false);
         canvas.end();
         canvas.finish(&self.title, &self.describe("Surface in space, and as a map"))
     }
@@ -154,11 +155,23 @@ impl Surface {
         let top = page::title_height(&self.title, WIDTH) + 4.0;
         let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
         page::title(&mut canvas, &self.title);
-        self.draw_map(&mut canvas, top);
+        self.draw_map(&mut canvas, top, false);
         canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
     }
 
-    fn draw_map(&self, canvas: &mut Canvas, top: f64) {
+    /// Draws the map with hatching where values are missing; `words` say what that means.
+    #[must_use]
+    pub fn map_with_gaps(&self, words: &str) -> Svg {
+        let top = page::title_height(&self.title, WIDTH) + 4.0;
+        let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0 + gaps::LEGEND);
+        page::title(&mut canvas, &self.title);
+        self.draw_map(&mut canvas, top, true);
+        gaps::legend(&mut canvas, (WIDTH / 2.0, top + MAP + 46.0), words);
+        let kind = format!("Map with lines of equal value; hatched: {words}");
+        canvas.finish(&self.title, &self.describe(&kind))
+    }
+
+    fn draw_map(&self, canvas: &mut Canvas, top: f64, hatched: bool) {
         let [x, y] =
             [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
@@ -170,7 +183,13 @@ impl Surface {
         };
         let z = Axis::linear(self.extent(), 0.0, 10);
         canvas.begin_clip(area);
+        if hatched {
+            gaps::hatch(canvas, area);
+        }
         self.paint_map(canvas, &grid, &z);
+        if hatched {
+            gaps::crosses(canvas, &grid);
+        }
         canvas.end();
         map_axes(canvas, area, &x, &y);
         canvas.text(
@@ -286,7 +305,7 @@ fn level_line(level: f64, step: f64) -> Paint {
     }
 }
 
-fn map_axes(canvas: &mut Canvas, area: Rect, x: &Axis, y: &Axis) {
+pub(super) fn map_axes(canvas: &mut Canvas, area: Rect, x: &Axis, y: &Axis) {
     canvas.rect(area.x, area.y, area.width, area.height, &Paint::line(Role::Ink, 1.0));
     let (bottom, ink) = (area.y + area.height, Paint::line(Role::Ink, 1.0));
     for tick in x.ticks() {

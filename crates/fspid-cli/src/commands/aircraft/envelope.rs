@@ -1,0 +1,69 @@
+//! `fspid aircraft envelope`: an aircraft over speeds and altitudes.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::super::{Format, drawings, json_text};
+use super::{Answer, Plane};
+use crate::exit::{Failure, note, print};
+use fspid_study::aircraft::{EnvelopeQuestion, envelope};
+use fspid_study::output;
+
+/// Trim and linearise an aircraft at every speed and altitude of a grid.
+///
+/// The summary goes to standard output. --csv has every point, and why one cannot be flown; --svg draws a map of each
+/// quantity. With --scenario, the sampled loop of its controller is judged around the linear model of every point.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    plane: Plane,
+    /// True airspeeds, such as 35:80:10 or 120:260ft/s:8.
+    #[arg(long, value_name = "FIRST:LAST:COUNT")]
+    speeds: String,
+    /// Altitudes, such as 0:4000:5 or 0:15000ft:4.
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true)]
+    altitudes: String,
+    /// A scenario with the autopilot: its servo, sample period and controller.
+    #[arg(long, value_name = "FILE.toml")]
+    scenario: Option<PathBuf>,
+    /// The controller of the scenario, if it has several.
+    #[arg(long, value_name = "NAME", requires = "scenario")]
+    controller: Option<String>,
+    /// Write every point to this file; `-` is standard output, in place of the summary.
+    #[arg(long, value_name = "OUT.csv")]
+    csv: Option<PathBuf>,
+    /// Draw a map of each quantity into this folder.
+    #[arg(long, value_name = "FOLDER")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let answer = arguments.answer;
+    let question = EnvelopeQuestion {
+        question: arguments.plane.question(answer.units()),
+        speeds: &arguments.speeds,
+        altitudes: &arguments.altitudes,
+        scenario: arguments.scenario.as_deref(),
+        controller: arguments.controller.as_deref(),
+    };
+    let envelope = envelope(&question).map_err(Failure::input)?;
+    if let Some(path) = &arguments.svg {
+        let figures = envelope.figures();
+        drawings::write(path, figures.iter().map(|(name, svg)| (*name, svg.as_str())).collect())?;
+    }
+    match (&arguments.csv, answer.format) {
+        (Some(path), _) if path == Path::new("-") => return print(&envelope.csv()),
+        (Some(path), _) => {
+            output::write(path, envelope.csv())?;
+            note(format_args!("wrote {}", path.display()));
+        }
+        (None, _) => {}
+    }
+    match answer.format {
+        Format::Text => print(&envelope.text()),
+        Format::Json => print(&json_text(&envelope.json())),
+    }
+}

@@ -1,0 +1,67 @@
+//! What is told of a point that can be flown: one row a quantity.
+
+use fspid_aircraft::ModeName;
+
+use super::point::{Held, Point};
+use crate::aircraft::units::Kind;
+
+/// A quantity over an envelope.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column {
+    /// Name for people and in titles.
+    pub(super) name: &'static str,
+    /// Name for programs and files, without the unit.
+    pub(super) key: &'static str,
+    pub(super) kind: Kind,
+    /// True for what an autopilot has to be there for.
+    needs_autopilot: bool,
+    read: fn(&Held) -> Option<f64>,
+}
+
+const fn column(
+    name: &'static str,
+    key: &'static str,
+    kind: Kind,
+    read: fn(&Held) -> Option<f64>,
+) -> Column {
+    Column { name, key, kind, needs_autopilot: false, read }
+}
+
+static COLUMNS: [Column; 9] = [
+    column("angle of attack, from the reference", "alpha", Kind::Angle, |held| {
+        Some(held.trim.point.alpha_rad)
+    }),
+    column("elevator", "elevator", Kind::Angle, |held| Some(held.trim.point.elevator_rad)),
+    column("throttle, 1 at the reference", "throttle", Kind::Plain, |held| {
+        Some(held.trim.point.throttle)
+    }),
+    column("thrust", "thrust", Kind::Force, |held| Some(held.trim.thrust_n)),
+    column("short period, frequency", "short_period_frequency", Kind::Frequency, |held| {
+        Some(held.pair(ModeName::ShortPeriod)?.natural_frequency_rad_s)
+    }),
+    column("short period, damping", "short_period_damping", Kind::Plain, |held| {
+        Some(held.pair(ModeName::ShortPeriod)?.damping_ratio)
+    }),
+    column("phugoid, frequency", "phugoid_frequency", Kind::Frequency, |held| {
+        Some(held.pair(ModeName::Phugoid)?.natural_frequency_rad_s)
+    }),
+    column("phugoid, damping", "phugoid_damping", Kind::Plain, |held| {
+        Some(held.pair(ModeName::Phugoid)?.damping_ratio)
+    }),
+    Column {
+        needs_autopilot: true,
+        ..column("loop, spectral radius", "loop_spectral_radius", Kind::Plain, |held| held.radius)
+    },
+];
+
+/// The quantities that are known.
+pub(super) fn columns(has_autopilot: bool) -> Vec<&'static Column> {
+    COLUMNS.iter().filter(|column| has_autopilot || !column.needs_autopilot).collect()
+}
+
+impl Column {
+    /// The value at a point in SI; none where it cannot be flown, and where a motion is no oscillation.
+    pub(super) fn of(&self, point: &Point) -> Option<f64> {
+        point.held.as_ref().ok().and_then(self.read)
+    }
+}

@@ -1,0 +1,47 @@
+//! The envelope as CSV: a line a point.
+
+use super::Envelope;
+use super::point::Point;
+use crate::aircraft::facts::key;
+use crate::aircraft::units::Kind;
+use crate::rows::quoted;
+
+impl Envelope {
+    /// A line a point: where, whether it can be flown or why not, and every quantity with its unit in the heading.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let units = self.units;
+        let first = [
+            key("airspeed", Kind::Speed, units),
+            key("altitude", Kind::Length, units),
+            "flyable".to_owned(),
+            "reason".to_owned(),
+        ];
+        let columns = self.columns();
+        let more = columns.iter().map(|column| key(column.key, column.kind, units));
+        let mut csv = first.into_iter().chain(more).collect::<Vec<_>>().join(",");
+        csv.push('\n');
+        for point in &self.points {
+            csv.push_str(&self.line(point));
+            csv.push('\n');
+        }
+        csv
+    }
+
+    fn line(&self, point: &Point) -> String {
+        let units = self.units;
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
+        let mut cells = vec![
+            number(Some(units.told(Kind::Speed, point.airspeed_m_s))),
+            number(Some(units.told(Kind::Length, point.altitude_m))),
+            point.held.is_ok().to_string(),
+            quoted(&point.reason(units).unwrap_or_default()),
+        ];
+        let columns = self.columns();
+        let told = columns
+            .iter()
+            .map(|column| number(column.of(point).map(|value| units.told(column.kind, value))));
+        cells.extend(told);
+        cells.join(",")
+    }
+}

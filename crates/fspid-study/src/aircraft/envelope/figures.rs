@@ -1,0 +1,109 @@
+//! The envelope as drawings: a map a quantity, or a curve where there is only one altitude or speed.
+
+use super::Envelope;
+use super::autopilot::is_stable;
+use super::column::Column;
+use super::point::Point;
+use crate::aircraft::units::{Kind, Units};
+use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
+
+/// What a hatched place means.
+const MISSING: &str = "no trim there; the CSV says why";
+
+impl Envelope {
+    /// A drawing for each quantity, with its name.
+    #[must_use]
+    pub fn figures(&self) -> Vec<(&'static str, Svg)> {
+        let columns = self.columns().into_iter();
+        let known = columns.filter(|column| self.points.iter().any(|p| column.of(p).is_some()));
+        let drawn = known.map(|column| (column.key, self.figure(column)));
+        drawn.chain(self.stability()).collect()
+    }
+
+    fn figure(&self, column: &Column) -> Svg {
+        match (self.speeds_m_s.as_slice(), self.altitudes_m.as_slice()) {
+            (_, [_]) => self.curve(column, Kind::Speed, &self.speeds_m_s),
+            ([_], _) => self.curve(column, Kind::Length, &self.altitudes_m),
+            _ => self.map(column),
+        }
+    }
+
+    fn title(&self, name: &str) -> String {
+        format!("{}: {name}", self.title)
+    }
+
+    fn told(&self, kind: Kind, values: &[f64]) -> Vec<f64> {
+        values.iter().map(|value| self.units.told(kind, *value)).collect()
+    }
+
+    fn values(&self, column: &Column) -> Vec<f64> {
+        let value = |point: &Point| column.of(point).unwrap_or(f64::NAN);
+        self.told(column.kind, &self.points.iter().map(value).collect::<Vec<_>>())
+    }
+
+    fn rows<T: Clone>(&self, values: &[T]) -> Vec<Vec<T>> {
+        values.chunks(self.speeds_m_s.len().max(1)).map(<[T]>::to_vec).collect()
+    }
+
+    fn map(&self, column: &Column) -> Svg {
+        let surface = Surface {
+            title: self.title(column.name),
+            x_label: label("true airspeed", Kind::Speed, self.units),
+            y_label: label("altitude", Kind::Length, self.units),
+            z_label: label(column.name, column.kind, self.units),
+            xs: self.told(Kind::Speed, &self.speeds_m_s),
+            ys: self.told(Kind::Length, &self.altitudes_m),
+            values: self.rows(&self.values(column)),
+            limit: None,
+        };
+        surface.map_with_gaps(MISSING)
+    }
+
+    fn curve(&self, column: &Column, kind: Kind, nodes: &[f64]) -> Svg {
+        let series = Series {
+            name: String::new(),
+            style: SeriesStyle::Numbered(0),
+            x: self.told(kind, nodes),
+            y: self.values(column),
+            stairs: false,
+        };
+        let along = if kind == Kind::Speed { "true airspeed" } else { "altitude" };
+        let panel = LinePanel {
+            y_label: label(column.name, column.kind, self.units),
+            x_label: label(along, kind, self.units),
+            series: vec![series],
+            ..LinePanel::default()
+        };
+        LineFigure { title: self.title(column.name), panels: vec![panel], width_px: 720.0 }.render()
+    }
+
+    /// Where the loop of the autopilot is stable.
+    fn stability(&self) -> Option<(&'static str, Svg)> {
+        let autopilot = self.autopilot.as_ref()?;
+        let class = |point: &Point| {
+            let radius = point.held.as_ref().ok()?.radius?;
+            Some(usize::from(!is_stable(radius)))
+        };
+        let classes: Vec<Option<usize>> = self.points.iter().map(class).collect();
+        let names = [("+", "stable"), ("!", "unstable")];
+        let tiles = Tiles {
+            title: self.title(&autopilot.words()),
+            x_label: label("true airspeed", Kind::Speed, self.units),
+            y_label: label("altitude", Kind::Length, self.units),
+            xs: self.told(Kind::Speed, &self.speeds_m_s),
+            ys: self.told(Kind::Length, &self.altitudes_m),
+            classes: self.rows(&classes),
+            names: names.map(|(sign, name)| (sign.to_owned(), name.to_owned())).to_vec(),
+            missing: MISSING.to_owned(),
+        };
+        Some(("loop_stability", tiles.render()))
+    }
+}
+
+/// Name and unit of an axis.
+fn label(name: &str, kind: Kind, units: Units) -> String {
+    match units.of(kind).symbol {
+        "" => name.to_owned(),
+        symbol => format!("{name} [{symbol}]"),
+    }
+}

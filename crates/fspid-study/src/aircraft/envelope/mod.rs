@@ -1,0 +1,134 @@
+//! An aircraft over speeds and altitudes: where it can be flown, and what it is like there.
+
+mod autopilot;
+mod column;
+mod csv;
+mod figures;
+mod point;
+mod text;
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::condition::{AirChoice, Question};
+use super::facts::key;
+use super::failure::AircraftFailure;
+use super::parse::span;
+use super::units::{Kind, LENGTHS, SPEEDS, Units};
+use crate::inference::Refused;
+use autopilot::Autopilot;
+use column::{Column, columns};
+use point::Point;
+
+/// Speeds and altitudes, and whose loop is judged there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvelopeQuestion<'a> {
+    /// The aircraft and its air; its speed and altitude are not read.
+    pub question: Question<'a>,
+    /// True airspeeds, as `first:last:count`.
+    pub speeds: &'a str,
+    /// Altitudes, as `first:last:count`.
+    pub altitudes: &'a str,
+    /// A scenario whose controller flies the aircraft.
+    pub scenario: Option<&'a Path>,
+    /// Which of its controllers, if there are several.
+    pub controller: Option<&'a str>,
+}
+
+/// An aircraft over speeds and altitudes.
+#[derive(Clone, Debug)]
+pub struct Envelope {
+    title: String,
+    name: String,
+    units: Units,
+    air: AirChoice,
+    speeds_m_s: Vec<f64>,
+    altitudes_m: Vec<f64>,
+    /// One for each altitude and speed, the speeds running fastest.
+    points: Vec<Point>,
+    autopilot: Option<Autopilot>,
+}
+
+/// Trims and linearises an aircraft at every speed and altitude.
+///
+/// # Errors
+/// [`AircraftFailure`]: as [`super::flight`]; ranges that cannot be used; a scenario that is wrong or has no such
+/// controller. A point that cannot be flown is no error.
+pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFailure> {
+    let data = question.question.data()?;
+    let aircraft = question.question.aircraft_of(&data)?;
+    let units = question.question.units;
+    let (speeds_m_s, altitudes_m) = grid(question, units)?;
+    let autopilot =
+        question.scenario.map(|path| Autopilot::load(path, question.controller)).transpose()?;
+    let nodes = altitudes_m.iter().flat_map(|&h| speeds_m_s.iter().map(move |&v| (v, h)));
+    let points = nodes.map(|node| Point::of(&aircraft, node, autopilot.as_ref())).collect();
+    let (title, name) = (data.title, data.name);
+    let air = question.question.air;
+    Ok(Envelope { title, name, units, air, speeds_m_s, altitudes_m, points, autopilot })
+}
+
+fn grid(
+    question: &EnvelopeQuestion<'_>,
+    units: Units,
+) -> Result<(Vec<f64>, Vec<f64>), AircraftFailure> {
+    let mut problems = Vec::new();
+    let mut read = |option, text, known: &[_], kind| {
+        span(option, text, known, units.of(kind)).map_err(|problem| problems.push(problem)).ok()
+    };
+    let speeds = read("--speeds", question.speeds, &SPEEDS, Kind::Speed);
+    let altitudes = read("--altitudes", question.altitudes, &LENGTHS, Kind::Length);
+    if speeds.as_ref().is_some_and(|speeds| speeds.iter().any(|speed| !(*speed > 0.0))) {
+        problems.push("--speeds must be above 0".to_owned());
+    }
+    match (speeds, altitudes) {
+        (Some(speeds), Some(altitudes)) if problems.is_empty() => Ok((speeds, altitudes)),
+        _ => Err(AircraftFailure::Refused(Refused::all(problems))),
+    }
+}
+
+impl Envelope {
+    /// What is told of every point.
+    fn columns(&self) -> Vec<&'static Column> {
+        columns(self.autopilot.is_some())
+    }
+
+    /// The envelope for programs.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let units = self.units;
+        let list = |kind, values: &[f64]| -> Vec<f64> {
+            values.iter().map(|value| units.told(kind, *value)).collect()
+        };
+        let mut whole = Map::new();
+        let mut put = |key: &str, value: Value| whole.insert(key.to_owned(), value);
+        put("aircraft", json!(self.name));
+        put("units", json!(units.name()));
+        put("controller", json!(self.autopilot.as_ref().map(Autopilot::name)));
+        let speeds = list(Kind::Speed, &self.speeds_m_s);
+        put(&key("airspeeds", Kind::Speed, units), json!(speeds));
+        let altitudes = list(Kind::Length, &self.altitudes_m);
+        put(&key("altitudes", Kind::Length, units), json!(altitudes));
+        let points: Vec<Value> = self.points.iter().map(|point| self.point_json(point)).collect();
+        put("points", Value::Array(points));
+        Value::Object(whole)
+    }
+
+    fn point_json(&self, point: &Point) -> Value {
+        let units = self.units;
+        let speed = (key("airspeed", Kind::Speed, units), point.airspeed_m_s, Kind::Speed);
+        let altitude = (key("altitude", Kind::Length, units), point.altitude_m, Kind::Length);
+        let mut entry = Map::new();
+        for (key, value, kind) in [speed, altitude] {
+            entry.insert(key, json!(units.told(kind, value)));
+        }
+        entry.insert("flyable".to_owned(), json!(point.held.is_ok()));
+        entry.insert("reason".to_owned(), json!(point.reason(units)));
+        for column in self.columns() {
+            let value = column.of(point).map(|value| units.told(column.kind, value));
+            entry.insert(key(column.key, column.kind, units), json!(value));
+        }
+        Value::Object(entry)
+    }
+}

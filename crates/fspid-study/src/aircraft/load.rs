@@ -1,0 +1,36 @@
+//! An aircraft by its name, or from a file of the same form.
+
+use std::path::Path;
+
+use fspid_aircraft::data::AircraftData;
+
+use super::failure::AircraftFailure;
+use crate::file::files::read_regular;
+use crate::file::{self, aircraft_names};
+
+/// The aircraft of a name that the program carries, or of a `.toml` file.
+///
+/// # Errors
+/// [`AircraftFailure`]: a name that is not known, a file that cannot be read or is wrong.
+pub fn load(name: &str) -> Result<AircraftData, AircraftFailure> {
+    if let Some(data) = file::aircraft(name) {
+        return Ok(data);
+    }
+    let path = Path::new(name);
+    let is_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    if !is_file {
+        return Err(AircraftFailure::unknown(name, &aircraft_names()));
+    }
+    let text = text(path)?;
+    file::parse_aircraft(&text, name).map_err(AircraftFailure::Problems)
+}
+
+/// The text of a file.
+pub(super) fn text(path: &Path) -> Result<String, AircraftFailure> {
+    let unreadable = |reason| AircraftFailure::unreadable(path, reason);
+    let bytes = read_regular(path).map_err(unreadable)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        unreadable(format!("not UTF-8 from byte {at} on"))
+    })
+}

@@ -1,0 +1,41 @@
+//! Aircraft for people: what is known of them, trim, linear models, modes and where their equations lead.
+//!
+//! One function per verb; each answers in text and JSON. The mathematics is `fspid-aircraft`'s; here are names, files,
+//! units and words. Without a unit, a number is in the chosen [`Units`].
+
+mod condition;
+
+mod derive;
+mod envelope;
+mod facts;
+mod failure;
+mod import;
+mod linearise;
+mod list;
+mod load;
+mod modes;
+mod number;
+mod parse;
+mod plant_file;
+mod polynomial;
+mod show;
+mod state_model;
+mod table;
+mod trim;
+mod units;
+
+pub use fspid_aircraft::VelocityForm;
+
+pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, flight};
+
+pub use derive::{Derivation, derive};
+pub use envelope::{Envelope, EnvelopeQuestion, envelope};
+pub use failure::AircraftFailure;
+pub use import::{ImportFailure, Imported, import};
+pub use linearise::{Linear, linearise};
+pub use list::{List, list};
+pub use load::load;
+pub use modes::{Modes, modes};
+pub use show::{Show, show};
+pub use trim::{Trimmed, trim};
+pub use units::Units;

@@ -1,0 +1,53 @@
+//! A linear model as a plant file.
+
+use super::linearise::Linear;
+use super::trim::Trimmed;
+
+/// The file: what a scenario reads, with the flight and the source in it.
+pub(super) fn text(linear: &Linear) -> String {
+    let coefficients = linear.plant.numerator().coefficients();
+    let numerator = list(coefficients);
+    let denominator = list(linear.plant.denominator().coefficients());
+    let data = &linear.data;
+    let title = format!("{}; {}", data.title, linear.condition());
+    let mut out = format!(
+        "# Written by `fspid aircraft linearise`; in a scenario: [plant] with file = \"…\".\n\
+         name = {}\n\
+         title = {}\n\
+         numerator = {numerator}\n\
+         denominator = {denominator}\n\
+         elevator_sign = \"nose-down-positive\"\n\
+         source = {}\n\
+         \n[condition]\n\
+         aircraft = {}\n",
+        quoted(&data.name),
+        quoted(&title),
+        quoted(&format!("Linear model computed from: {}", data.source)),
+        quoted(&data.title),
+    );
+    if let Some(trimmed) = &linear.trimmed {
+        out.push_str(&condition(trimmed));
+    }
+    out
+}
+
+fn condition(trimmed: &Trimmed) -> String {
+    let target = &trimmed.trim.target;
+    format!(
+        "speed_m_s = {:?}\naltitude_m = {:?}\nmach = {:?}\nmass_kg = {:?}\n",
+        target.airspeed_m_s,
+        target.altitude_m,
+        trimmed.mach(),
+        trimmed.flight.aircraft.mass().mass_kg,
+    )
+}
+
+/// Digits that read back as the same numbers.
+fn list(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+    format!("[{}]", values.join(", "))
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}

@@ -1,0 +1,212 @@
+//! Everything that is known about an aircraft.
+
+use fspid_aircraft::aerodynamics::derivatives::{
+    Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
+};
+use fspid_aircraft::data::{AircraftData, DerivativeData, ModelData};
+use serde_json::{Value, json};
+
+use super::facts::Facts;
+use super::failure::AircraftFailure;
+use super::linearise::linearise;
+use super::list::kind;
+use super::load::load;
+use super::number::short;
+use super::table::table;
+use super::units::{Kind, Units};
+use super::{Question, polynomial};
+
+/// An aircraft, to be told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Show {
+    data: AircraftData,
+    units: Units,
+    /// What a linear model amounts to.
+    linear: Option<super::Linear>,
+}
+
+/// Everything that is known about an aircraft that the program carries, or that is in a file.
+///
+/// # Errors
+/// [`AircraftFailure`]: as [`load`].
+pub fn show(name: &str, units: Units) -> Result<Show, AircraftFailure> {
+    let data = load(name)?;
+    let linear = match &data.model {
+        ModelData::Derivatives(_) => None,
+        ModelData::Linear(_) => {
+            let question = Question { aircraft: name, units, ..Question::default() };
+            Some(linearise(&question, fspid_aircraft::VelocityForm::Components)?)
+        }
+    };
+    Ok(Show { data, units, linear })
+}
+
+fn reference(data: &DerivativeData) -> Facts {
+    let reference = &data.reference;
+    Facts::default()
+        .number("true airspeed", "airspeed", Kind::Speed, reference.airspeed_m_s)
+        .number("altitude", "altitude", Kind::Length, reference.altitude_m)
+        .number("Mach number", "mach", Kind::Plain, reference.mach)
+        .number("density", "density", Kind::Density, reference.density_kg_m3)
+        .number(
+            "dynamic pressure",
+            "dynamic_pressure",
+            Kind::Pressure,
+            reference.dynamic_pressure_pa,
+        )
+        .number("gravity", "gravity", Kind::Acceleration, reference.gravity_m_s2)
+        .number("angle of attack of the fuselage", "alpha_body", Kind::Angle, reference.alpha_rad)
+}
+
+fn body(data: &DerivativeData) -> Facts {
+    let (geometry, inertia) = (&data.geometry, &data.inertia);
+    Facts::default()
+        .number("wing area", "area", Kind::Area, geometry.area_m2)
+        .number("span", "span", Kind::Length, geometry.span_m)
+        .number("mean chord", "chord", Kind::Length, geometry.chord_m)
+        .number("weight", "weight", Kind::Force, data.weight_n)
+        .number("mass", "mass", Kind::Mass, data.mass_kg())
+        .number("Ix, fuselage axes", "ix", Kind::Inertia, inertia.ix_kg_m2)
+        .number("Iy", "iy", Kind::Inertia, inertia.iy_kg_m2)
+        .number("Iz", "iz", Kind::Inertia, inertia.iz_kg_m2)
+        .number("Ixz", "ixz", Kind::Inertia, inertia.ixz_kg_m2)
+}
+
+fn validity(data: &DerivativeData) -> Facts {
+    let validity = &data.validity;
+    Facts::default()
+        .range("true airspeed", "airspeed", Kind::Speed, validity.airspeed_m_s)
+        .range("Mach number", "mach", Kind::Plain, validity.mach)
+        .range("angle of attack, from the reference", "alpha", Kind::Angle, validity.alpha_rad)
+        .range("sideslip", "beta", Kind::Angle, validity.beta_rad)
+        .range("altitude", "altitude", Kind::Length, validity.altitude_m)
+}
+
+fn travel(data: &DerivativeData) -> Facts {
+    let travel = &data.travel;
+    Facts::default()
+        .range(
+            "elevator, trailing edge down positive",
+            "elevator",
+            Kind::Angle,
+            travel.elevator_rad,
+        )
+        .range("aileron", "aileron", Kind::Angle, travel.aileron_rad)
+        .range("rudder", "rudder", Kind::Angle, travel.rudder_rad)
+        .range("throttle, 1 at the reference", "throttle", Kind::Plain, travel.throttle)
+}
+
+const LONGITUDINAL: [&str; 7] =
+    ["coefficient", "reference", "alpha", "alpha rate", "pitch rate", "speed", "elevator"];
+const LATERAL: [&str; 6] =
+    ["coefficient", "sideslip", "roll rate", "yaw rate", "aileron", "rudder"];
+
+fn longitudinal_values(row: &LongitudinalCoefficient) -> [f64; 6] {
+    [row.reference, row.alpha, row.alpha_rate, row.pitch_rate, row.speed, row.elevator]
+}
+
+fn lateral_values(row: &LateralCoefficient) -> [f64; 5] {
+    [row.beta, row.roll_rate, row.yaw_rate, row.aileron, row.rudder]
+}
+
+fn cells(name: &str, values: &[f64]) -> Vec<String> {
+    let numbers = values.iter().map(|value| short(*value, 6));
+    std::iter::once(name.to_owned()).chain(numbers).collect()
+}
+
+fn longitudinal_rows(data: &Longitudinal) -> [(&'static str, [f64; 6]); 3] {
+    let rows = [("lift", &data.lift), ("drag", &data.drag), ("pitching moment", &data.pitch)];
+    rows.map(|(name, row)| (name, longitudinal_values(row)))
+}
+
+fn lateral_rows(data: &Lateral) -> [(&'static str, [f64; 5]); 3] {
+    let rows =
+        [("side force", &data.side), ("rolling moment", &data.roll), ("yawing moment", &data.yaw)];
+    rows.map(|(name, row)| (name, lateral_values(row)))
+}
+
+fn coefficients_text(data: &DerivativeData) -> String {
+    let rows = longitudinal_rows(&data.longitudinal).map(|(name, row)| cells(name, &row));
+    let mut out = table(&LONGITUDINAL, &rows);
+    out.push_str(&format!("  thrust by speed: {}\n", short(data.longitudinal.thrust_speed, 6)));
+    if let Some(lateral) = &data.lateral {
+        let rows = lateral_rows(lateral).map(|(name, row)| cells(name, &row));
+        out.push('\n');
+        out.push_str(&table(&LATERAL, &rows));
+    }
+    out
+}
+
+fn coefficients_json(data: &DerivativeData) -> Value {
+    let named = |names: &[&str], values: &[f64]| -> Value {
+        let pairs = names.iter().skip(1).zip(values);
+        let keys = pairs.map(|(name, value)| (name.replace(' ', "_"), json!(value)));
+        Value::Object(keys.collect())
+    };
+    let key = |name: &str| name.replace(' ', "_");
+    let longitudinal = longitudinal_rows(&data.longitudinal)
+        .map(|(name, row)| (key(name), named(&LONGITUDINAL, &row)));
+    let lateral = data.lateral.as_ref().map(lateral_rows);
+    let lateral = lateral.into_iter().flatten();
+    let lateral = lateral.map(|(name, row)| (key(name), named(&LATERAL, &row)));
+    let mut whole: serde_json::Map<String, Value> =
+        longitudinal.into_iter().chain(lateral).collect();
+    whole.insert("thrust_speed".to_owned(), json!(data.longitudinal.thrust_speed));
+    Value::Object(whole)
+}
+
+impl Show {
+    /// The aircraft for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let AircraftData { name, title, source, notes, .. } = &self.data;
+        let notes = if notes.is_empty() { String::new() } else { format!("notes: {notes}\n") };
+        format!("{name}: {title}\nsource: {source}\n{notes}\n{}", self.model_text())
+    }
+
+    fn model_text(&self) -> String {
+        let units = self.units;
+        match (&self.data.model, &self.linear) {
+            (ModelData::Derivatives(data), _) => format!(
+                "flight condition of the derivatives\n{}\nbody\n{}\nderivatives, angles in rad\n{}\n\
+                 where they are trusted\n{}\nhow far the controls go\n{}",
+                reference(data).text(units),
+                body(data).text(units),
+                coefficients_text(data),
+                validity(data).text(units),
+                travel(data).text(units),
+            ),
+            (_, Some(linear)) => {
+                let equations = linear.longitudinal.text(units);
+                let plant = polynomial::fraction(&linear.plant);
+                format!(
+                    "known by its linear model alone; it cannot be trimmed or flown elsewhere\n\n\
+                     longitudinal\n{equations}\npitch over elevator\n{plant}"
+                )
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The aircraft for programs.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let AircraftData { name, title, source, notes, model } = &self.data;
+        let mut whole = json!({
+            "name": name, "title": title, "source": source, "notes": notes,
+            "known_by": kind(model), "units": self.units.name(),
+        });
+        if let ModelData::Derivatives(data) = model {
+            whole["reference"] = reference(data).json(self.units);
+            whole["body"] = body(data).json(self.units);
+            whole["coefficients"] = coefficients_json(data);
+            whole["validity"] = validity(data).json(self.units);
+            whole["travel"] = travel(data).json(self.units);
+        }
+        if let Some(linear) = &self.linear {
+            whole["longitudinal"] = linear.longitudinal.json(self.units);
+            whole["theta_over_elevator"] = polynomial::json(&linear.plant);
+        }
+        whole
+    }
+}

@@ -1,0 +1,136 @@
+//! Units in which aircraft are asked about and answered for.
+
+use crate::units::{FOOT_M, POUND_FORCE_N, SLUG_KG};
+
+/// Metres in a nautical mile, by definition.
+const NAUTICAL_MILE_M: f64 = 1852.0;
+
+/// A system of units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Units {
+    /// Metres, kilograms, newtons.
+    #[default]
+    Si,
+    /// Feet, slugs, pounds of force.
+    English,
+}
+
+/// What a number measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Plain,
+    Speed,
+    Length,
+    Area,
+    Mass,
+    Force,
+    Inertia,
+    Density,
+    Pressure,
+    Acceleration,
+    Angle,
+    AngularAcceleration,
+    Frequency,
+    Rate,
+    SquaredRate,
+    PerLength,
+    PerLengthTime,
+    Time,
+}
+
+/// A unit: how it is written, the last part of a key, and its size in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unit {
+    pub(super) symbol: &'static str,
+    pub(super) key: &'static str,
+    pub(super) size: f64,
+}
+
+const fn unit(symbol: &'static str, key: &'static str, size: f64) -> Unit {
+    Unit { symbol, key, size }
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+impl Units {
+    /// The unit of a kind of quantity.
+    pub(super) const fn of(self, kind: Kind) -> Unit {
+        match (kind, self) {
+            (Kind::Plain, _) => unit("", "", 1.0),
+            (Kind::Angle, _) => unit("deg", "deg", DEGREE),
+            (Kind::AngularAcceleration, _) => unit("deg/s²", "deg_s2", DEGREE),
+            (Kind::Frequency, _) => unit("rad/s", "rad_s", 1.0),
+            (Kind::Rate, _) => unit("1/s", "per_s", 1.0),
+            (Kind::SquaredRate, _) => unit("1/s²", "per_s2", 1.0),
+            (Kind::Time, _) => unit("s", "s", 1.0),
+            (_, Self::Si) => si(kind),
+            (_, Self::English) => english(kind),
+        }
+    }
+
+    /// A value in SI as it is told.
+    pub(super) fn told(self, kind: Kind, value_si: f64) -> f64 {
+        value_si / self.of(kind).size
+    }
+
+    /// Name for programs.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Si => "si",
+            Self::English => "english",
+        }
+    }
+}
+
+const fn si(kind: Kind) -> Unit {
+    match kind {
+        Kind::Speed => unit("m/s", "m_s", 1.0),
+        Kind::Length => unit("m", "m", 1.0),
+        Kind::Area => unit("m²", "m2", 1.0),
+        Kind::Mass => unit("kg", "kg", 1.0),
+        Kind::Force => unit("N", "n", 1.0),
+        Kind::Inertia => unit("kg m²", "kg_m2", 1.0),
+        Kind::Density => unit("kg/m³", "kg_m3", 1.0),
+        Kind::Pressure => unit("Pa", "pa", 1.0),
+        Kind::PerLength => unit("1/m", "per_m", 1.0),
+        Kind::PerLengthTime => unit("1/(m s)", "per_m_s", 1.0),
+        _ => unit("m/s²", "m_s2", 1.0),
+    }
+}
+
+const fn english(kind: Kind) -> Unit {
+    match kind {
+        Kind::Speed => unit("ft/s", "ft_s", FOOT_M),
+        Kind::Length => unit("ft", "ft", FOOT_M),
+        Kind::Area => unit("ft²", "ft2", FOOT_M * FOOT_M),
+        Kind::Mass => unit("slug", "slug", SLUG_KG),
+        Kind::Force => unit("lbf", "lbf", POUND_FORCE_N),
+        Kind::Inertia => unit("slug ft²", "slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
+        Kind::Density => unit("slug/ft³", "slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
+        Kind::Pressure => unit("psf", "psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
+        Kind::PerLength => unit("1/ft", "per_ft", 1.0 / FOOT_M),
+        Kind::PerLengthTime => unit("1/(ft s)", "per_ft_s", 1.0 / FOOT_M),
+        _ => unit("ft/s²", "ft_s2", FOOT_M),
+    }
+}
+
+/// Units that an airspeed may be given in.
+pub(super) const SPEEDS: [Unit; 4] = [
+    unit("m/s", "m_s", 1.0),
+    unit("km/h", "km_h", 1.0 / 3.6),
+    unit("ft/s", "ft_s", FOOT_M),
+    unit("kt", "kt", NAUTICAL_MILE_M / 3600.0),
+];
+
+/// Units that an altitude may be given in.
+pub(super) const LENGTHS: [Unit; 3] =
+    [unit("km", "km", 1000.0), unit("m", "m", 1.0), unit("ft", "ft", FOOT_M)];
+
+/// Units that an angle may be given in.
+pub(super) const ANGLES: [Unit; 2] = [unit("deg", "deg", DEGREE), unit("rad", "rad", 1.0)];
+
+/// Units that a time may be given in.
+pub(super) const TIMES: [Unit; 2] = [unit("ms", "ms", 1e-3), unit("s", "s", 1.0)];
+
+/// A knot in m/s.
+pub(super) const KNOT_M_S: f64 = NAUTICAL_MILE_M / 3600.0;
