@@ -14,6 +14,7 @@
 
 pub mod figure;
 pub mod file;
+pub mod fly;
 pub mod fuzzy_system;
 pub mod inference;
 pub mod metrics;
