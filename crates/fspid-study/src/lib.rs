@@ -15,6 +15,7 @@
 pub mod aircraft;
 pub mod figure;
 pub mod file;
+pub mod fly;
 pub mod fuzzy_system;
 pub mod inference;
 pub mod metrics;

@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod convert;
 mod drawings;
 pub(crate) mod explain;
+pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
 pub(crate) mod reproduce;

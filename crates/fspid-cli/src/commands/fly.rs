@@ -1,0 +1,99 @@
+//! `fspid fly`: a scenario's controller over standard input and output.
+
+use std::io::{self, IsTerminal as _};
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::exit::{Failure, note};
+use fspid_study::file;
+use fspid_study::fly::{self, Pilot, StreamError};
+
+/// Let a controller of a scenario fly whatever is at the other end of standard input and output.
+///
+/// Each line in is a sample: set-point, measured pitch, seconds since the sample before, and the
+/// pitch rate if there is one, between blanks or between commas. Each gets one line out, at once:
+/// the elevator command, nose up positive. `reset` starts a new flight and is answered `ok`. Empty
+/// lines and lines that begin with # are passed over and get no answer.
+///
+/// A line that cannot be used is answered too: the last command is held, and standard error says
+/// why. The controller computes with its own period; samples that say otherwise are counted. The
+/// end of the input is the end.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "In degrees:   5 4.2 0.01 0.8   is set-point 5 deg, pitch 4.2 deg, 0.01 s, 0.8 deg/s.\nA simulator in Python to begin with: examples/fly/aircraft.py"
+)]
+pub(crate) struct Arguments {
+    /// The scenario file; its aircraft, servo and disturbances are not used.
+    file: PathBuf,
+    /// Which of its controllers flies, if there are several.
+    #[arg(long, value_name = "NAME")]
+    controller: Option<String>,
+    /// Set a value before flying, e.g. `--set loop.sample_period_s=0.02`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// The unit of all angles, in and out.
+    #[arg(long, value_enum, default_value_t = Angles::Degrees)]
+    angles: Angles,
+    /// End with code 1 if a sample was held, late, early or at fault.
+    #[arg(long)]
+    strict: bool,
+}
+
+/// A unit of angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Angles {
+    /// Degrees and degrees per second.
+    Degrees,
+    /// Radians and radians per second; the same bits as in `simulate`.
+    Radians,
+}
+
+impl From<Angles> for fly::Angles {
+    fn from(angles: Angles) -> Self {
+        match angles {
+            Angles::Degrees => Self::Degrees,
+            Angles::Radians => Self::Radians,
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut pilot = pilot(arguments)?;
+    if io::stdin().is_terminal() {
+        let period_s = pilot.period_s();
+        note(format_args!("set-point, measured pitch, {period_s:?} and pitch rate, please:"));
+    }
+    let (mut input, mut output) = (io::stdin().lock(), io::stdout().lock());
+    let done = fly::fly(&mut pilot, &mut input, &mut output, |text| note(text));
+    finish(&pilot, arguments.strict, done)
+}
+
+fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let name = arguments.controller.as_deref();
+    Pilot::new(&study.scenario, name, arguments.angles.into())
+        .map_err(|problem| Failure::input(format_args!("{}: {problem}", arguments.file.display())))
+}
+
+/// A simulator that has gone away is as good an end as one that closes its side.
+fn finish(pilot: &Pilot, strict: bool, done: Result<(), StreamError>) -> Result<(), Failure> {
+    let summary = pilot.summary();
+    if !summary.is_clean() {
+        note(summary);
+    }
+    match done {
+        Ok(()) => {}
+        Err(StreamError::Writing(error)) => Failure::of_writing(&error)?,
+        Err(StreamError::Reading(error)) => {
+            return Err(Failure::input(format_args!("standard input cannot be read: {error}")));
+        }
+    }
+    match strict && !summary.is_clean() {
+        true => Err(Failure::not_met("not every sample came in time and could be used")),
+        false => Ok(()),
+    }
+}
