@@ -30,6 +30,15 @@ impl Failure {
         Self { code: Self::INPUT, message: message.to_string() }
     }
 
+    /// Standard output that cannot be written; a reader that has gone away is no failure.
+    pub(crate) fn of_writing(error: &io::Error) -> Result<(), Self> {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            return Ok(());
+        }
+        let message = format!("cannot write to standard output: {error}");
+        Err(Self { code: Self::OUTPUT, message })
+    }
+
     pub(crate) fn code(&self) -> u8 {
         self.code
     }
@@ -54,11 +63,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        Err(error) => Err(Failure {
-            code: Failure::OUTPUT,
-            message: format!("cannot write to standard output: {error}"),
-        }),
+        Err(error) => Failure::of_writing(&error),
     }
 }
 

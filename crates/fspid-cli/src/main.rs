@@ -18,7 +18,7 @@ use exit::Failure;
     name = "fspid",
     version,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`."
+    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -32,6 +32,10 @@ enum Command {
     Check(commands::check::Arguments),
     Simulate(commands::simulate::Arguments),
     Infer(commands::infer::Arguments),
+    Explain(commands::explain::Arguments),
+    Convert(commands::convert::Arguments),
+    Surface(commands::surface::Arguments),
+    Audit(commands::audit::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -53,6 +57,10 @@ fn main() -> ExitCode {
         Command::Check(arguments) => commands::check::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Infer(arguments) => commands::infer::run(&arguments),
+        Command::Explain(arguments) => commands::explain::run(&arguments),
+        Command::Convert(arguments) => commands::convert::run(&arguments),
+        Command::Surface(arguments) => commands::surface::run(&arguments),
+        Command::Audit(arguments) => commands::audit::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

@@ -6,11 +6,35 @@
 //!
 //! What a tool computes is part of what its file means: a system that is read answers by the rule of
 //! the tool that the format belongs to (see [`Reading::notes`]).
+#![warn(clippy::indexing_slicing)]
 #![cfg_attr(
     test,
-    allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
+    allow(
+        clippy::float_cmp,
+        clippy::indexing_slicing,
+        reason = "tests ask for exact bits where they compare floats, and may panic"
+    )
 )]
 
+mod adapt;
+mod check;
+mod cursor;
+pub mod fcl;
+pub mod fis;
+pub mod fll;
+#[doc(hidden)]
+pub mod fuzzing;
+mod identifiers;
+mod lexer;
+mod loss;
+mod names;
 mod note;
+mod number;
+mod report;
+mod rule;
+pub mod rule_text;
+mod term;
+mod tokens;
+mod vocabulary;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

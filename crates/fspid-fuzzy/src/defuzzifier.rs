@@ -23,21 +23,27 @@ pub enum Defuzzifier {
     Midpoint(u32),
     /// Trapezoidal integral over N equally spaced samples, both ends included.
     Trapezoid(u32),
+    /// Sum over the left ends of N equal cells (jFuzzyLogic: 1000).
+    LeftEnd(u32),
+    /// Trapezoidal integral over N equally spaced samples and the points where each set is cut, but
+    /// not those where two sets cross (scikit-fuzzy).
+    Vertices(u32),
 }
 
 impl Defuzzifier {
     /// What can be written for a defuzzifier.
-    pub const NAMES: &'static str = "exact, endpoints:N, midpoint:N, trapezoid:N";
+    pub const NAMES: &'static str =
+        "exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N, vertices:N";
 
     /// The rule itself if its number of samples is usable.
     ///
     /// # Errors
-    /// [`FuzzyError::SampleCount`] below 2 (below 1 for midpoints) or above [`MAX_SAMPLES`].
+    /// [`FuzzyError::SampleCount`] below 2 (below 1 for midpoints and left ends) or above [`MAX_SAMPLES`].
     pub fn checked(self) -> Result<Self, FuzzyError> {
         let (found, least) = match self {
             Self::Exact => return Ok(self),
-            Self::Endpoints(n) | Self::Trapezoid(n) => (n, 2),
-            Self::Midpoint(n) => (n, 1),
+            Self::Endpoints(n) | Self::Trapezoid(n) | Self::Vertices(n) => (n, 2),
+            Self::Midpoint(n) | Self::LeftEnd(n) => (n, 1),
         };
         if (least..=MAX_SAMPLES).contains(&found) {
             Ok(self)
@@ -54,6 +60,8 @@ impl fmt::Display for Defuzzifier {
             Self::Endpoints(n) => write!(f, "endpoints:{n}"),
             Self::Midpoint(n) => write!(f, "midpoint:{n}"),
             Self::Trapezoid(n) => write!(f, "trapezoid:{n}"),
+            Self::LeftEnd(n) => write!(f, "left-end:{n}"),
+            Self::Vertices(n) => write!(f, "vertices:{n}"),
         }
     }
 }
@@ -71,6 +79,8 @@ impl FromStr for Defuzzifier {
             "endpoints" => Self::Endpoints(samples),
             "midpoint" => Self::Midpoint(samples),
             "trapezoid" => Self::Trapezoid(samples),
+            "left-end" => Self::LeftEnd(samples),
+            "vertices" => Self::Vertices(samples),
             _ => return Err(FuzzyError::UnknownDefuzzifier),
         }
         .checked()
@@ -84,7 +94,9 @@ mod tests {
 
     #[test]
     fn every_name_reads_back_as_written() {
-        for name in ["exact", "endpoints:101", "midpoint:1000", "trapezoid:2"] {
+        for name in
+            ["exact", "endpoints:101", "midpoint:1000", "trapezoid:2", "left-end:1", "vertices:26"]
+        {
             let parsed: Result<Defuzzifier, _> = name.parse();
             assert_eq!(parsed.map(|d| d.to_string()), Ok(name.to_string()));
         }

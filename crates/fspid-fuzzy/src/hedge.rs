@@ -1,7 +1,7 @@
 //! Words that sharpen or soften a grade: very, somewhat, not, …
 
 use crate::error::FuzzyError;
-use crate::membership::{smooth, smooth_inverse};
+use crate::membership::{root, smooth, smooth_inverse};
 use crate::scalar::Scalar;
 
 /// A function of a grade, from [0, 1] to [0, 1].
@@ -77,7 +77,8 @@ impl Hedge {
         }
     }
 
-    /// The grade that the hedge makes of a `grade` in [0, 1].
+    /// The grade that the hedge makes of a `grade` in [0, 1]. Where the slope of a root is infinite,
+    /// at 0 (and at 1 for `seldom`), it counts as 0.
     #[must_use]
     pub fn apply<S: Scalar>(self, grade: S) -> S {
         match self {
@@ -85,9 +86,9 @@ impl Hedge {
             Self::Extremely => smooth(grade),
             Self::Not => S::one() - grade,
             Self::Seldom => smooth_inverse(grade),
-            Self::Somewhat => grade.sqrt(),
+            Self::Somewhat => root(grade),
             Self::Very => grade.square(),
-            Self::Power(p) => grade.pow(S::constant(p)),
+            Self::Power(p) => S::zero().if_less(grade, grade.pow(S::constant(p)), S::zero()),
         }
     }
 }

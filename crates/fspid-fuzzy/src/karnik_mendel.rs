@@ -52,7 +52,7 @@ const MAX_ITERATIONS: usize = 100;
 pub fn centroid_end_points(lower: &[Straight], upper: &[Straight]) -> Option<[f64; 2]> {
     let end = |end| {
         let start = start(upper)?;
-        Some(fixed_point(start, |c| {
+        Some(fixed_point(start, end, |c| {
             let (left, right) = match end {
                 End::Left => (upper, lower),
                 End::Right => (lower, upper),
@@ -77,7 +77,7 @@ pub fn average_end_points(points: &[WeightedPoint]) -> Option<[f64; 2]> {
         let total: f64 = points.iter().map(|p| p.weight[1]).sum();
         let sum: f64 = points.iter().map(|p| p.weight[1] * pick(p)).sum();
         (total >= f64::MIN_POSITIVE).then(|| {
-            fixed_point(sum / total, |c| {
+            fixed_point(sum / total, end, |c| {
                 points.iter().fold((0.0, 0.0), |(area, moment), point| {
                     let distance = pick(point) - c;
                     let heavy = (distance <= 0.0) == (end == End::Left);
@@ -91,24 +91,25 @@ pub fn average_end_points(points: &[WeightedPoint]) -> Option<[f64; 2]> {
 }
 
 /// $c \leftarrow c + M(c)/A(c)$ until it stays, where $A$ is an area and $M$ its moment about $c$.
-fn fixed_point(start: f64, area_and_moment: impl Fn(f64) -> (f64, f64)) -> f64 {
+///
+/// Every choice of grades has a centroid between the end points, so that each step goes towards the
+/// end that is sought; one that does not is rounding, and the last.
+fn fixed_point(start: f64, end: End, area_and_moment: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut centre = start;
-    let mut last_step = f64::INFINITY;
     for _ in 0..MAX_ITERATIONS {
         let (area, moment) = area_and_moment(centre);
-        if !(area >= f64::MIN_POSITIVE) {
-            break;
-        }
         let step = moment / area;
-        // At the end only rounding is left, and steps stop shrinking.
-        if step.abs() >= last_step {
+        let onwards = match end {
+            End::Left => step < 0.0,
+            End::Right => step > 0.0,
+        };
+        // Without area the quotient is no number, and the centre already at the end of the set.
+        if !(area >= f64::MIN_POSITIVE && onwards)
+            || step.abs() <= 0.25 * f64::EPSILON * centre.abs()
+        {
             break;
         }
-        last_step = step.abs();
         centre += step;
-        if step.abs() <= f64::EPSILON * 0.25 * centre.abs() {
-            break;
-        }
     }
     centre
 }

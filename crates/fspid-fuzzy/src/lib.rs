@@ -5,6 +5,9 @@
 //! input, seven triangular sets on each output, 49 rules) and answers with the **exact** centroid;
 //! the sampled centroids of other tools are there by name ([`Defuzzifier`]) for comparison.
 //!
+//! The feature `batch` adds `Supervisor::infer_many`: the same bits for arrays of inputs, with the
+//! vectors of the machine. It needs `std`; without it the crate depends on nothing.
+//!
 //! It knows nothing of time, plants or files: the self-tuning law is in `fspid-core`, the reading
 //! of rule tables from files in `fspid-study`.
 //!
@@ -36,7 +39,12 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "alloc")]
+pub mod audit;
+#[cfg(feature = "batch")]
+mod batch;
 mod centroid;
+mod consequents;
 mod defuzzifier;
 mod error;
 mod exp;
@@ -46,8 +54,10 @@ pub mod hedge;
 #[cfg(feature = "alloc")]
 pub mod karnik_mendel;
 mod label;
+mod lanes;
 pub mod membership;
 pub mod norm;
+pub mod quadrature;
 mod real;
 mod rule_table;
 pub mod scalar;
@@ -55,6 +65,8 @@ mod supervisor;
 #[cfg(feature = "alloc")]
 pub mod system;
 
+#[cfg(feature = "batch")]
+pub use batch::{Answers, BatchError, InstructionSet};
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
 #[cfg(feature = "alloc")]

@@ -3,12 +3,44 @@
 use core::fmt::Display;
 use core::ops::AddAssign;
 
+use crate::exp;
+use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+pub(crate) mod sealed {
+    use super::{Lanes, Real};
+
+    pub trait Sealed: Sized {
+        /// Adding and subtracting this rounds a small number to the nearest integer, which then
+        /// stands in the low bits of the sum.
+        const ROUND: Self;
+        /// Bits below the exponent.
+        const MANTISSA_BITS: u32;
+
+        /// $e^x$ in each lane.
+        fn exp_of<L: Lanes<Number = Self>>(x: L) -> L
+        where
+            Self: Real;
+
+        /// [`exp_of`](Self::exp_of) for numbers from -100 to 0: the same bits, sooner.
+        fn exp_inside_of<L: Lanes<Number = Self>>(x: L) -> L
+        where
+            Self: Real;
+
+        /// $2^k$ for an integer `k` between the least and the greatest normal exponent.
+        fn power_of_two(self) -> Self;
+
+        /// $2^k$ times the number, by its exponent, for a `k` shifted by [`ROUND`](Self::ROUND);
+        /// the number and the answer must be normal.
+        fn raised(self, shifted: Self) -> Self;
+
+        /// Answers a batch with the vectors of numbers of this type.
+        #[cfg(feature = "batch")]
+        fn answer<S: fearless_simd::Simd>(
+            simd: S,
+            batch: &mut crate::batch::Batch<'_, Self>,
+        ) -> Result<(), crate::batch::BatchError>;
+    }
 }
 
 /// A floating-point number with only the operations that give the same bits on every platform.
@@ -47,7 +79,43 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident) => {
+    ($float:ident, $vector:ident, $round:expr, $exp:path, $exp_inside:path) => {
+        impl sealed::Sealed for $float {
+            const ROUND: Self = $round;
+            const MANTISSA_BITS: u32 = $float::MANTISSA_DIGITS - 1;
+
+            #[inline(always)]
+            fn exp_of<L: Lanes<Number = Self>>(x: L) -> L {
+                $exp(x)
+            }
+
+            #[inline(always)]
+            fn exp_inside_of<L: Lanes<Number = Self>>(x: L) -> L {
+                $exp_inside(x)
+            }
+
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                let one: Self = 1.0;
+                one.raised(self + $round)
+            }
+
+            #[inline(always)]
+            fn raised(self, shifted: Self) -> Self {
+                let exponent = shifted.to_bits() << Self::MANTISSA_BITS;
+                $float::from_bits(self.to_bits().wrapping_add(exponent))
+            }
+
+            #[cfg(feature = "batch")]
+            #[inline(always)]
+            fn answer<S: fearless_simd::Simd>(
+                simd: S,
+                batch: &mut crate::batch::Batch<'_, Self>,
+            ) -> Result<(), crate::batch::BatchError> {
+                batch.answer::<S, S::$vector>(simd)
+            }
+        }
+
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -73,5 +141,5 @@ macro_rules! real {
     };
 }
 
-real!(f32);
-real!(f64);
+real!(f32, f32s, exp::ROUND_F32, exp::exp_f32, exp::exp_f32);
+real!(f64, f64s, exp::ROUND_F64, exp::exp_f64, exp::exp_normal_f64);

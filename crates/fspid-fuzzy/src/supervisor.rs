@@ -6,16 +6,18 @@
 
 use core::fmt;
 
-use crate::centroid::centroid;
+use crate::centroid::{centroid, exact};
+use crate::consequents::{Consequents, Firing};
 use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
-use crate::label::{LABEL_COUNT, Label};
+use crate::label::LABEL_COUNT;
+#[cfg(feature = "batch")]
+use crate::lanes::Lanes;
+use crate::lanes::{One, Two};
 use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
 use crate::real::Real;
-use crate::rule_table::{Grid, Output, RuleTable};
+use crate::rule_table::{Output, RuleTable};
 
-/// Rules in the base.
-const RULE_COUNT: usize = LABEL_COUNT * LABEL_COUNT;
 /// Half ranges outside this interval would overflow or underflow inside.
 const RANGE_LIMITS: core::ops::RangeInclusive<f64> = 1e-100..=1e100;
 /// As [`RANGE_LIMITS`] for `f32`.
@@ -94,69 +96,6 @@ impl fmt::Display for InferenceError {
 
 impl core::error::Error for InferenceError {}
 
-/// The rules of one output, sorted by label: cell numbers, and where each label's cells end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Consequents {
-    cells: [u8; RULE_COUNT],
-    ends: [u8; LABEL_COUNT],
-}
-
-impl Consequents {
-    fn new(table: &RuleTable, output: Output) -> Self {
-        let grid = table.grid(output);
-        let mut sorted = Self { cells: [0; RULE_COUNT], ends: [0; LABEL_COUNT] };
-        let mut filled = 0_u8;
-        for label in Label::ALL {
-            for (cell, (error, change)) in (0_u8..).zip(pairs()) {
-                if grid.at(error, change) == label {
-                    sorted.cells[usize::from(filled)] = cell;
-                    filled += 1;
-                }
-            }
-            sorted.ends[label.index()] = filled;
-        }
-        sorted
-    }
-
-    /// The grid that was sorted.
-    fn grid(&self) -> Grid {
-        let mut rows = [[Label::ZO; LABEL_COUNT]; LABEL_COUNT];
-        let mut begin = 0;
-        for (label, &end) in Label::ALL.into_iter().zip(&self.ends) {
-            let end = usize::from(end);
-            for &cell in self.cells.get(begin..end).unwrap_or_default() {
-                if let Some(place) = rows.as_flattened_mut().get_mut(usize::from(cell)) {
-                    *place = label;
-                }
-            }
-            begin = end;
-        }
-        Grid::new(rows)
-    }
-
-    /// Firing strength of each label: the strongest of its rules.
-    fn strengths<R: Real>(&self, firing: &[R; 64]) -> [R; LABEL_COUNT] {
-        let mut strengths = [R::ZERO; LABEL_COUNT];
-        let mut begin = 0;
-        for (strength, &end) in strengths.iter_mut().zip(&self.ends) {
-            let end = usize::from(end);
-            for &cell in self.cells.get(begin..end).unwrap_or_default() {
-                // 64 places for 49 rules: the mask spares the bounds check.
-                *strength = firing[usize::from(cell & 63)].larger(*strength);
-            }
-            begin = end;
-        }
-        strengths
-    }
-}
-
-/// All pairs of input labels, in the order of the cells.
-fn pairs() -> impl Iterator<Item = (Label, Label)> {
-    Label::ALL
-        .into_iter()
-        .flat_map(|error| Label::ALL.into_iter().map(move |change| (error, change)))
-}
-
 /// The fuzzy supervisor. Immutable; building it may fail, and so may an inference that is asked to
 /// refuse inputs out of range, but nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,7 +134,7 @@ impl<R: Real> Supervisor<R> {
             *set = [spacing * R::from_f64(f64::from(steps)), sigma];
         }
         Ok(Self {
-            consequents: Output::ALL.map(|output| Consequents::new(table, output)),
+            consequents: Output::ALL.map(|output| Consequents::new(table.grid(output))),
             sets,
             range,
             spacing,
@@ -241,26 +180,53 @@ impl<R: Real> Supervisor<R> {
     /// beyond the range.
     #[inline]
     pub fn infer(&self, error: R, change: R) -> Result<Inference<R>, InferenceError> {
-        let inside = error.abs() <= self.range && change.abs() <= self.range;
-        if inside {
-            return Ok(self.evaluate(error, change).unwrap_or_else(|| self.at_rest()));
+        if self.holds(error) && self.holds(change) {
+            return Ok(self.infer_inside(error, change));
         }
         self.infer_outside(error, change)
     }
 
+    /// True for an input within the range.
+    pub(crate) fn holds(&self, input: R) -> bool {
+        input.abs() <= self.range
+    }
+
+    /// The answer within the range, where some rule always fires at 0.5 or nearly so.
+    fn infer_inside(&self, error: R, change: R) -> Inference<R> {
+        let mut grades = self.exponents(error, change);
+        for grade in &mut grades.0 {
+            // No input is more than six spacings from the centre of a set: these are -99.9 to 0.
+            *grade = R::exp_inside_of(*grade);
+        }
+        let delta = self.increments(&grades);
+        Inference { delta, clamped: false, underflowed: false }
+    }
+
     #[cold]
     fn infer_outside(&self, error: R, change: R) -> Result<Inference<R>, InferenceError> {
-        self.refuse("error", error)?;
-        self.refuse("change", change)?;
-        if self.out_of_range == OutOfRange::Evaluate
-            && let Some(inference) = self.evaluate(error, change)
-        {
-            return Ok(inference);
+        self.refuse_any(error, change)?;
+        if self.out_of_range == OutOfRange::Evaluate {
+            let mut grades = self.exponents(error, change);
+            for grade in &mut grades.0 {
+                *grade = R::exp_of(*grade);
+            }
+            // Below the normal range the quotient of moments would lose its digits, and further out
+            // be 0/0.
+            if grades.strongest_rule() >= R::MIN_POSITIVE {
+                let delta = self.increments(&grades);
+                return Ok(Inference { delta, clamped: false, underflowed: false });
+            }
         }
         let ends = |input: R| input.limited(-self.range, self.range);
-        let inference = self.evaluate(ends(error), ends(change)).unwrap_or_else(|| self.at_rest());
+        let inference = self.infer_inside(ends(error), ends(change));
         let underflowed = self.out_of_range == OutOfRange::Evaluate;
         Ok(Inference { clamped: !underflowed, underflowed, ..inference })
+    }
+
+    /// An error for the first of two inputs that has no answer.
+    pub(crate) fn refuse_any(&self, error: R, change: R) -> Result<(), InferenceError> {
+        self.refuse("error", error)?;
+        self.refuse("change", change)
     }
 
     fn refuse(&self, input: &'static str, value: R) -> Result<(), InferenceError> {
@@ -272,45 +238,88 @@ impl<R: Real> Supervisor<R> {
         Err(InferenceError { input, found: value.to_f64(), range: self.range.to_f64() })
     }
 
-    /// The answer at finite inputs, unless every rule has underflowed.
-    fn evaluate(&self, error: R, change: R) -> Option<Inference<R>> {
-        let (error_grades, change_grades) = (self.grades(error), self.grades(change));
-        let mut firing = [R::ZERO; 64];
-        let (mut strongest_error, mut strongest_change) = (R::ZERO, R::ZERO);
-        for (row, &error_grade) in firing.chunks_exact_mut(LABEL_COUNT).zip(&error_grades) {
-            strongest_error = strongest_error.larger(error_grade);
-            for (cell, &change_grade) in row.iter_mut().zip(&change_grades) {
-                *cell = error_grade.smaller(change_grade);
-            }
+    /// What the grades of two inputs are the exponentials of.
+    #[inline(always)]
+    fn exponents(&self, error: R, change: R) -> Grades<R> {
+        let mut exponents = Grades([One(R::ZERO); 2 * LABEL_COUNT]);
+        let (of_change, of_error) = exponents.0.split_at_mut(LABEL_COUNT);
+        for (set, (of_change, of_error)) in self.sets.iter().zip(of_change.iter_mut().zip(of_error))
+        {
+            *of_change = Gaussian::exponent(*set, One(change));
+            *of_error = Gaussian::exponent(*set, One(error));
         }
-        for &grade in &change_grades {
-            strongest_change = strongest_change.larger(grade);
-        }
-        // The strongest rule joins the strongest grades; below the normal range its quotient of
-        // moments would lose its digits, and further out be 0/0.
-        if strongest_error.smaller(strongest_change) < R::MIN_POSITIVE {
-            return None;
-        }
-        // By reference and without an index: with one, a bounds check stays in the optimised code.
-        let [kp, ki, kd] = self.consequents.each_ref().map(|consequents| {
-            let strengths = consequents.strengths(&firing);
-            centroid(self.defuzzifier, &strengths) * self.spacing
-        });
-        let delta = Increments { kp, ki, kd };
-        Some(Inference { delta, clamped: false, underflowed: false })
+        exponents
     }
 
-    /// No increments. Inside the range some rule always fires at 0.5 or more, so this never answers
-    /// a question; it is here so that an inference cannot panic.
-    fn at_rest(&self) -> Inference<R> {
-        let delta = Increments { kp: R::ZERO, ki: R::ZERO, kd: R::ZERO };
-        Inference { delta, clamped: false, underflowed: true }
+    /// Increments of the gains for grades of which some make a rule fire.
+    #[inline(always)]
+    fn increments(&self, grades: &Grades<R>) -> Increments<R> {
+        let [c0, c1, c2, c3, c4, c5, c6, e0, e1, e2, e3, e4, e5, e6] = grades.0;
+        let firing = Firing::new(&[e0, e1, e2, e3, e4, e5, e6], &[c0, c1, c2, c3, c4, c5, c6]);
+        let [kp, ki, kd] = &self.consequents;
+        let (kp, ki, kd) = (kp.strengths(&firing), ki.strengths(&firing), kd.strengths(&firing));
+        if self.defuzzifier != Defuzzifier::Exact {
+            return self.sampled(&[kp, ki, kd]);
+        }
+        // Two outputs side by side in a vector of the oldest x86-64, without a way through memory.
+        let beside = |label: usize| Two(kp[label].0, ki[label].0);
+        let two = [beside(0), beside(1), beside(2), beside(3), beside(4), beside(5), beside(6)];
+        let Two(kp, ki) = exact(&two, Two(R::ZERO, R::ZERO)) * Two(self.spacing, self.spacing);
+        let One(kd) = exact(&kd, One(R::ZERO)) * One(self.spacing);
+        Increments { kp, ki, kd }
+    }
+
+    /// As within [`infer_inside`](Self::infer_inside), in each lane.
+    #[cfg(feature = "batch")]
+    #[inline(always)]
+    pub(crate) fn increments_in_lanes<L: Lanes<Number = R>>(&self, error: L, change: L) -> [L; 3] {
+        let (mut error_grades, mut change_grades) = ([error; LABEL_COUNT], [change; LABEL_COUNT]);
+        for (grade, set) in error_grades.iter_mut().zip(&self.sets) {
+            *grade = R::exp_inside_of(Gaussian::exponent(*set, error));
+        }
+        for (grade, set) in change_grades.iter_mut().zip(&self.sets) {
+            *grade = R::exp_inside_of(Gaussian::exponent(*set, change));
+        }
+        let firing = Firing::new(&error_grades, &change_grades);
+        let mut increments = [error; 3];
+        for (increment, consequents) in increments.iter_mut().zip(&self.consequents) {
+            let centre =
+                centroid(self.defuzzifier, &consequents.strengths(&firing), error.same(R::ZERO));
+            *increment = centre * error.same(self.spacing);
+        }
+        increments
+    }
+
+    /// Increments by a sampled centroid.
+    #[inline(never)]
+    fn sampled(&self, strengths: &[[One<R>; LABEL_COUNT]; 3]) -> Increments<R> {
+        let [kp, ki, kd] = strengths.each_ref().map(|strengths| {
+            let One(centre) = centroid(self.defuzzifier, strengths, One(R::ZERO));
+            centre * self.spacing
+        });
+        Increments { kp, ki, kd }
+    }
+}
+
+/// Grades of a change of the error in its seven sets, then those of the error.
+struct Grades<R>([One<R>; 2 * LABEL_COUNT]);
+
+impl<R: Real> Grades<R> {
+    /// Strength of the rule that joins the two strongest grades.
+    fn strongest_rule(&self) -> R {
+        let strongest = |grades: &[One<R>]| {
+            grades.iter().fold(R::ZERO, |strongest, &One(grade)| strongest.larger(grade))
+        };
+        let (change, error) = self.0.split_at(LABEL_COUNT);
+        strongest(error).smaller(strongest(change))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::label::Label;
+    use crate::rule_table::Grid;
 
     #[test]
     fn a_supervisor_tells_the_rules_and_choices_it_was_built_of() {

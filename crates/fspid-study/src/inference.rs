@@ -1,12 +1,12 @@
 //! Questions to the supervisor, one at a time or a file of them.
 
 use std::fmt::{self, Write as _};
-use std::path::Path;
 
 use fspid_core::fuzzy::{Defuzzifier, Inference, OutOfRange, Supervisor};
 use serde_json::{Value, json};
 
 use crate::file;
+use crate::rows::Table;
 
 /// A supervisor as it is named on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,18 @@ pub struct Question<'a> {
 /// Why there is no answer: every problem, in sentences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(Vec<String>);
+
+impl Refused {
+    /// One reason.
+    pub(crate) fn one(reason: impl Into<String>) -> Self {
+        Self(vec![reason.into()])
+    }
+
+    /// All reasons.
+    pub(crate) fn all(reasons: Vec<String>) -> Self {
+        Self(reasons)
+    }
+}
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -96,65 +108,31 @@ pub fn text(inference: &Inference<f64>) -> String {
     )
 }
 
-/// Largest file of points, bytes.
-const LARGEST_FILE: u64 = 1 << 30;
-/// Most problems that are told of one file.
-const MOST_PROBLEMS: usize = 20;
+/// A supervisor that answers rows of `e,ec` by `e,ec,delta_kp,delta_ki,delta_kd` with 17
+/// significant digits.
+#[derive(Clone, Debug)]
+pub struct SupervisorTable(pub Supervisor<f64>);
 
-/// Answers every row of a CSV file with columns `e` and `ec` (others are passed over) by a row
-/// `e,ec,delta_kp,delta_ki,delta_kd` with 17 significant digits.
-///
-/// # Errors
-/// [`Refused`] where the file cannot be read, lacks a column or holds rows that have no answer; no
-/// row is answered then.
-pub fn answer_file(supervisor: &Supervisor<f64>, path: &Path) -> Result<String, Refused> {
-    let refused = |problem: String| Refused(vec![format!("{}: {problem}", path.display())]);
-    let size = std::fs::metadata(path).map_err(|error| refused(error.to_string()))?.len();
-    if size > LARGEST_FILE {
-        return Err(refused(format!("{size} bytes; allowed are at most {LARGEST_FILE}")));
+impl Table for SupervisorTable {
+    fn inputs(&self) -> Vec<&str> {
+        vec!["e", "ec"]
     }
-    let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
-    answer_rows(supervisor, &text).map_err(|problems| {
-        Refused(problems.iter().map(|p| format!("{}:{p}", path.display())).collect())
-    })
-}
 
-fn answer_rows(supervisor: &Supervisor<f64>, text: &str) -> Result<String, Vec<String>> {
-    let mut lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
-    let header = lines.next().map_or("", |(line, _)| line);
-    let column = |name: &str| header.split(',').position(|word| word.trim() == name);
-    let (Some(error_column), Some(change_column)) = (column("e"), column("ec")) else {
-        return Err(vec![format!(
-            "1: the heading is `{}`; it must name the columns e and ec",
-            header.chars().take(80).collect::<String>()
-        )]);
-    };
-    let mut out = String::from("e,ec,delta_kp,delta_ki,delta_kd\n");
-    let mut problems = Vec::new();
-    for (line, number) in lines.filter(|(line, _)| !line.trim().is_empty()) {
-        let read = |index: usize, name: &str| {
-            let word = line.split(',').nth(index).map_or("", str::trim);
-            word.parse::<f64>()
-                .map_err(|_| format!("{number}: {name} is `{word}`; allowed is a number"))
-        };
-        let answer = read(error_column, "e").and_then(|e| {
-            let ec = read(change_column, "ec")?;
-            let answer =
-                supervisor.infer(e, ec).map_err(|problem| format!("{number}: {problem}"))?;
-            Ok((e, ec, answer.delta))
-        });
-        match answer {
-            Ok((e, ec, d)) => {
-                // Writing to a string cannot fail.
-                let _ =
-                    writeln!(out, "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd);
-            }
-            Err(problem) if problems.len() < MOST_PROBLEMS => problems.push(problem),
-            Err(_) => {
-                problems.push("and more".to_owned());
-                break;
-            }
-        }
+    fn outputs(&self) -> Vec<&str> {
+        vec!["delta_kp", "delta_ki", "delta_kd"]
     }
-    if problems.is_empty() { Ok(out) } else { Err(problems) }
+
+    fn check(&self, row: &[f64]) -> Result<(), String> {
+        let &[error, change] = row else { return Ok(()) };
+        self.0.infer(error, change).map(|_| ()).map_err(|problem| problem.to_string())
+    }
+
+    fn answer(&mut self, row: &[f64], line: &mut String) -> Result<(), String> {
+        let &[e, ec] = row else { return Ok(()) };
+        let answer = self.0.infer(e, ec).map_err(|problem| problem.to_string())?;
+        let d = answer.delta;
+        // Writing to a string cannot fail.
+        let _ = writeln!(line, "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd);
+        Ok(())
+    }
 }

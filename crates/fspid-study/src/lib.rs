@@ -14,11 +14,13 @@
 
 pub mod figure;
 pub mod file;
+pub mod fuzzy_system;
 pub mod inference;
 pub mod metrics;
 pub mod output;
 pub mod report;
 pub mod reproduce;
+pub mod rows;
 pub mod simulation;
 pub mod tune;
 pub mod units;

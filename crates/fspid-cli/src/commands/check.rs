@@ -1,23 +1,26 @@
-//! `fspid check`: is a scenario file right?
+//! `fspid check`: is a file right?
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::exit::{Failure, note, print};
-use fspid_study::file;
+use fspid_study::{file, fuzzy_system};
 
-/// Check a scenario file and tell every problem in it.
+/// Check a scenario or a fuzzy system and tell every problem in it.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The scenario file.
+    /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
     file: PathBuf,
-    /// Set a value before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
+    /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
+        return system(&arguments.file);
+    }
     let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
@@ -31,5 +34,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         scenario.timing.rows(),
         scenario.timing.dt_s(),
         study.digest,
+    ))
+}
+
+fn system(path: &Path) -> Result<(), Failure> {
+    let name = path.display().to_string();
+    let loaded = fuzzy_system::load(&name, fuzzy_system::Options::default());
+    let loaded = loaded.map_err(Failure::input)?;
+    for found in &loaded.notes {
+        note(format_args!("warning: {found}"));
+    }
+    let parts = loaded.system.parts();
+    print(&format!(
+        "{name}: good; {} with {} input(s), {} output(s), {} rule(s)\n",
+        if parts.name.is_empty() { "a fuzzy system" } else { &parts.name },
+        parts.inputs.len(),
+        parts.outputs.len(),
+        parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
     ))
 }

@@ -1,58 +1,106 @@
-//! `fspid infer`: ask the supervisor.
+//! `fspid infer`: ask a fuzzy system, or the supervisor of the paper.
 
-use std::path::PathBuf;
+use std::io::{self, BufReader, BufWriter};
+use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 
-use super::{Format, json_text};
+use super::{Format, Loading, json_text};
 use crate::exit::{Failure, print};
-use fspid_study::inference::{self, Question};
+use fspid_study::fuzzy_system::{self, SystemTable};
+use fspid_study::inference::{self, Question, SupervisorTable};
+use fspid_study::rows::{self, RowsError, Table};
 
-/// Ask the fuzzy supervisor for the increments of the gains.
+/// Ask a fuzzy system: one question, or a table of them.
+///
+/// Without SYSTEM the supervisor of the paper is asked, by --error and --change.
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("inputs").required(true).args(["error", "points"]))]
+#[command(group = ArgGroup::new("inputs").required(true).args(["error", "points", "input"]))]
 pub(crate) struct Arguments {
-    /// Rule table: `printed`, `mirrored`, or a file.
-    #[arg(long, default_value = "printed")]
-    table: String,
-    /// Half range of inputs and outputs (the paper uses 5 and 40).
-    #[arg(long, allow_negative_numbers = true)]
-    range: f64,
-    /// Error, in the supervisor's units.
-    #[arg(long, allow_negative_numbers = true, requires = "change")]
-    error: Option<f64>,
-    /// Change of the error, in the supervisor's units.
-    #[arg(long, allow_negative_numbers = true, requires = "error")]
-    change: Option<f64>,
-    /// Answer every row of this CSV file (columns `e,ec`) with a row of CSV.
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["error", "change", "format"])]
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: Option<String>,
+    #[command(flatten)]
+    loading: Loading,
+    /// The value of an input; once for each input.
+    #[arg(long, value_name = "NAME=VALUE", requires = "system", allow_hyphen_values = true)]
+    input: Vec<String>,
+    /// Answer every row of this CSV file with a row of CSV; `-` reads standard input.
+    ///
+    /// There is a column for each input, found by its name; without SYSTEM they are `e,ec`. A file
+    /// is checked first, and nothing is written if one of its rows is wrong. Standard input is
+    /// answered as it comes, up to the first row that is wrong.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["error", "change", "input", "format"])]
     points: Option<PathBuf>,
-    /// Centroid: `exact`, or `endpoints:N` (MATLAB: 101), `midpoint:N`, `trapezoid:N`.
-    #[arg(long, default_value = "exact")]
-    defuzzifier: String,
-    /// What to do with inputs beyond the range: `clamp`, `evaluate` or `error`.
-    #[arg(long, default_value = "clamp")]
-    out_of_range: String,
+    /// Without SYSTEM: the rule table, `printed`, `mirrored`, or a file.
+    #[arg(long, default_value = "printed", conflicts_with = "system")]
+    table: String,
+    /// Without SYSTEM: the error, in the supervisor's units.
+    #[arg(long, allow_negative_numbers = true, requires = "change", conflicts_with = "system")]
+    error: Option<f64>,
+    /// Without SYSTEM: the change of the error, in the supervisor's units.
+    #[arg(long, allow_negative_numbers = true, requires = "error", conflicts_with = "system")]
+    change: Option<f64>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.system {
+        Some(name) => general(arguments, name),
+        None => supervisor(arguments),
+    }
+}
+
+fn general(arguments: &Arguments, name: &str) -> Result<(), Failure> {
+    let system = arguments.loading.load(name)?;
+    if let Some(path) = &arguments.points {
+        return table(&mut SystemTable::new(&system), path);
+    }
+    let asked = fuzzy_system::ask(&system, &arguments.input).map_err(Failure::input)?;
+    match arguments.format {
+        Format::Json => print(&json_text(&asked.json())),
+        Format::Text => print(&asked.text()),
+    }
+}
+
+fn supervisor(arguments: &Arguments) -> Result<(), Failure> {
+    let loading = &arguments.loading;
+    let Some(range) = loading.range else {
+        return Err(Failure::input(
+            "add --range, the half range of inputs and outputs, or name a SYSTEM",
+        ));
+    };
     let question = Question {
         table: &arguments.table,
-        range: arguments.range,
-        defuzzifier: &arguments.defuzzifier,
-        out_of_range: &arguments.out_of_range,
+        range,
+        defuzzifier: loading.defuzzifier.as_deref().unwrap_or("exact"),
+        out_of_range: loading.out_of_range.as_deref().unwrap_or("clamp"),
     };
     let supervisor = question.supervisor().map_err(Failure::input)?;
     if let Some(path) = &arguments.points {
-        return print(&inference::answer_file(&supervisor, path).map_err(Failure::input)?);
+        return table(&mut SupervisorTable(supervisor), path);
     }
     let (error, change) = (arguments.error.unwrap_or(0.0), arguments.change.unwrap_or(0.0));
     let answer = supervisor.infer(error, change).map_err(Failure::input)?;
     match arguments.format {
         Format::Json => print(&json_text(&inference::json(&answer))),
         Format::Text => print(&inference::text(&answer)),
+    }
+}
+
+/// Answers a table; a reader that has gone away (`| head`) is no failure.
+fn table(table: &mut impl Table, path: &Path) -> Result<(), Failure> {
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    let done = if path == Path::new("-") {
+        let mut rows = BufReader::with_capacity(1 << 16, io::stdin().lock());
+        rows::answer_rows(table, &mut rows, &mut out).map_err(|error| rows::named("-", error))
+    } else {
+        rows::answer_file(table, path, &mut out)
+    };
+    match done {
+        Ok(_) => Ok(()),
+        Err(RowsError::Writing(error)) => Failure::of_writing(&error),
+        Err(error) => Err(Failure::input(error)),
     }
 }

@@ -1,13 +1,85 @@
 //! The commands, one file each.
 
+pub(crate) mod audit;
 pub(crate) mod check;
+pub(crate) mod convert;
+mod drawings;
+pub(crate) mod explain;
 pub(crate) mod infer;
 pub(crate) mod init;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
+pub(crate) mod surface;
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
+
+use crate::exit::{Failure, note};
+use fspid_study::fuzzy_system::{self, Dialect, Options, System};
+
+/// How a fuzzy system answers, where its file shall not decide.
+#[derive(Debug, Args)]
+pub(crate) struct Loading {
+    /// Half range of a rule table's inputs and outputs (the paper uses 5 and 40).
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) range: Option<f64>,
+    /// How integrals are computed: `exact`, `endpoints:N` (MATLAB: 101), `midpoint:N`,
+    /// `trapezoid:N`, `left-end:N` or `vertices:N` (scikit-fuzzy); by default as the file's own tool does.
+    #[arg(long, value_name = "RULE")]
+    pub(crate) defuzzifier: Option<String>,
+    /// What to do with inputs beyond their range: `clamp`, `evaluate` or `error`.
+    #[arg(long, value_name = "POLICY")]
+    pub(crate) out_of_range: Option<String>,
+    /// The tool that an .fcl file was written for, if it is not to be found out.
+    #[arg(long, value_enum, value_name = "TOOL")]
+    pub(crate) dialect: Option<Tool>,
+    /// The function block of an .fcl file, if there are several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) block: Option<String>,
+}
+
+/// A tool with a dialect of FCL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Tool {
+    /// IEC 61131-7, the standard.
+    Iec,
+    /// fuzzylite.
+    Fuzzylite,
+    /// jFuzzyLogic.
+    Jfuzzylogic,
+}
+
+impl From<Tool> for Dialect {
+    fn from(tool: Tool) -> Self {
+        match tool {
+            Tool::Iec => Self::Iec,
+            Tool::Fuzzylite => Self::Fuzzylite,
+            Tool::Jfuzzylogic => Self::JFuzzyLogic,
+        }
+    }
+}
+
+impl Loading {
+    /// The options as the study takes them.
+    pub(crate) fn options(&self) -> Options<'_> {
+        Options {
+            range: self.range,
+            sampling: self.defuzzifier.as_deref(),
+            out_of_range: self.out_of_range.as_deref(),
+            dialect: self.dialect.map(Dialect::from),
+            block: self.block.as_deref(),
+        }
+    }
+
+    /// The system of that name; what had to be assumed is told as warnings.
+    pub(crate) fn load(&self, name: &str) -> Result<System, Failure> {
+        let loaded = fuzzy_system::load(name, self.options()).map_err(Failure::input)?;
+        for found in &loaded.notes {
+            note(format_args!("warning: {found}"));
+        }
+        Ok(loaded.system)
+    }
+}
 
 /// How an answer is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

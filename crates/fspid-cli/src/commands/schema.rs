@@ -1,15 +1,31 @@
-//! `fspid schema`: what a scenario file may hold.
+//! `fspid schema`: what a file may hold.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::json_text;
 use crate::exit::{Failure, print};
-use fspid_study::file;
+use fspid_study::{file, fuzzy_system};
 
-/// Print the JSON Schema of a scenario file, for editors.
+/// Print the JSON Schema of a scenario file or of a fuzzy system's file, for editors.
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {}
+pub(crate) struct Arguments {
+    /// Which file.
+    #[arg(value_enum, default_value_t = Kind::Scenario)]
+    kind: Kind,
+}
 
-pub(crate) fn run(_: &Arguments) -> Result<(), Failure> {
-    print(&json_text(&file::schema()))
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// What `simulate` flies.
+    Scenario,
+    /// What `infer` asks.
+    FuzzySystem,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    print(&json_text(&match arguments.kind {
+        Kind::Scenario => file::schema(),
+        Kind::FuzzySystem => fuzzy_system::schema(),
+    }))
 }

@@ -1,6 +1,6 @@
 //! A quarter of an ellipse, rising or falling.
 
-use super::side::{apart, up_to_one};
+use super::side::{apart, root, up_to_one};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
 use crate::scalar::Scalar;
@@ -34,7 +34,7 @@ impl Shape for Arc {
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let &[start, end] = params else { return S::zero() };
         let z = up_to_one((end - x) / (end - start));
-        z.if_less(S::one(), (S::one() - z.square()).sqrt(), S::zero())
+        root(S::one() - z.square())
     }
 
     fn corners(params: &[f64], each: &mut dyn FnMut(f64)) {
@@ -43,6 +43,6 @@ impl Shape for Arc {
 
     fn inverse<S: Scalar>(params: &[S], grade: S) -> Option<S> {
         let &[start, end] = params else { return None };
-        Some(end - (end - start) * (S::one() - grade.square()).sqrt())
+        Some(end - (end - start) * root(S::one() - grade.square()))
     }
 }

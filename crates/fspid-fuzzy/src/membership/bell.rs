@@ -1,5 +1,6 @@
 //! The generalised bell.
 
+use super::side::one_over_one_plus;
 use super::{Param, Range, Shape};
 use crate::scalar::Scalar;
 
@@ -20,13 +21,13 @@ impl Shape for Bell {
         Param { name: "slope", unit: "1", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0, 2.0];
-    const C: &'static str = "1.0 / (1.0 + pow(fabs((x - centre) / width), 2.0 * slope))";
+    const C: &'static str = "fspid_one_over_one_plus(pow(fabs((x - centre) / width), 2.0 * slope))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let &[centre, width, slope] = params else { return S::zero() };
         let distance = ((x - centre) / width).abs();
-        S::one() / (S::one() + distance.pow(S::constant(2.0) * slope))
+        one_over_one_plus(distance.pow(S::constant(2.0) * slope))
     }
 
     /// The centre: smooth there only if $2s$ is a whole even number.

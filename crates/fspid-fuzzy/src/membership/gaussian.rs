@@ -1,6 +1,7 @@
 //! The bell curve of the paper's inputs.
 
 use super::{Param, Range, Shape};
+use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
 /// Width of Gaussian sets, as a fraction of their spacing, at which neighbours cross at 0.5:
@@ -10,6 +11,15 @@ pub(crate) const SIGMA_PER_SPACING: f64 = 0.424_660_900_144_009_53;
 /// $\mu(x) = e^{-\frac12 \left(\frac{x - c}{\sigma}\right)^2}$
 #[derive(Clone, Copy, Debug)]
 pub enum Gaussian {}
+
+impl Gaussian {
+    /// What the exponential is taken of, in each lane: as in [`grade`](Shape::grade).
+    #[inline(always)]
+    pub(crate) fn exponent<L: Lanes>([centre, sigma]: [L::Number; 2], x: L) -> L {
+        let z = (x - x.same(centre)) / x.same(sigma);
+        x.same(-<L::Number as crate::real::Real>::HALF) * (z * z)
+    }
+}
 
 impl Shape for Gaussian {
     const NAME: &'static str = "gaussian";

@@ -1,5 +1,10 @@
 static double fspid_square(double x) { return x * x; }
 
+/* 0 where x has overflowed, and for NaN. */
+static double fspid_one_over_one_plus(double x) {
+    return x < 1.7976931348623157e308 ? 1.0 / (1.0 + x) : 0.0;
+}
+
 /* Two parabolas from 0 to 1. */
 static double fspid_smooth(double t) {
     return t < 0.5 ? 2.0 * (t * t) : 1.0 - 2.0 * ((1.0 - t) * (1.0 - t));

@@ -1,4 +1,4 @@
-//! Membership functions: one file each, one row in the list at the foot of [`family!`].
+//! Membership functions: one file each, one row in the list below `family!`.
 //!
 //! A member brings its name, its parameters with units and ranges, an example and its equation in C
 //! beside the one in Rust, so that documentation, checks and generated code come from one place.
@@ -44,7 +44,7 @@ pub use points::Points;
 pub use ramp::Ramp;
 pub use rectangle::Rectangle;
 pub use semi_ellipse::SemiEllipse;
-pub(crate) use side::{smooth, smooth_inverse};
+pub(crate) use side::{root, smooth, smooth_inverse};
 pub use sigmoid::Sigmoid;
 pub use sigmoid_difference::SigmoidDifference;
 pub use sigmoid_product::SigmoidProduct;
@@ -219,7 +219,7 @@ macro_rules! family {
         /// A kind of membership function, chosen at run time.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum ShapeKind {
-            $(#[doc = concat!("See [`", stringify!($member), "`](struct@", stringify!($member), ").")] $member,)*
+            $(#[doc = concat!("See [`", stringify!($member), "`](enum@", stringify!($member), ").")] $member,)*
         }
 
         impl ShapeKind {

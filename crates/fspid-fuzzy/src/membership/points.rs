@@ -39,15 +39,13 @@ impl Shape for Points {
     /// O(points). 0 for NaN.
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let Some(&[.., last]) = params.last_chunk::<2>() else { return S::zero() };
-        // The grade at a place and just before it, and just after it: unlike only at jumps.
-        let (mut before, mut after) = (last, last);
+        let mut grade = last;
         for segment in params.windows(4).step_by(2).rev() {
             let &[x0, y0, x1, y1] = segment else { continue };
             let between = (y0 + ((x - x0) / width(x0, x1)).unit() * (y1 - y0)).unit();
-            after = x.if_less(x1, between, after);
-            before = x1.if_less(x, before, between);
+            // Two grades only at the place itself, so that elsewhere no kink is suspected.
+            grade = x.if_less(x1, between, x1.if_less(x, grade, between.larger(grade)));
         }
-        let grade = before.larger(after);
         let not_nan = x.if_less(S::constant(f64::INFINITY), grade, S::zero());
         S::constant(f64::NEG_INFINITY).if_less(x, grade, not_nan)
     }

@@ -1,6 +1,6 @@
 //! The upper half of an ellipse.
 
-use super::side::above;
+use super::side::{above, root};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
 use crate::scalar::Scalar;
@@ -32,7 +32,7 @@ impl Shape for SemiEllipse {
         let &[start, end] = params else { return S::zero() };
         let centre = S::half() * start + S::half() * end;
         let z = ((x - centre).abs() / (S::half() * (end - start))).smaller(S::one());
-        z.if_less(S::one(), (S::one() - z.square()).sqrt(), S::zero())
+        root(S::one() - z.square())
     }
 
     fn corners(params: &[f64], each: &mut dyn FnMut(f64)) {

@@ -40,6 +40,20 @@ pub(super) fn beyond<S: Scalar>(distance: S) -> S {
     distance.smaller(S::constant(f64::INFINITY)).larger(S::zero())
 }
 
+/// The square root, 0 for numbers below 0. Its slope at 0, which is infinite, counts as 0: there a
+/// set begins, and beside it nothing changes.
+#[inline]
+pub(crate) fn root<S: Scalar>(square: S) -> S {
+    let square = square.larger(S::zero());
+    S::zero().if_less(square, square.sqrt(), S::zero())
+}
+
+/// $\frac{1}{1 + x}$; 0 where $x$ has overflowed, with a slope of 0.
+#[inline]
+pub(super) fn one_over_one_plus<S: Scalar>(x: S) -> S {
+    x.if_less(S::constant(f64::MAX), S::one() / (S::one() + x), S::zero())
+}
+
 /// From `lower` to `upper`, never 0.
 #[inline]
 pub(super) fn width<S: Scalar>(lower: S, upper: S) -> S {
@@ -59,8 +73,8 @@ pub(crate) fn smooth<S: Scalar>(t: S) -> S {
 /// The `t` of a [`smooth`] grade in [0, 1].
 #[inline]
 pub(crate) fn smooth_inverse<S: Scalar>(grade: S) -> S {
-    let low = (S::half() * grade.smaller(S::half())).sqrt();
-    let high = S::one() - (S::half() * (S::one() - grade.larger(S::half()))).sqrt();
+    let low = root(S::half() * grade.smaller(S::half()));
+    let high = S::one() - root(S::half() * (S::one() - grade.larger(S::half())));
     grade.if_less(S::half(), low, high)
 }
 

@@ -1,5 +1,6 @@
 //! The logistic step.
 
+use super::side::one_over_one_plus;
 use super::{Param, Range, Shape};
 use crate::scalar::Scalar;
 
@@ -20,12 +21,12 @@ impl Shape for Sigmoid {
         Param { name: "slope", unit: "1/variable", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 2.0];
-    const C: &'static str = "1.0 / (1.0 + exp(-slope * (x - centre)))";
+    const C: &'static str = "fspid_one_over_one_plus(exp(-slope * (x - centre)))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {
         let &[centre, slope] = params else { return S::zero() };
-        S::one() / (S::one() + (-slope * (x - centre)).exp())
+        one_over_one_plus((-slope * (x - centre)).exp())
     }
 
     /// Infinite for the grades 0 and 1.

@@ -74,7 +74,7 @@ macro_rules! family {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum $kind {
-            $(#[doc = concat!("See [`", stringify!($member), "`](struct@", stringify!($member), ").")] $member,)*
+            $(#[doc = concat!("See [`", stringify!($member), "`](enum@", stringify!($member), ").")] $member,)*
         }
 
         impl $kind {

@@ -296,7 +296,7 @@ float!(
     [fn lift<'a>(values: &'a [f64], _: &'a mut [Self]) -> &'a [Self] {
         values
     }],
-    crate::exp::exp_f64,
+    crate::exp::exp_one_f64,
     libm::log,
     libm::sqrt,
     libm::pow,
@@ -314,7 +314,7 @@ float!(
 float!(
     f32,
     [],
-    crate::exp::exp_f32,
+    crate::exp::exp_one_f32,
     libm::logf,
     libm::sqrtf,
     libm::powf,

@@ -9,12 +9,13 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::{Outline, Plan};
+use super::output::{Actors, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
 };
-use super::program::{MAX_DEPTH, Program};
+use super::program::{Form, MAX_DEPTH, Program};
+use super::type2::{self, Type2};
 use crate::hedge::Hedge;
 
 /// Most rules of a system.
@@ -36,6 +37,10 @@ pub struct System {
     pub(crate) block_rules: Vec<Range<usize>>,
     /// True if some rule asks about an output.
     pub(crate) chained: bool,
+    /// What an interval type-2 system needs beside.
+    pub(crate) type2: Option<Type2>,
+    /// True if some conclusion has a hedge.
+    pub(crate) hedged: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -45,6 +50,7 @@ pub(crate) struct ResolvedRule {
     pub(crate) rule: usize,
     /// Its steps in the program.
     pub(crate) steps: Range<usize>,
+    pub(crate) form: Form,
     pub(crate) weight: f64,
     /// Its conclusions.
     pub(crate) conclusions: Range<usize>,
@@ -65,6 +71,8 @@ pub(crate) struct ResolvedOutput {
     /// Positions of its conclusions, in the order of the rules.
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
+    /// Who concludes what about it.
+    pub(crate) actors: Actors,
     /// Its sets, if they make a polygon.
     pub(crate) outline: Option<Outline>,
 }
@@ -75,7 +83,8 @@ impl System {
     /// # Errors
     /// Every problem there is (up to a hundred), each with its place.
     pub fn new(parts: Parts) -> Result<Self, Vec<SystemError>> {
-        let mut check = Check { parts: &parts, errors: Vec::new() };
+        let mut check =
+            Check { parts: &parts, type2: parts.is_interval_type2(), errors: Vec::new() };
         check.all();
         let errors = check.errors;
         if !errors.is_empty() {
@@ -106,13 +115,16 @@ impl System {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
             let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
             let blocks: Vec<_> = blocks.collect();
-            let outline = Outline::of(output, &resolved, &blocks);
-            let plan = Plan::new(output, &resolved, &blocks, outline.as_ref());
-            ResolvedOutput { plan, outline, conclusions: own }
+            let actors = Actors::of(output, &resolved, &blocks);
+            let outline = Outline::of(output, &actors);
+            let plan = Plan::new(output, &actors, outline.as_ref());
+            ResolvedOutput { plan, actors, outline, conclusions: own }
         });
-        let outputs = outputs.collect();
+        let outputs: Vec<_> = outputs.collect();
+        let type2 = Type2::of(&parts, &outputs);
         let chained = program.statements.iter().any(|s| matches!(s.variable, Variable::Output(_)));
-        Self { parts, program, rules, conclusions, outputs, block_rules, chained }
+        let hedged = conclusions.iter().any(|conclusion| !conclusion.hedges.is_empty());
+        Self { parts, program, rules, conclusions, outputs, block_rules, chained, hedged, type2 }
     }
 }
 
@@ -149,10 +161,12 @@ impl Resolver {
         }
         let conclusions = begin..self.conclusions.len();
         let steps = self.program.append(&rule.antecedent);
+        let form = self.program.form(steps.clone());
         self.rules.push(ResolvedRule {
             block,
             rule: index,
             steps,
+            form,
             weight: rule.weight,
             conclusions,
         });
@@ -162,6 +176,7 @@ impl Resolver {
 /// Walks over the parts and collects what is wrong.
 struct Check<'a> {
     parts: &'a Parts,
+    type2: bool,
     errors: Vec<SystemError>,
 }
 
@@ -262,6 +277,9 @@ impl Check<'_> {
             let allowed = "a finite number";
             self.say(|| place.clone(), Problem::Number { what: "the default", found, allowed });
         }
+        if let Some((what, needs)) = self.type2.then(|| type2::conflict(output)).flatten() {
+            self.say(|| place.clone(), Problem::Conflict { what, needs });
+        }
         for term in &output.terms {
             let place = || format!("{place}, term `{}`", term.name);
             self.conclusion(place, output, &term.conclusion);
@@ -331,6 +349,11 @@ impl Check<'_> {
             self.say(place, Problem::TooMany { what: "rules", found, most: MAX_RULES });
         }
         for (block_index, block) in parts.blocks.iter().enumerate() {
+            if let Some((what, needs)) = self.type2.then(|| type2::block_conflict(block)).flatten()
+            {
+                let place = || format!("rule block {}", block_index + 1);
+                self.say(place, Problem::Conflict { what, needs });
+            }
             for (rule_index, rule) in block.rules.iter().enumerate() {
                 let place = || match (parts.blocks.len(), block.name.as_str()) {
                     (1, _) => format!("rule {}", rule_index + 1),

@@ -55,15 +55,16 @@ impl Sampling {
         }
     }
 
-    /// The rule of the fixed-size supervisor that computes the same, if there is one.
+    /// The rule of the fixed-size supervisor that computes the same.
     #[must_use]
-    pub fn fixed_size(self) -> Option<defuzzifier::Defuzzifier> {
+    pub fn fixed_size(self) -> defuzzifier::Defuzzifier {
         match self {
-            Self::Exact => Some(defuzzifier::Defuzzifier::Exact),
-            Self::Endpoints(n) => Some(defuzzifier::Defuzzifier::Endpoints(n)),
-            Self::Midpoint(n) => Some(defuzzifier::Defuzzifier::Midpoint(n)),
-            Self::Trapezoid(n) => Some(defuzzifier::Defuzzifier::Trapezoid(n)),
-            Self::LeftEnd(_) | Self::Vertices(_) => None,
+            Self::Exact => defuzzifier::Defuzzifier::Exact,
+            Self::Endpoints(n) => defuzzifier::Defuzzifier::Endpoints(n),
+            Self::Midpoint(n) => defuzzifier::Defuzzifier::Midpoint(n),
+            Self::Trapezoid(n) => defuzzifier::Defuzzifier::Trapezoid(n),
+            Self::LeftEnd(n) => defuzzifier::Defuzzifier::LeftEnd(n),
+            Self::Vertices(n) => defuzzifier::Defuzzifier::Vertices(n),
         }
     }
 }
@@ -107,13 +108,17 @@ impl FromStr for Sampling {
 pub enum Defuzzifier {
     /// Centre of gravity.
     Centroid(Sampling),
-    /// The point that halves the area.
+    /// The point that halves the area; of [`Endpoints`](Sampling::Endpoints) the first sample at
+    /// which the sum of grades reaches half.
     Bisector(Sampling),
-    /// The smallest of the points of highest grade.
+    /// The smallest of the points of highest grade; of [`Endpoints`](Sampling::Endpoints) the one
+    /// nearest to 0 (MATLAB).
     SmallestOfMaximum(Sampling),
-    /// Half way between the smallest and the largest point of highest grade; of samples their mean.
+    /// The mean of the points of highest grade: by length, or by number where there are only single
+    /// points; of samples their mean.
     MeanOfMaximum(Sampling),
-    /// The largest of the points of highest grade.
+    /// The largest of the points of highest grade; of [`Endpoints`](Sampling::Endpoints) the one
+    /// farthest from 0 (MATLAB).
     LargestOfMaximum(Sampling),
     /// $\sum w_i z_i / \sum w_i$ over the conclusions $z_i$ of the rules (Takagi–Sugeno, Tsukamoto).
     WeightedAverage(SetReading),

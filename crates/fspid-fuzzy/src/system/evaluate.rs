@@ -101,6 +101,7 @@ impl System {
     ) -> Result<&'w [Answer], InputError> {
         self.take_inputs(inputs, workspace)?;
         self.fire(workspace);
+        self.fire_bounds(workspace);
         for (index, output) in self.parts.outputs.iter().enumerate() {
             let previous = previous.get(index).copied().flatten();
             let answer = self.answer(index, output, previous, workspace);
@@ -147,16 +148,17 @@ impl System {
     ) -> Answer {
         let from_rules =
             if output.enabled { self.defuzzified(index, output, workspace) } else { None };
+        let answer = match from_rules.filter(|(value, _)| value.is_finite()) {
+            Some((value, error_bound)) => {
+                Answer { value: Some(value), error_bound, source: Source::Rules }
+            }
+            None => fallback(output, previous.filter(|value| value.is_finite())),
+        };
         let clamp = |value: f64| match output.universe {
             Some(universe) if output.clamp => value.clamp(universe.lower, universe.upper),
             _ => value,
         };
-        match from_rules {
-            Some((value, error_bound)) => {
-                Answer { value: Some(clamp(value)), error_bound, source: Source::Rules }
-            }
-            None => fallback(output, previous),
-        }
+        Answer { value: answer.value.map(clamp), ..answer }
     }
 }
 

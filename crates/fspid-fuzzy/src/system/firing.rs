@@ -1,10 +1,13 @@
 //! From inputs to firing strengths.
 
+use core::ops::Range;
+
 use super::build::System;
 use super::parts::{Activation, Comparison, Membership, Statement, Variable};
-use super::program;
+use super::program::{self, Form};
 use super::workspace::Workspace;
 use crate::hedge::Hedge;
+use crate::norm::TNormKind;
 use crate::scalar::Scalar;
 
 impl Membership {
@@ -81,8 +84,24 @@ impl System {
     ) -> S {
         let Some(resolved) = self.rules.get(rule) else { return S::zero() };
         let Some(block) = self.parts.blocks.get(resolved.block) else { return S::zero() };
-        let steps = self.program.steps.get(resolved.steps.clone()).unwrap_or_default();
-        let strength = program::strength(steps, block, stack, grade);
+        let strength = match &resolved.form {
+            Form::All(chain) => {
+                let operands = self.program.operands(chain.clone());
+                if block.and.is(TNormKind::Minimum) {
+                    program::chain(operands, S::smaller, grade)
+                } else {
+                    program::chain(operands, |a, b| block.and.apply(a, b), grade)
+                }
+            }
+            Form::Any(chain) => {
+                let operands = self.program.operands(chain.clone());
+                program::chain(operands, |a, b| block.or.apply(a, b), grade)
+            }
+            Form::Other => {
+                let steps = self.program.steps.get(resolved.steps.clone()).unwrap_or_default();
+                program::strength(steps, block, stack, grade)
+            }
+        };
         if resolved.weight < 1.0 { strength * S::constant(resolved.weight) } else { strength }
     }
 
@@ -94,16 +113,13 @@ impl System {
             *grade = self.input_grade(statement, inputs, &mut scratch.room);
         }
         for (rules, block) in self.block_rules.iter().zip(&self.parts.blocks) {
-            for rule in rules.clone() {
-                let strength = self.rule_strength(rule, stack, |statement| {
-                    self.statement_grade(statement, rule, grades, degrees)
-                });
-                if let Some(place) = strengths.get_mut(rule) {
-                    *place = strength;
-                }
-                // A rule further on may ask how strongly an output has been concluded so far.
-                if self.chained {
-                    self.conclude(rule..rule + 1, strengths, degrees);
+            if self.chained {
+                self.fire_in_turn(rules.clone(), grades, stack, strengths, degrees);
+            } else if let Some(strengths) = strengths.get_mut(rules.clone()) {
+                for (rule, place) in rules.clone().zip(strengths) {
+                    *place = self.rule_strength(rule, stack, |statement| {
+                        grades.get(statement).copied().unwrap_or(0.0)
+                    });
                 }
             }
             if let (Some(strengths), Some(acting)) =
@@ -112,6 +128,26 @@ impl System {
                 activate(block.activation, strengths, acting);
             }
             self.conclude(rules.clone(), acting, degrees);
+        }
+    }
+
+    /// Fires rules of which some ask how strongly an output has been concluded so far.
+    fn fire_in_turn(
+        &self,
+        rules: Range<usize>,
+        grades: &[f64],
+        stack: &mut [f64],
+        strengths: &mut [f64],
+        degrees: &mut [f64],
+    ) {
+        for rule in rules {
+            let strength = self.rule_strength(rule, stack, |statement| {
+                self.statement_grade(statement, rule, grades, degrees)
+            });
+            if let Some(place) = strengths.get_mut(rule) {
+                *place = strength;
+            }
+            self.conclude(rule..rule + 1, strengths, degrees);
         }
     }
 
@@ -126,9 +162,6 @@ impl System {
         degrees: &[f64],
     ) -> f64 {
         let known = grades.get(statement).copied().unwrap_or(0.0);
-        if !self.chained {
-            return known;
-        }
         match self.program.statements.get(statement) {
             Some(Statement { variable: Variable::Output(output), term, hedges }) => {
                 hedged(hedges, self.concluded(*output, *term, rule, degrees))
@@ -144,6 +177,9 @@ impl System {
         else {
             return 1.0;
         };
+        if !part.enabled {
+            return 0.0;
+        }
         let before = resolved.conclusions.iter().filter(|&&index| {
             self.conclusions.get(index).is_some_and(|c| c.rule < rule && c.term == term)
         });
@@ -153,13 +189,23 @@ impl System {
     }
 
     /// Degrees of the conclusions of some rules from the strengths of all.
-    fn conclude(&self, rules: core::ops::Range<usize>, strengths: &[f64], degrees: &mut [f64]) {
-        let Some(rules) = self.rules.get(rules) else { return };
-        for index in rules.iter().flat_map(|rule| rule.conclusions.clone()) {
-            let Some(conclusion) = self.conclusions.get(index) else { continue };
-            let strength = strengths.get(conclusion.rule).copied().unwrap_or(0.0);
-            if let Some(place) = degrees.get_mut(index) {
-                *place = hedged(&conclusion.hedges, strength);
+    fn conclude(&self, rules: Range<usize>, strengths: &[f64], degrees: &mut [f64]) {
+        let (Some(resolved), Some(strengths)) =
+            (self.rules.get(rules.clone()), strengths.get(rules))
+        else {
+            return;
+        };
+        for (rule, &strength) in resolved.iter().zip(strengths) {
+            let Some(degrees) = degrees.get_mut(rule.conclusions.clone()) else { continue };
+            degrees.fill(strength);
+            // A rule that does not fire concludes nothing, not even `not`.
+            if self.hedged
+                && strength > 0.0
+                && let Some(conclusions) = self.conclusions.get(rule.conclusions.clone())
+            {
+                for (degree, conclusion) in degrees.iter_mut().zip(conclusions) {
+                    *degree = hedged(&conclusion.hedges, strength);
+                }
             }
         }
     }

@@ -18,21 +18,28 @@ mod defuzzifier;
 mod error;
 mod evaluate;
 mod firing;
+mod gradient;
 mod norms;
 mod output;
 mod parts;
 mod program;
 mod supervisor;
+mod trace;
+mod type2;
 mod workspace;
 
 pub use build::System;
 pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
 pub use error::{Problem, SystemError};
 pub use evaluate::{Answer, InputError, Source};
+pub(crate) use firing::hedged;
+pub use gradient::{Differentiator, Gradient, GradientError, Parameter};
 pub use norms::{SNorm, TNorm};
 pub use output::{Joined, Piece};
 pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
+pub(crate) use program::{Program, STACK, Step};
+pub use trace::{Contribution, Firing};
 pub use workspace::Workspace;

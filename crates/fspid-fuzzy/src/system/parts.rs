@@ -118,7 +118,7 @@ pub struct Output {
     pub enabled: bool,
     /// Where it lives; needed by every defuzzifier that integrates.
     pub universe: Option<Universe>,
-    /// Whether the answer is moved into the universe.
+    /// Whether the answer, wherever it comes from, is moved into the universe.
     pub clamp: bool,
     /// What rules may conclude.
     pub terms: Vec<OutputTerm>,
@@ -126,7 +126,7 @@ pub struct Output {
     pub aggregation: SNorm,
     /// How the joined conclusions become a number.
     pub defuzzifier: Defuzzifier,
-    /// The answer where no rule fires, or the joined set has no area.
+    /// The answer where no rule fires, the joined set has no area, or a formula has no finite value.
     pub fallback: Fallback,
 }
 
@@ -326,6 +326,6 @@ pub struct Consequent {
     pub output: usize,
     /// Position of its term.
     pub term: usize,
-    /// Hedges as written, acting on the firing strength; the last one acts first.
+    /// Hedges as written, acting on the firing strength if it is above 0; the last one acts first.
     pub hedges: Vec<Hedge>,
 }

@@ -2,6 +2,7 @@
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::parts::{Antecedent, RuleBlock, Statement, Variable};
 use crate::scalar::Scalar;
@@ -26,21 +27,77 @@ pub(crate) enum Step {
     Not,
 }
 
+/// What an antecedent looks like; most are short chains, which need no stack.
+#[derive(Clone, Debug)]
+pub(crate) enum Form {
+    /// Statements, at least one, all joined by *and* (so is a single one).
+    All(Range<usize>),
+    /// Statements, all joined by *or*.
+    Any(Range<usize>),
+    /// Anything else.
+    Other,
+}
+
 /// Statements that occur in rules, each once, and the steps of all rules one after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Program {
     pub(crate) statements: Vec<Statement>,
     pub(crate) steps: Vec<Step>,
+    /// The statements of antecedents that are plain chains.
+    operands: Vec<usize>,
     /// The statements about each term of each input, so that building takes linear time.
     by_term: BTreeMap<(usize, Option<usize>), Vec<usize>>,
 }
 
 impl Program {
     /// Appends the steps of an antecedent; their positions are answered.
-    pub(crate) fn append(&mut self, antecedent: &Antecedent) -> core::ops::Range<usize> {
+    pub(crate) fn append(&mut self, antecedent: &Antecedent) -> Range<usize> {
         let begin = self.steps.len();
         self.append_steps(antecedent);
         begin..self.steps.len()
+    }
+
+    /// The form of steps that have been appended.
+    pub(crate) fn form(&mut self, steps: Range<usize>) -> Form {
+        let begin = self.operands.len();
+        let (mut all, mut any) = (true, true);
+        for step in self.steps.get(steps.clone()).unwrap_or_default() {
+            match *step {
+                Step::Statement(statement) => self.operands.push(statement),
+                Step::And => any = false,
+                Step::Or => all = false,
+                Step::Always | Step::Not => (all, any) = (false, false),
+            }
+        }
+        // One joining step less than operands, and each right after its operand: no brackets.
+        let operands = begin..self.operands.len();
+        let is_chain = self.is_chain(steps);
+        match (all && is_chain, any && is_chain) {
+            (true, _) => Form::All(operands),
+            (false, true) => Form::Any(operands),
+            (false, false) => Form::Other,
+        }
+    }
+
+    /// True for a statement followed by any number of pairs of a statement and a joining step.
+    fn is_chain(&self, steps: Range<usize>) -> bool {
+        let is_statement = |step: &Step| matches!(step, Step::Statement(_));
+        match self.steps.get(steps) {
+            Some([first, pairs @ ..]) => {
+                is_statement(first)
+                    && pairs.chunks(2).all(|pair| match pair {
+                        [operand, join] => is_statement(operand) && !is_statement(join),
+                        _ => false,
+                    })
+            }
+            _ => false,
+        }
+    }
+
+    /// The statements of a chain.
+    #[inline]
+    pub(crate) fn operands(&self, chain: Range<usize>) -> &[usize] {
+        self.operands.get(chain).unwrap_or_default()
     }
 
     fn append_steps(&mut self, antecedent: &Antecedent) {
@@ -87,6 +144,18 @@ impl Program {
         self.statements.push(statement.clone());
         next
     }
+}
+
+/// The strength of a chain of statements.
+#[inline]
+pub(crate) fn chain<S: Scalar>(
+    operands: &[usize],
+    join: impl Fn(S, S) -> S,
+    mut grade: impl FnMut(usize) -> S,
+) -> S {
+    let Some((&first, others)) = operands.split_first() else { return S::one() };
+    let first = grade(first);
+    others.iter().fold(first, |joined, &operand| join(joined, grade(operand)))
 }
 
 /// The strength of an antecedent, given how to grade a statement.

@@ -23,6 +23,8 @@ impl From<defuzzifier::Defuzzifier> for Sampling {
             defuzzifier::Defuzzifier::Endpoints(n) => Self::Endpoints(n),
             defuzzifier::Defuzzifier::Midpoint(n) => Self::Midpoint(n),
             defuzzifier::Defuzzifier::Trapezoid(n) => Self::Trapezoid(n),
+            defuzzifier::Defuzzifier::LeftEnd(n) => Self::LeftEnd(n),
+            defuzzifier::Defuzzifier::Vertices(n) => Self::Vertices(n),
         }
     }
 }

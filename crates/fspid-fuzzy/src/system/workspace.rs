@@ -7,6 +7,7 @@ use super::build::System;
 use super::evaluate::{Answer, Source};
 use super::output::Scratch;
 use super::program::STACK;
+use super::type2::{Type2, Type2Room};
 
 /// Room for one evaluation at a time of the system that it was made for.
 ///
@@ -28,6 +29,8 @@ pub struct Workspace {
     /// Strength of each conclusion: after the hedges of its consequent.
     pub(crate) degrees: Vec<f64>,
     pub(crate) scratch: Scratch,
+    /// Of interval type-2 systems only.
+    pub(crate) type2: Option<Type2Room>,
     pub(crate) answers: Vec<Answer>,
 }
 
@@ -45,6 +48,7 @@ impl System {
             acting: vec![0.0; self.rules.len()],
             degrees: vec![0.0; self.conclusions.len()],
             scratch: Scratch::for_outputs(self),
+            type2: self.type2.as_ref().map(|type2| Type2::room(type2, self)),
             answers: vec![nothing; self.parts.outputs.len()],
         }
     }
@@ -61,6 +65,13 @@ impl Workspace {
     #[must_use]
     pub fn outside(&self) -> &[bool] {
         &self.outside
+    }
+
+    /// The interval of an output of an interval type-2 system: from the smallest to the largest
+    /// centroid that the bounds of the grades allow. The answer is its middle.
+    #[must_use]
+    pub fn interval(&self, output: usize) -> Option<[f64; 2]> {
+        self.type2.as_ref()?.intervals.get(output).copied().flatten()
     }
 
     /// The answers of the last evaluation, one for each output.

@@ -4,5 +4,14 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod build;
+mod integral;
+mod oracle;
 mod outline;
+mod policies;
+mod properties;
+mod random;
+mod relations;
+mod rules;
+mod sampled;
 mod supervisor;
+mod tipper;

@@ -9,6 +9,7 @@
 //! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
 
 mod axis;
+mod conclusion;
 mod contour;
 pub mod diagrams;
 mod line;
@@ -26,6 +27,7 @@ mod text;
 mod thin;
 mod view;
 
+pub use conclusion::{ConclusionFigure, Part};
 pub use line::{Band, LineFigure, LinePanel, Series};
 pub use membership::memberships;
 pub use ratio::RatioFigure;

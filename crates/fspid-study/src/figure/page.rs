@@ -55,6 +55,7 @@ pub(super) fn title(canvas: &mut Canvas, title: &str) {
 pub(super) enum Swatch {
     Line { style: SeriesStyle, marked: bool },
     Band,
+    Area(SeriesStyle),
     Reference,
 }
 
@@ -124,6 +125,10 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, swatch: Swatch) {
         }
         Swatch::Band => {
             canvas.rect(x, y - 4.0, SWATCH, 8.0, &Paint::face(Role::Band).opacity(0.45))
+        }
+        Swatch::Area(style) => {
+            canvas.rect(x, y - 4.5, SWATCH, 9.0, &Paint::face(style.role()).opacity(0.35));
+            canvas.line((x, y - 4.5), (end, y - 4.5), &Paint::line(style.role(), 2.0));
         }
         Swatch::Reference => {
             canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 1.0).dashed("6 3"))

@@ -189,18 +189,50 @@ pub fn page_style() -> String {
 pub(super) fn diverging(value: f64, limit: f64) -> Rgb {
     let ratio =
         if limit > 0.0 && value.is_finite() { (value / limit).clamp(-1.0, 1.0) } else { 0.0 };
-    let position = (ratio + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
-    let index = (position.floor() as usize).min(DIVERGING.len() - 2);
+    stop(&DIVERGING, (ratio + 1.0) / 2.0)
+}
+
+/// The colour at a part, from 0 to 1, of the way along equally spaced stops.
+fn stop(stops: &[Rgb], part: f64) -> Rgb {
+    let position = part * (stops.len() - 1) as f64;
+    let index = (position.floor() as usize).min(stops.len() - 2);
     let part = position - index as f64;
-    let (low, high) = (DIVERGING[index], DIVERGING[index + 1]);
+    let (low, high) = (stops[index], stops[index + 1]);
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * part).round() as u8;
     [mix(low[0], high[0]), mix(low[1], high[1]), mix(low[2], high[2])]
+}
+
+/// Colour of a part from 0 to 1 on the scale from light to dark; uniform in the lightness of OKLab,
+/// from yellow over green to blue, so that it also reads in grey.
+pub(super) fn sequential(part: f64) -> Rgb {
+    stop(&SEQUENTIAL, if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 })
 }
 
 /// True where black text reads better than white on `colour`.
 pub(super) fn wants_dark_text([r, g, b]: Rgb) -> bool {
     0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b) > 140.0
 }
+
+/// Seventeen stops: OKLab lightness from 0.965 to 0.405, hue from 105 deg to 255 deg.
+const SEQUENTIAL: [Rgb; 17] = [
+    [247, 246, 211],
+    [230, 237, 193],
+    [211, 229, 178],
+    [188, 221, 167],
+    [164, 213, 159],
+    [137, 205, 155],
+    [109, 197, 154],
+    [78, 187, 155],
+    [44, 177, 156],
+    [0, 165, 158],
+    [0, 153, 158],
+    [0, 140, 156],
+    [0, 126, 152],
+    [0, 113, 146],
+    [25, 99, 137],
+    [38, 86, 126],
+    [44, 74, 113],
+];
 
 /// Thirty-three stops: OKLab lightness from 0.46 over 0.975 to 0.46, chroma linear, hue 250 deg and 52 deg.
 const DIVERGING: [Rgb; 33] = [

@@ -4,10 +4,10 @@ use super::axis::{Axis, extent, short_number};
 use super::contour::Grid;
 use super::page::{self, EDGE, LABEL_PX};
 use super::plot::TICK_PX;
-use super::style::{Role, diverging};
+use super::style::{Rgb, Role, diverging, sequential};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
 use super::text::text_width;
-use super::view::View;
+use super::view::{Light, View};
 
 /// How a [`Surface`] is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,9 +16,12 @@ pub enum SurfaceKind {
     View,
     /// A map with lines of equal value: full where positive, dashed where negative, thick at zero.
     Map,
+    /// Both side by side, the view lit from the left so that its slopes show.
+    Relief,
 }
 
-/// Values over a rectangular grid; the colour scale is centred at zero.
+/// Values over a rectangular grid; the colour scale is centred at zero, or runs from the lowest to
+/// the highest value where all have one sign and no limit is given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Printed above the figure and read out by screen readers.
@@ -41,7 +44,26 @@ pub struct Surface {
 
 const WIDTH: f64 = 500.0;
 const MAP: f64 = 336.0;
+const VIEW: f64 = 330.0;
 const BAR: f64 = 14.0;
+
+/// Which colour a value has.
+#[derive(Debug, Clone, Copy)]
+enum Scale {
+    /// White at zero, up to this magnitude.
+    AboutZero(f64),
+    /// From light to dark.
+    Between(f64, f64),
+}
+
+impl Scale {
+    fn colour(self, value: f64) -> Rgb {
+        match self {
+            Self::AboutZero(limit) => diverging(value, limit),
+            Self::Between(lo, hi) => sequential((value - lo) / (hi - lo)),
+        }
+    }
+}
 
 impl Surface {
     /// Draws the surface.
@@ -50,11 +72,22 @@ impl Surface {
         match kind {
             SurfaceKind::View => self.view(),
             SurfaceKind::Map => self.map(),
+            SurfaceKind::Relief => self.relief(),
         }
     }
 
     fn extent(&self) -> Option<(f64, f64)> {
         extent(self.values.iter().flatten().copied())
+    }
+
+    /// The colours of the values.
+    fn scale(&self) -> Scale {
+        match self.extent() {
+            Some((lo, hi)) if self.limit.is_none() && (lo >= 0.0 || hi <= 0.0) && lo < hi => {
+                Scale::Between(lo, hi)
+            }
+            _ => Scale::AboutZero(self.limit()),
+        }
     }
 
     fn limit(&self) -> f64 {
@@ -65,22 +98,35 @@ impl Surface {
 
     fn view(&self) -> Svg {
         let top = page::title_height(&self.title, WIDTH);
-        let height = 330.0;
-        let mut canvas = Canvas::new(WIDTH, top + height + EDGE);
+        let mut canvas = Canvas::new(WIDTH, top + VIEW + EDGE);
         page::title(&mut canvas, &self.title);
+        let z = self.draw_view(&mut canvas, top, WIDTH - 2.0 * EDGE - 56.0, Light::Flat);
+        let bar = Rect { x: WIDTH - EDGE - 52.0, y: top + 24.0, width: BAR, height: 186.0 };
+        self.bar(&mut canvas, (bar, WIDTH), &z, &shades(&z));
+        canvas.finish(&self.title, &self.describe("Surface in space"))
+    }
+
+    fn relief(&self) -> Svg {
+        let top = page::title_height(&self.title, 2.0 * WIDTH);
+        let mut canvas = Canvas::new(2.0 * WIDTH, top + MAP + 52.0);
+        page::title(&mut canvas, &self.title);
+        self.draw_view(&mut canvas, top + 12.0, WIDTH - 2.0 * EDGE, Light::FromTheLeft);
+        canvas.begin_shift(WIDTH, 0.0);
+        self.draw_map(&mut canvas, top + 4.0);
+        canvas.end();
+        canvas.finish(&self.title, &self.describe("Surface in space, and as a map"))
+    }
+
+    /// Draws the surface in space and returns the axis of its values.
+    fn draw_view(&self, canvas: &mut Canvas, top: f64, width: f64, light: Light) -> Axis {
         let ranges =
             [extent(self.xs.iter().copied()), extent(self.ys.iter().copied()), self.extent()];
         let [x, y, z] = ranges.map(|range| Axis::linear(range, 0.0, 5));
-        let view = View::new(
-            [x, y, z],
-            Rect { x: EDGE, y: top, width: WIDTH - 2.0 * EDGE - 56.0, height },
-        );
-        let limit = self.limit();
-        view.room(&mut canvas, [&self.x_label, &self.y_label, &self.z_label]);
-        view.faces(&mut canvas, &self.coarse(), |value| Role::Fixed(diverging(value, limit)));
-        let bar = Rect { x: WIDTH - EDGE - 52.0, y: top + 24.0, width: BAR, height: 186.0 };
-        self.bar(&mut canvas, bar, &z, &shades(&z));
-        canvas.finish(&self.title, &self.describe("Surface in space"))
+        let view = View::new([x, y, z], Rect { x: EDGE, y: top, width, height: VIEW });
+        let scale = self.scale();
+        view.room(canvas, [&self.x_label, &self.y_label, &self.z_label]);
+        view.faces(canvas, &self.coarse(), light, |value| scale.colour(value));
+        z
     }
 
     /// At most 40 cells each way: more would only thicken the lines.
@@ -105,13 +151,18 @@ impl Surface {
     }
 
     fn map(&self) -> Svg {
+        let top = page::title_height(&self.title, WIDTH) + 4.0;
+        let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
+        page::title(&mut canvas, &self.title);
+        self.draw_map(&mut canvas, top);
+        canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
+    }
+
+    fn draw_map(&self, canvas: &mut Canvas, top: f64) {
         let [x, y] =
             [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
-        let top = page::title_height(&self.title, WIDTH) + 4.0;
         let area = Rect { x: left, y: top, width: MAP, height: MAP };
-        let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
-        page::title(&mut canvas, &self.title);
         let grid = Grid {
             xs: self.xs.iter().map(|v| area.x + x.fraction(*v) * area.width).collect(),
             ys: self.ys.iter().map(|v| area.y + (1.0 - y.fraction(*v)) * area.height).collect(),
@@ -119,9 +170,9 @@ impl Surface {
         };
         let z = Axis::linear(self.extent(), 0.0, 10);
         canvas.begin_clip(area);
-        self.paint_map(&mut canvas, &grid, &z);
+        self.paint_map(canvas, &grid, &z);
         canvas.end();
-        map_axes(&mut canvas, area, &x, &y);
+        map_axes(canvas, area, &x, &y);
         canvas.text(
             area.x + MAP / 2.0,
             top + MAP + 36.0,
@@ -129,32 +180,31 @@ impl Surface {
             Font::new(LABEL_PX, Anchor::Middle),
         );
         page::upright_label(
-            &mut canvas,
+            canvas,
             EDGE + LABEL_PX,
             top + MAP / 2.0,
             std::slice::from_ref(&self.y_label),
         );
         let bar = Rect { x: area.x + MAP + 22.0, y: top, width: BAR, height: MAP };
-        self.bar(&mut canvas, bar, &z, &bands(&z));
+        self.bar(canvas, (bar, WIDTH), &z, &bands(&z));
         for level in levels(&z) {
             let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
             canvas.line((bar.x, y), (bar.x + bar.width, y), &level_line(level, z.step()));
         }
-        canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
     }
 
     fn paint_map(&self, canvas: &mut Canvas, grid: &Grid, z: &Axis) {
         let Some((lowest, _)) = self.extent() else {
             return;
         };
-        let (limit, levels) = (self.limit(), levels(z));
+        let (scale, levels) = (self.scale(), levels(z));
         let floor = levels.first().map_or(lowest, |first| first - z.step());
         for base in std::iter::once(floor).chain(levels.iter().copied()) {
             let from = if base <= floor { f64::NEG_INFINITY } else { base };
             let d: String =
                 grid.region(from).iter().map(|polygon| polyline_data(polygon, true)).collect();
             if !d.is_empty() {
-                canvas.path(&d, &Paint::face(Role::Fixed(diverging(base + z.step() / 2.0, limit))));
+                canvas.path(&d, &Paint::face(Role::Fixed(scale.colour(base + z.step() / 2.0))));
             }
         }
         for level in levels {
@@ -167,14 +217,14 @@ impl Surface {
     }
 
     /// The colour bar with its numbers; `slices` are its boundaries from below.
-    fn bar(&self, canvas: &mut Canvas, r: Rect, z: &Axis, slices: &[f64]) {
-        let limit = self.limit();
+    fn bar(&self, canvas: &mut Canvas, (r, edge): (Rect, f64), z: &Axis, slices: &[f64]) {
+        let scale = self.scale();
         let place = |value: f64| r.y + (1.0 - z.fraction(value)) * r.height;
         for pair in slices.windows(2) {
             let &[lo, hi] = pair else { continue };
             // Each slice reaches under the one above it, so that no seam shows.
             let height = (place(lo) - place(hi) + 0.6).min(r.y + r.height - place(hi));
-            let colour = diverging(lo / 2.0 + hi / 2.0, limit);
+            let colour = scale.colour(lo / 2.0 + hi / 2.0);
             canvas.rect(r.x, place(hi), r.width, height, &Paint::face(Role::Fixed(colour)));
         }
         canvas.rect(r.x, r.y, r.width, r.height, &Paint::line(Role::Ink, 0.8));
@@ -190,7 +240,7 @@ impl Surface {
             );
             widest = widest.max(text_width(&tick.label, TICK_PX));
         }
-        let x = (r.x + r.width + 22.0 + widest).min(WIDTH - 4.0);
+        let x = (r.x + r.width + 22.0 + widest).min(edge - 4.0);
         page::upright_label(canvas, x, r.y + r.height / 2.0, std::slice::from_ref(&self.z_label));
     }
 

@@ -4,11 +4,49 @@ use super::axis::Axis;
 use super::contour::Grid;
 use super::page::LABEL_PX;
 use super::plot::TICK_PX;
-use super::style::Role;
+use super::style::{Rgb, Role};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect};
 
 /// Half the height of the room over half its width.
 const RISE: f64 = 0.62;
+
+/// How a surface is lit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Light {
+    /// From everywhere: a face has the colour of its value.
+    Flat,
+    /// From above and the left: faces turned away are darker.
+    FromTheLeft,
+}
+
+impl Light {
+    /// The colour of a face with these corners in room coordinates.
+    fn on(self, [r, g, b]: Rgb, corners: &[[f64; 3]; 4]) -> Rgb {
+        if self == Self::Flat {
+            return [r, g, b];
+        }
+        let strength = 0.62 + 0.42 * lit(corners).max(0.0);
+        [r, g, b].map(|channel| (f64::from(channel) * strength).round().clamp(0.0, 255.0) as u8)
+    }
+}
+
+/// Cosine of the angle between the upward normal of a face and the direction of the light.
+fn lit([a, b, c, d]: &[[f64; 3]; 4]) -> f64 {
+    let along = |from: &[f64; 3], to: &[f64; 3]| {
+        [to[0] - from[0], to[1] - from[1], (to[2] - from[2]) * RISE]
+    };
+    let (u, v) = (along(a, c), along(b, d));
+    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if length > 0.0 { dot(normal, LIGHT) / length * normal[2].signum() } else { 1.0 }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Towards the light: from the left and the front, 50 deg above the floor.
+const LIGHT: [f64; 3] = [-0.556, -0.321, 0.766];
 
 /// A room with three axes and where its points fall on the canvas.
 ///
@@ -112,7 +150,13 @@ impl View {
     }
 
     /// Draws the faces of `grid`, whose nodes are in display units.
-    pub(super) fn faces(&self, canvas: &mut Canvas, grid: &Grid, colour: impl Fn(f64) -> Role) {
+    pub(super) fn faces(
+        &self,
+        canvas: &mut Canvas,
+        grid: &Grid,
+        light: Light,
+        colour: impl Fn(f64) -> Rgb,
+    ) {
         let (rows, columns) = grid.cells();
         let mut faces = Vec::new();
         for i in 0..rows {
@@ -126,12 +170,13 @@ impl View {
                 // Height does not decide what hides what in a surface over the floor.
                 let depth: f64 =
                     corners.iter().map(|[x, y, _]| self.project([*x, *y, 0.0]).1).sum();
-                faces.push((depth, corners.map(|corner| self.at(corner)), mean));
+                let colour = light.on(colour(mean), &corners);
+                faces.push((depth, corners.map(|corner| self.at(corner)), colour));
             }
         }
         faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, corners, mean) in faces {
-            let paint = Paint::line(Role::Fixed([70, 70, 70]), 0.35).filled(colour(mean));
+        for (_, corners, colour) in faces {
+            let paint = Paint::line(Role::Fixed([70, 70, 70]), 0.35).filled(Role::Fixed(colour));
             canvas.polyline(&corners, true, &paint);
         }
     }

@@ -16,18 +16,18 @@
 //! Not here: writing files, and what a scenario's flight amounts to.
 
 mod build;
-mod check;
-mod document;
-mod files;
+pub(crate) mod check;
+pub(crate) mod document;
+pub(crate) mod files;
 mod overrides;
 mod preset;
-mod problem;
-mod report;
+pub(crate) mod problem;
+pub(crate) mod report;
 mod requirement;
-mod schema;
-mod section;
+pub(crate) mod schema;
+pub(crate) mod section;
 mod setting;
-mod spec;
+pub(crate) mod spec;
 
 use std::fmt;
 use std::path::Path;

@@ -8,9 +8,14 @@ use crate::file::spec::{Choice, Default, Key, Kind, Presence, Range, SCENARIO, T
 /// The JSON Schema (draft 2020-12) of scenario files.
 #[must_use]
 pub fn schema() -> Value {
-    let mut schema = table(&SCENARIO);
+    schema_of(&SCENARIO, "fspid scenario")
+}
+
+/// The JSON Schema (draft 2020-12) of files with these keys.
+pub(crate) fn schema_of(spec: &'static Table, title: &str) -> Value {
+    let mut schema = table(spec);
     schema.insert("$schema".to_owned(), json!("https://json-schema.org/draft/2020-12/schema"));
-    schema.insert("title".to_owned(), json!("fspid scenario"));
+    schema.insert("title".to_owned(), json!(title));
     Value::Object(schema)
 }
 
@@ -103,6 +108,7 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
         }
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Text | Kind::Path => json!({ "type": "string", "minLength": 1 }),
+        Kind::FreeText => json!({ "type": "string" }),
         Kind::Word(words) => json!({ "type": "string", "enum": words }),
         Kind::Preset(list) => json!({ "type": "string", "enum": list() }),
         Kind::Rules(grids) => {
@@ -114,8 +120,9 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
         }
         Kind::Grid => json!({ "type": "string" }),
         Kind::Defuzzifier => {
-            json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid):[0-9]+)$" })
+            json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid|left-end|vertices):[0-9]+)$" })
         }
+        Kind::Own { schema, .. } => schema(),
         Kind::Numbers { range, least, most, .. } => {
             json!({ "type": "array", "items": number(*range), "minItems": least, "maxItems": most })
         }
@@ -133,7 +140,7 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
     }
 }
 
-fn number(range: Range) -> Value {
+pub(crate) fn number(range: Range) -> Value {
     match range {
         Range::Finite => json!({ "type": "number" }),
         Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),

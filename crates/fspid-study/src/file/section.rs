@@ -2,6 +2,7 @@
 
 use fspid_fuzzy::{Defuzzifier, Grid};
 
+use crate::file::document::Item;
 use crate::file::report::Place;
 
 /// A checked table.
@@ -39,6 +40,8 @@ pub(crate) enum Checked {
     Numbers(Vec<(f64, Place)>),
     Grid(Grid),
     Defuzzifier(Defuzzifier),
+    /// As written; its reader checks it.
+    Item(Item),
     Section(Section),
     Sections(Vec<Section>),
 }
@@ -122,6 +125,14 @@ impl Section {
     pub(crate) fn defuzzifier(&self, name: &str) -> Option<Defuzzifier> {
         match self.entry(name)?.value {
             Checked::Defuzzifier(defuzzifier) => Some(defuzzifier),
+            _ => None,
+        }
+    }
+
+    /// A value that its reader checks.
+    pub(crate) fn item(&self, name: &str) -> Option<&Item> {
+        match &self.entry(name)?.value {
+            Checked::Item(item) => Some(item),
             _ => None,
         }
     }

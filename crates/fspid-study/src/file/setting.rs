@@ -154,8 +154,8 @@ fn written(value: &Checked) -> String {
         }
         Checked::Grid(grid) => text(&lines(grid)),
         Checked::Defuzzifier(rule) => text(&rule.to_string()),
-        // Their own keys are written, one by one.
-        Checked::Section(_) | Checked::Sections(_) => String::new(),
+        // Their own keys are written, one by one; scenarios have no values of other readers.
+        Checked::Item(_) | Checked::Section(_) | Checked::Sections(_) => String::new(),
     }
 }
 

@@ -5,6 +5,7 @@
 //!
 //! Not here: what is measured and judged (`metrics`, `reproduce`), and how a line is drawn (`figure`).
 
+mod audit;
 mod html;
 mod markdown;
 mod measures;
@@ -18,6 +19,7 @@ mod traces;
 mod user;
 
 use crate::file::Study;
+use crate::fuzzy_system::Audit;
 use crate::reproduce::{Library, Reproduction};
 use crate::simulation::Simulation;
 
@@ -25,6 +27,12 @@ use crate::simulation::Simulation;
 #[must_use]
 pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
     user::report(study, simulation)
+}
+
+/// The report of an audit of a fuzzy system.
+#[must_use]
+pub fn of_audit(audit: &Audit<'_>) -> String {
+    audit::report(audit)
 }
 
 /// The report of the paper.

@@ -223,6 +223,7 @@ pub(super) fn surfaces(
                     ("map", "lines of equal value: dashed where negative, thick at zero")
                 }
                 SurfaceKind::View => ("view", "the same, seen in space"),
+                SurfaceKind::Relief => ("relief", "in space and as a map"),
             };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
             figures.push(Figure::new(

@@ -121,7 +121,8 @@ impl Interval {
     #[inline]
     #[must_use]
     pub fn width(self) -> f64 {
-        rounding::sum_up(self.upper, -self.lower)
+        // Zero without a sign.
+        rounding::sum_up(self.upper, -self.lower) + 0.0
     }
 
     /// Half the [`width`](Self::width), rounded up: no number of the interval is further from

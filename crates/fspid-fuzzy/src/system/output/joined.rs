@@ -2,12 +2,14 @@
 
 use alloc::vec::Vec;
 
+use super::roomy_clone;
+
 /// Areas that differ by this fraction count as halves of the same size, and grades that differ by
 /// it as equally high: a few roundings.
 const SLACK: f64 = 16.0 * f64::EPSILON;
 
 /// A straight piece of the outline of a joined set, with what it belongs to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Piece {
     /// Where it begins and ends, in the unit of the variable.
     pub x: [f64; 2],
@@ -22,6 +24,11 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// A piece of nobody's.
+    pub(super) fn plain(x: [f64; 2], grade: [f64; 2]) -> Self {
+        Self { x, grade, ..Self::default() }
+    }
+
     /// Length along the universe.
     #[must_use]
     pub fn width(&self) -> f64 {
@@ -65,8 +72,17 @@ pub struct Joined {
 }
 
 impl Joined {
-    pub(super) fn with_capacity(pieces: usize) -> Self {
-        Self { pieces: Vec::with_capacity(pieces), ..Self::default() }
+    /// Makes room for so many pieces.
+    pub(super) fn reserve(&mut self, pieces: usize) {
+        self.pieces.reserve(pieces);
+    }
+
+    pub(super) fn roomy_clone(&self) -> Self {
+        Self { pieces: roomy_clone(&self.pieces), ..*self }
+    }
+
+    pub(crate) fn capacity(&self) -> usize {
+        self.pieces.capacity()
     }
 
     pub(super) fn restart(&mut self, reference: f64) {
@@ -112,49 +128,30 @@ impl Joined {
         self.pieces.iter().map(Piece::area).sum()
     }
 
-    /// The factor, a power of two, that brings the highest grade into [1, 2), so that strengths of
-    /// any size keep their digits; nothing for a set without height.
-    fn scale(&self) -> Option<f64> {
-        let bits = self.top.to_bits() >> 52;
-        // 2^(1023 - e) of a grade in [2^e, 2^(e+1)); 2046 is twice the bias.
-        (self.top >= f64::MIN_POSITIVE && self.top.is_finite())
-            .then(|| f64::from_bits((2046 - bits).max(1) << 52))
+    /// The pieces, scaled so that strengths of any size keep their digits.
+    fn scaled(&self) -> Option<impl DoubleEndedIterator<Item = Piece> + Clone + '_> {
+        let scale = scale(self.top)?;
+        Some(self.pieces.iter().map(move |piece| piece.scaled(scale)))
     }
 
     /// Centre of gravity; nothing for a set without area.
     #[must_use]
     pub fn centroid(&self) -> Option<f64> {
-        let scale = self.scale()?;
-        let (mut area, mut moment) = (0.0_f64, 0.0_f64);
-        for piece in self.pieces.iter().map(|piece| piece.scaled(scale)) {
-            area += piece.area();
-            moment += piece.moment(self.reference);
-        }
-        (area > 0.0).then(|| self.reference + moment / area)
+        centroid(self.scaled()?, self.reference)
     }
 
     /// The point that halves the area; the middle of such points if there is a gap between the
     /// halves; nothing for a set without area.
     #[must_use]
     pub fn bisector(&self) -> Option<f64> {
-        let scale = self.scale()?;
-        let area: f64 = self.pieces.iter().map(|piece| piece.scaled(scale).area()).sum();
-        let half = [0.5 * area, area * SLACK];
-        let from_left = self.pieces.iter().map(|p| p.scaled(scale));
-        let from_right = from_left.clone().rev().map(|p| Piece {
-            x: [p.x[1], p.x[0]],
-            grade: [p.grade[1], p.grade[0]],
-            ..p
-        });
-        let (left, right) = (reached(from_left, half)?, reached(from_right, half)?);
-        (area > 0.0).then_some(0.5 * left + 0.5 * right)
+        bisector(self.scaled()?)
     }
 
     /// Smallest, mean and largest of the points of highest grade; the mean is by length, or by
     /// number where there are only single points. Nothing for a set without area.
     #[must_use]
     pub fn maximum(&self) -> Option<[f64; 3]> {
-        self.scale()?;
+        scale(self.top)?;
         let is_top = |grade: f64| grade >= self.top * (1.0 - SLACK);
         let mut ends: Option<[f64; 2]> = None;
         let (mut length, mut moment, mut count, mut sum) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -187,6 +184,35 @@ fn continues(last: &Piece, piece: &Piece, same_cell: bool) -> bool {
     let meets = last.x[1] == piece.x[0] && last.grade[1] == piece.grade[0];
     let same = last.conclusion == piece.conclusion && last.cut == piece.cut;
     meets && same && last.conclusion.is_some() && (same_cell || piece.cut)
+}
+
+/// The factor, a power of two, that brings the highest grade into [1, 2); nothing for a set without
+/// height, which is one below the normal range of numbers, where digits are lost.
+pub(super) fn scale(top: f64) -> Option<f64> {
+    let exponent = top.to_bits() >> 52;
+    // Of 2^e the bits are e + 1023; 2046 is twice as much.
+    let fires = top >= f64::MIN_POSITIVE && top.is_finite();
+    fires.then(|| f64::from_bits((2046 - exponent).max(1) << 52))
+}
+
+/// Centre of gravity under pieces, computed about `reference`; nothing without area.
+pub(super) fn centroid(pieces: impl Iterator<Item = Piece>, reference: f64) -> Option<f64> {
+    let (mut area, mut moment) = (0.0_f64, 0.0_f64);
+    for piece in pieces {
+        area += piece.area();
+        moment += piece.moment(reference);
+    }
+    (area > 0.0).then(|| reference + moment / area)
+}
+
+/// The point that halves the area under pieces: from the left and from the right, which differ where
+/// there is a gap; nothing without area.
+pub(super) fn bisector(pieces: impl DoubleEndedIterator<Item = Piece> + Clone) -> Option<f64> {
+    let area: f64 = pieces.clone().map(|piece| piece.area()).sum();
+    let half = [0.5 * area, area * SLACK];
+    let turned = |p: Piece| Piece::plain([p.x[1], p.x[0]], [p.grade[1], p.grade[0]]);
+    let (left, right) = (reached(pieces.clone(), half)?, reached(pieces.rev().map(turned), half)?);
+    (area > 0.0).then_some(0.5 * left + 0.5 * right)
 }
 
 /// Where the area of pieces that are walked one after the other reaches `half`; at the end of a

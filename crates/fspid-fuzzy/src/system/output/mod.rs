@@ -2,7 +2,11 @@
 //!
 //! How that is done best is decided once, when the system is built: a [`Plan`].
 
+mod actors;
+mod curve;
+mod integral;
 mod joined;
+mod maximum;
 mod outline;
 mod partition;
 mod sampled;
@@ -11,54 +15,63 @@ mod weighted;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::build::{ResolvedConclusion, System};
-use super::defuzzifier::{Defuzzifier, Sampling};
-use super::parts::{Conclusion, Membership, Output, RuleBlock};
+use super::build::{ResolvedOutput, System};
+use super::defuzzifier::Defuzzifier;
+use super::parts::{Conclusion, Membership, Output};
 use super::workspace::Workspace;
+use crate::lanes::One;
 
+pub(crate) use actors::{Actors, Level};
+pub(crate) use integral::Integral;
 pub use joined::{Joined, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
+pub(crate) use sampled::{Concluded, Sampled, Samples};
+pub(crate) use weighted::value;
 
 /// How the number of one output is found.
 #[derive(Clone, Debug)]
 pub(crate) enum Plan {
     /// Centroid of evenly spaced triangles: the closed form of the fixed-size supervisor.
     Partition(Partition),
-    /// The outline of piecewise-linear sets, in closed form.
+    /// Read off the outline of piecewise-linear sets, in closed form.
     Outline,
-    /// Anything that is integrated or searched over the universe.
-    Integral,
+    /// Read off samples.
+    Sampled(Sampled),
+    /// Integrated with a certified bound on the error.
+    Integral(Integral),
     /// Weighted average or sum of the conclusions.
     Weighted,
 }
 
 impl Plan {
-    /// The plan for an output, what is concluded about it, and the blocks that do so.
-    pub(crate) fn new(
-        output: &Output,
-        conclusions: &[&ResolvedConclusion],
-        blocks: &[&RuleBlock],
-        outline: Option<&Outline>,
-    ) -> Self {
-        let Some(sampling) = output.defuzzifier.sampling() else { return Self::Weighted };
-        match (Partition::of(output, conclusions, blocks), outline) {
-            (Some(partition), _) => Self::Partition(partition),
-            (None, Some(_)) if sampling == Sampling::Exact => Self::Outline,
-            (None, _) => Self::Integral,
+    /// The plan for an output and what is concluded about it.
+    pub(crate) fn new(output: &Output, actors: &Actors, outline: Option<&Outline>) -> Self {
+        if let Some(partition) = Partition::of(output, actors) {
+            return Self::Partition(partition);
+        }
+        match (Sampled::of(output), Integral::of(output), outline) {
+            (Some(sampled), _, _) => Self::Sampled(sampled),
+            (None, Some(_), Some(_)) => Self::Outline,
+            (None, Some(integral), None) => Self::Integral(integral),
+            (None, None, _) => Self::Weighted,
         }
     }
 }
 
-/// Memory that the plans need.
-#[derive(Clone, Debug)]
+/// Memory that the plans need, shared by the outputs.
+#[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// Room for lifted parameters and the variables of formulas.
     pub(crate) room: Vec<f64>,
-    /// Strength of each term of the output at hand.
-    pub(crate) levels: Vec<f64>,
-    /// Of each output with an outline.
-    pub(crate) outlines: Vec<Option<Room>>,
+    /// Levels of the actors of the output at hand.
+    pub(crate) levels: Vec<Level>,
+    /// Strengths of terms from left to right.
+    pub(crate) sorted: Vec<One<f64>>,
+    /// Actors that fire, in the order in which they are joined.
+    pub(crate) order: Vec<usize>,
+    pub(crate) outline: Room,
+    pub(crate) samples: Samples,
 }
 
 impl Scratch {
@@ -71,12 +84,48 @@ impl Scratch {
             _ => None,
         });
         let room = of_inputs.chain(of_outputs).map(|m: &Membership| m.room(inputs)).max();
-        let terms = system.parts.outputs.iter().map(|o| o.terms.len()).max();
-        Self {
+        let actors = system.outputs.iter().map(|output| output.actors.len()).max();
+        let terms = system.parts.outputs.iter().map(|output| output.terms.len()).max();
+        let mut scratch = Self {
             room: vec![0.0; room.unwrap_or(0).max(inputs + 1)],
-            levels: vec![0.0; terms.unwrap_or(0)],
-            outlines: system.outputs.iter().map(|o| Some(o.outline.as_ref()?.room())).collect(),
+            levels: vec![Level::default(); actors.unwrap_or(0)],
+            order: Vec::with_capacity(actors.unwrap_or(0)),
+            sorted: vec![One(0.0); terms.unwrap_or(0)],
+            ..Self::default()
+        };
+        for output in &system.outputs {
+            if let Some(outline) = &output.outline {
+                outline.reserve(&output.actors, &mut scratch.outline);
+            }
+            if let Plan::Sampled(sampled) = &output.plan {
+                sampled.reserve(&output.actors, &mut scratch.samples);
+            }
         }
+        scratch
+    }
+}
+
+impl Clone for Scratch {
+    /// A clone has as much room as the original.
+    fn clone(&self) -> Self {
+        let (outline, samples) = (self.outline.clone(), self.samples.clone());
+        let (room, levels, sorted) = (self.room.clone(), self.levels.clone(), self.sorted.clone());
+        Self { room, levels, sorted, order: roomy_clone(&self.order), outline, samples }
+    }
+}
+
+/// A clone with the same capacity.
+pub(crate) fn roomy_clone<T: Clone>(original: &Vec<T>) -> Vec<T> {
+    let mut clone = Vec::with_capacity(original.capacity());
+    clone.extend_from_slice(original);
+    clone
+}
+
+/// Grade of a set at `x`; 0 for a conclusion that is no set.
+fn set_grade(conclusion: &Conclusion, x: f64, inputs: &[f64], room: &mut [f64]) -> f64 {
+    match conclusion {
+        Conclusion::Set { membership, .. } => membership.grade(x, inputs, room),
+        _ => 0.0,
     }
 }
 
@@ -88,31 +137,30 @@ impl System {
         output: &Output,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
-        let plan = &self.outputs.get(index)?.plan;
-        match (plan, output.defuzzifier) {
-            (Plan::Partition(partition), _) => {
-                self.levels(index, workspace);
-                Some((partition.centroid(&workspace.scratch.levels)?, 0.0))
+        if self.type2.is_some() {
+            return Some((self.middle_of_interval(index, output, workspace)?, 0.0));
+        }
+        let ResolvedOutput { plan, actors, conclusions, .. } = self.outputs.get(index)?;
+        let method = output.defuzzifier;
+        if let Plan::Weighted = plan {
+            return Some((self.weighted(index, output, method, workspace)?, 0.0));
+        }
+        if let Plan::Outline = plan {
+            return Some((read(method, self.outline(index, workspace)?)?, 0.0));
+        }
+        let Workspace { inputs, degrees, scratch, .. } = workspace;
+        let levels = actors.levels(conclusions, degrees, &mut scratch.levels);
+        let concluded = Concluded { output, actors, levels, inputs };
+        match plan {
+            Plan::Partition(partition) => {
+                Some((partition.centroid(levels, &mut scratch.sorted)?, 0.0))
             }
-            (Plan::Outline, method) => {
-                let joined = self.outline(index, workspace)?;
-                let value = match method {
-                    Defuzzifier::Centroid(_) => joined.centroid()?,
-                    Defuzzifier::Bisector(_) => joined.bisector()?,
-                    Defuzzifier::SmallestOfMaximum(_) => joined.maximum()?[0],
-                    Defuzzifier::MeanOfMaximum(_) => joined.maximum()?[1],
-                    Defuzzifier::LargestOfMaximum(_) => joined.maximum()?[2],
-                    Defuzzifier::WeightedAverage(_) | Defuzzifier::WeightedSum(_) => return None,
-                };
-                Some((value, 0.0))
+            Plan::Integral(integral) => integral.number(method, &concluded, &mut scratch.order),
+            Plan::Sampled(sampled) => {
+                let Scratch { room, samples, .. } = scratch;
+                Some((sampled.number(method, &concluded, room, samples)?, 0.0))
             }
-            (Plan::Weighted, method) => {
-                Some((self.weighted(index, output, method, workspace)?, 0.0))
-            }
-            (Plan::Integral, Defuzzifier::Centroid(Sampling::Exact)) => None,
-            (Plan::Integral, method) => {
-                Some((self.sampled(index, output, method, workspace)?, 0.0))
-            }
+            Plan::Outline | Plan::Weighted => None,
         }
     }
 
@@ -120,25 +168,22 @@ impl System {
     /// the output's defuzzifier, as long as its sets are piecewise linear and minimum or product,
     /// maximum, bounded or unbounded sum keep them so; nothing otherwise.
     pub fn outline<'w>(&self, output: usize, workspace: &'w mut Workspace) -> Option<&'w Joined> {
-        let resolved = self.outputs.get(output)?;
-        let room = workspace.scratch.outlines.get_mut(output)?.as_mut()?;
-        resolved.outline.as_ref()?.join(&resolved.conclusions, &workspace.degrees, room);
+        let ResolvedOutput { actors, outline, conclusions, .. } = self.outputs.get(output)?;
+        let Scratch { levels, outline: room, .. } = &mut workspace.scratch;
+        let levels = actors.levels(conclusions, &workspace.degrees, levels);
+        outline.as_ref()?.join(actors, levels, room);
         Some(&room.joined)
     }
+}
 
-    /// Strength of each term: the strongest of its conclusions.
-    fn levels(&self, index: usize, workspace: &mut Workspace) {
-        let Workspace { degrees, scratch, .. } = workspace;
-        scratch.levels.fill(0.0);
-        for &conclusion in self.outputs.get(index).map_or(&[][..], |o| &o.conclusions) {
-            let (Some(resolved), Some(&degree)) =
-                (self.conclusions.get(conclusion), degrees.get(conclusion))
-            else {
-                continue;
-            };
-            if let Some(level) = scratch.levels.get_mut(resolved.term) {
-                *level = level.max(degree);
-            }
-        }
+/// What a method reads off an outline.
+fn read(method: Defuzzifier, joined: &Joined) -> Option<f64> {
+    match method {
+        Defuzzifier::Centroid(_) => joined.centroid(),
+        Defuzzifier::Bisector(_) => joined.bisector(),
+        Defuzzifier::SmallestOfMaximum(_) => joined.maximum().map(|[smallest, _, _]| smallest),
+        Defuzzifier::MeanOfMaximum(_) => joined.maximum().map(|[_, mean, _]| mean),
+        Defuzzifier::LargestOfMaximum(_) => joined.maximum().map(|[_, _, largest]| largest),
+        Defuzzifier::WeightedAverage(_) | Defuzzifier::WeightedSum(_) => None,
     }
 }

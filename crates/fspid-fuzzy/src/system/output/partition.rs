@@ -2,11 +2,12 @@
 
 use alloc::vec::Vec;
 
-use super::super::build::ResolvedConclusion;
 use super::super::defuzzifier::Defuzzifier;
-use super::super::parts::{Conclusion, Membership, Output, OutputTerm, RuleBlock};
+use super::super::parts::{Conclusion, Membership, Output, OutputTerm};
+use super::actors::{Actors, Level};
 use crate::centroid::centroid;
 use crate::defuzzifier;
+use crate::lanes::One;
 use crate::membership::ShapeKind;
 use crate::norm::{SNormKind, TNormKind};
 
@@ -20,24 +21,20 @@ const COUNTS: core::ops::RangeInclusive<usize> = 2..=64;
 #[derive(Clone, Debug)]
 pub(crate) struct Partition {
     rule: defuzzifier::Defuzzifier,
-    /// Positions of the terms from left to right.
-    order: Vec<usize>,
+    /// The actors of the terms from left to right, where there are any.
+    actors: Vec<Option<usize>>,
     middle: f64,
     spacing: f64,
 }
 
 impl Partition {
     /// The partition that an output's terms make, if they do and are joined as the formula needs.
-    pub(crate) fn of(
-        output: &Output,
-        conclusions: &[&ResolvedConclusion],
-        blocks: &[&RuleBlock],
-    ) -> Option<Self> {
+    pub(crate) fn of(output: &Output, actors: &Actors) -> Option<Self> {
         let Defuzzifier::Centroid(sampling) = output.defuzzifier else { return None };
-        let (rule, universe) = (sampling.fixed_size()?, output.universe?);
+        let (rule, universe) = (sampling.fixed_size(), output.universe?);
         let joined = output.aggregation.is(SNormKind::Maximum)
-            && blocks.iter().all(|block| block.implication.is(TNormKind::Minimum));
-        if !joined || conclusions.is_empty() || !COUNTS.contains(&output.terms.len()) {
+            && actors.list().iter().all(|actor| actor.implication.is(TNormKind::Minimum));
+        if !joined || actors.len() == 0 || !COUNTS.contains(&output.terms.len()) {
             return None;
         }
         let mut order: Vec<usize> = (0..output.terms.len()).collect();
@@ -52,21 +49,26 @@ impl Partition {
                 corners.iter().zip(ideal).all(|(c, i)| (c - i).abs() <= slack)
             })
         });
-        fits.then_some(Self { rule, order, middle, spacing })
+        let own = order.iter().map(|&term| actors.about(term).next()).collect();
+        fits.then_some(Self { rule, actors: own, middle, spacing })
     }
 
-    /// The centroid, given the strength of each term; nothing if none fires.
-    pub(crate) fn centroid(&self, levels: &[f64]) -> Option<f64> {
-        let mut sorted = [0.0_f64; 64];
-        let sorted = sorted.get_mut(..self.order.len())?;
+    /// The centroid, given the level of each actor; nothing if none fires. `sorted` has room for as
+    /// many numbers as there are terms.
+    pub(crate) fn centroid(&self, levels: &[Level], sorted: &mut [One<f64>]) -> Option<f64> {
+        let sorted = sorted.get_mut(..self.actors.len())?;
         let mut strongest = 0.0_f64;
-        for (place, &term) in sorted.iter_mut().zip(&self.order) {
-            *place = levels.get(term).copied().unwrap_or(0.0);
-            strongest = strongest.max(*place);
+        for (place, actor) in sorted.iter_mut().zip(&self.actors) {
+            let level = actor.and_then(|actor| levels.get(actor));
+            *place = One(level.map_or(0.0, |level| level.strength));
+            strongest = strongest.max(place.0);
         }
         // Below the normal range the quotient of moments would lose its digits.
         let answers = strongest >= f64::MIN_POSITIVE;
-        answers.then(|| self.middle + centroid(self.rule, sorted) * self.spacing)
+        answers.then(|| {
+            let One(centre) = centroid(self.rule, sorted, One(0.0));
+            self.middle + centre * self.spacing
+        })
     }
 }
 

@@ -4,6 +4,7 @@ use super::super::build::System;
 use super::super::defuzzifier::{Defuzzifier, SetReading};
 use super::super::parts::{Conclusion, Membership, Output};
 use super::super::workspace::Workspace;
+use super::joined::scale;
 
 impl System {
     /// $\sum w_i z_i / \sum w_i$ or $\sum w_i z_i$ over the conclusions about an output; nothing if
@@ -21,22 +22,25 @@ impl System {
             _ => return None,
         };
         let Workspace { inputs, degrees, scratch, .. } = workspace;
+        let conclusions = &self.outputs.get(index)?.conclusions;
+        let strongest = conclusions.iter().filter_map(|&own| degrees.get(own)).copied();
+        let scale = scale(strongest.fold(0.0, f64::max))?;
         let (mut sum, mut weights) = (0.0_f64, 0.0_f64);
-        for &position in &self.outputs.get(index)?.conclusions {
+        for &position in conclusions {
             let (resolved, &weight) = (self.conclusions.get(position)?, degrees.get(position)?);
             if weight > 0.0 {
                 let conclusion = &output.terms.get(resolved.term)?.conclusion;
-                sum += weight * value(conclusion, reading, weight, inputs, &mut scratch.room);
-                weights += weight;
+                let value = value(conclusion, reading, weight, inputs, &mut scratch.room);
+                sum += weight * scale * value;
+                weights += weight * scale;
             }
         }
-        let fires = weights >= f64::MIN_POSITIVE;
-        fires.then(|| if averages { sum / weights } else { sum })
+        Some(if averages { sum / weights } else { sum / scale })
     }
 }
 
 /// The number that a conclusion stands for at a strength.
-pub(super) fn value(
+pub(crate) fn value(
     conclusion: &Conclusion,
     reading: SetReading,
     strength: f64,

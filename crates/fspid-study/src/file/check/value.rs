@@ -28,6 +28,10 @@ pub(super) fn check(
             Value::Boolean(boolean) => Some(Checked::Boolean(boolean)),
             _ => wrong_type(report, item, path, kind),
         },
+        Kind::FreeText => match &item.value {
+            Value::Text(text) => Some(Checked::Text(text.clone())),
+            _ => wrong_type(report, item, path, kind),
+        },
         Kind::Text | Kind::Path => match &item.value {
             Value::Text(text) if !text.trim().is_empty() => Some(Checked::Text(text.clone())),
             Value::Text(_) => {
@@ -41,6 +45,7 @@ pub(super) fn check(
         Kind::Rules(grids) => rules(report, item, path, grids),
         Kind::Grid => grid::check(report, item, path).map(Checked::Grid),
         Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
+        Kind::Own { .. } => Some(Checked::Item(item.clone())),
         Kind::Numbers { unit, range, least, most } => {
             numbers(report, item, path, (*range, unit), (*least, *most)).map(Checked::Numbers)
         }
@@ -59,7 +64,7 @@ pub(super) fn allowed(kind: &Kind) -> String {
         Kind::Integer { least, most } if least == most => format!("{least}"),
         Kind::Integer { least, most } => format!("a whole number from {least} to {most}"),
         Kind::Boolean => "true or false".to_owned(),
-        Kind::Text => "a text in quotes".to_owned(),
+        Kind::Text | Kind::FreeText => "a text in quotes".to_owned(),
         Kind::Path => "the path of a file in quotes".to_owned(),
         Kind::Word(words) => quoted(words),
         Kind::Preset(list) => quoted(&list()),
@@ -69,6 +74,7 @@ pub(super) fn allowed(kind: &Kind) -> String {
         ),
         Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
         Kind::Defuzzifier => Defuzzifier::NAMES.to_owned(),
+        Kind::Own { allowed, .. } => allowed(),
         Kind::Numbers { range: Range::Finite, .. } => "a list of finite numbers".to_owned(),
         Kind::Numbers { range, unit, .. } => {
             format!("a list of numbers, each {}", range.words(unit))

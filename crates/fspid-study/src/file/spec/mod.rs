@@ -98,6 +98,8 @@ pub(crate) enum Kind {
     Boolean,
     /// Any text that is not empty.
     Text,
+    /// Any text, also none at all.
+    FreeText,
     /// One of these words.
     Word(&'static [&'static str]),
     /// The name of something that the program carries.
@@ -110,6 +112,11 @@ pub(crate) enum Kind {
     Grid,
     /// A defuzzifier by name.
     Defuzzifier,
+    /// Something that its reader checks: what it may be in words, and its JSON Schema.
+    Own {
+        allowed: fn() -> String,
+        schema: fn() -> serde_json::Value,
+    },
     Numbers {
         unit: &'static str,
         range: Range,

@@ -4,8 +4,9 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::build::System;
-use super::parts::{Conclusion, Membership, Parts};
+use super::super::build::System;
+use super::super::error::SystemError;
+use super::super::parts::{Conclusion, Membership, Parts};
 
 /// A number in a system that answers depend on smoothly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -74,10 +75,11 @@ impl Parts {
         let mut all = Vec::new();
         for (input, variable) in self.inputs.iter().enumerate() {
             for (term, found) in variable.terms.iter().enumerate() {
-                all.extend(
-                    (0..found.membership.count())
-                        .map(|index| Parameter::InputShape { input, term, index }),
-                );
+                all.extend((0..found.membership.count()).map(|index| Parameter::InputShape {
+                    input,
+                    term,
+                    index,
+                }));
                 all.push(Parameter::InputHeight { input, term });
             }
         }
@@ -112,10 +114,9 @@ impl Parts {
             | Parameter::Coefficient { output, term, .. } => {
                 let conclusion = &self.outputs.get(output)?.terms.get(term)?.conclusion;
                 match (parameter, conclusion) {
-                    (
-                        Parameter::OutputShape { index, .. },
-                        Conclusion::Set { membership, .. },
-                    ) => membership.parameter(index),
+                    (Parameter::OutputShape { index, .. }, Conclusion::Set { membership, .. }) => {
+                        membership.parameter(index)
+                    }
                     (Parameter::OutputHeight { .. }, Conclusion::Set { membership, .. }) => {
                         Some(membership.height())
                     }
@@ -160,10 +161,9 @@ impl Parts {
             | Parameter::Coefficient { output, term, .. } => {
                 let conclusion = &mut self.outputs.get_mut(output)?.terms.get_mut(term)?.conclusion;
                 match (parameter, conclusion) {
-                    (
-                        Parameter::OutputShape { index, .. },
-                        Conclusion::Set { membership, .. },
-                    ) => membership.place(index),
+                    (Parameter::OutputShape { index, .. }, Conclusion::Set { membership, .. }) => {
+                        membership.place(index)
+                    }
                     (Parameter::OutputHeight { .. }, Conclusion::Set { membership, .. }) => {
                         Some(membership.height_place())
                     }
@@ -237,18 +237,20 @@ impl Parts {
 fn of_conclusion(output: usize, term: usize, found: &Conclusion, all: &mut Vec<Parameter>) {
     match found {
         Conclusion::Set { membership, .. } => {
-            all.extend(
-                (0..membership.count())
-                    .map(|index| Parameter::OutputShape { output, term, index }),
-            );
+            all.extend((0..membership.count()).map(|index| Parameter::OutputShape {
+                output,
+                term,
+                index,
+            }));
             all.push(Parameter::OutputHeight { output, term });
         }
         Conclusion::Constant(_) => all.push(Parameter::Constant { output, term }),
         Conclusion::Linear { coefficients, .. } => {
-            all.extend(
-                (0..coefficients.len())
-                    .map(|input| Parameter::Coefficient { output, term, input }),
-            );
+            all.extend((0..coefficients.len()).map(|input| Parameter::Coefficient {
+                output,
+                term,
+                input,
+            }));
             all.push(Parameter::Constant { output, term });
         }
         Conclusion::Interval(_) | Conclusion::Formula(_) => {}
@@ -303,10 +305,7 @@ impl System {
     ///
     /// # Errors
     /// What [`System::new`] says of the parts as they are then.
-    pub fn with_parameters(
-        &self,
-        values: &[(Parameter, f64)],
-    ) -> Result<Self, Vec<super::SystemError>> {
+    pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, Vec<SystemError>> {
         let mut parts = self.parts.clone();
         for &(parameter, value) in values {
             parts.set_parameter(parameter, value);

@@ -1,0 +1,52 @@
+//! `fspid audit`: what is true of a fuzzy system.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Format, Loading, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::fuzzy_system::{AuditQuestion, audit};
+use fspid_study::{output, report};
+
+/// Say what is true of a fuzzy system: its rules as written, and its surfaces with proof.
+///
+/// Ranges, slopes and shares are proved by interval arithmetic; what could not be proved within
+/// the budget is said to be open, never guessed.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: String,
+    #[command(flatten)]
+    loading: Loading,
+    /// The range over which an input is looked at; that of the file if left out.
+    #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
+    span: Vec<String>,
+    /// An input at rest; 0, or the middle of a range without 0, if left out.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    rest: Vec<String>,
+    /// Most boxes that are looked at for each single question; more of them prove closer bounds.
+    #[arg(long, value_name = "N")]
+    boxes: Option<u64>,
+    /// Write a report that opens offline in a browser.
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let system = arguments.loading.load(&arguments.system)?;
+    let question =
+        AuditQuestion { spans: &arguments.span, rest: &arguments.rest, boxes: arguments.boxes };
+    let audit = audit(&system, &question).map_err(Failure::input)?;
+    if let Some(path) = &arguments.report {
+        output::write(path, report::of_audit(&audit))?;
+        note(format_args!("wrote {}", path.display()));
+    }
+    match arguments.format {
+        Format::Text => print(&audit.text()),
+        Format::Json => print(&json_text(&audit.json())),
+    }
+}

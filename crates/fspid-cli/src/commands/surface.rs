@@ -1,0 +1,78 @@
+//! `fspid surface`: a fuzzy system, drawn.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::{Loading, drawings};
+use crate::exit::{Failure, print};
+use fspid_study::fuzzy_system::{SliceQuestion, slice};
+use fspid_study::output;
+
+/// Draw the outputs of a fuzzy system over two of its inputs, or over its only one.
+///
+/// Without --out the drawing of the one output goes to standard output.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: String,
+    #[command(flatten)]
+    loading: Loading,
+    /// The input to the right; the first one if left out.
+    #[arg(long, value_name = "NAME")]
+    x: Option<String>,
+    /// The input to the back; the next one if left out.
+    #[arg(long, value_name = "NAME")]
+    y: Option<String>,
+    /// Where another input stays; the middle of its range if left out.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    fix: Vec<String>,
+    /// The range over which an input is drawn; that of the file if left out.
+    #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
+    span: Vec<String>,
+    /// The output; all of them if left out.
+    #[arg(long, value_name = "NAME")]
+    output: Option<String>,
+    /// Nodes along each input.
+    #[arg(long, value_name = "N")]
+    nodes: Option<usize>,
+    /// The drawing, or the folder for one drawing an output.
+    #[arg(long, value_name = "FILE.svg or FOLDER")]
+    out: Option<PathBuf>,
+    /// Write the values at all nodes to this file; `-` is standard output.
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let system = arguments.loading.load(&arguments.system)?;
+    let question = SliceQuestion {
+        x: arguments.x.as_deref(),
+        y: arguments.y.as_deref(),
+        fixed: &arguments.fix,
+        spans: &arguments.span,
+        output: arguments.output.as_deref(),
+        nodes: arguments.nodes,
+    };
+    let slice = slice(&system, &question).map_err(Failure::input)?;
+    if let Some(path) = &arguments.csv {
+        match path == Path::new("-") {
+            true => print(&slice.csv())?,
+            false => output::write(path, slice.csv())?,
+        }
+    }
+    let figures = slice.figures();
+    let named = figures.iter().map(|(name, svg)| (*name, svg.as_str()));
+    match (&arguments.out, figures.as_slice()) {
+        (Some(path), _) => drawings::write(path, named.collect()),
+        (None, _) if arguments.csv.is_some() => Ok(()),
+        (None, [(_, svg)]) => print(svg.as_str()),
+        (None, _) => {
+            let names: Vec<&str> = named.map(|(name, _)| name).collect();
+            let names = names.join(", ");
+            Err(Failure::input(format_args!(
+                "there are several outputs ({names}); add --out FOLDER, or --output NAME"
+            )))
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Steps towards the nearest system that a format can say.
+
+use fspid_fuzzy::Formula;
+use fspid_fuzzy::system::{FallbackValue, Output, Parts, Sampling};
+
+use crate::loss::Loss;
+use crate::number::written as number;
+
+/// Advice for interval type-2 systems.
+pub(crate) const TYPE_1: &str = "a type-1 system";
+
+/// Rules that are switched off never fire: leaving them out changes no answer.
+pub(crate) fn without_disabled_rules(parts: &mut Parts, loss: &mut Loss) {
+    for block in &mut parts.blocks {
+        let before = block.rules.len();
+        block.rules.retain(|rule| rule.enabled);
+        let gone = before - block.rules.len();
+        if gone > 0 {
+            loss.note(format!("{gone} rules that are switched off are left out"));
+        }
+    }
+}
+
+/// For formats whose rules have no names.
+pub(crate) fn without_rule_names(parts: &mut Parts, loss: &mut Loss) {
+    let mut gone = 0;
+    for rule in parts.blocks.iter_mut().flat_map(|block| &mut block.rules) {
+        gone += usize::from(!rule.name.is_empty());
+        rule.name.clear();
+    }
+    if gone > 0 {
+        loss.note(format!("the names of {gone} rules are left out"));
+    }
+}
+
+/// For formats that know no default but a number: the middle of the universe as a number.
+pub(crate) fn numbered_fallback(output: &mut Output, loss: &mut Loss) {
+    if output.fallback.value != FallbackValue::Middle {
+        return;
+    }
+    let middle = output.universe.map(|universe| universe.middle());
+    output.fallback.value = middle.map_or(FallbackValue::Nothing, FallbackValue::Number);
+    let written = middle.map_or("nothing".into(), number);
+    loss.note(format!("`{}`: the default is its middle; written: {written}", output.name));
+}
+
+/// For formats that know only some ways to compute integrals.
+pub(crate) fn sampled(
+    output: &mut Output,
+    loss: &mut Loss,
+    instead: Sampling,
+    known: impl Fn(Sampling) -> bool,
+) {
+    let Some(sampling) = output.defuzzifier.sampling().filter(|&sampling| !known(sampling)) else {
+        return;
+    };
+    let message = format!("integrals are computed by `{sampling}`, which has no words here");
+    loss.lose(&output.name, &message, &format!("`{instead}`"));
+    output.defuzzifier = output.defuzzifier.with_sampling(instead);
+}
+
+/// Names of the inputs, for formulas.
+pub(crate) fn input_names(parts: &Parts) -> Vec<&str> {
+    parts.inputs.iter().map(|input| input.name.as_str()).collect()
+}
+
+/// A formula is written as it was given: its names must still mean the same variables.
+pub(crate) fn check_formula(name: &str, formula: &Formula, names: &[&str], loss: &mut Loss) {
+    let one_line = !formula.text().contains(['\n', '\r', '#', ';']);
+    if !one_line || formula.text().trim() != formula.text() {
+        loss.cannot(name, "the formula has no words here", "one line without `#` and `;`");
+    } else if Formula::parse(formula.text(), names).as_ref() != Ok(formula) {
+        let expected = format!("one in {}", names.join(", "));
+        loss.cannot(name, "the formula does not name the inputs as they are written", expected);
+    }
+}

@@ -1,0 +1,25 @@
+//! Writing.
+
+mod adapt;
+mod fit;
+mod norm;
+mod options;
+mod set;
+mod text;
+
+use fspid_fuzzy::system::Parts;
+
+use super::Dialect;
+use crate::loss::Loss;
+use crate::note::{Problems, WriteOptions, Writing};
+
+/// Writes a system in a dialect of FCL, with every digit that a number needs.
+///
+/// # Errors
+/// What the dialect has no words for, unless `options` allow a loss; parts that are no system.
+pub fn write(parts: &Parts, dialect: Dialect, options: WriteOptions) -> Result<Writing, Problems> {
+    let mut loss = Loss::new(parts, options)?;
+    let adapted = adapt::adapted(parts, dialect, &mut loss);
+    let text = text::Writer { parts: &adapted, dialect, loss: &mut loss }.text();
+    loss.finish(text, parts, &adapted)
+}

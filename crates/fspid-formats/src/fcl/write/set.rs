@@ -1,0 +1,118 @@
+//! Which sets a dialect has words for.
+
+use fspid_fuzzy::membership::ShapeKind;
+use fspid_fuzzy::system::{Membership, Universe};
+
+use super::fit;
+use crate::fcl::Dialect;
+use crate::loss::Loss;
+use crate::number::written as number;
+use crate::vocabulary::shapes::{self, FUZZYLITE, JFUZZYLOGIC, Row};
+
+/// The words of a dialect.
+fn rows(dialect: Dialect) -> &'static [Row] {
+    match dialect {
+        Dialect::Iec => &[],
+        Dialect::Fuzzylite => FUZZYLITE,
+        Dialect::JFuzzyLogic => JFUZZYLOGIC,
+    }
+}
+
+/// The text of a set, if the dialect has words for it.
+pub(super) fn written(set: &Membership, dialect: Dialect) -> Option<String> {
+    match set {
+        Membership::Shape { kind, params, height } => singleton(*kind, params, *height)
+            .or_else(|| by_word(*kind, params, *height, dialect))
+            .or_else(|| by_points(*kind, params, *height)),
+        Membership::Formula { formula, height } if dialect == Dialect::Fuzzylite => {
+            let factor = (*height < 1.0).then(|| format!("{} * ", number(*height)));
+            let text = formula.text();
+            Some(match factor {
+                Some(factor) => format!("Function {factor}({text})"),
+                None => format!("Function {text}"),
+            })
+        }
+        Membership::Formula { .. } => None,
+    }
+}
+
+fn singleton(kind: ShapeKind, params: &[f64], height: f64) -> Option<String> {
+    match params {
+        &[value] if kind == ShapeKind::Singleton && !(height < 1.0) => Some(number(value)),
+        _ => None,
+    }
+}
+
+/// A word and numbers; in fuzzylite the height follows them. Points have their own way.
+fn by_word(kind: ShapeKind, params: &[f64], height: f64, dialect: Dialect) -> Option<String> {
+    if kind == ShapeKind::Points || (height < 1.0 && dialect != Dialect::Fuzzylite) {
+        return None;
+    }
+    let row = shapes::of_kind(rows(dialect), kind)?;
+    // Half of the smallest width is none.
+    row.kind.check(&row.ours(row.theirs(params))).ok()?;
+    let height = (height < 1.0).then_some(height);
+    let numbers = row.theirs(params).into_iter().chain(height).map(number);
+    Some(format!("{} {}", row.word, numbers.collect::<Vec<_>>().join(" ")))
+}
+
+/// The corners of a piecewise-linear set.
+fn by_points(kind: ShapeKind, params: &[f64], height: f64) -> Option<String> {
+    let mut points: Vec<f64> = Vec::new();
+    kind.vertices(params, &mut |vertex| {
+        let point = [vertex.x, height * vertex.grade];
+        // Corners that fall together are one; points stay as they are.
+        if kind == ShapeKind::Points || !points.ends_with(&point) {
+            points.extend(point);
+        }
+    });
+    let fits = !points.is_empty() && ShapeKind::Points.check(&points).is_ok();
+    fits.then(|| listed(&points))
+}
+
+fn listed(points: &[f64]) -> String {
+    let pairs = points.chunks_exact(2).filter_map(|pair| match pair {
+        &[x, grade] => Some(format!("({}, {})", number(x), number(grade))),
+        _ => None,
+    });
+    pairs.collect::<Vec<_>>().join(" ")
+}
+
+/// Puts straight pieces in place of a set that the dialect has no words for, if losses are allowed.
+pub(super) fn adapt(
+    name: &str,
+    set: &mut Membership,
+    universe: Option<Universe>,
+    dialect: Dialect,
+    loss: &mut Loss,
+) {
+    if written(set, dialect).is_some() {
+        return;
+    }
+    let Membership::Shape { kind, params, height } = &*set else {
+        loss.cannot(name, no_words("a formula", dialect), "fuzzylite's dialect");
+        return;
+    };
+    let Some(universe) = universe else {
+        let expected = "another dialect, or a range over which it can be approximated";
+        loss.cannot(name, no_words(kind.name(), dialect), expected);
+        return;
+    };
+    let mut corners = Vec::new();
+    kind.corners(params, &mut |x| corners.push(x));
+    let grade = |x: f64| height * kind.grade(params, x);
+    let fit = fit::fit(grade, universe.lower, universe.upper, corners);
+    let count = fit.points.len() / 2;
+    let instead = format!(
+        "{count} points with grades within {:.1e} of the curve, level beyond {} and {}",
+        fit.error,
+        number(universe.lower),
+        number(universe.upper)
+    );
+    loss.lose(name, &no_words(kind.name(), dialect), &instead);
+    *set = Membership::Shape { kind: ShapeKind::Points, params: fit.points, height: 1.0 };
+}
+
+fn no_words(what: &str, dialect: Dialect) -> String {
+    format!("{what} has no words in the dialect of {}", dialect.name())
+}

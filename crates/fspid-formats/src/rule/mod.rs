@@ -1,0 +1,16 @@
+//! Rules as FCL and fuzzylite write them: `if x is very low and (y is a or y is b) then z is c with 0.5`.
+//!
+//! Keywords are read in any case. *And* binds tighter than *or*. Conclusions are separated by *and*
+//! or a comma.
+
+mod read;
+mod write;
+
+pub(crate) use read::Reader;
+pub(crate) use write::{Style, written};
+
+/// Words that mean something in every rule and cannot be names.
+pub(crate) const RESERVED: [&str; 7] = ["if", "is", "and", "or", "then", "with", "not"];
+
+/// Deepest nesting of brackets and negations.
+pub(crate) const MAX_DEPTH: usize = 64;

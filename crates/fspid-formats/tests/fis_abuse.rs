@@ -1,0 +1,166 @@
+//! Texts that nobody means well: they end with an answer, without a panic, in linear time and
+//! without memory for what they only announce.
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use fspid_formats::{MAX_INPUT_BYTES, fis};
+
+const PAPER: &str = include_str!("data/fis/paper.fis");
+
+/// Much more than any of the texts takes, even in a build without optimisation on a busy machine.
+const LIMIT: Duration = Duration::from_secs(30);
+
+/// The first problem of a text that is refused, in time.
+fn refused(text: &str) -> String {
+    let begin = Instant::now();
+    let problems = fis::read(text).expect_err("no system").0;
+    assert!(begin.elapsed() < LIMIT, "{:?}", begin.elapsed());
+    assert!(problems.len() <= 51, "{} problems", problems.len());
+    problems.iter().for_each(|problem| assert!(problem.to_string().len() < 1000, "{problem}"));
+    problems[0].to_string()
+}
+
+fn filled(with: &str) -> String {
+    with.repeat(MAX_INPUT_BYTES / with.len())
+}
+
+#[test]
+fn ten_mebibytes_of_anything_are_refused_in_time() {
+    for with in [
+        "x",
+        "\0",
+        "[",
+        "]",
+        "'",
+        "\"",
+        "=",
+        "%",
+        "\n",
+        "\r",
+        "[System]\n",
+        "a=b\n",
+        "[[[[\n",
+        "ä",
+        "\u{202e}",
+    ] {
+        refused(&filled(with));
+        refused(&format!(
+            "[System]\n{}",
+            filled(&format!("{with}\n")).split_at(5 << 20).0.trim_end_matches('ä')
+        ));
+    }
+}
+
+#[test]
+fn a_text_beyond_the_limit_is_refused_at_once() {
+    let text = "x".repeat(MAX_INPUT_BYTES + 1);
+    assert_eq!(refused(&text), "the text has 10485761 bytes; expected at most 10485760");
+}
+
+#[test]
+fn one_line_of_ten_mebibytes_is_refused_in_time() {
+    for (begin, with) in [
+        ("[Input1]\nRange=[", "1 "),
+        ("[Input1]\nMF1='a':'trimf',[", "1,"),
+        ("[Input1]\nName='", "''"),
+        ("[Rules]\n", "1 "),
+        ("[Rules]\n1, 1 (", "("),
+        ("[System]\nAndMethod='", "min"),
+        ("[Input", "9"),
+        ("[Input1]\nMF", "1"),
+    ] {
+        refused(&format!("{begin}{}", with.repeat((MAX_INPUT_BYTES - 100) / with.len())));
+    }
+}
+
+#[test]
+fn a_million_rules_are_read_in_time() {
+    let (head, _) = PAPER.split_once("[Rules]\n").expect("rules");
+    let head = head.replacen("dkp", "d", 1);
+    let rules: String = (0..600_000).map(|n| format!("{} 1,1 1 1(1):1\n", n % 7 + 1)).collect();
+    let begin = Instant::now();
+    let reading = fis::read(&format!("{head}[Rules]\n{rules}")).expect("a large system");
+    assert!(begin.elapsed() < LIMIT, "{:?}", begin.elapsed());
+    assert_eq!(reading.parts.blocks[0].rules.len(), 600_000);
+}
+
+#[test]
+fn announced_counts_take_no_memory() {
+    for count in ["1e18", "99999999999999999999", "1e308"] {
+        let text = PAPER.replace("NumMFs=7", &format!("NumMFs={count}"));
+        let text = text.replace("NumRules=49", &format!("NumRules={count}"));
+        let reading = fis::read(&text).expect("counts are only told");
+        assert_eq!(reading.parts.inputs[0].terms.len(), 7);
+    }
+    for section in
+        ["[Input999999999999]\nRange=[0 1]", "[Output18446744073709551615]\nRange=[0 1]\nNumMFs=0"]
+    {
+        let text = format!("{section}\n{PAPER}");
+        assert!(refused(&text).contains("is left out"), "{}", refused(&text));
+    }
+}
+
+#[test]
+fn membership_functions_without_end_are_read_in_time() {
+    let mut text = String::from("[Input1]\nRange=[0 1]\n");
+    for n in 1..=150_000 {
+        writeln!(text, "MF{n}='a':'trimf',[0 1 2]").expect("a string");
+    }
+    refused(&text);
+}
+
+#[test]
+fn variables_without_end_are_refused_in_time() {
+    let sections = (1..=200_000).map(|n| format!("[Input{n}]\nRange=[0 1]\n"));
+    refused(&sections.collect::<String>());
+}
+
+#[test]
+fn numbers_out_of_this_world_are_refused_or_read_and_nothing_else() {
+    for number in
+        ["1e999", "-1e999", "nan", "9".repeat(5000).as_str(), "0x1", "1e", "١", "1/0", "--1"]
+    {
+        let text = PAPER.replacen("Range=[-5 5]", &format!("Range=[{number} 5]"), 1);
+        let _ = fis::read(&text);
+        let text = PAPER.replacen("[Rules]\n1 ", &format!("[Rules]\n{number} "), 1);
+        refused(&text);
+    }
+}
+
+#[test]
+fn control_characters_never_reach_a_message() {
+    let message = refused(&PAPER.replacen("OrMethod='max'", "OrMethod='m\0\u{1b}[31max'", 1));
+    assert!(!message.contains(['\0', '\u{1b}']), "{message:?}");
+}
+
+/// Twice the text takes at most about twice the time; a factor of 4 would be quadratic. The least of
+/// several runs is taken, because the machine may be busy.
+#[test]
+fn reading_takes_linear_time() {
+    let (head, rules) = PAPER.split_once("[Rules]\n").expect("rules");
+    let time = |copies: usize| {
+        let text = format!("{head}[Rules]\n{}", rules.repeat(copies));
+        let run = || {
+            let begin = Instant::now();
+            assert!(fis::read(&text).is_ok());
+            begin.elapsed()
+        };
+        (0..5).map(|_| run()).min().expect("five runs")
+    };
+    let (once, four) = (time(250), time(1000));
+    assert!(four < once * 10, "{once:?} for 250 copies, {four:?} for 1000");
+}
+
+#[test]
+fn noise_is_refused() {
+    // A multiplicative generator: the same noise every time.
+    let mut state = 1_u32;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        char::from((state >> 24) as u8)
+    };
+    let noise: String = (0..1_000_000).map(|_| next()).collect();
+    refused(&noise);
+    refused(&format!("[Rules]\n{noise}"));
+}

@@ -1,0 +1,199 @@
+//! Interval type-2 systems.
+
+#![cfg(feature = "alloc")]
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+
+use fspid_fuzzy::OutOfRange;
+use fspid_fuzzy::hedge::Hedge;
+use fspid_fuzzy::membership::ShapeKind;
+use fspid_fuzzy::system::{
+    Activation, Antecedent, Conclusion, Consequent, Defuzzifier, Fallback, Input, Membership,
+    Output, OutputTerm, Parts, Rule, RuleBlock, Sampling, SetReading, Statement, System, Term,
+    Universe, Variable,
+};
+
+fn triangle(corners: [f64; 3], height: f64) -> Membership {
+    Membership::Shape { kind: ShapeKind::Triangle, params: corners.to_vec(), height }
+}
+
+/// A triangle and a lower one within it: narrower by `blur` on each side, lower by `drop`.
+fn blurred(corners: [f64; 3], blur: f64, drop: f64) -> (Membership, Option<Membership>) {
+    let [left, peak, right] = corners;
+    let lower = triangle([left + blur, peak, right - blur], 1.0 - drop);
+    (triangle(corners, 1.0), (blur > 0.0 || drop > 0.0).then_some(lower))
+}
+
+fn system(blur: f64, drop: f64, defuzzifier: Defuzzifier, numbers: bool) -> System {
+    let terms = [[-1.0, 0.0, 1.0], [0.0, 1.0, 2.0]].map(|c| blurred(c, blur, drop));
+    let input_term = |(index, (membership, lower)): (usize, (Membership, Option<Membership>))| {
+        Term { name: format!("set{index}"), membership, lower }
+    };
+    let input = |name: &str| Input {
+        name: name.into(),
+        description: String::new(),
+        enabled: true,
+        universe: Some(Universe { lower: 0.0, upper: 1.0 }),
+        out_of_range: OutOfRange::Evaluate,
+        terms: terms.clone().into_iter().enumerate().map(input_term).collect(),
+    };
+    let conclusions: Vec<Conclusion> = if numbers {
+        vec![Conclusion::Interval([-1.0, -0.5]), Conclusion::Constant(2.0)]
+    } else {
+        [[-1.0, 0.0, 1.0], [0.0, 1.0, 2.5]]
+            .map(|c| blurred(c, blur, drop))
+            .map(|(membership, lower)| Conclusion::Set { membership, lower })
+            .into()
+    };
+    let output_term = |(index, conclusion)| OutputTerm { name: format!("out{index}"), conclusion };
+    let is = |input, term, hedges: &[Hedge]| {
+        let variable = Variable::Input(input);
+        Antecedent::Is(Statement { variable, term: Some(term), hedges: hedges.to_vec() })
+    };
+    let rule = |antecedent, term, weight| Rule {
+        name: String::new(),
+        enabled: true,
+        antecedent,
+        consequents: vec![Consequent { output: 0, term, hedges: Vec::new() }],
+        weight,
+    };
+    let parts = Parts {
+        name: "type-2".into(),
+        description: String::new(),
+        inputs: vec![input("a"), input("b")],
+        outputs: vec![Output {
+            name: "y".into(),
+            description: String::new(),
+            enabled: true,
+            universe: Some(Universe { lower: -1.0, upper: 3.0 }),
+            clamp: false,
+            terms: conclusions.into_iter().enumerate().map(output_term).collect(),
+            aggregation: Default::default(),
+            defuzzifier,
+            fallback: Fallback::default(),
+        }],
+        blocks: vec![RuleBlock {
+            name: String::new(),
+            description: String::new(),
+            enabled: true,
+            and: Default::default(),
+            or: Default::default(),
+            implication: Default::default(),
+            activation: Activation::General,
+            rules: vec![
+                rule(Antecedent::All(vec![is(0, 0, &[]), is(1, 0, &[])]), 0, 1.0),
+                rule(Antecedent::Any(vec![is(0, 1, &[]), is(1, 1, &[Hedge::Very])]), 1, 0.8),
+                rule(is(0, 0, &[Hedge::Not]), 1, 1.0),
+            ],
+        }],
+    };
+    System::new(parts).unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+fn ask(system: &System, inputs: [f64; 2]) -> (f64, [f64; 2]) {
+    let mut workspace = system.workspace();
+    let value = system.evaluate(&inputs, &mut workspace).expect("finite")[0].value;
+    (value.expect("fires"), workspace.interval(0).unwrap_or([f64::NAN; 2]))
+}
+
+const POINTS: [[f64; 2]; 5] = [[0.2, 0.3], [0.5, 0.5], [0.9, 0.1], [0.05, 0.95], [0.6, 0.7]];
+
+#[test]
+fn without_blur_the_interval_is_the_ordinary_answer() {
+    let exact = Defuzzifier::Centroid(Sampling::Exact);
+    let ordinary = system(0.0, 0.0, exact, false);
+    assert!(!ordinary.parts().is_interval_type2());
+    let mut parts = ordinary.parts().clone();
+    for term in &mut parts.inputs[0].terms {
+        term.lower = Some(term.membership.clone());
+    }
+    let both = System::new(parts).expect("allowed");
+    for point in POINTS {
+        let (value, [lower, upper]) = ask(&both, point);
+        let (known, _) = ask(&ordinary, point);
+        assert!((value - known).abs() < 1e-14, "{point:?} {value} {known}");
+        assert!((upper - lower).abs() < 1e-14, "{point:?} {lower} {upper}");
+    }
+}
+
+#[test]
+fn more_blur_makes_a_wider_interval_that_holds_the_narrower_one() {
+    let exact = Defuzzifier::Centroid(Sampling::Exact);
+    for point in POINTS {
+        let mut last = [f64::INFINITY, f64::NEG_INFINITY];
+        for step in 1..6_u32 {
+            let blur = 0.05 * f64::from(step);
+            let (_, [lower, upper]) = ask(&system(blur, blur, exact, false), point);
+            assert!(lower <= last[0] + 1e-14 && upper >= last[1] - 1e-14, "{point:?} {blur}");
+            assert!(lower < upper);
+            last = [lower, upper];
+        }
+    }
+}
+
+#[test]
+fn exact_end_points_are_the_limit_of_ever_more_samples() {
+    for point in POINTS {
+        let exact = system(0.2, 0.3, Defuzzifier::Centroid(Sampling::Exact), false);
+        let sampled = Defuzzifier::Centroid(Sampling::Midpoint(40_000));
+        let (_, known) = ask(&exact, point);
+        let (_, close) = ask(&system(0.2, 0.3, sampled, false), point);
+        for (a, b) in known.into_iter().zip(close) {
+            assert!((a - b).abs() < 1e-7, "{point:?} {known:?} {close:?}");
+        }
+    }
+}
+
+#[test]
+fn no_choice_of_ordinary_sets_within_the_bounds_leaves_the_interval() {
+    let exact = Defuzzifier::Centroid(Sampling::Exact);
+    let (blur, drop) = (0.2, 0.3);
+    for point in POINTS {
+        let (_, [lower, upper]) = ask(&system(blur, drop, exact, false), point);
+        for n in 0..=10_u32 {
+            // Sets between the bounds: every set narrower and lower by the same share. The negation
+            // in the rules makes some strengths rise and others fall.
+            let share = f64::from(n) / 10.0;
+            let mut parts = system(blur, drop, exact, false).parts().clone();
+            let between = |membership: &mut Membership, below: &mut Option<Membership>| {
+                let (Membership::Shape { params, height, .. }, Some(Membership::Shape { .. })) =
+                    (membership, below.take())
+                else {
+                    return;
+                };
+                params[0] += share * blur;
+                params[2] -= share * blur;
+                *height -= share * drop;
+            };
+            for term in parts.inputs.iter_mut().flat_map(|input| &mut input.terms) {
+                between(&mut term.membership, &mut term.lower);
+            }
+            for term in &mut parts.outputs[0].terms {
+                if let Conclusion::Set { membership, lower } = &mut term.conclusion {
+                    between(membership, lower);
+                }
+            }
+            let (value, _) = ask(&System::new(parts).expect("allowed"), point);
+            assert!((lower - 1e-12..=upper + 1e-12).contains(&value), "{point:?} {share}: {value}");
+        }
+    }
+}
+
+#[test]
+fn numbers_and_intervals_are_averaged_between_their_bounds() {
+    let average = Defuzzifier::WeightedAverage(SetReading::Tsukamoto);
+    let (value, [lower, upper]) = ask(&system(0.2, 0.3, average, true), [0.4, 0.6]);
+    assert!((-1.0..=2.0).contains(&lower) && lower < upper && upper <= 2.0);
+    assert_eq!(value, 0.5 * lower + 0.5 * upper);
+}
+
+#[test]
+fn an_exact_interval_of_curved_sets_is_refused_with_what_to_do() {
+    let mut parts = system(0.2, 0.0, Defuzzifier::Centroid(Sampling::Exact), false).parts().clone();
+    let Conclusion::Set { membership, .. } = &mut parts.outputs[0].terms[0].conclusion else {
+        panic!("a set")
+    };
+    *membership =
+        Membership::Shape { kind: ShapeKind::Gaussian, params: vec![0.0, 1.0], height: 1.0 };
+    let errors = System::new(parts).expect_err("curved");
+    assert!(errors[0].to_string().contains("endpoints:101"), "{}", errors[0]);
+}

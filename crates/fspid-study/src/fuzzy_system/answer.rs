@@ -1,0 +1,234 @@
+//! One question to a system: values by name in, answers by name out.
+
+use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
+use serde_json::{Map, Value, json};
+
+use crate::file::problem::nearest;
+use crate::inference::Refused;
+
+/// A question with its answers.
+#[derive(Clone, Debug)]
+pub struct Asked<'a> {
+    pub(super) system: &'a System,
+    pub(super) workspace: Workspace,
+}
+
+/// Asks a system; `values` are `name=value`.
+///
+/// # Errors
+/// [`Refused`] with every value that is wrong and every one that is missing.
+pub fn ask<'a>(system: &'a System, values: &[String]) -> Result<Asked<'a>, Refused> {
+    let inputs = inputs(system, values)?;
+    let mut workspace = system.workspace();
+    evaluate(system, &inputs, &mut workspace).map_err(Refused::one)?;
+    Ok(Asked { system, workspace })
+}
+
+/// Evaluates, with the inputs' names in what may go wrong.
+pub(super) fn evaluate(
+    system: &System,
+    inputs: &[f64],
+    workspace: &mut Workspace,
+) -> Result<(), String> {
+    system.evaluate(inputs, workspace).map(|_| ()).map_err(|_| {
+        let wrong = inputs.iter().zip(&system.parts().inputs);
+        let told = wrong.filter_map(|(value, input)| check(input, *value).err());
+        told.collect::<Vec<_>>().join("\n")
+    })
+}
+
+/// Whether an input may have this value.
+pub(super) fn check(input: &fspid_fuzzy::system::Input, value: f64) -> Result<(), String> {
+    let name = &input.name;
+    if !value.is_finite() {
+        return Err(format!("{name} is {value:?}; allowed is a finite number"));
+    }
+    match input.universe {
+        Some(Universe { lower, upper })
+            if input.out_of_range == fspid_fuzzy::OutOfRange::Error
+                && !(lower..=upper).contains(&value) =>
+        {
+            Err(format!("{name} is {value:?}; allowed is {lower:?} to {upper:?}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A value for each input, out of `name=value`.
+pub(super) fn inputs(system: &System, values: &[String]) -> Result<Vec<f64>, Refused> {
+    let mut problems = Vec::new();
+    let given = named(system, values, &mut problems);
+    let mut inputs = Vec::new();
+    for (input, value) in system.parts().inputs.iter().zip(given) {
+        match value.map(|value| check(input, value).map(|()| value)) {
+            Some(Ok(value)) => inputs.push(value),
+            Some(Err(problem)) => problems.push(problem),
+            None => problems
+                .push(format!("{name} has no value; add --input {name}=…", name = input.name)),
+        }
+    }
+    if problems.is_empty() { Ok(inputs) } else { Err(Refused::all(problems)) }
+}
+
+/// The values that are given, for each input.
+pub(super) fn named(
+    system: &System,
+    values: &[String],
+    problems: &mut Vec<String>,
+) -> Vec<Option<f64>> {
+    let known: Vec<&str> = system.parts().inputs.iter().map(|i| i.name.as_str()).collect();
+    let mut given = vec![None; known.len()];
+    for text in values {
+        let Some((name, number)) = text.rsplit_once('=') else {
+            problems.push(format!("`{text}` is no name=value, such as {}=1", known.join("=1 ")));
+            continue;
+        };
+        let place = known.iter().position(|known| *known == name.trim());
+        match (place.and_then(|place| given.get_mut(place)), number.trim().parse::<f64>()) {
+            (Some(place), Ok(value)) if place.is_none() => *place = Some(value),
+            (Some(_), Ok(_)) => problems.push(format!("{name} has two values")),
+            (Some(_), Err(_)) => {
+                problems.push(format!("{name} is `{number}`; allowed is a number"));
+            }
+            (None, _) => {
+                let meant = nearest(name, &known).map(|meant| format!("; did you mean {meant}?"));
+                let known = known.join(", ");
+                let meant = meant.unwrap_or_default();
+                problems.push(format!("there is no input `{name}`{meant} known are {known}"));
+            }
+        }
+    }
+    given
+}
+
+/// The rule by which an output answers: `centroid, exact`.
+pub(super) fn rule(output: &Output) -> String {
+    let method = output.defuzzifier;
+    match method.sampling() {
+        Some(sampling) => format!("{}, {sampling}", method.name()),
+        None => format!("{}{}", method.name(), reading(method)),
+    }
+}
+
+fn reading(method: Defuzzifier) -> &'static str {
+    use fspid_fuzzy::system::SetReading::InverseTsukamoto;
+    match method {
+        Defuzzifier::WeightedAverage(InverseTsukamoto)
+        | Defuzzifier::WeightedSum(InverseTsukamoto) => ", inverse Tsukamoto",
+        _ => "",
+    }
+}
+
+/// Where an answer comes from, for programs.
+pub(super) const fn source(source: Source) -> &'static str {
+    match source {
+        Source::Rules => "rules",
+        Source::Previous => "previous",
+        Source::Middle => "middle",
+        Source::Default => "default",
+        Source::Nothing => "nothing",
+    }
+}
+
+/// What is worth knowing about an answer that the rules did not give.
+const fn remark(source: Source) -> Option<&'static str> {
+    match source {
+        Source::Rules => None,
+        Source::Previous => Some("no rule fired; the previous answer"),
+        Source::Middle => Some("no rule fired; the middle of the range"),
+        Source::Default => Some("no rule fired; the output's default"),
+        Source::Nothing => Some("no rule fired, and there is no default"),
+    }
+}
+
+impl<'a> Asked<'a> {
+    /// The system that was asked.
+    #[must_use]
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
+    /// The workspace as the evaluation left it.
+    #[must_use]
+    pub fn workspace(&self) -> &Workspace {
+        &self.workspace
+    }
+
+    /// The outputs with their answers.
+    pub fn answers(&self) -> impl Iterator<Item = (&Output, &Answer)> {
+        self.system.parts().outputs.iter().zip(self.workspace.answers())
+    }
+
+    /// Names of the inputs that lay outside of their ranges, and whether each was moved.
+    fn outside(&self) -> impl Iterator<Item = (&str, bool)> {
+        let inputs = self.system.parts().inputs.iter().zip(self.workspace.outside());
+        inputs.filter(|(_, outside)| **outside).map(|(input, _)| {
+            (input.name.as_str(), input.out_of_range == fspid_fuzzy::OutOfRange::Clamp)
+        })
+    }
+
+    /// The answers as JSON, by the names of the outputs.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let inputs = self.system.parts().inputs.iter().zip(self.workspace.inputs());
+        let inputs: Map<String, Value> =
+            inputs.map(|(input, value)| (input.name.clone(), json!(value))).collect();
+        let outputs: Map<String, Value> = self
+            .answers()
+            .map(|(output, answer)| (output.name.clone(), answer_json(output, answer)))
+            .collect();
+        let names = |clamped: bool| -> Vec<&str> {
+            self.outside().filter(|found| found.1 == clamped).map(|found| found.0).collect()
+        };
+        let mut whole = json!({
+            "system": self.system.parts().name, "inputs": inputs, "outputs": outputs,
+        });
+        if !names(true).is_empty() {
+            whole["clamped"] = json!(names(true));
+        }
+        if !names(false).is_empty() {
+            whole["outside"] = json!(names(false));
+        }
+        whole
+    }
+
+    /// The answers for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let names = self.system.parts().outputs.iter().map(|output| output.name.chars().count());
+        let width = names.max().unwrap_or(0);
+        let mut out = String::new();
+        for (output, answer) in self.answers() {
+            let number = answer.value.map_or("none".to_owned(), |value| format!("{value:.12}"));
+            let name = &output.name;
+            out.push_str(&format!("{name:width$} {number:>20}  {}\n", remarks(output, answer)));
+        }
+        for (name, moved) in self.outside() {
+            let done = if moved { "moved to the end of its range" } else { "used as it is" };
+            out.push_str(&format!("{name} lies outside of its range; {done}\n"));
+        }
+        out
+    }
+}
+
+fn answer_json(output: &Output, answer: &Answer) -> Value {
+    let mut found = json!({
+        "value": answer.value, "rule": rule(output), "source": source(answer.source),
+    });
+    if answer.error_bound > 0.0 {
+        found["error_bound"] = json!(answer.error_bound);
+    }
+    found
+}
+
+/// The rule of an answer, its error bound, and where it comes from if not from the rules.
+fn remarks(output: &Output, answer: &Answer) -> String {
+    let mut text = rule(output);
+    if answer.error_bound > 0.0 {
+        text.push_str(&format!(", within {:.1e}", answer.error_bound));
+    }
+    if let Some(remark) = remark(answer.source) {
+        text = remark.to_owned();
+    }
+    text
+}

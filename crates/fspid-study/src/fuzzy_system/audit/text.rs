@@ -1,0 +1,56 @@
+//! An audit for people.
+
+use std::fmt::Write as _;
+
+use super::{Audit, Mark};
+
+/// Longest line, in characters, where words allow it.
+const WIDTH: usize = 110;
+
+impl Audit<'_> {
+    /// Every finding with its sign, chapter by chapter.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let parts = self.system.parts();
+        let mut out = String::new();
+        for chapter in self.chapters() {
+            let gap = if out.is_empty() { "" } else { "\n" };
+            // Writing to a string cannot fail.
+            let _ = writeln!(out, "{gap}{}", chapter.title);
+            let width = chapter.findings.iter().map(|f| f.about.chars().count()).max().unwrap_or(0);
+            for found in &chapter.findings {
+                let lines = wrapped(&found.sentence, WIDTH.saturating_sub(width + 6));
+                let indent = " ".repeat(width + 6);
+                let sentence = lines.join(&format!("\n{indent}"));
+                let _ = writeln!(out, "  {} {:width$}  {sentence}", found.mark.sign(), found.about);
+            }
+        }
+        let _ = writeln!(
+            out,
+            "\n{} holds, {} worth knowing, {} probably not meant, {} not proved within the budget\n\
+             {} rules, {} boxes",
+            Mark::Holds.sign(),
+            Mark::Worth.sign(),
+            Mark::Broken.sign(),
+            Mark::Open.sign(),
+            parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
+            self.surface.boxes
+        );
+        out
+    }
+}
+
+/// Lines of at most `width` characters where words allow it.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

@@ -1,0 +1,108 @@
+//! From one format to another.
+
+use std::fmt;
+use std::path::Path;
+
+use fspid_formats::fcl::Dialect;
+use fspid_formats::{Problems, WriteOptions, fcl, fis, fll};
+
+use super::load::{Format, LoadError, Options, load};
+use super::toml_file;
+
+/// Which tool a file is for, where a format has dialects, and what may be lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Target {
+    /// The dialect of an `.fcl` file.
+    pub dialect: Option<Dialect>,
+    /// Whether what the format cannot say may be approximated or left out.
+    pub lossy: bool,
+}
+
+/// A file as it is to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Converted {
+    /// The text.
+    pub text: String,
+    /// What was assumed while reading.
+    pub assumed: Vec<String>,
+    /// What was lost while writing, with the error that it makes.
+    pub lost: Vec<String>,
+}
+
+/// Why there is nothing to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ConvertError {
+    /// The system could not be read.
+    Load(LoadError),
+    /// The ending of the new file is that of no format.
+    UnknownEnding {
+        /// The new file.
+        path: String,
+    },
+    /// The format cannot say it.
+    Unwritable {
+        /// What, each with its place in the system.
+        problems: Vec<String>,
+    },
+}
+
+impl fmt::Display for ConvertError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Load(error) => error.fmt(f),
+            Self::UnknownEnding { path } => {
+                write!(f, "{path}: the ending says no format; known are .toml, .fis, .fcl and .fll")
+            }
+            Self::Unwritable { problems } => f.write_str(&problems.join("\n")),
+        }
+    }
+}
+
+impl std::error::Error for ConvertError {}
+
+/// The system `name` in the format that the ending of `path` tells.
+///
+/// # Errors
+/// [`ConvertError`]; nothing is written in any case.
+pub fn convert(
+    name: &str,
+    options: Options<'_>,
+    path: &Path,
+    target: Target,
+) -> Result<Converted, ConvertError> {
+    let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
+    let format = Format::of(path).ok_or_else(unknown)?;
+    let loaded = load(name, options).map_err(ConvertError::Load)?;
+    if let Some(dialect) = target.dialect
+        && format != Format::Fcl
+    {
+        let problem = format!("--to {} goes with an .fcl file", dialect.name());
+        return Err(ConvertError::Unwritable { problems: vec![problem] });
+    }
+    let parts = loaded.system.parts();
+    let options = WriteOptions { lossy: target.lossy };
+    let written = match format {
+        Format::Toml => return Ok(Converted::whole(toml_file::write(parts), loaded.notes)),
+        Format::Fis => fis::write(parts, options),
+        Format::Fll => fll::write(parts, options),
+        Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
+    };
+    let writing = written.map_err(|problems| unwritable(path, &problems))?;
+    let lost = writing.notes.iter().map(ToString::to_string).collect();
+    Ok(Converted { text: writing.text, assumed: loaded.notes, lost })
+}
+
+impl Converted {
+    /// A file in which everything could be said.
+    fn whole(text: String, assumed: Vec<String>) -> Self {
+        Self { text, assumed, lost: Vec::new() }
+    }
+}
+
+/// What the format cannot say, and how to go on.
+fn unwritable(path: &Path, problems: &Problems) -> ConvertError {
+    let path = path.display();
+    let mut told: Vec<String> = problems.0.iter().map(|found| format!("{path}: {found}")).collect();
+    told.push("nothing was written; --lossy writes the nearest that can be said, and a .toml file holds everything".to_owned());
+    ConvertError::Unwritable { problems: told }
+}

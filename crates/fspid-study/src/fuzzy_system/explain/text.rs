@@ -1,0 +1,132 @@
+//! An explanation for people.
+
+use std::fmt::Write as _;
+
+use super::Explanation;
+use super::share::{Basis, Shares};
+use super::why_not::{Lack, WhyNot};
+use crate::fuzzy_system::words;
+
+/// Most rules that are listed.
+const MOST: usize = 20;
+/// Shares below this are only counted.
+const SMALL: f64 = 5e-5;
+
+impl Explanation<'_> {
+    /// The answers, the rules by strength, and the share of each in every output.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = self.asked.text();
+        self.rules_in_words(&mut out);
+        for (index, shares) in self.shares.iter().enumerate() {
+            self.shares_in_words(index, shares, &mut out);
+        }
+        if let Some(why_not) = &self.why_not {
+            self.why_not_in_words(why_not, &mut out);
+        }
+        out
+    }
+
+    /// A rule in words.
+    fn rule(&self, block: usize, rule: usize) -> String {
+        let parts = self.system().parts();
+        let found = parts.blocks.get(block).and_then(|block| block.rules.get(rule));
+        found.map_or(String::new(), |rule| words::rule(rule, parts))
+    }
+
+    fn rule_name(&self, block: usize, rule: usize) -> String {
+        words::name(self.system().parts(), block, rule)
+    }
+
+    // Writing to a string cannot fail.
+    fn rules_in_words(&self, out: &mut String) {
+        if self.rules.is_empty() {
+            out.push_str("\nno rule fires\n");
+            return;
+        }
+        out.push_str("\nrules by strength\n");
+        for firing in self.rules.iter().take(MOST) {
+            let name = self.rule_name(firing.block, firing.rule);
+            let text = self.rule(firing.block, firing.rule);
+            let idle =
+                if firing.acting > 0.0 { "" } else { "  (left out by the block's activation)" };
+            let _ = writeln!(out, "  {:.6}  {name}: {text}{idle}", firing.strength);
+        }
+        let more = self.rules.len().saturating_sub(MOST);
+        if more > 0 {
+            let _ = writeln!(out, "  and {more} more");
+        }
+    }
+
+    fn shares_in_words(&self, index: usize, shares: &Shares, out: &mut String) {
+        let Some(output) = self.system().parts().outputs.get(index) else { return };
+        let (name, what) = (&output.name, kind_of(shares.basis));
+        let _ = writeln!(out, "\nshares in {name}{what}");
+        let shown = |part: f64| part.abs() >= SMALL;
+        for share in shares.list.iter().filter(|share| shown(share.part)) {
+            let [block, rule, _] = share.of.origin;
+            let term = output.terms.get(share.of.term).map_or("", |term| &term.name);
+            let (part, contribution) = (100.0 * share.part, share.contribution);
+            let rule = self.rule_name(block, rule);
+            let _ = writeln!(out, "  {part:6.2} %  {contribution:+.6}  {rule}: {term}");
+        }
+        let small = shares.list.iter().filter(|share| !shown(share.part)).count();
+        if small > 0 {
+            let _ = writeln!(out, "  and {small} that fire without a part of at least 0.005 %");
+        }
+        if let Some(sum) = shares.sum {
+            let _ = writeln!(out, "  100.00 %  {sum:+.6}  together");
+        }
+    }
+
+    fn why_not_in_words(&self, why_not: &WhyNot, out: &mut String) {
+        let output = self.system().parts().outputs.get(why_not.output);
+        let term = output.and_then(|output| output.terms.get(why_not.term));
+        let (output, term) =
+            (output.map_or("", |output| &output.name), term.map_or("", |term| &term.name));
+        let _ = writeln!(out, "\nwhy not {output} = {term}");
+        if why_not.rules.is_empty() {
+            let _ = writeln!(out, "  no rule concludes it");
+        }
+        for lack in why_not.rules.iter().take(MOST) {
+            self.lack_in_words(lack, out);
+        }
+        let more = why_not.rules.len().saturating_sub(MOST);
+        if more > 0 {
+            let _ = writeln!(out, "  and {more} weaker rules");
+        }
+    }
+
+    fn lack_in_words(&self, lack: &Lack, out: &mut String) {
+        let [block, rule] = lack.rule;
+        let (name, text) = (self.rule_name(block, rule), self.rule(block, rule));
+        let _ = writeln!(out, "  {:.6}  {name}: {text}", lack.strength);
+        if !lack.enabled {
+            let _ = writeln!(out, "            it is switched off");
+        } else if lack.acting <= 0.0 && lack.strength > 0.0 {
+            let _ = writeln!(out, "            the block's activation leaves it out");
+        }
+        for (index, (statement, grade)) in lack.statements.iter().enumerate() {
+            let text = words::statement(statement, self.system().parts());
+            let limit = if lack.limit == Some(index) { "  <- holds it down" } else { "" };
+            let _ = writeln!(out, "            {grade:.6}  {text}{limit}");
+        }
+    }
+}
+
+fn kind_of(basis: Basis) -> String {
+    match basis {
+        Basis::Outline => {
+            ": part of the area, and what it adds to the centre of gravity".to_owned()
+        }
+        Basis::Grid(cells) => {
+            format!(
+                ": part of the area, and what it adds to the centre of gravity, on {cells} cells"
+            )
+        }
+        Basis::Weights => ": part of the weight, and what it adds to the answer".to_owned(),
+        Basis::Joined => {
+            ": the conclusions are joined so that no part belongs to one rule alone".to_owned()
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! A system by the name of its file or of a shipped rule table.
+
+use std::fmt;
+use std::path::Path;
+
+use fspid_core::fuzzy::OutOfRange;
+use fspid_formats::fcl::{Dialect, ReadOptions};
+use fspid_formats::{fcl, fis, fll};
+use fspid_fuzzy::system::{Parts, Sampling, System};
+
+use super::toml_file;
+use crate::file::files::read_regular;
+use crate::file::{Problem, Problems, rule_table_names};
+use crate::inference::{Question, Refused};
+
+/// How a system is to answer, where its file shall not decide.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options<'a> {
+    /// Half range of a shipped rule table.
+    pub range: Option<f64>,
+    /// How integrals are computed.
+    pub sampling: Option<&'a str>,
+    /// What happens to inputs outside of their ranges.
+    pub out_of_range: Option<&'a str>,
+    /// The dialect of an `.fcl` file, if it is not to be found out.
+    pub dialect: Option<Dialect>,
+    /// The function block of an `.fcl` file, if there are several.
+    pub block: Option<&'a str>,
+}
+
+/// A system and what is worth knowing about how it was read.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The system.
+    pub system: System,
+    /// What was assumed and repaired, each with its place.
+    pub notes: Vec<String>,
+}
+
+/// Why there is no system.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LoadError {
+    /// No file of a known format, and no shipped rule table.
+    UnknownFormat {
+        /// What was given.
+        name: String,
+    },
+    /// The file could not be read.
+    Unreadable {
+        /// Its path.
+        path: String,
+        /// The reason.
+        reason: String,
+    },
+    /// The file is wrong.
+    Problems(Problems),
+    /// An option is wrong.
+    Refused(Refused),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownFormat { name } => {
+                let tables = rule_table_names().join(", ");
+                write!(
+                    f,
+                    "{name}: no fuzzy system; known are files that end in .toml, .fis, .fcl or .fll, and the rule tables {tables}"
+                )
+            }
+            Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
+            Self::Problems(problems) => problems.fmt(f),
+            Self::Refused(refused) => refused.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {}
+
+/// The formats of systems, by the ending of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Our own.
+    Toml,
+    /// MATLAB.
+    Fis,
+    /// IEC 61131-7.
+    Fcl,
+    /// fuzzylite.
+    Fll,
+}
+
+impl Format {
+    /// The format of a file, by its ending.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "toml" => Some(Self::Toml),
+            "fis" => Some(Self::Fis),
+            "fcl" => Some(Self::Fcl),
+            "fll" => Some(Self::Fll),
+            _ => None,
+        }
+    }
+}
+
+/// True for a file that describes a fuzzy system: by its ending, and of a `.toml` file by its `kind`.
+#[must_use]
+pub fn is_system(path: &Path) -> bool {
+    match Format::of(path) {
+        None => false,
+        Some(Format::Toml) => text(path).is_ok_and(|text| toml_file::is_of_this_kind(&text)),
+        Some(_) => true,
+    }
+}
+
+/// The system in a file, or that of a shipped rule table with a half range.
+///
+/// # Errors
+/// [`LoadError`] with everything that is wrong.
+pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
+    if rule_table_names().contains(&name) {
+        return shipped(name, options);
+    }
+    let path = Path::new(name);
+    let format = Format::of(path).ok_or_else(|| LoadError::UnknownFormat { name: name.into() })?;
+    let mut misplaced = Vec::new();
+    if options.range.is_some() {
+        misplaced.push("--range goes with a shipped rule table; a file says its own ranges".into());
+    }
+    if format != Format::Fcl && (options.dialect.is_some() || options.block.is_some()) {
+        misplaced.push("--dialect and --block go with an .fcl file".into());
+    }
+    if !misplaced.is_empty() {
+        return Err(LoadError::Refused(Refused::all(misplaced)));
+    }
+    let loaded = read(name, &text(path)?, format, options)?;
+    Ok(Loaded { system: changed(loaded.system, options)?, notes: loaded.notes })
+}
+
+fn text(path: &Path) -> Result<String, LoadError> {
+    let unreadable = |reason| LoadError::Unreadable { path: path.display().to_string(), reason };
+    let bytes = read_regular(path).map_err(unreadable)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        unreadable(format!("not UTF-8 from byte {at} on"))
+    })
+}
+
+/// The system of a text in a format; `name` is that of the file in messages.
+///
+/// # Errors
+/// [`LoadError::Problems`].
+pub fn read(
+    name: &str,
+    text: &str,
+    format: Format,
+    options: Options<'_>,
+) -> Result<Loaded, LoadError> {
+    match format {
+        Format::Toml => {
+            let system = toml_file::parse(text, name).map_err(LoadError::Problems)?;
+            Ok(Loaded { system, notes: Vec::new() })
+        }
+        Format::Fis => of_tool(name, fis::read(text)),
+        Format::Fll => of_tool(name, fll::read(text)),
+        Format::Fcl => {
+            let options = ReadOptions { dialect: options.dialect, block: options.block };
+            of_tool(name, fcl::read_with(text, options))
+        }
+    }
+}
+
+/// The system that a reader of another tool's format found.
+fn of_tool(
+    name: &str,
+    reading: Result<fspid_formats::Reading, fspid_formats::Problems>,
+) -> Result<Loaded, LoadError> {
+    let reading = reading.map_err(|problems| LoadError::Problems(in_our_words(name, problems)))?;
+    let note = |note: fspid_formats::Note| match note.place {
+        Some(place) => format!("{name}:{place}: {}", note.message),
+        None => format!("{name}: {}", note.message),
+    };
+    let notes = reading.notes.into_iter().map(note).collect();
+    Ok(Loaded { system: built(reading.parts)?, notes })
+}
+
+/// The problems of a reader as those of our own files are told.
+fn in_our_words(name: &str, problems: fspid_formats::Problems) -> Problems {
+    let problem = |found: fspid_formats::Problem| Problem {
+        origin: None,
+        path: String::new(),
+        line: found.place.map_or(1, |place| place.line),
+        column: found.place.map_or(1, |place| place.column),
+        message: found.message,
+        found: found.word,
+        allowed: found.expected,
+    };
+    Problems::new(name, problems.0.into_iter().map(problem).collect(), 0)
+}
+
+fn shipped(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
+    let Some(range) = options.range else {
+        let missing = format!("{name} needs --range, the half range of its inputs and outputs");
+        return Err(LoadError::Refused(Refused::one(missing)));
+    };
+    let question = Question {
+        table: name,
+        range,
+        defuzzifier: "exact",
+        out_of_range: options.out_of_range.unwrap_or(OutOfRange::Clamp.name()),
+    };
+    let mut parts = Parts::from(&question.supervisor().map_err(LoadError::Refused)?);
+    parts.name = name.to_owned();
+    let system = built(parts)?;
+    Ok(Loaded { system: changed(system, options)?, notes: Vec::new() })
+}
+
+/// The same system with the options in place of what its file says.
+fn changed(system: System, options: Options<'_>) -> Result<System, LoadError> {
+    if options.sampling.is_none() && options.out_of_range.is_none() {
+        return Ok(system);
+    }
+    let mut parts = system.parts().clone();
+    let mut problems = Vec::new();
+    if let Some(text) = options.sampling {
+        match text.parse::<Sampling>() {
+            Ok(sampling) => parts.outputs.iter_mut().for_each(|output| {
+                output.defuzzifier = output.defuzzifier.with_sampling(sampling);
+            }),
+            Err(_) => {
+                problems.push(format!("--defuzzifier {text}: known are {}", Sampling::NAMES));
+            }
+        }
+    }
+    if let Some(text) = options.out_of_range {
+        match OutOfRange::ALL.into_iter().find(|policy| policy.name() == text) {
+            Some(policy) => {
+                parts.inputs.iter_mut().for_each(|input| input.out_of_range = policy);
+            }
+            None => {
+                let known = OutOfRange::ALL.map(OutOfRange::name).join(", ");
+                problems.push(format!("--out-of-range {text}: known are {known}"));
+            }
+        }
+    }
+    if problems.is_empty() { built(parts) } else { Err(LoadError::Refused(Refused::all(problems))) }
+}
+
+fn built(parts: Parts) -> Result<System, LoadError> {
+    System::new(parts).map_err(|errors| {
+        LoadError::Refused(Refused::all(errors.iter().map(ToString::to_string).collect()))
+    })
+}

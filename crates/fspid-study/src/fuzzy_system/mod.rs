@@ -1,0 +1,27 @@
+//! General fuzzy systems for people: loading, asking, drawing, converting, explaining.
+//!
+//! One function per verb. A system comes from a file of any known format or is one of the shipped
+//! rule tables; how it computes is `fspid-fuzzy`'s business, how other tools write it down
+//! `fspid-formats`'.
+
+mod answer;
+mod audit;
+mod convert;
+mod explain;
+mod load;
+mod slice;
+mod table;
+mod toml_file;
+mod words;
+
+pub use fspid_formats::fcl::Dialect;
+pub use fspid_fuzzy::system::System;
+
+pub use answer::{Asked, ask};
+pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
+pub use convert::{ConvertError, Converted, Target, convert};
+pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
+pub use load::{Format, LoadError, Loaded, Options, is_system, load, read};
+pub use slice::{Question as SliceQuestion, Slice, slice};
+pub use table::SystemTable;
+pub use toml_file::{parse, schema, write};

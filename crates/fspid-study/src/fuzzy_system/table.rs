@@ -1,0 +1,62 @@
+//! A general system as something that answers the rows of a table.
+
+use std::fmt::Write as _;
+
+use fspid_fuzzy::system::{System, Workspace};
+
+use super::answer::{check, evaluate};
+use crate::rows::Table;
+
+/// A general system with its memory.
+#[derive(Debug)]
+pub struct SystemTable<'a> {
+    system: &'a System,
+    workspace: Workspace,
+    /// The answers of the row before, for outputs that keep them.
+    previous: Vec<Option<f64>>,
+}
+
+impl<'a> SystemTable<'a> {
+    /// Questions to this system.
+    #[must_use]
+    pub fn new(system: &'a System) -> Self {
+        let previous = vec![None; system.parts().outputs.len()];
+        Self { system, workspace: system.workspace(), previous }
+    }
+}
+
+impl Table for SystemTable<'_> {
+    fn inputs(&self) -> Vec<&str> {
+        self.system.parts().inputs.iter().map(|input| input.name.as_str()).collect()
+    }
+
+    fn outputs(&self) -> Vec<&str> {
+        self.system.parts().outputs.iter().map(|output| output.name.as_str()).collect()
+    }
+
+    fn check(&self, row: &[f64]) -> Result<(), String> {
+        let inputs = self.system.parts().inputs.iter().zip(row);
+        inputs.map(|(input, value)| check(input, *value)).collect()
+    }
+
+    fn answer(&mut self, row: &[f64], line: &mut String) -> Result<(), String> {
+        let Self { system, workspace, previous } = self;
+        if system.evaluate_after(row, previous, workspace).is_err() {
+            return evaluate(system, row, workspace);
+        }
+        for (index, value) in row.iter().enumerate() {
+            let comma = if index > 0 { "," } else { "" };
+            // Writing to a string cannot fail.
+            let _ = write!(line, "{comma}{value:?}");
+        }
+        for (answer, previous) in workspace.answers().iter().zip(previous) {
+            match answer.value {
+                Some(value) => _ = write!(line, ",{value:?}"),
+                None => line.push(','),
+            }
+            *previous = answer.value;
+        }
+        line.push('\n');
+        Ok(())
+    }
+}

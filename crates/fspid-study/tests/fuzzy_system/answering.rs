@@ -1,0 +1,173 @@
+//! Answers, by name.
+
+use fspid_study::fuzzy_system::{
+    LoadError, Options, SliceQuestion, SystemTable, ask, load, parse, slice,
+};
+use fspid_study::rows::{RowsError, answer_rows};
+
+use super::{TIP, tip, values};
+
+fn tip_at(service: f64, food: f64) -> f64 {
+    let system = tip();
+    let mut workspace = system.workspace();
+    let answers = system.evaluate(&[service, food], &mut workspace).expect("finite");
+    answers[0].value.expect("rules fire")
+}
+
+#[test]
+fn an_answer_says_by_which_rule_it_was_computed() {
+    let system = tip();
+    let json = ask(&system, &values(&["food=8", "service=3"])).expect("good").json();
+    assert_eq!(json["outputs"]["tip"]["value"], tip_at(3.0, 8.0));
+    assert_eq!(json["outputs"]["tip"]["rule"], "centroid, exact");
+    assert_eq!(json["outputs"]["tip"]["source"], "rules");
+    let text = ask(&system, &values(&["food=18", "service=3"])).expect("good").text();
+    assert!(text.contains("food lies outside of its range; used as it is"), "{text}");
+}
+
+#[test]
+fn every_problem_of_a_question_is_told_at_once() {
+    let system = tip();
+    let told =
+        ask(&system, &values(&["fod=1", "service=x", "service"])).expect_err("wrong").to_string();
+    for part in [
+        "there is no input `fod`; did you mean food? known are service, food",
+        "service is `x`; allowed is a number",
+        "`service` is no name=value",
+        "food has no value; add --input food=…",
+    ] {
+        assert!(told.contains(part), "{part} in\n{told}");
+    }
+}
+
+#[test]
+fn an_option_overrides_the_rule_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("tip.toml");
+    std::fs::write(&path, TIP).expect("written");
+    let name = path.display().to_string();
+    let options = Options { sampling: Some("endpoints:101"), ..Options::default() };
+    let system = load(&name, options).expect("good").system;
+    let answer = ask(&system, &values(&["food=8", "service=4"])).expect("good");
+    assert!(answer.text().contains("centroid, endpoints:101"));
+    let options = Options { out_of_range: Some("error"), ..Options::default() };
+    let system = load(&name, options).expect("good").system;
+    assert!(ask(&system, &values(&["food=11", "service=4"])).is_err());
+    let options =
+        Options { sampling: Some("cog"), out_of_range: Some("wrap"), ..Options::default() };
+    let told = load(&name, options).expect_err("wrong").to_string();
+    assert!(told.contains("vertices:N") && told.contains("clamp, evaluate, error"), "{told}");
+}
+
+#[test]
+fn a_name_that_is_no_system_lists_what_is() {
+    let told = load("nowhere", Options::default()).expect_err("wrong").to_string();
+    assert!(told.contains(".fis, .fcl or .fll") && told.contains("printed, mirrored"), "{told}");
+    let needs = load("printed", Options::default()).expect_err("wrong").to_string();
+    assert!(needs.contains("--range"), "{needs}");
+    let missing = load("nowhere.toml", Options::default());
+    assert!(matches!(missing, Err(LoadError::Unreadable { .. })));
+}
+
+fn rows(text: &str) -> (Result<u64, RowsError>, String) {
+    let system = tip();
+    let mut out = Vec::new();
+    let done = answer_rows(&mut SystemTable::new(&system), &mut text.as_bytes(), &mut out);
+    (done, String::from_utf8(out).expect("UTF-8"))
+}
+
+#[test]
+fn columns_are_found_by_name_and_others_are_passed_over() {
+    let (done, out) = rows("\u{feff}note,food,service\r\nx,8,3\r\n\r\n\"a, b\",8, 4 \r\n");
+    assert_eq!(done.expect("good"), 2);
+    let expected = format!(
+        "service,food,tip\n3.0,8.0,{:?}\n4.0,8.0,{:?}\n",
+        tip_at(3.0, 8.0),
+        tip_at(4.0, 8.0)
+    );
+    assert_eq!(out, expected);
+}
+
+#[test]
+fn rows_before_the_first_bad_one_are_answered_and_problems_are_counted() {
+    let (done, out) = rows("service,food\n1,2\n1,x\n1,nan\n3\n1,2\n");
+    let Err(RowsError::Problems { problems, answered }) = done else { panic!("{done:?}") };
+    assert_eq!(answered, Some(1));
+    assert_eq!(out.lines().count(), 2);
+    assert_eq!(
+        problems,
+        [
+            "3: food is `x`; allowed is a number",
+            "4: food is NaN; allowed is a finite number",
+            "5: food is ``; allowed is a number",
+        ]
+    );
+    let (done, _) = rows(&format!("service,food\n{}", "x,1\n".repeat(100)));
+    let Err(RowsError::Problems { problems, .. }) = done else { panic!("{done:?}") };
+    assert_eq!(problems.len(), 21);
+}
+
+#[test]
+fn a_heading_without_a_column_is_refused() {
+    let (done, out) = rows("service,fod\n1,2\n");
+    assert!(
+        done.expect_err("wrong").to_string().contains("it must name the columns service and food")
+    );
+    assert!(out.is_empty());
+    assert!(rows("").0.is_err());
+}
+
+#[test]
+fn an_output_without_an_answer_is_an_empty_cell_and_one_that_keeps_its_answer_keeps_it() {
+    let text = TIP.replace("fallback = \"middle\"", "").replace("sigma = 1.5", "sigma = 0.01");
+    let system = parse(&text, "tip.toml").expect("good");
+    let run = |system: &fspid_study::fuzzy_system::System| {
+        let mut out = Vec::new();
+        let mut rows = "service,food\n2.5,5\n5,5\n2.5,5\n".as_bytes();
+        answer_rows(&mut SystemTable::new(system), &mut rows, &mut out).expect("good");
+        String::from_utf8(out).expect("UTF-8")
+    };
+    assert_eq!(run(&system), "service,food,tip\n2.5,5.0,\n5.0,5.0,15.0\n2.5,5.0,\n");
+    let keeping =
+        text.replace("name = \"tip\"\nrange", "name = \"tip\"\nkeep_previous = true\nrange");
+    let keeping = parse(&keeping, "tip.toml").expect("good");
+    assert_eq!(run(&keeping), "service,food,tip\n2.5,5.0,\n5.0,5.0,15.0\n2.5,5.0,15.0\n");
+}
+
+#[test]
+fn a_slice_has_the_answers_of_the_system_and_says_what_stays() {
+    let system = tip();
+    let fixed = values(&["food=8"]);
+    let question = SliceQuestion { fixed: &fixed, nodes: Some(3), ..SliceQuestion::default() };
+    let curve = slice(&system, &question).expect("good");
+    let expected = [0.0, 5.0, 10.0].map(|x| format!("{x:?},{:?}\n", tip_at(x, 8.0))).concat();
+    assert_eq!(curve.csv(), format!("service,tip\n{expected}"));
+    assert_eq!(curve.fixed_in_words(), "food = 8");
+    let surface = slice(&system, &SliceQuestion { nodes: Some(2), ..SliceQuestion::default() });
+    let csv = surface.expect("good").csv();
+    assert!(csv.contains(&format!("10.0,0.0,{:?}\n", tip_at(10.0, 0.0))), "{csv}");
+}
+
+#[test]
+fn a_slice_is_drawn_with_its_names_and_refuses_what_is_not_there() {
+    let system = tip();
+    let drawn = slice(&system, &SliceQuestion::default()).expect("good");
+    let figures = drawn.figures();
+    assert_eq!(figures.len(), 1);
+    let svg = figures[0].1.as_str();
+    for part in [">service<", ">food<", ">tip<", "Surface in space, and as a map"] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let fixed = values(&["food=1", "service=2"]);
+    let question = SliceQuestion {
+        x: Some("fod"),
+        fixed: &fixed,
+        output: Some("tipp"),
+        ..SliceQuestion::default()
+    };
+    let told = slice(&system, &question).expect_err("wrong").to_string();
+    assert!(told.contains("did you mean food?") && told.contains("did you mean tip?"), "{told}");
+    assert!(slice(&system, &SliceQuestion { nodes: Some(1), ..SliceQuestion::default() }).is_err());
+    let question = SliceQuestion { x: Some("food"), y: Some("food"), ..SliceQuestion::default() };
+    assert!(slice(&system, &question).is_err());
+}
