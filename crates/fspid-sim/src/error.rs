@@ -42,6 +42,17 @@ pub enum SimError {
         /// Row in question, from 1.
         row: usize,
     },
+    /// Another number of parameters than the kind has.
+    ParameterCount {
+        /// Name of the kind.
+        kind: &'static str,
+        /// Parameters given.
+        found: usize,
+        /// Parameters it has.
+        allowed: usize,
+    },
+    /// Air that moves around a plant which does not say how a gust acts on it.
+    NoGustEntry,
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -68,6 +79,12 @@ impl fmt::Display for SimError {
                 "the plant changes from order {before} to order {after}; allowed is a denominator of the same length"
             ),
             Self::Table { problem, row } => write!(f, "set-point table, row {row}: {problem}"),
+            Self::ParameterCount { kind, found, allowed } => {
+                write!(f, "{kind} has {allowed} parameters; {found} were given")
+            }
+            Self::NoGustEntry => f.write_str(
+                "the air moves, but the plant does not say how gusts act on it; give it gust numerators or build it from derivatives",
+            ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),

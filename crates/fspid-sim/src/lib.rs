@@ -12,9 +12,12 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod actuator;
+pub mod air;
 mod closed_loop;
 mod controller;
 mod error;
+mod math;
 mod plant;
 mod propagator;
 mod scenario;

@@ -1,7 +1,7 @@
 //! What is commanded and what disturbs, as functions of time.
 
 mod disturbance;
-mod noise;
+pub(crate) mod noise;
 mod profile;
 mod shape;
 
