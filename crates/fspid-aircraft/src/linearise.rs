@@ -192,15 +192,11 @@ fn jacobian<const N: usize>(
     function: impl Fn(&[f64; N]) -> [f64; STATES],
     at: &[f64; N],
 ) -> Matrix {
-    let columns: Vec<_> = (0..N).map(|index| difference(&function, at, index)).collect();
-    let rows = core::array::from_fn::<Vec<f64>, STATES, _>(|row| {
-        columns.iter().map(|column| column[row]).collect()
-    });
     let mut result = Matrix::zeros(STATES, N);
-    for (row, entries) in rows.iter().enumerate() {
-        for (column, &entry) in entries.iter().enumerate() {
-            let inside = result.set(row, column, entry);
-            debug_assert!(inside.is_ok(), "the matrix was made for them");
+    for column in 0..N {
+        for (row, slope) in difference(&function, at, column).into_iter().enumerate() {
+            // Every position lies inside: the matrix was made for them.
+            let _ = result.set(row, column, slope);
         }
     }
     result

@@ -2,12 +2,13 @@
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
+use fspid_aircraft::integrate::dormand_prince::{DormandPrince, Tolerance};
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::trim::TrimObstacle;
 use fspid_aircraft::{
     AirMotion, Aircraft, AircraftError, AircraftMode, Controls, Environment, EulerAngles,
-    ForceModel, ModeName, Quantity, Quaternion, RigidState, Trim, TrimTarget, Vector3,
-    VelocityForm, lateral_modes,
+    ForceModel, ModeName, Quantity, Quaternion, RIGID_STATES, RigidState, Trim, TrimTarget,
+    Vector3, VelocityForm, lateral_modes,
 };
 use fspid_lti::TransferFunction;
 
@@ -307,4 +308,20 @@ fn every_aircraft_has_a_roll_a_dutch_roll_and_a_slow_spiral() {
         assert!(find(ModeName::Roll).time_constant_s() > 0.0, "{name}");
         assert!(find(ModeName::Spiral).time_constant_s().abs() > 20.0, "{name}: {modes:?}");
     }
+}
+
+#[test]
+fn a_step_of_either_method_does_not_touch_the_heap() {
+    let (aircraft, target) = at("b747-cruise-low", 1.0);
+    let trim = aircraft.trim(target).expect("a flight that can be held");
+    let motion = AirMotion::wind(Vector3::new(3.0, 1.0, 0.0));
+    let rate = |_: f64, state: &[f64; RIGID_STATES]| aircraft.rate(state, &trim.controls, &motion);
+    let used = allocation_counter::measure(|| {
+        let end = aircraft.step(&upset(&trim), &trim.controls, &motion, 0.01);
+        let start = end.to_array();
+        let steps = DormandPrince::new(rate, (0.0, 1.0), start, Tolerance::default());
+        let last = steps.expect("well posed").last().expect("a step").expect("no failure");
+        assert!(last.at(1.0).iter().all(|value| value.is_finite()));
+    });
+    assert_eq!(used.count_total, 0);
 }

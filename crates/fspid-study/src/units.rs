@@ -1,4 +1,13 @@
-//! Degrees for files and people; inside everything is radians.
+//! Degrees, feet and pounds for files and people; inside everything is SI and radians.
+
+/// Metres in a foot, by definition.
+pub const FOOT_M: f64 = 0.3048;
+
+/// Newtons in a pound of force: 0.45359237 kg under 9.80665 m/s².
+pub const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
+
+/// Kilograms in a slug: what a pound of force accelerates by a foot per second squared.
+pub const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 
 /// Radians as degrees.
 #[must_use]

@@ -37,6 +37,57 @@ impl Loads {
 ///
 /// A model answers everywhere, beyond its limits too: it extrapolates or holds the last entry, and [`Validity`] says
 /// that it did. It has no memory; an engine or a wake with a lag brings its state in the controls.
+///
+/// # Example
+/// A ball with drag, let fall for ten seconds:
+/// ```
+/// use fspid_aircraft::{
+///     AircraftError, AirMotion, Aircraft, Controls, Environment, Flow, ForceModel, Loads, MassProperties, RigidState,
+///     Travel, Validity, Vector3,
+/// };
+///
+/// struct Ball {
+///     drag_area_m2: f64,
+/// }
+///
+/// impl ForceModel for Ball {
+///     fn loads(&self, flow: &Flow, _: &Controls) -> Loads {
+///         let drag_n_s_m = 0.5 * flow.air.density_kg_m3 * flow.airspeed_m_s * self.drag_area_m2;
+///         Loads { force_n: -drag_n_s_m * flow.velocity_body_m_s, moment_n_m: Vector3::ZERO }
+///     }
+///
+///     fn thrust_n(&self, _: &Flow, _: &Controls) -> f64 {
+///         0.0
+///     }
+///
+///     fn validity(&self) -> &Validity {
+///         &Validity::EVERYWHERE
+///     }
+///
+///     fn travel(&self) -> &Travel {
+///         &Travel::UNLIMITED
+///     }
+/// }
+///
+/// # fn main() -> Result<(), AircraftError> {
+/// let mass = MassProperties {
+///     mass_kg: 7.0,
+///     ix_kg_m2: 0.01,
+///     iy_kg_m2: 0.01,
+///     iz_kg_m2: 0.01,
+///     ixz_kg_m2: 0.0,
+///     engine_kg_m2_s: 0.0,
+/// };
+/// let ball = Aircraft::new(mass, Ball { drag_area_m2: 0.005 }, Environment::STANDARD)?;
+/// let start = RigidState { position_ned_m: Vector3::new(0.0, 0.0, -1000.0), ..RigidState::AT_REST };
+/// let end = (0..1000).fold(start, |state, _| {
+///     ball.step(&state, &Controls::default(), &AirMotion::STILL, 0.01)
+/// });
+/// let fallen_m = 1000.0 - end.altitude_m();
+/// assert!(fallen_m > 400.0 && fallen_m < 490.0);
+/// # Ok(())
+/// # }
+/// ```
 pub trait ForceModel {
     /// Loads in a flow with these controls, with the angle of attack at rest.
     fn loads(&self, flow: &Flow, controls: &Controls) -> Loads;

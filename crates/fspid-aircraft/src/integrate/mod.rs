@@ -6,6 +6,7 @@
 pub mod dormand_prince;
 pub mod event;
 pub mod rk4;
+mod tableau;
 
 /// Sum of a state and multiples of rates: $x + \sum_i c_i k_i$, added in order.
 pub(crate) fn advanced<const N: usize, const K: usize>(

@@ -15,6 +15,7 @@
 //!
 //! Not here: writing files, and what a scenario's flight amounts to.
 
+mod aircraft;
 mod build;
 pub(crate) mod check;
 pub(crate) mod document;
@@ -37,6 +38,7 @@ use fspid_sim::Scenario;
 use crate::file::files::Files;
 use crate::file::report::Report;
 
+pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,

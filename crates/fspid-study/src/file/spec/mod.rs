@@ -3,11 +3,13 @@
 //! A key is added in one place: its row in the lists of this folder, and the line of `build` that
 //! uses it.
 
+mod aircraft;
 mod controller;
 mod data;
 mod scenario;
 mod signal;
 
+pub(crate) use aircraft::AIRCRAFT_FILE;
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
 #[cfg(test)]
 pub(crate) use scenario::MEASURES;

@@ -2,9 +2,10 @@
 //!
 //! Wings level, no sideslip, aileron and rudder at rest: for an aircraft that is symmetric. Not for turns.
 
+mod search;
+
 use std::fmt;
 
-use fspid_lti::Matrix;
 use thiserror::Error;
 
 use crate::aerodynamics::ForceModel;
@@ -15,18 +16,13 @@ use crate::quaternion::{EulerAngles, Quaternion};
 use crate::rigid_body::RigidState;
 use crate::validity::{Departure, Range, Travel};
 use crate::vector::Vector3;
+use search::Search;
 
 /// Largest acceleration left in a trim: 10⁻⁹ ft/s².
 pub const ACCELERATION_LEFT_M_S2: f64 = 3.048e-10;
 
 /// Largest angular acceleration left in a trim.
 pub const ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-9;
-
-/// Iterations after which a search gives up; from any start that works it takes fewer than ten.
-const ITERATIONS_MAX: usize = 60;
-
-/// Smallest part of a Newton step that is tried.
-const DAMPING_MIN: f64 = 1e-6;
 
 /// Flight that a trim is to hold, in still air.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -264,85 +260,6 @@ impl<M: ForceModel> Aircraft<M> {
             iterations: found.iterations,
         }
     }
-
-    /// Newton's method within ranges of the unknowns, from the middle of them.
-    fn search(&self, target: TrimTarget, limits: [Range; 3]) -> Search {
-        let throttle = Range { min: limits[2].min.max(0.0), max: limits[2].max.min(2.0) };
-        let start = [0.0, 0.0, 0.5 * (throttle.min + throttle.max)];
-        let mut found = self.found(target, clamped(start, &limits), 0);
-        while !found.residual.accepted() && found.iterations < ITERATIONS_MAX {
-            let Some(next) = self.newton_step(target, &found, &limits) else { break };
-            found = next;
-        }
-        found
-    }
-
-    fn found(&self, target: TrimTarget, point: [f64; 3], iterations: usize) -> Search {
-        let point = TrimPoint::from_array(point);
-        Search { point, residual: self.trim_residual(target, point), iterations }
-    }
-
-    /// The next point, if there is a step that helps.
-    fn newton_step(
-        &self,
-        target: TrimTarget,
-        from: &Search,
-        limits: &[Range; 3],
-    ) -> Option<Search> {
-        let step = self.newton_direction(target, from)?;
-        let mut part = 1.0;
-        while part >= DAMPING_MIN {
-            let mut point = from.point.to_array();
-            for (value, step) in point.iter_mut().zip(&step) {
-                *value += part * step;
-            }
-            let next = self.found(target, clamped(point, limits), from.iterations + 1);
-            if next.residual.size() < (1.0 - 1e-4 * part) * from.residual.size() {
-                return Some(next);
-            }
-            part *= 0.5;
-        }
-        None
-    }
-
-    fn newton_direction(&self, target: TrimTarget, from: &Search) -> Option<[f64; 3]> {
-        let mut jacobian = Matrix::zeros(3, 3);
-        for column in 0..3 {
-            let (ahead, behind) =
-                (self.beside(target, from, column, 1.0), self.beside(target, from, column, -1.0));
-            let span = 2.0 * step_size(from.point.to_array()[column]);
-            for row in 0..3 {
-                jacobian.set(row, column, (ahead[row] - behind[row]) / span).ok()?;
-            }
-        }
-        let rest = from.residual.to_array().map(|value| [-value]);
-        let step = jacobian.solve(&Matrix::from_rows(&rest).ok()?).ok()?;
-        step.data().try_into().ok()
-    }
-
-    /// Residual a small step beside a point in one unknown.
-    fn beside(&self, target: TrimTarget, from: &Search, column: usize, sign: f64) -> [f64; 3] {
-        let mut point = from.point.to_array();
-        point[column] += sign * step_size(point[column]);
-        self.trim_residual(target, TrimPoint::from_array(point)).to_array()
-    }
-}
-
-/// Where a search is.
-#[derive(Debug, Clone, Copy)]
-struct Search {
-    point: TrimPoint,
-    residual: TrimResidual,
-    iterations: usize,
-}
-
-fn step_size(value: f64) -> f64 {
-    1e-5 * value.abs().max(1.0)
-}
-
-fn clamped(point: [f64; 3], limits: &[Range; 3]) -> [f64; 3] {
-    let [alpha, elevator, throttle] = point;
-    [limits[0].clamp(alpha), limits[1].clamp(elevator), limits[2].clamp(throttle)]
 }
 
 fn failure(

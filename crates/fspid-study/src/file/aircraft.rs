@@ -1,0 +1,344 @@
+//! Aircraft that the program carries, and files of the same form: from the units of a source to SI.
+
+use fspid_aircraft::aerodynamics::derivatives::{
+    Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
+};
+use fspid_aircraft::data::{
+    AircraftData, DerivativeData, Inertia, LinearData, LinearState, ModelData, Reference,
+};
+use fspid_aircraft::{Range, Travel, Validity};
+use fspid_lti::Matrix;
+
+use crate::file::check;
+use crate::file::document;
+use crate::file::problem::Problems;
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::file::spec::AIRCRAFT_FILE;
+use crate::units::{FOOT_M, POUND_FORCE_N, SLUG_KG, radians};
+
+/// Aircraft by name.
+const AIRCRAFT: [(&str, &str); 7] = [
+    ("navion", include_str!("../../../../data/aircraft/navion.toml")),
+    ("b747-approach", include_str!("../../../../data/aircraft/b747-approach.toml")),
+    ("b747-cruise-low", include_str!("../../../../data/aircraft/b747-cruise-low.toml")),
+    ("b747-cruise-high", include_str!("../../../../data/aircraft/b747-cruise-high.toml")),
+    ("cessna-172", include_str!("../../../../data/aircraft/cessna-172.toml")),
+    ("etkin-747", include_str!("../../../../data/aircraft/etkin-747.toml")),
+    ("ctms-transport", include_str!("../../../../data/aircraft/ctms-transport.toml")),
+];
+
+/// Units that a key may end with, and their size in SI; degrees stand apart.
+const UNITS: [(&str, f64); 16] = [
+    ("ft_s", FOOT_M),
+    ("m_s", 1.0),
+    ("ft_s2", FOOT_M),
+    ("m_s2", 1.0),
+    ("ft", FOOT_M),
+    ("m", 1.0),
+    ("ft2", FOOT_M * FOOT_M),
+    ("m2", 1.0),
+    ("lbf", POUND_FORCE_N),
+    ("n", 1.0),
+    ("psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
+    ("pa", 1.0),
+    ("slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
+    ("slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
+    ("kg_m2", 1.0),
+    ("kg_m3", 1.0),
+];
+
+/// Names of the aircraft that the program carries.
+#[must_use]
+pub fn aircraft_names() -> Vec<&'static str> {
+    AIRCRAFT.iter().map(|(name, _)| *name).collect()
+}
+
+/// The aircraft of that name, `None` if the program carries none.
+#[must_use]
+pub fn aircraft(name: &str) -> Option<AircraftData> {
+    let (_, text) = AIRCRAFT.iter().find(|(known, _)| *known == name)?;
+    // The tests read every aircraft that is carried.
+    parse_aircraft(text, name).ok()
+}
+
+/// Reads an aircraft file.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn parse_aircraft(text: &str, name: &str) -> Result<AircraftData, Problems> {
+    let mut report = Report::default();
+    let file = document::read(&mut report, None, text)
+        .and_then(|item| check::table(&mut report, &AIRCRAFT_FILE, &item, ""))
+        .filter(|section| section.sound)
+        .and_then(|section| aircraft_data(&mut report, &section));
+    report.finish(name)?;
+    file.ok_or_else(|| Problems::new(name, Vec::new(), 0))
+}
+
+fn aircraft_data(report: &mut Report, section: &Section) -> Option<AircraftData> {
+    let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
+    let model = match section.kind {
+        "linear" => ModelData::Linear(linear(report, section.sections("equations"))?),
+        _ => ModelData::Derivatives(Box::new(derivatives(report, section)?)),
+    };
+    Some(AircraftData {
+        name: text("name"),
+        title: text("title"),
+        source: text("source"),
+        notes: text("notes"),
+        model,
+    })
+}
+
+fn derivatives(report: &mut Report, section: &Section) -> Option<DerivativeData> {
+    let part = |name: &str| section.section(name);
+    let data = DerivativeData {
+        reference: reference(part("reference")?)?,
+        geometry: geometry(part("geometry")?)?,
+        weight_n: quantity(part("mass")?, "weight")?,
+        inertia: inertia(part("mass")?)?,
+        longitudinal: longitudinal(part("longitudinal")?)?,
+        lateral: part("lateral").and_then(lateral),
+        validity: validity(part("validity")?)?,
+        travel: travel(part("travel")?)?,
+    };
+    match data.mass_properties().validate() {
+        Ok(()) => Some(data),
+        Err(error) => {
+            let allowed = "moments of inertia that a body can have".to_owned();
+            report.value(section.at("mass"), &section.path("mass"), error.to_string(), allowed);
+            None
+        }
+    }
+}
+
+fn reference(section: &Section) -> Option<Reference> {
+    let airspeed_m_s = quantity(section, "airspeed")?;
+    let density_kg_m3 = section.number("density_kg_m3").or_else(|| quantity(section, "density"))?;
+    let own_pa = 0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s;
+    Some(Reference {
+        airspeed_m_s,
+        altitude_m: quantity(section, "altitude")?,
+        density_kg_m3,
+        dynamic_pressure_pa: quantity(section, "dynamic_pressure").unwrap_or(own_pa),
+        mach: section.number("mach")?,
+        gravity_m_s2: quantity(section, "gravity")?,
+        alpha_rad: radians(section.number("alpha_deg")?),
+    })
+}
+
+fn geometry(section: &Section) -> Option<Geometry> {
+    Some(Geometry {
+        area_m2: quantity(section, "area")?,
+        span_m: quantity(section, "span")?,
+        chord_m: quantity(section, "chord")?,
+    })
+}
+
+fn inertia(section: &Section) -> Option<Inertia> {
+    Some(Inertia {
+        ix_kg_m2: quantity(section, "ix")?,
+        iy_kg_m2: quantity(section, "iy")?,
+        iz_kg_m2: quantity(section, "iz")?,
+        ixz_kg_m2: quantity(section, "ixz")?,
+    })
+}
+
+fn longitudinal(section: &Section) -> Option<Longitudinal> {
+    let row = |name: &str| section.section(name).map(longitudinal_row);
+    Some(Longitudinal {
+        lift: row("lift")?,
+        drag: row("drag")?,
+        pitch: row("pitch")?,
+        thrust_speed: plain(section, "thrust_speed"),
+    })
+}
+
+fn longitudinal_row(row: &Section) -> LongitudinalCoefficient {
+    LongitudinalCoefficient {
+        reference: plain(row, "reference"),
+        alpha: plain(row, "alpha"),
+        alpha_rate: plain(row, "alpha_rate"),
+        pitch_rate: plain(row, "pitch_rate"),
+        speed: plain(row, "speed"),
+        elevator: plain(row, "elevator"),
+    }
+}
+
+fn lateral(section: &Section) -> Option<Lateral> {
+    let row = |name: &str| section.section(name).map(lateral_row);
+    Some(Lateral { side: row("side")?, roll: row("roll")?, yaw: row("yaw")? })
+}
+
+fn lateral_row(row: &Section) -> LateralCoefficient {
+    LateralCoefficient {
+        beta: plain(row, "beta"),
+        roll_rate: plain(row, "roll_rate"),
+        yaw_rate: plain(row, "yaw_rate"),
+        aileron: plain(row, "aileron"),
+        rudder: plain(row, "rudder"),
+    }
+}
+
+fn validity(section: &Section) -> Option<Validity> {
+    Some(Validity {
+        airspeed_m_s: range(section, "airspeed")?,
+        mach: range(section, "mach")?,
+        alpha_rad: range(section, "alpha")?,
+        beta_rad: range(section, "beta")?,
+        altitude_m: range(section, "altitude")?,
+    })
+}
+
+fn travel(section: &Section) -> Option<Travel> {
+    Some(Travel {
+        elevator_rad: range(section, "elevator")?,
+        aileron_rad: range(section, "aileron")?,
+        rudder_rad: range(section, "rudder")?,
+        throttle: range(section, "throttle")?,
+    })
+}
+
+/// Velocities become metres in the states and in their rates; angles stay.
+fn linear(report: &mut Report, equations: &[Section]) -> Option<LinearData> {
+    let names: Vec<&str> = equations.iter().filter_map(|row| row.text("state")).collect();
+    let sizes: Vec<f64> = names.iter().map(|name| state_size(name)).collect();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for (row, rate) in equations.iter().zip(&sizes) {
+        let values = row.numbers("by_states")?;
+        if values.len() != sizes.len() {
+            let message = format!("{} numbers for {} states", values.len(), sizes.len());
+            let allowed = "one number a state".to_owned();
+            report.value(row.at("by_states"), &row.path("by_states"), message, allowed);
+            return None;
+        }
+        let scaled = values.iter().zip(&sizes).map(|(value, state)| value * rate / state);
+        a.push(scaled.collect::<Vec<_>>());
+        b.push([row.number("by_elevator")? * rate]);
+    }
+    Some(LinearData {
+        states: names.iter().filter_map(|name| state(name)).collect(),
+        a: Matrix::from_rows(&a).ok()?,
+        b: Matrix::from_rows(&b).ok()?,
+    })
+}
+
+fn state(name: &str) -> Option<LinearState> {
+    Some(match name {
+        "u_ft_s" | "u_m_s" => LinearState::ForwardVelocity,
+        "w_ft_s" | "w_m_s" => LinearState::DownwardVelocity,
+        "alpha_rad" => LinearState::Alpha,
+        "q_rad_s" => LinearState::PitchRate,
+        "theta_rad" => LinearState::Theta,
+        _ => return None,
+    })
+}
+
+fn state_size(name: &str) -> f64 {
+    if name.ends_with("_ft_s") { FOOT_M } else { 1.0 }
+}
+
+/// A coefficient, 0 if it is left out.
+fn plain(section: &Section, name: &str) -> f64 {
+    section.number(name).unwrap_or(0.0)
+}
+
+/// The value in SI of the key that begins with a name and ends with a unit.
+fn quantity(section: &Section, name: &str) -> Option<f64> {
+    let given =
+        |(unit, size): &(&str, f64)| Some(size * section.number(&format!("{name}_{unit}"))?);
+    UNITS.iter().find_map(given)
+}
+
+/// As [`quantity`], for two ends; degrees become radians, and a key may have no unit.
+fn range(section: &Section, name: &str) -> Option<Range> {
+    if let Some((min, max)) = section.interval(&format!("{name}_deg")) {
+        return Some(Range { min: radians(min), max: radians(max) });
+    }
+    let given = |(unit, size): &(&str, f64)| {
+        section.interval(&format!("{name}_{unit}")).map(|ends| (ends, *size))
+    };
+    let plain = || section.interval(name).map(|ends| (ends, 1.0));
+    let ((min, max), size) = UNITS.iter().find_map(given).or_else(plain)?;
+    Some(Range { min: size * min, max: size * max })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fspid_aircraft::data::Laws;
+    use fspid_aircraft::{AircraftError, Environment};
+
+    fn text(name: &str) -> &'static str {
+        AIRCRAFT.iter().find(|(known, _)| *known == name).expect("carried").1
+    }
+
+    #[test]
+    fn every_aircraft_that_is_carried_reads_under_its_own_name() {
+        for (name, text) in AIRCRAFT {
+            let data = parse_aircraft(text, name).expect("a shipped file is right");
+            assert_eq!(data.name, name);
+            assert!(!data.source.is_empty());
+        }
+        assert_eq!(aircraft("concorde"), None);
+    }
+
+    #[test]
+    fn feet_and_pounds_become_si() {
+        let data = aircraft("navion").expect("carried");
+        let navion = data.derivatives().expect("derivatives");
+        assert!((navion.reference.airspeed_m_s - 53.6448).abs() < 1e-12);
+        assert!((navion.weight_n - 12_232.609_442).abs() < 1e-6);
+        assert!((navion.inertia.iy_kg_m2 - 4_067.453_845).abs() < 1e-6);
+        assert!((navion.reference.density_kg_m3 - 1.225_571).abs() < 1e-6);
+        assert!((navion.reference.dynamic_pressure_pa - 1_763.429_9).abs() < 1e-4);
+        assert!((navion.validity.alpha_rad.max - 0.174_533).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_same_aircraft_in_si_is_the_same() {
+        let imperial = aircraft("navion").expect("carried");
+        let metric = text("navion")
+            .replace("airspeed_ft_s = 176.0", "airspeed_m_s = 53.6448")
+            .replace("chord_ft = 5.7", "chord_m = 1.73736")
+            .replace("altitude_ft = [-1000.0, 15000.0]", "altitude_m = [-304.8, 4572.0]");
+        let metric = parse_aircraft(&metric, "metric").expect("right");
+        let [imperial, metric] =
+            [imperial, metric].map(|data| *data.derivatives().expect("derivatives"));
+        assert!((metric.geometry.chord_m - imperial.geometry.chord_m).abs() < 1e-12);
+        assert!((metric.reference.airspeed_m_s - imperial.reference.airspeed_m_s).abs() < 1e-12);
+        assert!((metric.validity.altitude_m.max - imperial.validity.altitude_m.max).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_quantity_in_two_units_or_in_none_is_a_problem() {
+        let both = text("navion").replace("span_ft = 33.4", "span_ft = 33.4\nspan_m = 10.18");
+        let problems = parse_aircraft(&both, "both.toml").expect_err("two spans").to_string();
+        assert!(problems.contains("not together with `span_ft`"), "{problems}");
+        let none = text("navion").replace("span_ft = 33.4\n", "");
+        let problems = parse_aircraft(&none, "none.toml").expect_err("no span").to_string();
+        assert!(problems.contains("span_ft"), "{problems}");
+    }
+
+    #[test]
+    fn inertias_of_no_body_and_equations_of_the_wrong_length_are_problems() {
+        let flat = text("navion").replace("ixz_slug_ft2 = 0.0", "ixz_slug_ft2 = 9000.0");
+        let problems = parse_aircraft(&flat, "flat.toml").expect_err("no body").to_string();
+        assert!(problems.contains("belong to no body"), "{problems}");
+        let short = text("ctms-transport").replace("[0.0, 56.7, 0.0]", "[0.0, 56.7]");
+        let problems = parse_aircraft(&short, "short.toml").expect_err("too short").to_string();
+        assert!(problems.contains("2 numbers for 3 states"), "{problems}");
+    }
+
+    #[test]
+    fn an_aircraft_from_a_file_flies_or_says_why_not() {
+        let flies = |name: &str| {
+            let data = aircraft(name).expect("carried");
+            data.aircraft(Laws::default(), Environment::STANDARD).map(|_| ())
+        };
+        assert_eq!(flies("b747-cruise-low"), Ok(()));
+        let refused = AircraftError::LinearOnly { name: "etkin-747".to_owned() };
+        assert_eq!(flies("etkin-747"), Err(refused));
+    }
+}
