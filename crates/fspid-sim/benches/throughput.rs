@@ -17,7 +17,8 @@ use fspid_core::fuzzy::{Defuzzifier, Label, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{Fspid, Gains, InputScale, Pid, SelfTuner, Shell, TunerSettings};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Timing, fly,
+    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+    fly,
 };
 
 const INPUTS: usize = 1_000_000;
@@ -96,5 +97,6 @@ fn scenario() -> Scenario {
             named("FSPID", Controller::SelfTuning(fspid)),
             named("PID", Controller::Fixed(pid)),
         ],
+        surroundings: Surroundings::default(),
     }
 }

@@ -7,8 +7,9 @@ use fspid_core::{Sample, State, Step};
 
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::propagator::PlantState;
 use crate::scenario::{Prepared, Scenario};
+use crate::sensor::{Sensor, SensorState, Truth};
+use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
@@ -80,12 +81,13 @@ pub fn fly(
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
-    let mut delayed: VecDeque<f64> = VecDeque::from(vec![0.0; prepared.servo.delay_samples()]);
+    let mut delayed: VecDeque<f64> = VecDeque::from(vec![0.0; prepared.delay_samples]);
     let mut stages = prepared.stages.iter().peekable();
     let Some(mut stage) = stages.next() else {
         return Ok(Outcome::Completed);
     };
-    let mut plant = PlantState::at_rest(stage.propagator.order());
+    let mut plant = stage.propagation.at_rest();
+    let mut sensors = Sensors::start(prepared)?;
 
     for (k, &setpoint_rad) in prepared.setpoint_rad.iter().enumerate() {
         while let Some(next) = stages.next_if(|next| next.from <= k) {
@@ -100,24 +102,51 @@ pub fn fly(
         if !(theta_rad.abs() <= DIVERGED_RAD) {
             return Ok(Outcome::Diverged { at_s: prepared.timing.time_s(k) });
         }
-        let q_rad_s = stage.propagator.rate_rad_s(&plant, disturbance_rad);
+        let q_rad_s = stage.propagation.rate_rad_s(&plant, disturbance_rad);
         let step = controller.step(
             &mut memory,
             Sample {
                 setpoint_rad,
-                measurement_rad: theta_rad + at(&prepared.at_measurement),
-                rate_rad_s: q_rad_s,
+                measurement_rad: sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement),
+                rate_rad_s: sensors.rate_rad_s(k, q_rad_s),
             },
         );
         delayed.push_back(step.command_rad);
         let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
-        stage.propagator.settle_ideal_servo(&mut plant, command_rad);
-        let elevator_rad = stage.propagator.elevator_rad(&plant, disturbance_rad);
+        stage.propagation.settle(&mut plant, command_rad);
+        let elevator_rad = stage.propagation.elevator_rad(&plant, disturbance_rad);
         let instant = Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, step };
         if observer(instant).is_break() {
             return Ok(Outcome::Completed);
         }
-        stage.propagator.advance(&mut plant, command_rad, disturbance_rad)?;
+        let held = held(disturbance_rad, prepared.gusts(), k);
+        stage.propagation.advance(&mut plant, command_rad, &held)?;
     }
     Ok(Outcome::Completed)
+}
+
+/// What the controller sees through; nothing changes without a sensor.
+struct Sensors {
+    pitch: Option<SensorState>,
+    rate: Option<SensorState>,
+}
+
+impl Sensors {
+    fn start(prepared: &Prepared) -> Result<Self, SimError> {
+        let dt_s = prepared.timing.dt_s();
+        let start = |sensor: Option<Sensor>| sensor.map(|sensor| sensor.start(dt_s)).transpose();
+        Ok(Self { pitch: start(prepared.pitch_sensor)?, rate: start(prepared.rate_sensor)? })
+    }
+
+    fn pitch_rad(&mut self, k: usize, value: f64) -> f64 {
+        seen(self.pitch.as_mut(), k, value)
+    }
+
+    fn rate_rad_s(&mut self, k: usize, value: f64) -> f64 {
+        seen(self.rate.as_mut(), k, value)
+    }
+}
+
+fn seen(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
+    sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
 }

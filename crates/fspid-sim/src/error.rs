@@ -53,6 +53,13 @@ pub enum SimError {
     },
     /// Air that moves around a plant which does not say how a gust acts on it.
     NoGustEntry,
+    /// A gust that would move the pitch rate at once.
+    GustMovesRate {
+        /// Coefficients of the gust's numerator.
+        found: usize,
+        /// Most allowed: two less than the denominator has.
+        most: usize,
+    },
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -84,6 +91,10 @@ impl fmt::Display for SimError {
             }
             Self::NoGustEntry => f.write_str(
                 "the air moves, but the plant does not say how gusts act on it; give it gust numerators or build it from derivatives",
+            ),
+            Self::GustMovesRate { found, most } => write!(
+                f,
+                "a gust numerator has {found} coefficients, so the pitch rate would jump with the gust; allowed are at most {most}"
             ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),

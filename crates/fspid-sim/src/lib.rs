@@ -5,6 +5,9 @@
 //! function: the same scenario gives the same bits on each machine, at each number of threads.
 //! Units are SI and radians; degrees exist in files and reports only.
 //!
+//! [`Surroundings`] adds what a real flight has: moving [`air`], an [`actuator`] with limits, sensors
+//! with noise and delay. Without them the loop is that of the paper, bit for bit.
+//!
 //! Nothing here measures or judges: metrics and verdicts are in `fspid-study`. [`stability`] is the
 //! exception that the loop itself must answer: whether fixed gains hold the plant at all.
 #![cfg_attr(
@@ -12,27 +15,36 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+mod actuated;
 pub mod actuator;
 pub mod air;
 mod closed_loop;
 mod controller;
 mod error;
+mod gust_entry;
+mod law;
+mod longitudinal;
 mod math;
 mod plant;
+mod propagation;
 mod propagator;
 mod scenario;
+pub mod sensor;
 mod servo;
 pub mod signal;
 pub mod stability;
+mod surroundings;
 mod timing;
 mod trace;
 
 pub use closed_loop::{Flight, Instant, fly, simulate};
 pub use controller::Controller;
 pub use error::SimError;
+pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, PlantChange};
 pub use scenario::{NamedController, Prepared, Scenario};
 pub use servo::Servo;
+pub use surroundings::{Course, Surroundings, Weather};
 pub use timing::{MAX_ROWS, Timing};
 pub use trace::{Outcome, Trace};
 

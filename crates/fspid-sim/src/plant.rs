@@ -3,6 +3,7 @@
 use fspid_lti::{StateSpace, TransferFunction};
 
 use crate::error::{SimError, not_negative};
+use crate::gust_entry::GustEntry;
 
 /// Which way the elevator of a plant's file is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,7 @@ impl ElevatorSign {
 pub struct LinearPlant {
     transfer_function: TransferFunction,
     elevator_sign: ElevatorSign,
+    gusts: Option<GustEntry>,
 }
 
 impl LinearPlant {
@@ -46,7 +48,31 @@ impl LinearPlant {
         if transfer_function.relative_degree() == 0 {
             return Err(SimError::NotStrictlyProper);
         }
-        Ok(Self { transfer_function, elevator_sign })
+        Ok(Self { transfer_function, elevator_sign, gusts: None })
+    }
+
+    /// The plant with transfer functions from the air's motion to pitch angle: numerators for
+    /// $u_g$, $w_g$ (rad per m/s) and $q_g$ (rad per rad/s) over the same denominator, highest power
+    /// of s first, none for no effect. Senses are those of [`air`](crate::air).
+    ///
+    /// # Errors
+    /// [`SimError::GustMovesRate`] for a numerator not shorter than the denominator by two,
+    /// [`SimError::Number`] for a coefficient that is not finite.
+    pub fn with_gusts(self, numerators: [&[f64]; 3]) -> Result<Self, SimError> {
+        let denominator = self.transfer_function.denominator().coefficients();
+        let gusts = GustEntry::new(denominator, numerators)?;
+        Ok(Self { gusts: Some(gusts), ..self })
+    }
+
+    /// True if the plant says how gusts act on it.
+    #[must_use]
+    pub fn feels_gusts(&self) -> bool {
+        self.gusts.is_some()
+    }
+
+    /// Input columns of $u_g, w_g, q_g$ over the states of [`state_space`](Self::state_space).
+    pub(crate) fn gust_columns(&self) -> Option<[Vec<f64>; 3]> {
+        self.gusts.as_ref().map(GustEntry::columns)
     }
 
     /// From elevator to pitch angle, in the plant's own elevator sign.
@@ -150,6 +176,8 @@ impl PlantChange {
             .skip_while(|&coefficient| coefficient == 0.0)
             .collect();
         let denominator = blend(&from_denominator, &to_denominator, 1.0);
-        LinearPlant::new(&numerator, &denominator, self.target.elevator_sign)
+        let gusts = GustEntry::between(before.gusts.as_ref(), self.target.gusts.as_ref(), fraction);
+        let plant = LinearPlant::new(&numerator, &denominator, self.target.elevator_sign)?;
+        Ok(LinearPlant { gusts, ..plant })
     }
 }

@@ -157,21 +157,30 @@ impl Propagator {
         Ok(())
     }
 
-    /// The matrix of one sample with a free servo, row by row: state, command, disturbance.
-    pub(crate) fn linear_step(&self) -> &[f64] {
-        &self.free_step
+    /// The linear part of a sample: what a loop around rest obeys.
+    pub(crate) fn linear_step(&self) -> LinearStep {
+        let mut rate_row = self.rate_output.clone();
+        rate_row.push(self.rate_feedthrough * self.elevator_per_command);
+        LinearStep {
+            states: self.order + 1,
+            rows: self.free_step.clone(),
+            rate_row,
+            delay_samples: self.servo.delay_samples(),
+        }
     }
+}
 
-    /// Row from state (with servo) to pitch rate.
-    pub(crate) fn rate_row(&self) -> Vec<f64> {
-        let mut row = self.rate_output.clone();
-        row.push(self.rate_feedthrough * self.elevator_per_command);
-        row
-    }
-
-    pub(crate) fn servo(&self) -> Servo {
-        self.servo
-    }
+/// One sample of plant and actuator without limits.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LinearStep {
+    /// States of plant and actuator, pitch angle first.
+    pub(crate) states: usize,
+    /// Rows over states, command and elevator disturbance, flat.
+    pub(crate) rows: Vec<f64>,
+    /// Row from states to pitch rate.
+    pub(crate) rate_row: Vec<f64>,
+    /// Delay of the command.
+    pub(crate) delay_samples: usize,
 }
 
 enum ServoMotion {

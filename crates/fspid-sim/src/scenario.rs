@@ -1,11 +1,16 @@
 //! What flies: a scenario without options and without invalid state.
 
+use crate::actuated::Actuated;
+use crate::actuator::Actuator;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::plant::{LinearPlant, PlantChange};
+use crate::propagation::Propagation;
 use crate::propagator::Propagator;
+use crate::sensor::Sensor;
 use crate::servo::Servo;
 use crate::signal::{Disturbance, Edge, Entry, Profile};
+use crate::surroundings::Surroundings;
 use crate::timing::Timing;
 
 /// A controller and what it is called.
@@ -36,13 +41,16 @@ pub struct Scenario {
     pub disturbances: Vec<Disturbance>,
     /// Who answers.
     pub controllers: Vec<NamedController>,
+    /// Moving air, an actuator in place of the servo, sensors; by default none.
+    pub surroundings: Surroundings,
 }
 
 impl Scenario {
     /// Everything that does not depend on the controller, computed once.
     ///
     /// # Errors
-    /// [`SimError`] where a plant change alters the order or makes a model that cannot be sampled.
+    /// [`SimError`] where a plant change alters the order or makes a model that cannot be sampled,
+    /// or where air moves around a plant that does not feel it.
     pub fn prepare(&self) -> Result<Prepared, SimError> {
         let (setpoint_rad, edges) = self.setpoint.sampled(self.timing);
         let column = |entry: Entry| {
@@ -57,21 +65,56 @@ impl Scenario {
         };
         Ok(Prepared {
             timing: self.timing,
-            servo: self.servo,
+            delay_samples: self.delay_samples(),
             setpoint_rad,
             edges,
             at_servo: column(Entry::Servo),
             at_elevator: column(Entry::Elevator),
             at_measurement: column(Entry::Measurement),
             stages: self.stages()?,
+            gusts: self.gusts()?,
+            pitch_sensor: self.surroundings.pitch_sensor,
+            rate_sensor: self.surroundings.rate_sensor,
         })
+    }
+
+    fn delay_samples(&self) -> usize {
+        let actuator = self.surroundings.actuator.as_ref();
+        actuator.map_or(self.servo.delay_samples(), Actuator::delay_samples)
+    }
+
+    fn gusts(&self) -> Result<Option<Vec<[f64; 3]>>, SimError> {
+        let Some(weather) = &self.surroundings.weather else {
+            return Ok(None);
+        };
+        if self.lasting_plants().iter().any(|(_, plant)| !plant.feels_gusts()) {
+            return Err(SimError::NoGustEntry);
+        }
+        weather.gusts(self.timing).map(Some)
+    }
+
+    /// A plant of the scenario, discretised: behind the servo in calm air, behind an actuator else.
+    pub(crate) fn propagation(
+        &self,
+        plant: &LinearPlant,
+        dt_s: f64,
+    ) -> Result<Propagation, SimError> {
+        let Surroundings { weather, actuator, .. } = &self.surroundings;
+        let actuator = match (actuator, weather) {
+            (Some(actuator), _) => *actuator,
+            (None, Some(_)) => self.servo.as_actuator()?,
+            (None, None) => {
+                return Ok(Propagation::Servo(Propagator::new(plant, self.servo, dt_s)?));
+            }
+        };
+        Ok(Propagation::Actuated(Actuated::new(plant, actuator, dt_s)?))
     }
 
     /// The plant's discretisations, each with the sample from which it holds.
     fn stages(&self) -> Result<Vec<Stage>, SimError> {
         let dt_s = self.timing.dt_s();
         let new_stage = |from, plant: &LinearPlant| {
-            Ok::<_, SimError>(Stage { from, propagator: Propagator::new(plant, self.servo, dt_s)? })
+            Ok::<_, SimError>(Stage { from, propagation: self.propagation(plant, dt_s)? })
         };
         let mut stages = vec![new_stage(0, &self.plant)?];
         let mut before = self.plant.clone();
@@ -115,20 +158,23 @@ fn fraction(change: &PlantChange, time_s: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Stage {
     pub(crate) from: usize,
-    pub(crate) propagator: Propagator,
+    pub(crate) propagation: Propagation,
 }
 
 /// What all controllers of a scenario share: sampled signals and discretised plants.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub(crate) timing: Timing,
-    pub(crate) servo: Servo,
+    pub(crate) delay_samples: usize,
     pub(crate) setpoint_rad: Vec<f64>,
     pub(crate) edges: Vec<Edge>,
     pub(crate) at_servo: Option<Vec<f64>>,
     pub(crate) at_elevator: Option<Vec<f64>>,
     pub(crate) at_measurement: Option<Vec<f64>>,
     pub(crate) stages: Vec<Stage>,
+    pub(crate) gusts: Option<Vec<[f64; 3]>>,
+    pub(crate) pitch_sensor: Option<Sensor>,
+    pub(crate) rate_sensor: Option<Sensor>,
 }
 
 impl Prepared {
@@ -148,5 +194,11 @@ impl Prepared {
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
+    }
+    /// The air's velocity forward and down, m/s, and its pitch rate, rad/s, at each sample; none in
+    /// calm air.
+    #[must_use]
+    pub fn gusts(&self) -> Option<&[[f64; 3]]> {
+        self.gusts.as_deref()
     }
 }

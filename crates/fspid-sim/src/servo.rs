@@ -1,5 +1,6 @@
 //! The elevator servo.
 
+use crate::actuator::{Actuator, Lag};
 use crate::error::{SimError, not_negative, positive};
 
 /// A first-order servo with optional limits, behind a delay of whole samples.
@@ -68,6 +69,25 @@ impl Servo {
             return Err(SimError::Number { what: "delay_samples", found, allowed });
         }
         Ok(Self { delay_samples: samples, ..self })
+    }
+
+    /// The same servo as an actuator: its position limit acts on the command.
+    ///
+    /// # Errors
+    /// None: what a servo allows, an actuator allows.
+    pub fn as_actuator(&self) -> Result<Actuator, SimError> {
+        let lag = match self.time_constant_s {
+            0.0 => Lag::NONE,
+            time_constant_s => Lag::first_order(time_constant_s)?,
+        };
+        let mut actuator = Actuator::new(lag).with_delay(self.delay_samples)?;
+        if let Some(limit_rad) = self.position_limit_rad {
+            actuator = actuator.with_command_limits(-limit_rad, limit_rad)?;
+        }
+        if let Some(limit_rad_s) = self.rate_limit_rad_s {
+            actuator = actuator.with_rate_limit(limit_rad_s)?;
+        }
+        Ok(actuator)
     }
 
     /// Time constant, s; 0 for an ideal servo.

@@ -11,7 +11,7 @@ use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::propagator::Propagator;
+use crate::propagator::LinearStep;
 use crate::scenario::Scenario;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
@@ -30,7 +30,8 @@ pub struct Unstable {
 /// tell of (self-tuning gains, limits of the controller).
 ///
 /// Limits of the servo are passed over: around rest, where they do not act, they save no loop that
-/// is unstable without them.
+/// is unstable without them. Deadband and play of an actuator are passed over as well, and so is
+/// what sensors do to a measurement: the answer is that of the loop without them.
 ///
 /// # Errors
 /// [`SimError`] where the plant cannot be discretised or the eigenvalues are not found.
@@ -45,8 +46,8 @@ pub fn instability(
         return Ok(None);
     }
     for (from_s, plant) in scenario.lasting_plants() {
-        let propagator = Propagator::new(plant, scenario.servo, scenario.timing.dt_s())?;
-        let radius = spectral_radius(&closed_loop(&propagator, pid.gains(), pid.shell())?)?;
+        let step = scenario.propagation(plant, scenario.timing.dt_s())?.linear_step();
+        let radius = spectral_radius(&closed_loop(&step, pid.gains(), pid.shell())?)?;
         // Written so that NaN counts as unstable.
         if !(radius < 1.0 - MARGIN) {
             return Ok(Some(Unstable { spectral_radius: radius, from_s }));
@@ -64,8 +65,8 @@ pub fn loop_spectral_radius(
     gains: Gains<f64>,
     shell: &Shell<f64>,
 ) -> Result<f64, SimError> {
-    let propagator = Propagator::new(&scenario.plant, scenario.servo, shell.dt_s)?;
-    Ok(spectral_radius(&closed_loop(&propagator, gains, shell)?)?)
+    let step = scenario.propagation(&scenario.plant, shell.dt_s)?.linear_step();
+    Ok(spectral_radius(&closed_loop(&step, gains, shell)?)?)
 }
 
 /// Poles of the sampled loop of one plant with fixed gains and no limits.
@@ -77,8 +78,8 @@ pub fn loop_poles(
     gains: Gains<f64>,
     shell: &Shell<f64>,
 ) -> Result<Vec<Complex>, SimError> {
-    let propagator = Propagator::new(&scenario.plant, scenario.servo, shell.dt_s)?;
-    Ok(eigenvalues(&closed_loop(&propagator, gains, shell)?)?)
+    let step = scenario.propagation(&scenario.plant, shell.dt_s)?.linear_step();
+    Ok(eigenvalues(&closed_loop(&step, gains, shell)?)?)
 }
 
 /// Where the parts of the state stand.
@@ -104,13 +105,13 @@ impl Layout {
 
 /// The one-sample matrix of the loop with the set-point at zero.
 fn closed_loop(
-    propagator: &Propagator,
+    linear: &LinearStep,
     gains: Gains<f64>,
     shell: &Shell<f64>,
 ) -> Result<Matrix, SimError> {
-    let plant = propagator.order() + 1;
-    let layout = Layout { plant, delay: propagator.servo().delay_samples() };
-    let controller = controller_rows(propagator, gains, shell, &layout);
+    let plant = linear.states;
+    let layout = Layout { plant, delay: linear.delay_samples };
+    let controller = controller_rows(linear, gains, shell, &layout);
 
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(layout.size());
     // The command that moves the servo now: the oldest of the queue, or this sample's own.
@@ -120,7 +121,7 @@ fn closed_loop(
     } else {
         arriving[layout.plant] = 1.0;
     }
-    for step in propagator.linear_step().chunks_exact(plant + 2) {
+    for step in linear.rows.chunks_exact(plant + 2) {
         let mut values: Vec<f64> = arriving.iter().map(|a| a * step[plant]).collect();
         for (value, by_state) in values.iter_mut().zip(&step[..plant]) {
             *value += by_state;
@@ -152,7 +153,7 @@ struct ControllerRows {
 }
 
 fn controller_rows(
-    propagator: &Propagator,
+    linear: &LinearStep,
     gains: Gains<f64>,
     shell: &Shell<f64>,
     layout: &Layout,
@@ -176,7 +177,7 @@ fn controller_rows(
 
     let mut command: Vec<f64> = integral.iter().zip(&derivative).map(|(i, d)| i + kd * d).collect();
     command[0] -= kp;
-    for (value, q) in command.iter_mut().zip(propagator.rate_row()) {
+    for (value, q) in command.iter_mut().zip(&linear.rate_row) {
         *value -= shell.rate_gain_s * q;
     }
     ControllerRows { command, integral, derivative }

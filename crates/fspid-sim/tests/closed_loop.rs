@@ -6,7 +6,7 @@ use fspid_core::{Gains, Pid, Shell};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
     Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario, Servo, SimError,
-    Timing, Trace, simulate,
+    Surroundings, Timing, Trace, simulate,
 };
 use proptest::prelude::*;
 
@@ -39,6 +39,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        surroundings: Surroundings::default(),
     }
 }
 

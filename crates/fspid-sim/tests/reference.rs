@@ -13,8 +13,8 @@ use fspid_core::{
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Scenario, Servo, Timing,
-    Trace, simulate,
+    Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Scenario, Servo, Surroundings,
+    Timing, Trace, simulate,
 };
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -44,6 +44,7 @@ fn scenario(plant: LinearPlant, controller: Controller) -> Scenario {
         setpoint: Profile::new(DEG, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        surroundings: Surroundings::default(),
     }
 }
 

@@ -83,7 +83,7 @@ fn a_stop_is_met_at_its_instant_and_left_at_once() {
     let mut legs = Vec::new();
     actuator.legs(&mut state, 2.0, 0.5, |leg| legs.push(leg));
     assert_eq!(legs.len(), 2);
-    assert!((legs[0].duration_s - 0.1 * 2.0_f64.ln()).abs() < 1e-15, "{legs:?}");
+    assert!((legs[0].duration_s - 0.1 * std::f64::consts::LN_2).abs() < 1e-15, "{legs:?}");
     assert_eq!(legs[1].course, Course::Ramp { rate_rad_s: 0.0 });
     assert_eq!(actuator.deflection_rad(&state), 1.0);
     actuator.advance(&mut state, 0.0, 0.1);

@@ -25,7 +25,7 @@ pub mod wind;
 pub use dryden::{Dryden, DrydenState, Intensity, Severity, Specification, Turbulence};
 pub use wind::{
     AirMotion, FullCycle, LogShear, Microburst, Place, RampHold, Steady, Wind, WindField, WindKind,
-    design_gust_m_s, reference_gust_m_s,
+    design_gust_m_s, reference_gust_m_s, sum_at,
 };
 
 /// Metres in a foot, exactly.

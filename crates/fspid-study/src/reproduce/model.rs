@@ -9,7 +9,9 @@ use fspid_core::{
     TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
-use fspid_sim::{Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Timing};
+use fspid_sim::{
+    Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
+};
 
 use crate::units::{degrees, radians};
 
@@ -151,6 +153,7 @@ impl FlightModel {
             setpoint: Profile::new(radians(self.amplitude_deg()), shape)?,
             disturbances: Vec::new(),
             controllers: controllers.collect::<Result<_, SimError>>()?,
+            surroundings: Surroundings::default(),
         })
     }
 

@@ -8,7 +8,7 @@ use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_sim::signal::{Disturbance, Entry, Interpolation, Profile, Shape};
 use fspid_sim::{
     Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario, Servo, SimError,
-    Timing,
+    Surroundings, Timing,
 };
 use fspid_study::file::{self, rule_table};
 
@@ -139,6 +139,7 @@ fn expected() -> Result<Scenario, SimError> {
         setpoint: Profile::new(1.0 * DEG, Shape::Step { at_s: 0.5 })?,
         disturbances: disturbances()?,
         controllers: controllers(),
+        surroundings: Surroundings::default(),
     })
 }
 

@@ -62,6 +62,12 @@ impl std::ops::Add for AirMotion {
     }
 }
 
+/// The motion of several winds together.
+#[must_use]
+pub fn sum_at(winds: &[Wind], place: &Place) -> AirMotion {
+    winds.iter().fold(AirMotion::default(), |sum, wind| sum + wind.at(place))
+}
+
 /// A member of the family.
 pub trait WindField: Sized {
     /// Name in files and messages.

@@ -5,7 +5,9 @@ pub(crate) mod data;
 mod signal;
 mod timing;
 
-use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Servo, SimError, Timing};
+use fspid_sim::{
+    ElevatorSign, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
+};
 
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -57,6 +59,7 @@ pub(crate) fn scenario(
         setpoint: setpoint?,
         disturbances,
         controllers,
+        surroundings: Surroundings::default(),
     };
     if section.sound {
         timing::check_flight(report, section, &scenario);

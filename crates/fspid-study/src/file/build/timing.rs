@@ -1,6 +1,6 @@
 //! Samples, and what depends on when they are taken.
 
-use fspid_sim::{LinearPlant, PlantChange, Scenario, Servo, SimError, Timing};
+use fspid_sim::{LinearPlant, PlantChange, Scenario, Servo, SimError, Surroundings, Timing};
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
@@ -62,6 +62,7 @@ fn can_be_sampled(plant: &LinearPlant, (timing, servo): (Timing, Servo)) -> Resu
         setpoint,
         disturbances: Vec::new(),
         controllers: Vec::new(),
+        surroundings: Surroundings::default(),
     };
     scenario.prepare().map(|_| ())
 }

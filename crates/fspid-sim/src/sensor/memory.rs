@@ -1,0 +1,183 @@
+//! What a sensor remembers, and how it looks.
+
+use super::Sensor;
+use crate::error::SimError;
+use crate::math::exp;
+use crate::signal::noise::standard_normal;
+
+/// The quantity at a sample of the loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// Its value.
+    pub value: f64,
+    /// Angle between the true vertical and the one that a pendulum in the aircraft shows,
+    /// $\arctan(a_x / g)$, rad, forward acceleration positive; only erecting gyros look at it, and
+    /// 0 for a linear plant, whose speed is not known.
+    pub apparent_vertical_rad: f64,
+}
+
+/// The memory of a sensor over one flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorState {
+    sensor: Sensor,
+    dt_s: f64,
+    period_s: f64,
+    bias: f64,
+    noise: f64,
+    /// What remains of the drift after one period, and what is added to it.
+    drift_step: [f64; 2],
+    drift: f64,
+    tilt_rad: f64,
+    /// The last values that it may look at, a ring over the samples of the loop.
+    history: Vec<f64>,
+    /// The sensor's sample that is shown.
+    shown: Option<u64>,
+    value: f64,
+}
+
+/// Of a period: how far before a sampling time a sample may lie and still count as on it.
+const SAME_SAMPLE: f64 = 1e-6;
+/// Longest memory, samples of the loop.
+const MOST_SAMPLES: f64 = 1e6;
+
+impl Sensor {
+    /// The memory for a flight that is sampled every `dt_s`; after this nothing is allocated.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a delay or sampling time of more than a million samples.
+    pub fn start(&self, dt_s: f64) -> Result<SensorState, SimError> {
+        let model = self.model;
+        let period_s = if model.period_s > 0.0 { model.period_s } else { dt_s };
+        let samples = ((model.delay_s + period_s) / dt_s).ceil() + 2.0;
+        // Written so that NaN fails.
+        if !(samples <= MOST_SAMPLES) {
+            let allowed = "at most a million sample periods";
+            return Err(SimError::Number {
+                what: "sensor delay and period",
+                found: samples,
+                allowed,
+            });
+        }
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 2 and a million"
+        )]
+        let history = vec![0.0; samples as usize];
+        let normal = |source: u64| standard_normal(self.seed, self.stream(source), 0);
+        let kept = if model.drift > 0.0 { exp(-period_s / model.drift_time_s) } else { 0.0 };
+        Ok(SensorState {
+            sensor: *self,
+            dt_s,
+            period_s,
+            bias: if model.bias > 0.0 { model.bias * normal(1) } else { 0.0 },
+            noise: model.noise_density * (0.5 / period_s).sqrt(),
+            drift_step: [kept, model.drift * (1.0 - kept * kept).sqrt()],
+            drift: if model.drift > 0.0 { model.drift * normal(2) } else { 0.0 },
+            tilt_rad: 0.0,
+            history,
+            shown: None,
+            value: 0.0,
+        })
+    }
+}
+
+impl SensorState {
+    /// What the sensor shows at sample `k` of the loop; samples count up by one from 0.
+    pub fn measure(&mut self, k: usize, truth: Truth) -> f64 {
+        self.erect(truth.apparent_vertical_rad);
+        self.remember(k, truth.value + self.tilt_rad);
+        let sample = self.sample_at(k);
+        while self.shown.is_none_or(|shown| shown < sample) {
+            let next = self.shown.map_or(0, |shown| shown + 1);
+            self.look(k, next, next == sample);
+        }
+        self.value
+    }
+
+    /// The gyro's axis follows the apparent vertical at its erection rate, so that a long forward
+    /// acceleration shows as a nose that is too high.
+    fn erect(&mut self, apparent_vertical_rad: f64) {
+        let most_rad = self.sensor.model.erection_rad_s * self.dt_s;
+        self.tilt_rad += (apparent_vertical_rad - self.tilt_rad).clamp(-most_rad, most_rad);
+    }
+
+    fn remember(&mut self, k: usize, value: f64) {
+        let places = self.history.len();
+        if k == 0 {
+            self.history.fill(value);
+        } else if let Some(place) = self.history.get_mut(k % places) {
+            *place = value;
+        }
+    }
+
+    /// The sensor's last sample that is available at sample `k` of the loop; before the first it is
+    /// taken to be sample 0.
+    fn sample_at(&self, k: usize) -> u64 {
+        let time_s = k as f64 * self.dt_s - self.sensor.model.delay_s;
+        let sample = if self.sensor.model.period_s > 0.0 {
+            (time_s / self.period_s + SAME_SAMPLE).floor().max(0.0)
+        } else {
+            k as f64
+        };
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative, and the cast saturates"
+        )]
+        let sample = sample as u64;
+        sample
+    }
+
+    /// Takes sample `j` of the sensor: draws its drift and, if it is the one to `show`, its value.
+    fn look(&mut self, k: usize, j: u64, show: bool) {
+        let [kept, added] = self.drift_step;
+        let (sensor, number) = (self.sensor, usize::try_from(j).unwrap_or(usize::MAX));
+        let normal = |source: u64| standard_normal(sensor.seed, sensor.stream(source), number);
+        if j > 0 && added > 0.0 {
+            self.drift = kept * self.drift + added * normal(2);
+        }
+        if show {
+            let noise = if self.noise > 0.0 { self.noise * normal(0) } else { 0.0 };
+            let seen = self.seen(k, j);
+            let raw = seen + sensor.model.scale_error * seen + self.bias + self.drift + noise;
+            self.value = quantised(raw, sensor.model.resolution);
+        }
+        self.shown = Some(j);
+    }
+
+    /// The quantity at the time of sample `j`, between samples of the loop in a straight line.
+    fn seen(&self, k: usize, j: u64) -> f64 {
+        let delay_s = self.sensor.model.delay_s;
+        let at_s = if self.sensor.model.period_s > 0.0 {
+            j as f64 * self.period_s
+        } else {
+            k as f64 * self.dt_s - delay_s
+        };
+        let age = (k as f64 - at_s.max(0.0) / self.dt_s).max(0.0);
+        let whole = (age + SAME_SAMPLE).floor();
+        let part = (age - whole).max(0.0);
+        let newer = self.value_before(k, whole);
+        if part <= SAME_SAMPLE {
+            return newer;
+        }
+        newer + part * (self.value_before(k, whole + 1.0) - newer)
+    }
+
+    /// The value a whole number of `samples` before sample `k`; the first one before the start.
+    fn value_before(&self, k: usize, samples: f64) -> f64 {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative, and the cast saturates"
+        )]
+        let samples = samples as usize;
+        let place = k.saturating_sub(samples) % self.history.len();
+        self.history.get(place).copied().unwrap_or(0.0)
+    }
+}
+
+/// The nearest multiple of a resolution, ties away from zero.
+fn quantised(value: f64, resolution: f64) -> f64 {
+    if resolution > 0.0 { (value / resolution).round() * resolution } else { value }
+}

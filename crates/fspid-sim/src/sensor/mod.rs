@@ -1,0 +1,116 @@
+//! Sensors: what a controller sees of a quantity, and when.
+//!
+//! # Order
+//! A sensor looks at the quantity at its own sampling times $t_j = j T_s$. What it sees passes, in
+//! this order: erection (vertical gyros only), scale, bias and drift, noise, quantisation. The value
+//! is available a delay later and is held until the next one:
+//!
+//! $$ m(t) = Q \left( (1 + s) \, y(t_j) + b + d_j + \sigma n_j \right), \qquad
+//! j = \left\lfloor \frac{t - t_d}{T_s} \right\rfloor $$
+//!
+//! A sensor without a sampling time of its own looks at every sample of the loop. Between samples of
+//! the loop the quantity is taken to be a straight line; before the first it was what it is there.
+//!
+//! $$ \sigma = N \sqrt{\frac{1}{2 T_s}}, \qquad
+//! d_{j+1} = e^{-T_s / T_d} d_j + \sigma_d \sqrt{1 - e^{-2 T_s / T_d}} \, n_j $$
+//!
+//! with the one-sided noise density N, unit/√Hz, over the bandwidth $1 / 2 T_s$, the bias b from run
+//! to run of standard deviation $\sigma_b$, and the drift d, a process of Gauss and Markov that
+//! starts from its stationary distribution.
+//!
+//! # Random streams
+//! Of the seed, from [`STREAM`] on, 4 for each channel number: noise 0, bias 1, drift 2. Sample j of
+//! the sensor takes number j, so that the noise does not depend on the loop's period.
+//!
+//! Quantities are in any one unit: rad for pitch, rad/s for pitch rate, m for altitude, m/s for speed.
+
+mod memory;
+mod preset;
+
+pub use memory::{SensorState, Truth};
+pub use preset::SensorPreset;
+
+use crate::error::{SimError, finite, not_negative, positive};
+
+/// Number of the first random stream of sensors; turbulence and disturbances have others.
+pub const STREAM: u64 = 2 << 32;
+/// Streams that each channel has.
+const STREAMS: u64 = 4;
+
+/// Channel number of the pitch sensor in the streams of its seed.
+pub const PITCH: u32 = 0;
+/// Channel number of the pitch-rate sensor.
+pub const RATE: u32 = 1;
+
+/// What a sensor does to its quantity. Public fields, checked when a [`Sensor`] is built; the
+/// default does nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorModel {
+    /// One-sided noise density N, unit/√Hz.
+    pub noise_density: f64,
+    /// Standard deviation of the bias from run to run, unit.
+    pub bias: f64,
+    /// Standard deviation of the drift, unit.
+    pub drift: f64,
+    /// Correlation time of the drift, s; needed where there is drift.
+    pub drift_time_s: f64,
+    /// Scale error s.
+    pub scale_error: f64,
+    /// Resolution, unit; 0 for none.
+    pub resolution: f64,
+    /// Sampling time, s; 0 for every sample of the loop.
+    pub period_s: f64,
+    /// Delay from looking to showing, s; need not be a multiple of anything.
+    pub delay_s: f64,
+    /// How fast a vertical gyro erects towards the apparent vertical, rad/s; 0 for none.
+    pub erection_rad_s: f64,
+}
+
+/// A sensor of one channel, prepared for the loop's period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    model: SensorModel,
+    seed: u64,
+    channel: u32,
+}
+
+impl Sensor {
+    /// A sensor whose random numbers come from `seed` and the streams of `channel`.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a number that is not finite or, but for the scale error, negative;
+    /// for drift without a correlation time.
+    pub fn new(model: SensorModel, seed: u64, channel: u32) -> Result<Self, SimError> {
+        for (what, value) in [
+            ("noise density", model.noise_density),
+            ("bias", model.bias),
+            ("drift", model.drift),
+            ("drift time, s", model.drift_time_s),
+            ("resolution", model.resolution),
+            ("sensor period, s", model.period_s),
+            ("sensor delay, s", model.delay_s),
+            ("erection rate, rad/s", model.erection_rad_s),
+        ] {
+            not_negative(what, value)?;
+        }
+        finite("scale error", model.scale_error)?;
+        if model.drift > 0.0 {
+            positive("drift time, s", model.drift_time_s)?;
+        }
+        Ok(Self { model, seed, channel })
+    }
+
+    /// What it does.
+    #[must_use]
+    pub fn model(&self) -> &SensorModel {
+        &self.model
+    }
+
+    /// Stream of a source of randomness.
+    fn stream(&self, source: u64) -> u64 {
+        STREAM + STREAMS * u64::from(self.channel) + source
+    }
+}
+
+#[cfg(test)]
+mod tests;

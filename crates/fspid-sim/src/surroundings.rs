@@ -1,0 +1,125 @@
+//! What a flight has beyond plant and servo: moving air, an actuator, sensors.
+
+use crate::actuated::Held;
+use crate::actuator::Actuator;
+use crate::air::{AirMotion, Dryden, Place, Turbulence, Wind, sum_at};
+use crate::error::{SimError, finite, positive};
+use crate::math::sin_cos;
+use crate::sensor::Sensor;
+use crate::timing::Timing;
+
+/// Moving air, an actuator, sensors; by default none of them, so that the plant flies in calm air
+/// behind its servo and the controller sees pitch and pitch rate as they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surroundings {
+    /// Air that moves. The plant must say how it acts ([`LinearPlant::with_gusts`]).
+    ///
+    /// [`LinearPlant::with_gusts`]: crate::LinearPlant::with_gusts
+    pub weather: Option<Weather>,
+    /// What moves the elevator, in place of the scenario's servo.
+    pub actuator: Option<Actuator>,
+    /// What measures the pitch angle.
+    pub pitch_sensor: Option<Sensor>,
+    /// What measures the pitch rate.
+    pub rate_sensor: Option<Sensor>,
+}
+
+/// The path that a linear plant is taken to fly: straight, level, at constant airspeed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// True airspeed, m/s.
+    pub airspeed_m_s: f64,
+    /// Height above the ground, m.
+    pub height_m: f64,
+    /// Heading, clockwise from north, rad.
+    pub heading_rad: f64,
+    /// Start, m north and m east of the origin.
+    pub start_m: [f64; 2],
+}
+
+/// The air along a course.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weather {
+    /// Where the aircraft flies.
+    pub course: Course,
+    /// Winds and gusts, which add.
+    pub winds: Vec<Wind>,
+    /// Turbulence.
+    pub turbulence: Option<Turbulence>,
+}
+
+impl Course {
+    /// Where the aircraft is at a time. It drifts with no wind: a linear model has small gusts.
+    #[must_use]
+    pub fn place(&self, time_s: f64) -> Place {
+        let distance_m = self.airspeed_m_s * time_s;
+        let (sine, cosine) = sin_cos(self.heading_rad);
+        let [north_m, east_m] = self.start_m;
+        Place {
+            time_s,
+            distance_m,
+            north_m: north_m + distance_m * cosine,
+            east_m: east_m + distance_m * sine,
+            height_m: self.height_m,
+        }
+    }
+
+    /// The air's velocity forward and down and its pitch rate.
+    fn longitudinal(&self, motion: &AirMotion) -> [f64; 3] {
+        let ([north, east, earth_down], [forward, _, down]) = (motion.earth_m_s, motion.body_m_s);
+        let (sine, cosine) = sin_cos(self.heading_rad);
+        let [_, q_rad_s, _] = motion.body_rad_s;
+        [north * cosine + east * sine + forward, earth_down + down, q_rad_s]
+    }
+}
+
+impl Weather {
+    /// $u_g, w_g$, m/s, and $q_g$, rad/s, at each sample.
+    ///
+    /// Winds count from the start: the aircraft is trimmed in the wind that it starts in, and only
+    /// what changes along the way disturbs it. Turbulence is there from the start.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a course or turbulence out of its range.
+    pub fn gusts(&self, timing: Timing) -> Result<Vec<[f64; 3]>, SimError> {
+        positive("airspeed, m/s", self.course.airspeed_m_s)?;
+        let [north_m, east_m] = self.course.start_m;
+        for value in [self.course.height_m, self.course.heading_rad, north_m, east_m] {
+            finite("course", value)?;
+        }
+        let at_start = self.wind(0.0);
+        let wind = |k: usize| {
+            let here = self.wind(timing.time_s(k));
+            let change: [f64; 3] = std::array::from_fn(|part| here[part] - at_start[part]);
+            change
+        };
+        let mut gusts: Vec<[f64; 3]> = (0..timing.rows()).map(wind).collect();
+        if let Some(turbulence) = &self.turbulence {
+            self.add_turbulence(&Dryden::new(turbulence, timing.dt_s())?, &mut gusts);
+        }
+        Ok(gusts)
+    }
+
+    fn wind(&self, time_s: f64) -> [f64; 3] {
+        self.course.longitudinal(&sum_at(&self.winds, &self.course.place(time_s)))
+    }
+
+    fn add_turbulence(&self, dryden: &Dryden, gusts: &mut [[f64; 3]]) {
+        let mut state = dryden.start();
+        for (k, gust) in gusts.iter_mut().enumerate() {
+            if k > 0 {
+                dryden.advance(&mut state, k);
+            }
+            let turbulent = self.course.longitudinal(&dryden.motion(&state));
+            for (part, more) in gust.iter_mut().zip(turbulent) {
+                *part += more;
+            }
+        }
+    }
+}
+
+/// What enters the plant at a sample.
+pub(crate) fn held(elevator_rad: f64, gusts: Option<&[[f64; 3]]>, k: usize) -> Held {
+    let gust = gusts.and_then(|gusts| gusts.get(k)).copied().unwrap_or_default();
+    Held { elevator_rad, gust }
+}

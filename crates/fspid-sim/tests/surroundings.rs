@@ -1,0 +1,332 @@
+//! Flights in moving air, behind actuators with limits, through sensors.
+
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+
+use std::ops::ControlFlow;
+
+use fspid_core::{Gains, Pid, Shell};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::air::{Intensity, Severity, Specification, Turbulence, WindKind};
+use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel, SensorPreset};
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::stability::{instability, loop_spectral_radius};
+use fspid_sim::{
+    Controller, Course, ElevatorSign, LinearPlant, LongitudinalDerivatives, NamedController,
+    PlantChange, Scenario, Servo, SimError, Surroundings, Timing, Trace, Weather, fly, simulate,
+};
+use proptest::prelude::*;
+
+const DT_S: f64 = 0.01;
+const FOOT_M: f64 = 0.3048;
+const STEP: Shape = Shape::Step { at_s: 0.0 };
+
+/// Nelson's rounded derivatives of the Navion, ft and s.
+const NAVION: LongitudinalDerivatives = LongitudinalDerivatives {
+    u0: 176.0,
+    gravity: 32.2,
+    x: [-0.045, 0.036, 0.0],
+    z: [-0.369, -2.02, 0.0, 0.0, -28.15],
+    m: [0.0, -0.05, -0.0051, -2.05, -11.874],
+};
+
+fn navion() -> LinearPlant {
+    NAVION.plant(FOOT_M).expect("allowed")
+}
+
+fn pid(kp: f64, ki: f64, kd: f64) -> Controller {
+    let shell = Shell::sampled_every(DT_S);
+    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, shell).expect("allowed"))
+}
+
+fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Scenario {
+    Scenario {
+        name: "surroundings".into(),
+        plant,
+        plant_changes: Vec::new(),
+        servo: Servo::first_order(0.1).expect("allowed"),
+        timing: Timing::new(DT_S, 10.0).expect("allowed"),
+        setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
+        disturbances: Vec::new(),
+        controllers: vec![NamedController { name: "C".into(), controller }],
+        surroundings: Surroundings::default(),
+    }
+}
+
+fn flown(scenario: &Scenario) -> Trace {
+    simulate(scenario).expect("flies").traces.remove(0)
+}
+
+fn course() -> Course {
+    let airspeed_m_s = 176.0 * FOOT_M;
+    Course { airspeed_m_s, height_m: 150.0, heading_rad: 0.0, start_m: [0.0; 2] }
+}
+
+fn weather(kind: WindKind, params: &[f64]) -> Weather {
+    let wind = kind.build(params).expect("allowed");
+    Weather { course: course(), winds: vec![wind], turbulence: None }
+}
+
+fn turbulence(w20_m_s: f64) -> Weather {
+    let turbulence = Turbulence {
+        specification: Specification::MilF8785c,
+        intensity: Intensity::new(w20_m_s, Severity::Light).expect("allowed"),
+        height_m: 150.0,
+        airspeed_m_s: 176.0 * FOOT_M,
+        wing_span_m: 33.4 * FOOT_M,
+        seed: 9,
+    };
+    Weather { course: course(), winds: Vec::new(), turbulence: Some(turbulence) }
+}
+
+fn apart(first: &[f64], second: &[f64]) -> f64 {
+    assert_eq!(first.len(), second.len());
+    first.iter().zip(second).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn an_actuator_that_is_the_servo_flies_as_the_servo() {
+    let plain = Servo::first_order(0.1).expect("allowed");
+    let limited = plain
+        .with_position_limit(0.2)
+        .and_then(|servo| servo.with_rate_limit(0.6))
+        .and_then(|servo| servo.with_delay(3))
+        .expect("allowed");
+    for servo in [plain, limited, Servo::ideal()] {
+        let mut flight = Scenario { servo, ..scenario(navion(), pid(1.0, 0.3, 0.2), 0.3) };
+        let by_servo = flown(&flight);
+        flight.surroundings.actuator = Some(servo.as_actuator().expect("allowed"));
+        let by_actuator = flown(&flight);
+        assert!(apart(&by_servo.theta_rad, &by_actuator.theta_rad) < 1e-12, "{servo:?}");
+        assert!(apart(&by_servo.q_rad_s, &by_actuator.q_rad_s) < 1e-11, "{servo:?}");
+        assert!(apart(&by_servo.elevator_rad, &by_actuator.elevator_rad) < 1e-11, "{servo:?}");
+    }
+}
+
+#[test]
+fn air_that_does_not_change_along_the_way_leaves_the_flight_as_it_is() {
+    let mut flight = scenario(navion(), pid(1.0, 0.3, 0.2), 0.3);
+    let calm = flown(&flight);
+    flight.surroundings.weather = Some(weather(WindKind::Steady, &[-12.0, 4.0, 1.0]));
+    let windy = flown(&flight);
+    assert!(apart(&calm.theta_rad, &windy.theta_rad) < 1e-12);
+}
+
+/// θ = N/(s² + 3 s + 2) w_g with a step at 1 s: 1/2 - e^-t + e^-2t/2, exactly at every sample.
+#[test]
+fn a_step_of_the_air_is_answered_exactly_at_every_sample() {
+    let plant = LinearPlant::new(&[1.0], &[1.0, 3.0, 2.0], ElevatorSign::NoseUpPositive)
+        .and_then(|plant| plant.with_gusts([&[], &[0.5], &[]]))
+        .expect("allowed");
+    let mut flight = scenario(plant, pid(0.0, 0.0, 0.0), 0.0);
+    let start_m = course().airspeed_m_s * (1.0 - 0.5 * DT_S);
+    let gust = [0.0, 0.0, 4.0, 1e-6, start_m];
+    flight.surroundings.weather = Some(weather(WindKind::RampHold, &gust));
+    for (k, theta) in flown(&flight).theta_rad.into_iter().enumerate() {
+        let t = (k as f64 - 100.0).max(0.0) * DT_S;
+        let expected = 2.0 * (0.5 - libm::exp(-t) + 0.5 * libm::exp(-2.0 * t));
+        assert!((theta - expected).abs() < 1e-13, "{k} {theta} {expected}");
+    }
+}
+
+/// The four equations of motion with the same held gusts, by the midpoint rule in steps of 0.1 ms.
+#[test]
+fn a_gust_moves_the_plant_as_its_four_equations_of_motion_say() {
+    let mut flight = scenario(navion(), pid(0.0, 0.0, 0.0), 0.0);
+    flight.timing = Timing::new(DT_S, 4.0).expect("allowed");
+    let gust = [2.0, 0.0, -3.0, 20.0, 10.0];
+    flight.surroundings.weather = Some(weather(WindKind::FullCycle, &gust));
+    let trace = flown(&flight);
+    let prepared = flight.prepare().expect("prepares");
+    let model = NAVION.model().expect("allowed");
+    let (mut x, steps) = ([0.0_f64; 4], 100);
+    let mut most: f64 = 0.0;
+    for (gust, theta) in prepared.gusts().expect("windy").iter().zip(&trace.theta_rad) {
+        assert!((x[3] - theta).abs() < 1e-8, "{} {theta}", x[3]);
+        most = most.max(theta.abs());
+        let inputs = [0.0, gust[0] / FOOT_M, gust[1] / FOOT_M, gust[2]];
+        for _ in 0..steps {
+            let step_s = DT_S / f64::from(steps);
+            let moved = |x: &[f64; 4], by: &[f64; 4], time_s: f64| -> [f64; 4] {
+                std::array::from_fn(|row| {
+                    let by_state: f64 = model.a[row].iter().zip(by).map(|(a, x)| a * x).sum();
+                    let by_air: f64 = model.b[row].iter().zip(inputs).map(|(b, u)| b * u).sum();
+                    x[row] + time_s * (by_state + by_air)
+                })
+            };
+            let middle = moved(&x, &x, 0.5 * step_s);
+            x = moved(&x, &middle, step_s);
+        }
+    }
+    assert!(most > 0.01, "{most}");
+}
+
+#[test]
+fn an_updraught_turns_the_nose_down_into_the_wind_at_first() {
+    let mut flight = scenario(navion(), pid(0.0, 0.0, 0.0), 0.0);
+    flight.surroundings.weather = Some(weather(WindKind::RampHold, &[0.0, 0.0, -3.0, 1.0, 0.0]));
+    assert!(flown(&flight).theta_rad[30] < 0.0);
+}
+
+#[test]
+fn twice_the_turbulence_moves_a_linear_loop_twice_as_much() {
+    let theta = |w20_m_s: f64| {
+        let mut flight = scenario(navion(), pid(1.0, 0.3, 0.2), 0.0);
+        flight.surroundings.weather = Some(turbulence(w20_m_s));
+        flown(&flight).theta_rad
+    };
+    let (once, twice) = (theta(5.0), theta(10.0));
+    let doubled: Vec<f64> = once.iter().map(|theta| 2.0 * theta).collect();
+    assert!(apart(&doubled, &twice) < 1e-13);
+    assert!(once.iter().any(|theta| theta.abs() > 1e-4));
+}
+
+#[test]
+fn air_that_moves_around_a_plant_without_a_gust_entry_is_refused() {
+    let deaf = LinearPlant::new(&[1.0], &[1.0, 3.0, 2.0], ElevatorSign::NoseUpPositive);
+    let mut flight = scenario(navion(), pid(1.0, 0.0, 0.0), 0.1);
+    flight.surroundings.weather = Some(turbulence(5.0));
+    assert!(flight.prepare().is_ok());
+    flight.plant = deaf.expect("proper");
+    assert!(matches!(flight.prepare(), Err(SimError::NoGustEntry)));
+}
+
+#[test]
+fn a_plant_that_changes_in_flight_changes_how_it_feels_gusts() {
+    let weaker = LongitudinalDerivatives { m: [0.0, -0.03, -0.0051, -1.6, -11.874], ..NAVION };
+    let weaker = weaker.plant(FOOT_M).expect("allowed");
+    let mut changing = scenario(navion(), pid(0.0, 0.0, 0.0), 0.0);
+    changing.plant_changes = vec![PlantChange::new(0.0, 0.0, weaker.clone()).expect("allowed")];
+    let mut other = scenario(weaker, pid(0.0, 0.0, 0.0), 0.0);
+    for flight in [&mut changing, &mut other] {
+        flight.surroundings.weather = Some(turbulence(5.0));
+    }
+    assert_eq!(flown(&changing).theta_rad, flown(&other).theta_rad);
+}
+
+/// A loop around an actuator of second order: the spectral radius tells what the flight does.
+#[test]
+fn a_slow_second_order_actuator_makes_a_stable_loop_unstable() {
+    let actuator = |natural_frequency_rad_s| {
+        Actuator::new(Lag::second_order(natural_frequency_rad_s, 0.7).expect("allowed"))
+    };
+    for (natural_frequency_rad_s, stable) in [(50.0, true), (3.0, false)] {
+        let mut flight = scenario(navion(), pid(2.0, 0.1, 0.0), 0.01);
+        flight.timing = Timing::new(DT_S, 60.0).expect("allowed");
+        flight.surroundings.actuator = Some(actuator(natural_frequency_rad_s));
+        let verdict = instability(&flight, &flight.controllers[0].controller).expect("found");
+        assert_eq!(verdict.is_none(), stable, "{verdict:?}");
+        let theta_rad = flown(&flight).theta_rad;
+        let largest = theta_rad.iter().rev().take(1000).map(|x| x.abs()).fold(0.0, f64::max);
+        assert_eq!(largest < 0.1, stable, "{largest}");
+    }
+}
+
+#[test]
+fn servo_and_equal_actuator_have_the_same_spectral_radius() {
+    let mut flight = scenario(navion(), pid(1.0, 0.2, 0.3), 0.1);
+    let (gains, shell) = (Gains { kp: 1.0, ki: 0.2, kd: 0.3 }, Shell::sampled_every(DT_S));
+    for servo in [Servo::ideal(), Servo::first_order(0.1).expect("allowed")] {
+        flight.servo = servo;
+        flight.surroundings.actuator = None;
+        let by_servo = loop_spectral_radius(&flight, gains, &shell).expect("found");
+        flight.surroundings.actuator = Some(servo.as_actuator().expect("allowed"));
+        let by_actuator = loop_spectral_radius(&flight, gains, &shell).expect("found");
+        assert!((by_servo - by_actuator).abs() < 1e-12, "{by_servo} {by_actuator}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(30))]
+
+    #[test]
+    fn limits_of_an_actuator_hold_at_every_sample_of_a_loop(
+        kp in 0.5_f64..10.0, order in 0_usize..=2, least in -0.5_f64..-0.05, most in 0.05_f64..0.5,
+        rate in 0.2_f64..3.0, play in 0.0_f64..0.05, w20_m_s in 0.0_f64..20.0,
+    ) {
+        let lag = match order {
+            0 => Lag::NONE,
+            1 => Lag::first_order(0.05).expect("allowed"),
+            _ => Lag::second_order(30.0, 0.6).expect("allowed"),
+        };
+        let actuator = Actuator::new(lag)
+            .with_travel(least, most)
+            .and_then(|actuator| actuator.with_rate_limit(rate))
+            .and_then(|actuator| actuator.with_play(play))
+            .expect("allowed");
+        let mut flight = scenario(navion(), pid(kp, 0.1, 0.2), 0.5);
+        flight.surroundings.actuator = Some(actuator);
+        flight.surroundings.weather = Some(turbulence(w20_m_s));
+        // Trailing edge down positive: the other way round than the command.
+        let trace = flown(&flight);
+        for pair in trace.elevator_rad.windows(2) {
+            prop_assert!((least..=most).contains(&-pair[1]), "{}", pair[1]);
+            prop_assert!((pair[1] - pair[0]).abs() <= rate * DT_S * (1.0 + 1e-8), "{pair:?}");
+        }
+    }
+}
+
+#[test]
+fn an_ideal_sensor_leaves_every_bit_and_a_delayed_one_does_not() {
+    let mut flight = scenario(navion(), pid(1.0, 0.3, 0.2), 0.3);
+    let bare = flown(&flight);
+    let with = |model| Some(Sensor::new(model, 1, PITCH).expect("allowed"));
+    flight.surroundings.pitch_sensor = with(SensorModel::default());
+    flight.surroundings.rate_sensor = with(SensorModel::default());
+    assert_eq!(flown(&flight), bare);
+    flight.surroundings.pitch_sensor =
+        with(SensorModel { delay_s: 0.05, ..SensorModel::default() });
+    let delayed = flown(&flight);
+    assert_eq!(delayed.command_rad[0], bare.command_rad[0]);
+    assert!(apart(&delayed.theta_rad, &bare.theta_rad) > 1e-3);
+}
+
+/// Whole samples of delay in the sensor or in the servo: the same loop, a P controller.
+#[test]
+fn a_sensors_delay_is_worth_as_much_as_the_servos() {
+    let mut by_servo = scenario(navion(), pid(1.0, 0.0, 0.0), 0.1);
+    let mut by_sensor = by_servo.clone();
+    by_servo.servo = by_servo.servo.with_delay(4).expect("allowed");
+    let model = SensorModel { delay_s: 4.0 * DT_S, ..SensorModel::default() };
+    by_sensor.surroundings.pitch_sensor = Some(Sensor::new(model, 1, PITCH).expect("allowed"));
+    // The set-point is not delayed by a sensor; let both begin as late.
+    by_sensor.setpoint = Profile::new(0.1, Shape::Step { at_s: 4.0 * DT_S }).expect("allowed");
+    let (servo, sensor) = (flown(&by_servo), flown(&by_sensor));
+    assert!(apart(&servo.theta_rad, &sensor.theta_rad) < 1e-12);
+}
+
+fn everything() -> Scenario {
+    let mut flight = scenario(navion(), pid(1.0, 0.3, 0.2), 0.1);
+    let actuator = Actuator::new(Lag::second_order(35.0, 0.7).expect("allowed"))
+        .with_travel(-0.3, 0.4)
+        .and_then(|actuator| actuator.with_rate_limit(0.5))
+        .and_then(|actuator| actuator.with_play(0.002))
+        .expect("allowed");
+    let mems = SensorPreset::from_name("mems").expect("there");
+    flight.surroundings = Surroundings {
+        weather: Some(turbulence(8.0)),
+        actuator: Some(actuator),
+        pitch_sensor: Some(Sensor::new(mems.pitch, 3, PITCH).expect("allowed")),
+        rate_sensor: Some(Sensor::new(mems.rate, 3, RATE).expect("allowed")),
+    };
+    flight
+}
+
+#[test]
+fn a_flight_with_everything_has_the_same_bits_twice() {
+    assert_eq!(flown(&everything()), flown(&everything()));
+}
+
+#[test]
+fn a_flight_with_everything_allocates_no_more_when_it_is_longer() {
+    let allocations = |duration_s: f64| {
+        let mut flight = everything();
+        flight.timing = Timing::new(DT_S, duration_s).expect("allowed");
+        let prepared = flight.prepare().expect("prepares");
+        let counted = allocation_counter::measure(|| {
+            fly(&prepared, &flight.controllers[0].controller, |_| ControlFlow::Continue(()))
+                .expect("flies");
+        });
+        counted.count_total
+    };
+    assert_eq!(allocations(1.0), allocations(20.0));
+}
