@@ -87,7 +87,7 @@ fn scenario() -> Scenario {
     let named = |name: &str, controller| NamedController { name: name.to_owned(), controller };
     Scenario {
         name: "throughput".to_owned(),
-        plant: plant.expect("the paper's plant"),
+        plant: plant.expect("the paper's plant").into(),
         plant_changes: Vec::new(),
         servo: Servo::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, (INPUTS - 1) as f64 * 0.01).expect("allowed"),

@@ -5,15 +5,13 @@ use std::ops::ControlFlow;
 
 use fspid_core::{Sample, State, Step};
 
+use crate::aircraft::AircraftSample;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
-
-/// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
-const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
 
 /// Everything observable at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +20,16 @@ pub struct Instant {
     pub k: usize,
     /// Commanded pitch, rad.
     pub setpoint_rad: f64,
-    /// Pitch angle, rad.
+    /// Pitch angle, rad; of an aircraft its change from the trim.
     pub theta_rad: f64,
     /// Pitch rate, rad/s.
     pub q_rad_s: f64,
     /// Elevator in the plant's own sign, rad.
     pub elevator_rad: f64,
+    /// Pitch angle, rad, and pitch rate, rad/s, as the controller saw them.
+    pub measured: [f64; 2],
+    /// What an aircraft shows beyond pitch.
+    pub aircraft: Option<AircraftSample>,
     /// What the controller answered.
     pub step: Step<f64>,
 }
@@ -53,17 +55,9 @@ pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
 }
 
 fn record(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
-    let mut trace = Trace::with_capacity(prepared.timing.rows());
+    let mut trace = Trace::with_room(prepared);
     let outcome = fly(prepared, controller, |instant| {
-        trace.time_s.push(prepared.timing.time_s(instant.k));
-        trace.setpoint_rad.push(instant.setpoint_rad);
-        trace.theta_rad.push(instant.theta_rad);
-        trace.q_rad_s.push(instant.q_rad_s);
-        trace.command_rad.push(instant.step.command_rad);
-        trace.elevator_rad.push(instant.elevator_rad);
-        trace.gains.push(instant.step.gains);
-        trace.saturated_samples += usize::from(instant.step.saturated);
-        trace.faults = instant.step.faults;
+        trace.push(prepared, &instant);
         ControlFlow::Continue(())
     })?;
     trace.outcome = outcome;
@@ -98,24 +92,23 @@ pub fn fly(
         };
         let disturbance_rad = at(&prepared.at_elevator);
         let theta_rad = plant.theta_rad();
-        // Written so that NaN fails.
-        if !(theta_rad.abs() <= DIVERGED_RAD) {
+        if plant.is_lost() {
             return Ok(Outcome::Diverged { at_s: prepared.timing.time_s(k) });
         }
         let q_rad_s = stage.propagation.rate_rad_s(&plant, disturbance_rad);
-        let step = controller.step(
-            &mut memory,
-            Sample {
-                setpoint_rad,
-                measurement_rad: sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement),
-                rate_rad_s: sensors.rate_rad_s(k, q_rad_s),
-            },
-        );
+        let aircraft = stage.propagation.sample(&plant, disturbance_rad);
+        sensors.erect(&aircraft);
+        let measurement_rad = sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement);
+        let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
+        let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
+        let step = controller.step(&mut memory, sample);
         delayed.push_back(step.command_rad);
         let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
         stage.propagation.settle(&mut plant, command_rad);
         let elevator_rad = stage.propagation.elevator_rad(&plant, disturbance_rad);
-        let instant = Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, step };
+        let measured = [measurement_rad, rate_rad_s];
+        let instant =
+            Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
         if observer(instant).is_break() {
             return Ok(Outcome::Completed);
         }
@@ -129,24 +122,32 @@ pub fn fly(
 struct Sensors {
     pitch: Option<SensorState>,
     rate: Option<SensorState>,
+    apparent_vertical_rad: f64,
 }
 
 impl Sensors {
     fn start(prepared: &Prepared) -> Result<Self, SimError> {
         let dt_s = prepared.timing.dt_s();
         let start = |sensor: Option<Sensor>| sensor.map(|sensor| sensor.start(dt_s)).transpose();
-        Ok(Self { pitch: start(prepared.pitch_sensor)?, rate: start(prepared.rate_sensor)? })
+        let (pitch, rate) = (start(prepared.pitch_sensor)?, start(prepared.rate_sensor)?);
+        Ok(Self { pitch, rate, apparent_vertical_rad: 0.0 })
+    }
+
+    /// Lets gyros erect to the apparent vertical; that of a linear plant is the true one.
+    fn erect(&mut self, aircraft: &Option<AircraftSample>) {
+        self.apparent_vertical_rad = aircraft.map_or(0.0, |sample| sample.apparent_vertical_rad);
     }
 
     fn pitch_rad(&mut self, k: usize, value: f64) -> f64 {
-        seen(self.pitch.as_mut(), k, value)
+        let apparent_vertical_rad = self.apparent_vertical_rad;
+        seen(self.pitch.as_mut(), k, Truth { value, apparent_vertical_rad })
     }
 
     fn rate_rad_s(&mut self, k: usize, value: f64) -> f64 {
-        seen(self.rate.as_mut(), k, value)
+        seen(self.rate.as_mut(), k, Truth { value, ..Truth::default() })
     }
 }
 
-fn seen(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
-    sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
+fn seen(sensor: Option<&mut SensorState>, k: usize, truth: Truth) -> f64 {
+    sensor.map_or(truth.value, |sensor| sensor.measure(k, truth))
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fspid_aircraft::TrimFailure;
 use fspid_core::ConfigError;
 use fspid_core::fuzzy::FuzzyError;
 use fspid_lti::LtiError;
@@ -60,6 +61,12 @@ pub enum SimError {
         /// Most allowed: two less than the denominator has.
         most: usize,
     },
+    /// A flight that the aircraft cannot be trimmed for.
+    Trim(Box<TrimFailure>),
+    /// A change of a linear plant's coefficients, of an aircraft that has none.
+    AircraftChanges,
+    /// A question about a linear loop, of an aircraft that is none.
+    NotLinear,
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -96,6 +103,13 @@ impl fmt::Display for SimError {
                 f,
                 "a gust numerator has {found} coefficients, so the pitch rate would jump with the gust; allowed are at most {most}"
             ),
+            Self::Trim(failure) => failure.fmt(f),
+            Self::AircraftChanges => f.write_str(
+                "a nonlinear aircraft cannot be changed in flight; allowed are changes of linear plants",
+            ),
+            Self::NotLinear => {
+                f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
+            }
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),

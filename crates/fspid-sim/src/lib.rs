@@ -1,6 +1,6 @@
 //! The sampled closed loop: scenario in, trace out.
 //!
-//! A [`Scenario`] says what flies (a [`LinearPlant`] behind a [`Servo`]), what is commanded and what
+//! A [`Scenario`] says what flies (a [`LinearPlant`] or an [`AircraftPlant`] behind a [`Servo`]), what is commanded and what
 //! disturbs, and which [`Controller`]s answer; [`simulate`] returns what happened. It is a pure
 //! function: the same scenario gives the same bits on each machine, at each number of threads.
 //! Units are SI and radians; degrees exist in files and reports only.
@@ -18,6 +18,7 @@
 mod actuated;
 pub mod actuator;
 pub mod air;
+pub mod aircraft;
 mod closed_loop;
 mod controller;
 mod error;
@@ -37,16 +38,17 @@ mod surroundings;
 mod timing;
 mod trace;
 
+pub use aircraft::{AircraftPlant, AircraftSample};
 pub use closed_loop::{Flight, Instant, fly, simulate};
 pub use controller::Controller;
 pub use error::SimError;
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
-pub use plant::{ElevatorSign, LinearPlant, PlantChange};
+pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use scenario::{NamedController, Prepared, Scenario};
 pub use servo::Servo;
 pub use surroundings::{Course, Surroundings, Weather};
 pub use timing::{MAX_ROWS, Timing};
-pub use trace::{Outcome, Trace};
+pub use trace::{Column, Exit, Outcome, Trace};
 
 pub use fspid_core as core;
 pub use fspid_lti as lti;

@@ -1,7 +1,8 @@
-//! The aircraft as a linear model from elevator to pitch angle.
+//! What flies: a linear model from elevator to pitch angle, or a nonlinear aircraft.
 
 use fspid_lti::{StateSpace, TransferFunction};
 
+use crate::aircraft::AircraftPlant;
 use crate::error::{SimError, not_negative};
 use crate::gust_entry::GustEntry;
 
@@ -22,6 +23,47 @@ impl ElevatorSign {
             Self::NoseDownPositive => -1.0,
             Self::NoseUpPositive => 1.0,
         }
+    }
+}
+
+/// What is controlled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Plant {
+    /// A transfer function.
+    Linear(LinearPlant),
+    /// A nonlinear aircraft in six degrees of freedom.
+    Aircraft(Box<AircraftPlant>),
+}
+
+impl Plant {
+    /// The linear plant, if it is one.
+    #[must_use]
+    pub fn linear(&self) -> Option<&LinearPlant> {
+        match self {
+            Self::Linear(plant) => Some(plant),
+            Self::Aircraft(_) => None,
+        }
+    }
+
+    /// The aircraft, if it is one.
+    #[must_use]
+    pub fn aircraft(&self) -> Option<&AircraftPlant> {
+        match self {
+            Self::Linear(_) => None,
+            Self::Aircraft(plant) => Some(plant),
+        }
+    }
+}
+
+impl From<LinearPlant> for Plant {
+    fn from(plant: LinearPlant) -> Self {
+        Self::Linear(plant)
+    }
+}
+
+impl From<AircraftPlant> for Plant {
+    fn from(plant: AircraftPlant) -> Self {
+        Self::Aircraft(Box::new(plant))
     }
 }
 

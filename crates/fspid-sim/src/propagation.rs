@@ -1,8 +1,13 @@
-//! The two ways from one sample to the next: behind the servo of the paper, or behind an actuator.
+//! The ways from one sample to the next: behind the servo of the paper, behind an actuator, or in an
+//! aircraft. All stages of a flight are of one kind, so that a motion always meets its own.
 
 use crate::actuated::{Actuated, ActuatedState, Held};
+use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::error::SimError;
 use crate::propagator::{LinearStep, PlantState, Propagator};
+
+/// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
+const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
 
 /// A plant and what moves its elevator, discretised.
 #[derive(Clone, Debug)]
@@ -11,6 +16,8 @@ pub(crate) enum Propagation {
     Servo(Propagator),
     /// With an actuator and gusts.
     Actuated(Actuated),
+    /// A nonlinear aircraft with an actuator, in moving air.
+    Aircraft(Box<AircraftFlight>),
 }
 
 /// Where plant and elevator are.
@@ -18,6 +25,7 @@ pub(crate) enum Propagation {
 pub(crate) enum Motion {
     Servo(PlantState),
     Actuated(ActuatedState),
+    Aircraft(Box<AircraftMotion>),
 }
 
 impl Motion {
@@ -25,20 +33,16 @@ impl Motion {
         match self {
             Self::Servo(state) => state.theta_rad(),
             Self::Actuated(state) => state.theta_rad(),
+            Self::Aircraft(state) => state.theta_rad(),
         }
     }
-}
 
-/// Calls one function with the state that belongs to it. All stages of a flight are of one kind, so
-/// that the other arm is never taken.
-macro_rules! both {
-    ($self:ident, $motion:ident, $propagation:ident, $state:ident => $call:expr, $other:expr) => {
-        match ($self, $motion) {
-            (Propagation::Servo($propagation), Motion::Servo($state)) => $call,
-            (Propagation::Actuated($propagation), Motion::Actuated($state)) => $call,
-            _ => $other,
-        }
-    };
+    /// True for a pitch angle beyond ± 10⁶ degrees or not finite, and for an aircraft on its back.
+    pub(crate) fn is_lost(&self) -> bool {
+        // Written so that NaN is lost.
+        !(self.theta_rad().abs() <= DIVERGED_RAD)
+            || matches!(self, Self::Aircraft(state) if state.is_lost())
+    }
 }
 
 impl Propagation {
@@ -46,17 +50,43 @@ impl Propagation {
         match self {
             Self::Servo(propagator) => Motion::Servo(PlantState::at_rest(propagator.order())),
             Self::Actuated(actuated) => Motion::Actuated(actuated.at_rest()),
+            Self::Aircraft(flight) => Motion::Aircraft(Box::new(flight.at_rest())),
         }
     }
 
     /// Pitch rate just before a sample, rad/s.
     pub(crate) fn rate_rad_s(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
-        both!(self, motion, it, state => it.rate_rad_s(state, disturbance_rad), 0.0)
+        match (self, motion) {
+            (Self::Servo(it), Motion::Servo(state)) => it.rate_rad_s(state, disturbance_rad),
+            (Self::Actuated(it), Motion::Actuated(state)) => it.rate_rad_s(state, disturbance_rad),
+            (_, Motion::Aircraft(state)) => state.rate_rad_s(),
+            _ => 0.0,
+        }
     }
 
-    /// Elevator in the plant's own sign, disturbance included, rad.
+    /// Elevator in the plant's own sign, disturbance included, rad; that of an aircraft counts from
+    /// where its data have zero, so that it begins with the trim's.
     pub(crate) fn elevator_rad(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
-        both!(self, motion, it, state => it.elevator_rad(state, disturbance_rad), 0.0)
+        match (self, motion) {
+            (Self::Servo(it), Motion::Servo(state)) => it.elevator_rad(state, disturbance_rad),
+            (Self::Actuated(it), Motion::Actuated(state)) => {
+                it.elevator_rad(state, disturbance_rad)
+            }
+            (Self::Aircraft(it), Motion::Aircraft(state)) => {
+                it.elevator_rad(state, disturbance_rad)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// What an aircraft shows beyond pitch.
+    pub(crate) fn sample(&self, motion: &Motion, disturbance_rad: f64) -> Option<AircraftSample> {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => {
+                Some(it.sample(state, it.elevator_rad(state, disturbance_rad)))
+            }
+            _ => None,
+        }
     }
 
     /// Moves what has no lag to its command at once.
@@ -64,6 +94,7 @@ impl Propagation {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => it.settle_ideal_servo(state, command_rad),
             (Self::Actuated(it), Motion::Actuated(state)) => it.settle(state, command_rad),
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.settle(state, command_rad),
             _ => {}
         }
     }
@@ -80,15 +111,19 @@ impl Propagation {
                 it.advance(state, command_rad, held.elevator_rad)?;
             }
             (Self::Actuated(it), Motion::Actuated(state)) => it.advance(state, command_rad, held),
+            (Self::Aircraft(it), Motion::Aircraft(state)) => {
+                it.advance(state, command_rad, held.elevator_rad);
+            }
             _ => {}
         }
         Ok(())
     }
 
-    pub(crate) fn linear_step(&self) -> LinearStep {
+    pub(crate) fn linear_step(&self) -> Option<LinearStep> {
         match self {
-            Self::Servo(it) => it.linear_step(),
-            Self::Actuated(it) => it.linear_step(),
+            Self::Servo(it) => Some(it.linear_step()),
+            Self::Actuated(it) => Some(it.linear_step()),
+            Self::Aircraft(_) => None,
         }
     }
 }

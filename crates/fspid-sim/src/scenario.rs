@@ -2,9 +2,10 @@
 
 use crate::actuated::Actuated;
 use crate::actuator::Actuator;
+use crate::aircraft::{AircraftFlight, AircraftPlant};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::plant::{LinearPlant, PlantChange};
+use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
 use crate::propagator::Propagator;
 use crate::sensor::Sensor;
@@ -28,8 +29,8 @@ pub struct Scenario {
     /// Name in reports.
     pub name: String,
     /// The aircraft.
-    pub plant: LinearPlant,
-    /// Changes of the aircraft in flight, in order of time.
+    pub plant: Plant,
+    /// Changes of a linear plant in flight, in order of time.
     pub plant_changes: Vec<PlantChange>,
     /// The elevator servo.
     pub servo: Servo,
@@ -84,7 +85,7 @@ impl Scenario {
     }
 
     fn gusts(&self) -> Result<Option<Vec<[f64; 3]>>, SimError> {
-        let Some(weather) = &self.surroundings.weather else {
+        let (Some(weather), Plant::Linear(_)) = (&self.surroundings.weather, &self.plant) else {
             return Ok(None);
         };
         if self.lasting_plants().iter().any(|(_, plant)| !plant.feels_gusts()) {
@@ -110,14 +111,32 @@ impl Scenario {
         Ok(Propagation::Actuated(Actuated::new(plant, actuator, dt_s)?))
     }
 
+    /// The one stage of a flight whose plant is an aircraft.
+    fn aircraft_stages(&self, plant: &AircraftPlant) -> Result<Vec<Stage>, SimError> {
+        if !self.plant_changes.is_empty() {
+            return Err(SimError::AircraftChanges);
+        }
+        let Surroundings { weather, actuator, .. } = &self.surroundings;
+        let actuator = actuator.map_or_else(|| self.servo.as_actuator(), Ok)?;
+        let flight = AircraftFlight::new(plant, actuator, weather.as_ref(), self.timing)?;
+        Ok(vec![Stage { from: 0, propagation: Propagation::Aircraft(Box::new(flight)) }])
+    }
+
     /// The plant's discretisations, each with the sample from which it holds.
     fn stages(&self) -> Result<Vec<Stage>, SimError> {
+        match &self.plant {
+            Plant::Linear(plant) => self.linear_stages(plant),
+            Plant::Aircraft(plant) => self.aircraft_stages(plant),
+        }
+    }
+
+    fn linear_stages(&self, plant: &LinearPlant) -> Result<Vec<Stage>, SimError> {
         let dt_s = self.timing.dt_s();
         let new_stage = |from, plant: &LinearPlant| {
             Ok::<_, SimError>(Stage { from, propagation: self.propagation(plant, dt_s)? })
         };
-        let mut stages = vec![new_stage(0, &self.plant)?];
-        let mut before = self.plant.clone();
+        let mut stages = vec![new_stage(0, plant)?];
+        let mut before = plant.clone();
         let mut changes = self.plant_changes.iter().peekable();
         while let Some(change) = changes.next() {
             let begin = self.timing.first_sample_at(change.at_s());
@@ -136,9 +155,9 @@ impl Scenario {
         Ok(stages)
     }
 
-    /// Every plant that lasts: the first, and the one after each change.
+    /// Every linear plant that lasts: the first, and the one after each change.
     pub(crate) fn lasting_plants(&self) -> Vec<(f64, &LinearPlant)> {
-        let first = std::iter::once((0.0, &self.plant));
+        let first = self.plant.linear().into_iter().map(|plant| (0.0, plant));
         let later = self.plant_changes.iter().map(|change| (change.at_s(), change.target()));
         first.chain(later).collect()
     }
@@ -195,8 +214,23 @@ impl Prepared {
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
-    /// The air's velocity forward and down, m/s, and its pitch rate, rad/s, at each sample; none in
-    /// calm air.
+
+    /// True where the controller sees through a sensor.
+    #[must_use]
+    pub fn has_sensors(&self) -> bool {
+        self.pitch_sensor.is_some() || self.rate_sensor.is_some()
+    }
+
+    /// True for a flight in six degrees of freedom.
+    #[must_use]
+    pub fn is_aircraft(&self) -> bool {
+        self.stages.iter().any(|stage| matches!(stage.propagation, Propagation::Aircraft(_)))
+    }
+
+    /// The air's velocity forward and down, m/s, and its pitch rate, rad/s, at each sample of a linear
+    /// plant; none in calm air.
+    ///
+    /// What an aircraft meets depends on its way, and stands in its trace.
     #[must_use]
     pub fn gusts(&self) -> Option<&[[f64; 3]]> {
         self.gusts.as_deref()

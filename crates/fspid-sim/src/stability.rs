@@ -11,6 +11,7 @@ use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::plant::LinearPlant;
 use crate::propagator::LinearStep;
 use crate::scenario::Scenario;
 
@@ -27,7 +28,7 @@ pub struct Unstable {
 }
 
 /// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
-/// tell of (self-tuning gains, limits of the controller).
+/// tell of (self-tuning gains, limits of the controller, nonlinear aircraft).
 ///
 /// Limits of the servo are passed over: around rest, where they do not act, they save no loop that
 /// is unstable without them. Deadband and play of an actuator are passed over as well, and so is
@@ -46,7 +47,7 @@ pub fn instability(
         return Ok(None);
     }
     for (from_s, plant) in scenario.lasting_plants() {
-        let step = scenario.propagation(plant, scenario.timing.dt_s())?.linear_step();
+        let step = linear_step(scenario, plant, scenario.timing.dt_s())?;
         let radius = spectral_radius(&closed_loop(&step, pid.gains(), pid.shell())?)?;
         // Written so that NaN counts as unstable.
         if !(radius < 1.0 - MARGIN) {
@@ -59,27 +60,37 @@ pub fn instability(
 /// Spectral radius of the sampled loop of one plant with fixed gains and no limits.
 ///
 /// # Errors
-/// [`SimError`] where the plant cannot be discretised or the eigenvalues are not found.
+/// [`SimError`] where the plant is an aircraft, cannot be discretised or the eigenvalues are not found.
 pub fn loop_spectral_radius(
     scenario: &Scenario,
     gains: Gains<f64>,
     shell: &Shell<f64>,
 ) -> Result<f64, SimError> {
-    let step = scenario.propagation(&scenario.plant, shell.dt_s)?.linear_step();
+    let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
+    let step = linear_step(scenario, plant, shell.dt_s)?;
     Ok(spectral_radius(&closed_loop(&step, gains, shell)?)?)
 }
 
 /// Poles of the sampled loop of one plant with fixed gains and no limits.
 ///
 /// # Errors
-/// [`SimError`] where the plant cannot be discretised or the eigenvalues are not found.
+/// [`SimError`] where the plant is an aircraft, cannot be discretised or the eigenvalues are not found.
 pub fn loop_poles(
     scenario: &Scenario,
     gains: Gains<f64>,
     shell: &Shell<f64>,
 ) -> Result<Vec<Complex>, SimError> {
-    let step = scenario.propagation(&scenario.plant, shell.dt_s)?.linear_step();
+    let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
+    let step = linear_step(scenario, plant, shell.dt_s)?;
     Ok(eigenvalues(&closed_loop(&step, gains, shell)?)?)
+}
+
+fn linear_step(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    dt_s: f64,
+) -> Result<LinearStep, SimError> {
+    scenario.propagation(plant, dt_s)?.linear_step().ok_or(SimError::NotLinear)
 }
 
 /// Where the parts of the state stand.

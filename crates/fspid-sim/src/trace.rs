@@ -1,17 +1,41 @@
 //! What happened: the columns of a flight.
 
+use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};
+
+use crate::aircraft::AIRCRAFT_COLUMNS;
+use crate::closed_loop::Instant;
+use crate::scenario::Prepared;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// All samples were flown.
     Completed,
-    /// The pitch angle left ± 10⁶ degrees or was not finite; the trace ends before.
+    /// The pitch angle left ± 10⁶ degrees or was not finite, or a nonlinear aircraft lay on its back;
+    /// the trace ends before.
     Diverged {
         /// Time of the first such sample, s.
         at_s: f64,
     },
+}
+
+/// A flight that left the range in which its model is known to be worth something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exit {
+    /// Time of the first such sample, s.
+    pub at_s: f64,
+    /// The limit that was left.
+    pub departure: Departure,
+}
+
+/// A column that only some flights have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name, whose last part is the unit.
+    pub name: &'static str,
+    /// One value a sample.
+    pub values: Vec<f64>,
 }
 
 /// The columns of one controller's flight, one entry a sample.
@@ -31,6 +55,10 @@ pub struct Trace {
     pub elevator_rad: Vec<f64>,
     /// Gains used.
     pub gains: Vec<Gains<f64>>,
+    /// What else this flight has: what sensors showed, gusts, what an aircraft shows beyond pitch.
+    pub columns: Vec<Column>,
+    /// When an aircraft first left the range of its model, if it did.
+    pub exit: Option<Exit>,
     /// How the flight ended.
     pub outcome: Outcome,
     /// Samples whose command was cut by the controller's own limits.
@@ -40,8 +68,9 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// An empty trace with room for `rows`.
-    pub(crate) fn with_capacity(rows: usize) -> Self {
+    /// An empty trace with room for a flight.
+    pub(crate) fn with_room(prepared: &Prepared) -> Self {
+        let rows = prepared.timing().rows();
         let column = || Vec::with_capacity(rows);
         Self {
             time_s: column(),
@@ -51,10 +80,49 @@ impl Trace {
             command_rad: column(),
             elevator_rad: column(),
             gains: Vec::with_capacity(rows),
+            columns: column_names(prepared).map(|name| Column { name, values: column() }).collect(),
+            exit: None,
             outcome: Outcome::Completed,
             saturated_samples: 0,
             faults: Faults::NONE,
         }
+    }
+
+    /// Adds a sample.
+    pub(crate) fn push(&mut self, prepared: &Prepared, instant: &Instant) {
+        let time_s = prepared.timing().time_s(instant.k);
+        self.time_s.push(time_s);
+        self.setpoint_rad.push(instant.setpoint_rad);
+        self.theta_rad.push(instant.theta_rad);
+        self.q_rad_s.push(instant.q_rad_s);
+        self.command_rad.push(instant.step.command_rad);
+        self.elevator_rad.push(instant.elevator_rad);
+        self.gains.push(instant.step.gains);
+        self.saturated_samples += usize::from(instant.step.saturated);
+        self.faults = instant.step.faults;
+        self.push_columns(prepared, instant);
+        if let (None, Some(departure)) = (self.exit, instant.aircraft.and_then(|a| a.departure)) {
+            self.exit = Some(Exit { at_s: time_s, departure });
+        }
+    }
+
+    /// The values in the order of [`column_names`].
+    fn push_columns(&mut self, prepared: &Prepared, instant: &Instant) {
+        let measured = prepared.has_sensors().then_some(instant.measured);
+        let gust = prepared.gusts().and_then(|gusts| gusts.get(instant.k));
+        let aircraft = instant.aircraft.map(|sample| sample.values());
+        let values = measured.iter().flatten().chain(gust.into_iter().flatten());
+        let values = values.chain(aircraft.iter().flatten());
+        for (column, value) in self.columns.iter_mut().zip(values) {
+            column.values.push(*value);
+        }
+    }
+
+    /// The column of that name, if this flight has it.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let column = self.columns.iter().find(|column| column.name == name)?;
+        Some(&column.values)
     }
 
     /// Number of samples flown.
@@ -62,4 +130,16 @@ impl Trace {
     pub fn rows(&self) -> usize {
         self.time_s.len()
     }
+}
+
+/// What sensors show to the controller.
+const MEASURED: [&str; 2] = ["measured_theta_rad", "measured_q_rad_s"];
+/// How the air around a linear plant moves.
+const GUSTS: [&str; 3] = ["gust_forward_m_s", "gust_down_m_s", "gust_pitch_rad_s"];
+
+fn column_names(prepared: &Prepared) -> impl Iterator<Item = &'static str> {
+    let measured = prepared.has_sensors().then_some(MEASURED).into_iter().flatten();
+    let gusts = prepared.gusts().map(|_| GUSTS).into_iter().flatten();
+    let aircraft = prepared.is_aircraft().then_some(AIRCRAFT_COLUMNS).into_iter().flatten();
+    measured.chain(gusts).chain(aircraft)
 }

@@ -32,7 +32,7 @@ fn pid(kp: f64, ki: f64, kd: f64) -> Controller {
 fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Scenario {
     Scenario {
         name: "law".into(),
-        plant,
+        plant: plant.into(),
         plant_changes: Vec::new(),
         servo: Servo::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, 5.0).expect("allowed"),

@@ -37,7 +37,7 @@ fn navion() -> LinearPlant {
 fn scenario(plant: LinearPlant, controller: Controller) -> Scenario {
     Scenario {
         name: "reference".into(),
-        plant,
+        plant: plant.into(),
         plant_changes: Vec::new(),
         servo: Servo::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, 20.0).expect("allowed"),

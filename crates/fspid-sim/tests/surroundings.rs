@@ -41,7 +41,7 @@ fn pid(kp: f64, ki: f64, kd: f64) -> Controller {
 fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Scenario {
     Scenario {
         name: "surroundings".into(),
-        plant,
+        plant: plant.into(),
         plant_changes: Vec::new(),
         servo: Servo::first_order(0.1).expect("allowed"),
         timing: Timing::new(DT_S, 10.0).expect("allowed"),
@@ -186,7 +186,7 @@ fn air_that_moves_around_a_plant_without_a_gust_entry_is_refused() {
     let mut flight = scenario(navion(), pid(1.0, 0.0, 0.0), 0.1);
     flight.surroundings.weather = Some(turbulence(5.0));
     assert!(flight.prepare().is_ok());
-    flight.plant = deaf.expect("proper");
+    flight.plant = deaf.expect("proper").into();
     assert!(matches!(flight.prepare(), Err(SimError::NoGustEntry)));
 }
 
@@ -272,7 +272,9 @@ fn an_ideal_sensor_leaves_every_bit_and_a_delayed_one_does_not() {
     let with = |model| Some(Sensor::new(model, 1, PITCH).expect("allowed"));
     flight.surroundings.pitch_sensor = with(SensorModel::default());
     flight.surroundings.rate_sensor = with(SensorModel::default());
-    assert_eq!(flown(&flight), bare);
+    let ideal = flown(&flight);
+    assert_eq!(ideal.column("measured_theta_rad"), Some(&bare.theta_rad[..]));
+    assert_eq!(Trace { columns: Vec::new(), ..ideal }, bare);
     flight.surroundings.pitch_sensor =
         with(SensorModel { delay_s: 0.05, ..SensorModel::default() });
     let delayed = flown(&flight);

@@ -3,6 +3,9 @@
 /// Metres in a foot, by definition.
 pub const FOOT_M: f64 = 0.3048;
 
+/// Metres a second in a knot: a nautical mile of 1852 m an hour.
+pub const KNOT_M_S: f64 = 1852.0 / 3600.0;
+
 /// Newtons in a pound of force: 0.45359237 kg under 9.80665 m/s².
 pub const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
 

@@ -75,6 +75,12 @@ impl Actuator {
         }
     }
 
+    /// With another lag.
+    #[must_use]
+    pub const fn with_lag(self, lag: Lag) -> Self {
+        Self { lag, ..self }
+    }
+
     /// With commands cut at two limits around 0.
     ///
     /// # Errors

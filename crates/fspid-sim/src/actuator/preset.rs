@@ -47,7 +47,7 @@ impl Preset {
         },
         Self {
             name: "b747-elevator",
-            source: "A24",
+            source: "A31",
             lag: (15.0, 0.0),
             travel_deg: Some((-17.0, 23.0)),
             rate_deg_s: Some(37.0),

@@ -15,7 +15,7 @@ use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
-use crate::units::{FOOT_M, POUND_FORCE_N, SLUG_KG, radians};
+use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 
 /// Aircraft by name.
 const AIRCRAFT: [(&str, &str); 7] = [
@@ -29,7 +29,8 @@ const AIRCRAFT: [(&str, &str); 7] = [
 ];
 
 /// Units that a key may end with, and their size in SI; degrees stand apart.
-const UNITS: [(&str, f64); 16] = [
+const UNITS: [(&str, f64); 17] = [
+    ("kt", KNOT_M_S),
     ("ft_s", FOOT_M),
     ("m_s", 1.0),
     ("ft_s2", FOOT_M),
@@ -54,12 +55,17 @@ pub fn aircraft_names() -> Vec<&'static str> {
     AIRCRAFT.iter().map(|(name, _)| *name).collect()
 }
 
+/// The text of an aircraft by its name.
+pub(super) fn aircraft_text(name: &str) -> Option<&'static str> {
+    let known = AIRCRAFT.iter().find(|(known, _)| *known == name);
+    known.map(|(_, text)| *text)
+}
+
 /// The aircraft of that name, `None` if the program carries none.
 #[must_use]
 pub fn aircraft(name: &str) -> Option<AircraftData> {
-    let (_, text) = AIRCRAFT.iter().find(|(known, _)| *known == name)?;
     // The tests read every aircraft that is carried.
-    parse_aircraft(text, name).ok()
+    parse_aircraft(aircraft_text(name)?, name).ok()
 }
 
 /// Reads an aircraft file.
@@ -76,7 +82,7 @@ pub fn parse_aircraft(text: &str, name: &str) -> Result<AircraftData, Problems> 
     file.ok_or_else(|| Problems::new(name, Vec::new(), 0))
 }
 
-fn aircraft_data(report: &mut Report, section: &Section) -> Option<AircraftData> {
+pub(super) fn aircraft_data(report: &mut Report, section: &Section) -> Option<AircraftData> {
     let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
     let model = match section.kind {
         "linear" => ModelData::Linear(linear(report, section.sections("equations"))?),
@@ -245,7 +251,7 @@ fn plain(section: &Section, name: &str) -> f64 {
 }
 
 /// The value in SI of the key that begins with a name and ends with a unit.
-fn quantity(section: &Section, name: &str) -> Option<f64> {
+pub(super) fn quantity(section: &Section, name: &str) -> Option<f64> {
     let given =
         |(unit, size): &(&str, f64)| Some(size * section.number(&format!("{name}_{unit}"))?);
     UNITS.iter().find_map(given)

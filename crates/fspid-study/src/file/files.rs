@@ -7,13 +7,14 @@ use sha2::{Digest as _, Sha256};
 
 use crate::file::document::FILE_LIMIT;
 use crate::file::section::Section;
+use crate::file::spec::Table;
 
-/// Reads files and keeps the digest of everything read, and what plant files say.
+/// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
 pub(crate) struct Files<'a> {
     folder: Option<&'a Path>,
     hasher: Sha256,
-    /// Path of the key that refers to a file, and what the file says.
-    referred: Vec<(String, Section)>,
+    /// Path of the key that refers to a file, the file's specification, and what it says.
+    referred: Vec<(String, &'static Table, Section)>,
 }
 
 impl<'a> Files<'a> {
@@ -24,13 +25,14 @@ impl<'a> Files<'a> {
     }
 
     /// Keeps what the file says that the key at `path` refers to.
-    pub(crate) fn keep(&mut self, path: String, section: Section) {
-        self.referred.push((path, section));
+    pub(crate) fn keep(&mut self, path: String, spec: &'static Table, section: Section) {
+        self.referred.push((path, spec, section));
     }
 
     /// What the file says that the key at `path` refers to.
-    pub(crate) fn referred(&self, path: &str) -> Option<&Section> {
-        self.referred.iter().find(|(at, _)| at == path).map(|(_, section)| section)
+    pub(crate) fn referred(&self, path: &str) -> Option<(&'static Table, &Section)> {
+        let (_, spec, section) = self.referred.iter().find(|(at, ..)| at == path)?;
+        Some((spec, section))
     }
 
     /// Adds a text to the digest, with its length, so that no two sets of texts look alike.

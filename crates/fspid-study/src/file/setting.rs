@@ -5,7 +5,7 @@ use fspid_fuzzy::{Grid, Label};
 use crate::file::check::default_value;
 use crate::file::files::Files;
 use crate::file::section::{Checked, Entry, Section};
-use crate::file::spec::{Key, Kind, PLANT_FILE, Presence, SCENARIO, Table};
+use crate::file::spec::{Key, Kind, Presence, SCENARIO, Table};
 
 /// Most numbers of a list that are all written.
 const MOST_NUMBERS: usize = 12;
@@ -21,14 +21,14 @@ const LONGEST_NAME: usize = 60;
 pub struct Setting {
     /// The top-level table that it is in, such as `loop` or `controller.FSPID`; empty for none.
     pub table: String,
-    /// Where it is, such as `controller.FSPID.supervisor.range`: what `--set` changes. What a plant
-    /// file says is below the key that names it, as in `plant.preset.numerator`; no `--set` there.
+    /// Where it is, such as `controller.FSPID.supervisor.range`: what `--set` changes. What a file
+    /// says is below the key that names it, as in `plant.preset.numerator`; no `--set` there.
     pub path: String,
     /// The value in one line, as TOML has it. Long lists and texts are cut, with their length.
     pub value: String,
     /// The unit, empty where there is none.
     pub unit: &'static str,
-    /// Written in the file, in an override, or in a plant file that one of them names; otherwise a
+    /// Written in the file, in an override, or in a file that one of them names; otherwise a
     /// default filled it in.
     pub given: bool,
 }
@@ -76,8 +76,8 @@ impl Walk<'_> {
             }
             (value, kind) => {
                 self.push(path.clone(), written(value), kind.unit(), entry.given);
-                if let Some(file) = self.files.referred(place) {
-                    self.keys(&PLANT_FILE, file, &path);
+                if let Some((spec, file)) = self.files.referred(place) {
+                    self.keys(spec, file, &path);
                 }
             }
         }

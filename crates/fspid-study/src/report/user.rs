@@ -12,7 +12,7 @@ use super::{measures, settings};
 use crate::figure::SurfaceKind;
 use crate::file::Study;
 use crate::metrics::Verdict;
-use crate::simulation::{ControllerResult, Simulation};
+use crate::simulation::{ControllerResult, Simulation, left_validity};
 
 #[derive(Clone, Copy)]
 struct User<'a> {
@@ -90,11 +90,20 @@ impl User<'_> {
         let context = context! {
             part => "verdicts",
             outcomes,
-            warnings => self.study.warnings,
+            warnings => self.warnings(),
             requirements => (!self.simulation.judgements.is_empty()).then(|| self.requirements()),
             met,
         };
         Section::of("verdict", "Verdict", "user", context)
+    }
+
+    /// Those of the file, and flights beyond what their model is known to be worth.
+    fn warnings(self) -> Vec<String> {
+        let left = self.simulation.results.iter().filter_map(|result| {
+            let exit = result.trace.exit.as_ref()?;
+            Some(format!("{} {}", result.name, left_validity(exit)))
+        });
+        self.study.warnings.iter().cloned().chain(left).collect()
     }
 
     fn requirements(self) -> Table {

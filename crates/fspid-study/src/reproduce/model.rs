@@ -146,7 +146,7 @@ impl FlightModel {
         });
         Ok(Scenario {
             name: self.name.clone(),
-            plant: plant.clone(),
+            plant: plant.clone().into(),
             plant_changes: Vec::new(),
             servo: Servo::first_order(SERVO_S)?,
             timing: Timing::new(SAMPLE_PERIOD_S, self.duration_s())?,

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use fspid_sim::{Column, Trace};
+
 use super::{ControllerResult, Simulation};
 use crate::units::degrees;
 
@@ -11,18 +13,19 @@ const COLUMNS: [&str; 7] =
 
 impl Simulation {
     /// All traces side by side: time and set-point once, then each controller's columns, with its
-    /// name before them where there are several. Cells after a divergence are empty.
+    /// name before them where there are several. Cells after a divergence are empty. Sensors, gusts
+    /// and nonlinear aircraft add columns of their own.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from("time_s,setpoint_deg");
         let several = self.results.len() > 1;
         for result in &self.results {
-            for column in COLUMNS {
+            for column in columns(&result.trace) {
                 let prefix =
                     if several { quoted(&format!("{}.", result.name)) } else { String::new() };
                 text.push(',');
                 text.push_str(&prefix);
-                text.push_str(column);
+                text.push_str(&column);
             }
         }
         text.push('\n');
@@ -45,7 +48,7 @@ impl Simulation {
 fn push_row(text: &mut String, result: &ControllerResult, k: usize) {
     let trace = &result.trace;
     if k >= trace.rows() {
-        text.push_str(&",".repeat(COLUMNS.len()));
+        text.push_str(&",".repeat(COLUMNS.len() + trace.columns.len()));
         return;
     }
     let gains = trace.gains[k];
@@ -58,10 +61,21 @@ fn push_row(text: &mut String, result: &ControllerResult, k: usize) {
         gains.ki,
         gains.kd,
     ];
-    for value in row {
+    let more = trace.columns.iter().map(|column| in_degrees(column, column.values[k]));
+    for value in row.into_iter().chain(more) {
         text.push(',');
         push(text, value);
     }
+}
+
+/// Names of the columns of a trace, angles in degrees.
+fn columns(trace: &Trace) -> impl Iterator<Item = String> {
+    let own = COLUMNS.into_iter().map(str::to_owned);
+    own.chain(trace.columns.iter().map(|column| column.name.replace("_rad", "_deg")))
+}
+
+fn in_degrees(column: &Column, value: f64) -> f64 {
+    if column.name.contains("_rad") { degrees(value) } else { value }
 }
 
 /// The shortest digits that read back as `value`, zero without a sign.

@@ -38,7 +38,7 @@ fn controller(result: &ControllerResult) -> Value {
         ("command_max_deg", metrics.effort.map(|e| degrees(e.largest_rad))),
     ]);
     let (values, absent) = split(&measures);
-    json!({
+    let mut answer = json!({
         "name": result.name,
         "verdict": metrics.verdict.to_string(),
         "metrics": values,
@@ -46,7 +46,12 @@ fn controller(result: &ControllerResult) -> Value {
         "edges": metrics.edges.iter().map(edge).collect::<Vec<_>>(),
         "saturated_samples": result.trace.saturated_samples,
         "faults": result.trace.faults.to_string(),
-    })
+    });
+    if let Some(exit) = result.trace.exit {
+        answer["left_validity"] =
+            json!({ "at_s": exit.at_s, "limit": exit.departure.quantity.name() });
+    }
+    answer
 }
 
 fn edge(edge: &EdgeMetrics) -> Value {

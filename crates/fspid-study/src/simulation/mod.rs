@@ -4,6 +4,8 @@ mod csv;
 mod json;
 mod text;
 
+pub(crate) use text::left_validity;
+
 use fspid_sim::stability::instability;
 use fspid_sim::{SimError, Trace, simulate};
 

@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+use fspid_aircraft::Departure;
+use fspid_sim::Exit;
+
 use super::{ControllerResult, Judgement, Simulation};
 use crate::metrics::{Absent, Measured, StepMetrics};
 use crate::units::degrees;
@@ -51,9 +54,30 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
             ),
         );
     }
+    if let Some(exit) = result.trace.exit {
+        line(out, format_args!("  warning: {}", left_validity(&exit)));
+    }
     if !result.trace.faults.is_empty() {
         line(out, format_args!("  faults: {}", result.trace.faults));
     }
+}
+
+/// When and by which limit a flight left the range of its model, in words.
+pub(crate) fn left_validity(exit: &Exit) -> String {
+    let Departure { quantity, value, allowed } = exit.departure;
+    let (factor, unit) = match quantity.unit() {
+        "rad" => (degrees(1.0), "deg"),
+        unit => (1.0, unit),
+    };
+    let text = format!(
+        "left the range of its model at t = {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
+        exit.at_s,
+        quantity.name(),
+        factor * value,
+        factor * allowed.min,
+        factor * allowed.max,
+    );
+    text.trim_end().replace("  ", " ")
 }
 
 fn push_judgement(out: &mut String, judgement: &Judgement) {

@@ -129,7 +129,7 @@ fn expected() -> Result<Scenario, SimError> {
     let servo = Servo::first_order(0.1)?.with_position_limit(25.0 * DEG)?;
     Ok(Scenario {
         name: "every key".to_owned(),
-        plant: navion.clone(),
+        plant: navion.clone().into(),
         plant_changes: vec![
             PlantChange::new(3.0, 1.0, changed)?,
             PlantChange::new(6.0, 0.0, navion)?,
@@ -208,7 +208,10 @@ fn the_other_words_arrive_too() {
 
     let down = whole().replacen("\"nose-up-positive\"", "\"nose-down-positive\"", 1);
     let scenario = read(&down);
-    assert_eq!(scenario.plant.elevator_sign(), ElevatorSign::NoseDownPositive);
+    assert_eq!(
+        scenario.plant.linear().expect("linear").elevator_sign(),
+        ElevatorSign::NoseDownPositive
+    );
     // A change takes over the plant's sign, unless it is a plant with a sign of its own.
     let signs: Vec<ElevatorSign> =
         scenario.plant_changes.iter().map(|change| change.target().elevator_sign()).collect();

@@ -16,7 +16,7 @@ fn a_value_is_set_by_its_path() {
     let study = set(&["loop.sample_period_s=0.02", "plant.preset=b747-paper", "name=two words"]);
     let scenario = study.expect("allowed").scenario;
     assert_eq!(scenario.timing.dt_s(), 0.02);
-    assert_eq!(Some(scenario.plant), file::preset("b747-paper").map(|file| file.plant));
+    assert_eq!(Some(scenario.plant), file::preset("b747-paper").map(|file| file.plant.into()));
     assert_eq!(scenario.name, "two words");
 }
 

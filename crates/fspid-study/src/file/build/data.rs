@@ -39,7 +39,7 @@ fn of_file(
     part: Section,
 ) -> Option<LinearPlant> {
     let plant = coefficients(report, &part, elevator_sign(&part)?);
-    files.keep(path, part);
+    files.keep(path, &PLANT_FILE, part);
     plant
 }
 
@@ -141,7 +141,7 @@ fn rule_table(section: &Section) -> Option<RuleTable> {
 }
 
 /// A file that the program carries.
-fn carried(
+pub(super) fn carried(
     report: &mut Report,
     files: &mut Files<'_>,
     spec: &'static Table,
@@ -153,7 +153,7 @@ fn carried(
 }
 
 /// A file that the scenario refers to at a place.
-fn referred(
+pub(super) fn referred(
     report: &mut Report,
     files: &mut Files<'_>,
     spec: &'static Table,

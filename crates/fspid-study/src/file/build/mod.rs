@@ -1,13 +1,17 @@
 //! From a checked file to the scenario: units become SI, and the models judge their numbers.
 
+mod actuator;
+mod air;
 mod controller;
 pub(crate) mod data;
+mod flight;
+mod sensor;
 mod signal;
 mod timing;
 
-use fspid_sim::{
-    ElevatorSign, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
-};
+use actuator::Drive;
+use flight::Flown;
+use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -23,12 +27,14 @@ pub(crate) fn scenario(
     section: &Section,
 ) -> Option<(Scenario, Vec<Requirement>)> {
     let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
-    let plant = sound(section.section("plant")).and_then(|part| data::plant(report, files, part));
-    let servo = match section.section("actuator") {
-        None => Some(Servo::ideal()),
-        part => sound(part).and_then(|part| servo(report, part)),
+    let flown = flight::flown(report, files, section);
+    let drive = match section.section("actuator") {
+        None => Some(Drive::ideal()),
+        part => sound(part).and_then(|part| actuator::drive(report, part)),
     };
-    if let (Some(plant), Some(timing), Some(servo)) = (&plant, timing, servo) {
+    let servo = drive.map(|drive| drive.servo);
+    let linear = flown.as_ref().and_then(|flown| flown.plant.linear());
+    if let (Some(plant), Some(timing), Some(servo)) = (linear, timing, servo) {
         timing::check_plant(report, section, plant, (timing, servo));
     }
     let setpoint =
@@ -41,8 +47,9 @@ pub(crate) fn scenario(
         report,
         files,
         section.sections("plant_change"),
-        (&plant, timing, servo),
+        (flown.as_ref().map(|flown| &flown.plant), timing, servo),
     );
+    let surroundings = surroundings(report, section, (flown.as_ref(), drive));
     let controllers = controllers(report, files, section, timing);
     if let Some(timing) = timing {
         timing::check_memory(report, section, timing);
@@ -52,19 +59,35 @@ pub(crate) fn scenario(
     let requirements = requirements(report, asked, &names);
     let scenario = Scenario {
         name: section.text("name")?.to_owned(),
-        plant: plant?,
+        plant: flown?.plant,
         plant_changes,
         servo: servo?,
         timing: timing?,
         setpoint: setpoint?,
         disturbances,
         controllers,
-        surroundings: Surroundings::default(),
+        surroundings: surroundings?,
     };
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
     Some((scenario, requirements))
+}
+
+/// Moving air, actuator and sensors; what is wrong with them is reported.
+fn surroundings(
+    report: &mut Report,
+    section: &Section,
+    (flown, drive): (Option<&Flown>, Option<Drive>),
+) -> Option<Surroundings> {
+    let weather = flown.map(|flown| air::weather(report, section, flown));
+    let sensors = match section.section("sensor") {
+        None => Some((None, None)),
+        part => sound(part).and_then(|part| sensor::sensors(report, part)),
+    };
+    let (pitch_sensor, rate_sensor) = sensors?;
+    let actuator = drive?.actuator;
+    Some(Surroundings { weather: weather?, actuator, pitch_sensor, rate_sensor })
 }
 
 /// A part in which the check found nothing wrong.
@@ -105,22 +128,6 @@ fn in_two(text: &str) -> (&str, &str) {
         }
     }
     (text, "")
-}
-
-fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
-    let delay = usize::try_from(section.integer("delay_samples")?).unwrap_or(usize::MAX);
-    let lag = Servo::first_order(section.number("time_constant_s")?);
-    let lag = judged(report, (section, "time_constant_s"), lag)?;
-    let servo =
-        lag.with_delay(delay).and_then(|servo| match section.number("position_limit_deg") {
-            Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),
-            None => Ok(servo),
-        });
-    let servo = servo.and_then(|servo| match section.number("rate_limit_deg_s") {
-        Some(limit_deg_s) => servo.with_rate_limit(rad(limit_deg_s)),
-        None => Ok::<_, SimError>(servo),
-    });
-    judged(report, (section, "delay_samples"), servo)
 }
 
 /// Names of all controllers, sound or not.

@@ -1,6 +1,6 @@
 //! Samples, and what depends on when they are taken.
 
-use fspid_sim::{LinearPlant, PlantChange, Scenario, Servo, SimError, Surroundings, Timing};
+use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, Servo, SimError, Surroundings, Timing};
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
@@ -55,7 +55,7 @@ fn can_be_sampled(plant: &LinearPlant, (timing, servo): (Timing, Servo)) -> Resu
         fspid_sim::signal::Profile::new(0.0, fspid_sim::signal::Shape::Step { at_s: 0.0 })?;
     let scenario = Scenario {
         name: String::new(),
-        plant: plant.clone(),
+        plant: plant.clone().into(),
         plant_changes: Vec::new(),
         servo,
         timing: Timing::new(dt_s, dt_s)?,
@@ -90,8 +90,13 @@ pub(super) fn plant_changes(
     report: &mut Report,
     files: &mut Files<'_>,
     parts: &[Section],
-    (plant, timing, servo): (&Option<LinearPlant>, Option<Timing>, Option<Servo>),
+    (plant, timing, servo): (Option<&Plant>, Option<Timing>, Option<Servo>),
 ) -> Vec<PlantChange> {
+    if let Some(Plant::Aircraft(_)) = plant {
+        parts.iter().for_each(|part| refuse_change(report, part));
+        return Vec::new();
+    }
+    let plant = plant.and_then(Plant::linear);
     let mut changes = Vec::new();
     let mut before_s = f64::NEG_INFINITY;
     for part in parts.iter().filter(|part| part.sound) {
@@ -104,7 +109,7 @@ pub(super) fn plant_changes(
             report.value(part.at("at_s"), &part.path("at_s"), "not in order of time", allowed);
         }
         before_s = at_s;
-        let sign = plant.as_ref().map(LinearPlant::elevator_sign);
+        let sign = plant.map(LinearPlant::elevator_sign);
         let Some(target) = changed(report, files, part, sign) else {
             continue;
         };
@@ -130,6 +135,11 @@ pub(super) fn plant_changes(
         changes.extend(judged(report, (part, "at_s"), change));
     }
     changes
+}
+
+fn refuse_change(report: &mut Report, part: &Section) {
+    let message = "a nonlinear aircraft cannot be changed in flight";
+    report.value(part.place, &part.path, message, "changes of a `plant`");
 }
 
 fn changed(
@@ -161,7 +171,8 @@ fn check_ramp(report: &mut Report, part: &Section, timing: Timing) {
 /// What can only be judged of the flight as a whole, and what is probably not meant.
 pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Scenario) {
     let end_s = scenario.timing.end_s();
-    let parts = ["disturbance", "plant_change"].into_iter().flat_map(|key| section.sections(key));
+    let parts =
+        ["disturbance", "gust", "plant_change"].into_iter().flat_map(|key| section.sections(key));
     for part in section.section("setpoint").into_iter().chain(parts) {
         let at_s = part.number("at_s").unwrap_or(0.0);
         if at_s > end_s {

@@ -4,13 +4,6 @@ use super::{
     Choice, Key, Kind, Range, Table, Variant, Way, finite, optional, plain, positive, required,
 };
 
-/// Exactly one of some keys.
-macro_rules! one_of {
-    ($($name:literal),+) => {
-        Choice { ways: &[$(Way { required: &[$name], optional: &[] }),+] }
-    };
-}
-
 /// States that an equation of a linear model may be for; the unit is the last part.
 const STATES: [&str; 7] =
     ["u_ft_s", "u_m_s", "w_ft_s", "w_m_s", "alpha_rad", "q_rad_s", "theta_rad"];

@@ -3,10 +3,21 @@
 //! A key is added in one place: its row in the lists of this folder, and the line of `build` that
 //! uses it.
 
+/// Exactly one of some keys.
+macro_rules! one_of {
+    ($($name:literal),+) => {
+        Choice { ways: &[$(Way { required: &[$name], optional: &[] }),+] }
+    };
+}
+
+mod actuator;
+mod air;
 mod aircraft;
 mod controller;
 mod data;
+mod flight;
 mod scenario;
+mod sensor;
 mod signal;
 
 pub(crate) use aircraft::AIRCRAFT_FILE;

@@ -1,6 +1,10 @@
 //! The scenario file: everything but controllers and signals.
 
+use super::actuator::ACTUATOR;
+use super::air::{GUST, TURBULENCE, WIND};
 use super::controller::CONTROLLER;
+use super::flight::AIRCRAFT;
+use super::sensor::SENSOR;
 use super::signal::{DISTURBANCE, SETPOINT};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
@@ -9,12 +13,17 @@ use super::{
 use crate::file::preset::plant_names;
 
 /// The file as a whole.
-pub(crate) static SCENARIO: Table = plain(
-    "A flight to be simulated, once for each controller.",
-    &[&[
+pub(crate) static SCENARIO: Table = Table {
+    doc: "A flight to be simulated, once for each controller.",
+    groups: &[&[
         required("schema", Kind::Integer { least: 1, most: 1 }, "Version of this format."),
         required("name", Kind::Text, "Name in reports."),
-        required("plant", Kind::Table(&PLANT), "The aircraft, from elevator to pitch angle."),
+        optional("plant", Kind::Table(&PLANT), "A linear aircraft, from elevator to pitch angle."),
+        optional(
+            "aircraft",
+            Kind::Table(&AIRCRAFT),
+            "In place of a plant: an aircraft from its data, at a speed and an altitude.",
+        ),
         optional(
             "actuator",
             Kind::Table(&ACTUATOR),
@@ -22,6 +31,18 @@ pub(crate) static SCENARIO: Table = plain(
         ),
         required("loop", Kind::Table(&LOOP), "Samples and duration."),
         required("setpoint", Kind::Table(&SETPOINT), "The commanded pitch angle."),
+        optional(
+            "sensor",
+            Kind::Table(&SENSOR),
+            "What measures pitch and pitch rate; without this table both are seen as they are.",
+        ),
+        optional("wind", Kind::Table(&WIND), "The wind around an aircraft."),
+        optional(
+            "gust",
+            Kind::Tables { table: &GUST, least: 0, most: 100 },
+            "Gusts that an aircraft flies into; all are added.",
+        ),
+        optional("turbulence", Kind::Table(&TURBULENCE), "Random gusts around an aircraft."),
         optional(
             "disturbance",
             Kind::Tables { table: &DISTURBANCE, least: 0, most: 100 },
@@ -43,7 +64,9 @@ pub(crate) static SCENARIO: Table = plain(
             "What the responses must meet.",
         ),
     ]],
-);
+    choices: &[one_of!("plant", "aircraft")],
+    variants: &[],
+};
 
 /// Words for the sign of the elevator.
 pub(crate) const ELEVATOR_SIGNS: [&str; 2] = ["nose-down-positive", "nose-up-positive"];
@@ -104,34 +127,6 @@ static PLANT_CHANGE: Table = Table {
     }],
     variants: &[],
 };
-
-static ACTUATOR: Table = plain(
-    "A first-order servo with optional limits behind a delay.",
-    &[&[
-        defaulted(
-            "time_constant_s",
-            not_negative("s"),
-            Default::Number(0.0),
-            "Time constant; 0 for none.",
-        ),
-        optional(
-            "position_limit_deg",
-            positive("deg"),
-            "The deflection is kept within plus and minus this.",
-        ),
-        optional(
-            "rate_limit_deg_s",
-            positive("deg/s"),
-            "The deflection's rate is kept within plus and minus this.",
-        ),
-        defaulted(
-            "delay_samples",
-            Kind::Integer { least: 0, most: 10_000 },
-            Default::Integer(0),
-            "How many samples the command arrives late.",
-        ),
-    ]],
-);
 
 static LOOP: Table = plain(
     "When samples are taken.",

@@ -1,0 +1,249 @@
+//! An aircraft from one sample to the next.
+
+use fspid_aircraft::integrate::rk4;
+use fspid_aircraft::{
+    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RigidState,
+    Vector3,
+};
+
+use super::{AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller};
+use crate::actuator::{Actuator, ActuatorState};
+use crate::air::Place;
+use crate::error::SimError;
+use crate::surroundings::Weather;
+use crate::timing::Timing;
+
+/// Everything of an aircraft's flight that does not depend on the controller.
+#[derive(Clone, Debug)]
+pub(crate) struct AircraftFlight {
+    plant: AircraftPlant,
+    actuator: Actuator,
+    leveller: WingLeveller,
+    steps: SubSteps,
+    atmosphere: Atmosphere,
+    start: RigidState,
+    /// Pitch of the trim, rad.
+    trim_theta_rad: f64,
+}
+
+/// How a sample period is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SubSteps {
+    count: u32,
+    step_s: f64,
+}
+
+/// Where aircraft and actuator are.
+#[derive(Clone, Debug)]
+pub(crate) struct AircraftMotion {
+    /// Sample that has been reached.
+    k: usize,
+    /// Way through the air since the start, m.
+    distance_m: f64,
+    state: RigidState,
+    /// Pitch less that of the trim, rad.
+    theta_rad: f64,
+    actuator: ActuatorState,
+}
+
+impl SubSteps {
+    fn of(dt_s: f64) -> Self {
+        // A millionth more than whole is rounding.
+        let count = (dt_s / MOST_STEP_S - 1e-6).ceil().max(1.0);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at least 1, and the cast saturates"
+        )]
+        let whole = count as u32;
+        Self { count: whole, step_s: dt_s / count }
+    }
+}
+
+impl AircraftMotion {
+    /// Change of pitch from the trim, rad.
+    pub(crate) fn theta_rad(&self) -> f64 {
+        self.theta_rad
+    }
+
+    /// Pitch rate of the body, rad/s.
+    pub(crate) fn rate_rad_s(&self) -> f64 {
+        self.state.rates_rad_s.y
+    }
+
+    /// True for an aircraft on its back or nowhere: its pitch angle means nothing any more.
+    pub(crate) fn is_lost(&self) -> bool {
+        let down = self.state.attitude.to_ned(Vector3::new(0.0, 0.0, 1.0)).z;
+        let sum: f64 = self.state.to_array().iter().sum();
+        // Written so that NaN is lost.
+        !(down > 0.0 && sum.is_finite())
+    }
+}
+
+impl AircraftFlight {
+    /// The flight of a plant behind an actuator through the weather.
+    pub(crate) fn new(
+        plant: &AircraftPlant,
+        actuator: Actuator,
+        weather: Option<&Weather>,
+        timing: Timing,
+    ) -> Result<Self, SimError> {
+        let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m, timing)?;
+        let start = start(plant, &atmosphere);
+        Ok(Self {
+            plant: plant.clone(),
+            actuator,
+            leveller: WingLeveller::of(plant.aircraft(), plant.trim()),
+            steps: SubSteps::of(timing.dt_s()),
+            trim_theta_rad: start.euler().theta_rad,
+            start,
+            atmosphere,
+        })
+    }
+
+    fn aircraft(&self) -> &Aircraft<Forces> {
+        self.plant.aircraft()
+    }
+
+    pub(crate) fn at_rest(&self) -> AircraftMotion {
+        AircraftMotion {
+            k: 0,
+            distance_m: 0.0,
+            state: self.start,
+            theta_rad: 0.0,
+            actuator: ActuatorState::default(),
+        }
+    }
+
+    /// Moves an actuator without lag to its command at once; another stays where it is.
+    pub(crate) fn settle(&self, motion: &mut AircraftMotion, command_rad: f64) {
+        self.actuator.settle(&mut motion.actuator, command_rad);
+    }
+
+    /// Elevator, trailing edge down positive, disturbance included, within its travel, rad.
+    pub(crate) fn elevator_rad(&self, motion: &AircraftMotion, disturbance_rad: f64) -> f64 {
+        let deflection_rad = self.actuator.deflection_rad(&motion.actuator) + disturbance_rad;
+        let travel = self.aircraft().model().travel().elevator_rad;
+        travel.clamp(self.plant.trim().point.elevator_rad - deflection_rad)
+    }
+
+    fn aileron_rad(&self, state: &RigidState) -> f64 {
+        let travel = self.aircraft().model().travel().aileron_rad;
+        travel.clamp(self.leveller.aileron_rad(state.euler().phi_rad))
+    }
+
+    fn controls(&self, elevator_rad: f64, aileron_rad: f64) -> Controls {
+        Controls { elevator_rad, aileron_rad, ..self.plant.trim().controls }
+    }
+
+    /// The air where the aircraft is.
+    fn air(&self, motion: &AircraftMotion) -> AirMotion {
+        let place = place(&motion.state, &self.atmosphere, motion.distance_m);
+        self.atmosphere.at(&place, motion.k)
+    }
+
+    /// One sample period with command and disturbance held.
+    pub(crate) fn advance(
+        &self,
+        motion: &mut AircraftMotion,
+        command_rad: f64,
+        disturbance_rad: f64,
+    ) {
+        for _ in 0..self.steps.count {
+            self.sub_step(motion, command_rad, disturbance_rad);
+        }
+        motion.theta_rad = motion.state.euler().theta_rad - self.trim_theta_rad;
+        motion.k += 1;
+    }
+
+    fn sub_step(&self, motion: &mut AircraftMotion, command_rad: f64, disturbance_rad: f64) {
+        let step_s = self.steps.step_s;
+        let air = self.air(motion);
+        let [begin, middle, end] = self.stages(motion, command_rad, disturbance_rad);
+        let rate = |time_s: f64, state: &_| {
+            let controls = match time_s {
+                t if t <= 0.0 => &begin,
+                t if t < step_s => &middle,
+                _ => &end,
+            };
+            self.aircraft().rate(state, controls, &air)
+        };
+        let next = RigidState::from_array(&rk4::step(rate, 0.0, &motion.state.to_array(), step_s));
+        motion.distance_m += step_s * self.aircraft().flow(&motion.state, &air).airspeed_m_s;
+        motion.state = RigidState { attitude: next.attitude.normalised(), ..next };
+    }
+
+    /// The controls at the beginning, the middle and the end of a sub-step; the actuator is left at
+    /// the end.
+    fn stages(
+        &self,
+        motion: &mut AircraftMotion,
+        command_rad: f64,
+        disturbance_rad: f64,
+    ) -> [Controls; 3] {
+        let aileron_rad = self.aileron_rad(&motion.state);
+        [0.0, 0.5, 0.5].map(|share| {
+            if share > 0.0 {
+                let time_s = share * self.steps.step_s;
+                self.actuator.advance(&mut motion.actuator, command_rad, time_s);
+            }
+            self.controls(self.elevator_rad(motion, disturbance_rad), aileron_rad)
+        })
+    }
+
+    /// What is observable at a sample beyond pitch.
+    pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
+        let (state, air) = (&motion.state, self.air(motion));
+        let aileron_rad = self.aileron_rad(state);
+        let instant =
+            self.aircraft().instant(state, &self.controls(elevator_rad, aileron_rad), &air);
+        let wind_body_m_s = state.attitude.to_body(air.wind_ned_m_s);
+        let felt = self.load_factors(&instant);
+        AircraftSample {
+            airspeed_m_s: instant.flow.airspeed_m_s,
+            altitude_m: state.altitude_m(),
+            alpha_rad: instant.flow.alpha_rad,
+            bank_rad: state.euler().phi_rad,
+            aileron_rad,
+            load_factor: -felt.z,
+            air_m_s: (wind_body_m_s + air.gust_body_m_s).to_array(),
+            apparent_vertical_rad: apparent_vertical_rad(state, felt),
+            departure: self.aircraft().model().validity().departure(&instant.flow),
+        }
+    }
+
+    fn load_factors(&self, instant: &Instant) -> Vector3 {
+        let aircraft = self.aircraft();
+        instant.load_factors(aircraft.mass().mass_kg, aircraft.environment().gravity_m_s2)
+    }
+}
+
+/// Angle between the true vertical and that of a pendulum, $\arctan(a_x / g)$ with the acceleration
+/// along the heading, rad.
+fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
+    let felt = state.attitude.to_ned(load_factors);
+    let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
+    libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
+}
+
+fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> Place {
+    let [north_m, east_m, _] = state.position_ned_m.to_array();
+    let height_m = state.altitude_m() - atmosphere.ground_altitude_m();
+    // No wind of the family asks for the time.
+    Place { time_s: 0.0, distance_m, north_m, east_m, height_m }
+}
+
+/// At the course's start and heading, moving with the wind that blows there.
+fn start(plant: &AircraftPlant, atmosphere: &Atmosphere) -> RigidState {
+    let trim = plant.trim();
+    let ([north_m, east_m], psi_rad) = atmosphere.start();
+    let attitude = EulerAngles { psi_rad, ..trim.state.euler() };
+    let still = RigidState {
+        position_ned_m: Vector3::new(north_m, east_m, -trim.target.altitude_m),
+        attitude: Quaternion::from_euler(attitude),
+        ..trim.state
+    };
+    let wind_ned_m_s = atmosphere.wind(&place(&still, atmosphere, 0.0)).wind_ned_m_s;
+    let drift_m_s = still.attitude.to_body(wind_ned_m_s);
+    RigidState { velocity_body_m_s: still.velocity_body_m_s + drift_m_s, ..still }
+}

@@ -1,0 +1,81 @@
+//! The models of forces that a scenario can hold.
+
+use std::fmt;
+use std::sync::Arc;
+
+use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
+use fspid_aircraft::{Controls, Flow, ForceModel, Loads, Travel, Validity};
+
+/// A model of the forces on an aircraft.
+///
+/// Scenarios are compared: derivatives by their numbers, other models by being the same object.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum Forces {
+    /// Stability derivatives.
+    Derivatives(Box<DerivativeModel>),
+    /// Any other model.
+    Other(Arc<dyn ForceModel + Send + Sync>),
+}
+
+impl Forces {
+    fn model(&self) -> &dyn ForceModel {
+        match self {
+            Self::Derivatives(model) => model.as_ref(),
+            Self::Other(model) => model.as_ref(),
+        }
+    }
+}
+
+impl From<DerivativeModel> for Forces {
+    fn from(model: DerivativeModel) -> Self {
+        Self::Derivatives(Box::new(model))
+    }
+}
+
+impl PartialEq for Forces {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Derivatives(this), Self::Derivatives(that)) => this == that,
+            (Self::Other(this), Self::Other(that)) => Arc::ptr_eq(this, that),
+            _ => false,
+        }
+    }
+}
+
+impl fmt::Debug for Forces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Derivatives(model) => model.fmt(f),
+            Self::Other(_) => f.write_str("Other"),
+        }
+    }
+}
+
+impl ForceModel for Forces {
+    fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
+        match self {
+            Self::Derivatives(model) => model.loads(flow, controls),
+            Self::Other(model) => model.loads(flow, controls),
+        }
+    }
+
+    fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
+        match self {
+            Self::Derivatives(model) => model.loads_per_alpha_rate(flow),
+            Self::Other(model) => model.loads_per_alpha_rate(flow),
+        }
+    }
+
+    fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
+        self.model().thrust_n(flow, controls)
+    }
+
+    fn validity(&self) -> &Validity {
+        self.model().validity()
+    }
+
+    fn travel(&self) -> &Travel {
+        self.model().travel()
+    }
+}

@@ -1,0 +1,68 @@
+//! Nonlinear aircraft as plants of the loop: trimmed, then flown in six degrees of freedom.
+//!
+//! # What the loop sees
+//! Pitch is measured as the change from the trim, so that command and metrics are those of a linear
+//! plant; the command moves the elevator from where the trim has it, and the throttle stays there. The
+//! deflection is kept within the travel of the aircraft's own data.
+//!
+//! # Between samples
+//! The command, disturbances and turbulence are held. The state follows by the classical method of
+//! Runge and Kutta in equal sub-steps, the longest that fit into the period and are at most
+//! [`MOST_STEP_S`]; the actuator is known in closed form and stands at the beginning, the middle and
+//! the end of a sub-step where it then is. Winds and gusts are those of the place at the beginning of
+//! each sub-step.
+//!
+//! # Not here
+//! Plant changes, ground, engine lag; the throttle does not move.
+
+mod atmosphere;
+mod column;
+mod flight;
+mod forces;
+mod leveller;
+mod linear;
+
+use atmosphere::Atmosphere;
+pub use column::{AIRCRAFT_COLUMNS, AircraftSample};
+pub(crate) use flight::{AircraftFlight, AircraftMotion};
+pub use forces::Forces;
+pub use leveller::{LEVELLING_TIME_S, WingLeveller};
+
+use fspid_aircraft::{Aircraft, Trim, TrimTarget};
+
+use crate::error::SimError;
+
+/// Longest sub-step of the integration, s.
+///
+/// A mode of 10 rad/s then takes 63 steps a period, and its error is below 10⁻⁶ a period.
+pub const MOST_STEP_S: f64 = 0.01;
+
+/// An aircraft at its trim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AircraftPlant {
+    aircraft: Aircraft<Forces>,
+    trim: Trim,
+}
+
+impl AircraftPlant {
+    /// The aircraft in straight flight at the target's speed and altitude.
+    ///
+    /// # Errors
+    /// [`SimError::Trim`] where there is no such flight, with what stands in its way.
+    pub fn trimmed(aircraft: Aircraft<Forces>, target: TrimTarget) -> Result<Self, SimError> {
+        let trim = aircraft.trim(target).map_err(|failure| SimError::Trim(Box::new(failure)))?;
+        Ok(Self { aircraft, trim })
+    }
+
+    /// Body, forces and air.
+    #[must_use]
+    pub fn aircraft(&self) -> &Aircraft<Forces> {
+        &self.aircraft
+    }
+
+    /// Where the flight begins.
+    #[must_use]
+    pub fn trim(&self) -> &Trim {
+        &self.trim
+    }
+}

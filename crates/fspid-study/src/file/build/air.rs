@@ -1,0 +1,104 @@
+//! Winds, gusts and turbulence around an aircraft.
+
+use fspid_sim::air::{
+    FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Specification, Steady,
+    Turbulence, Wind,
+};
+use fspid_sim::{Plant, Weather};
+
+use super::flight::{Flown, Way};
+use super::{judged, rad};
+use crate::file::aircraft::quantity;
+use crate::file::report::Report;
+use crate::file::section::Section;
+
+/// The air that the file lets move, `None` for calm air around a linear plant.
+///
+/// A nonlinear aircraft always has a course, since its heading is one.
+pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> Option<Weather> {
+    let parts = ["wind", "turbulence"].map(|name| section.section(name));
+    let parts = parts.into_iter().flatten().chain(section.sections("gust"));
+    let Some(way) = flown.way else {
+        parts.for_each(|part| refuse(report, part));
+        return None;
+    };
+    let calm = parts.count() == 0;
+    let weather = Weather {
+        course: way.course,
+        winds: winds(section, way),
+        turbulence: turbulence(report, section.section("turbulence"), way),
+    };
+    let linear = matches!(flown.plant, Plant::Linear(_));
+    (!(calm && linear)).then_some(weather)
+}
+
+fn refuse(report: &mut Report, part: &Section) {
+    let message = "a plant does not say how moving air acts on it";
+    report.value(part.place, &part.path, message, "an `aircraft` in place of the plant");
+}
+
+fn winds(section: &Section, way: Way) -> Vec<Wind> {
+    let sound = |part: &&Section| part.sound;
+    let wind = section.section("wind").filter(sound).and_then(wind);
+    let gusts = section.sections("gust").iter().filter(sound);
+    wind.into_iter().chain(gusts.filter_map(|part| gust(part, way))).collect()
+}
+
+fn wind(part: &Section) -> Option<Wind> {
+    Some(match part.kind {
+        "log-shear" => Wind::LogShear(LogShear {
+            w20_m_s: quantity(part, "w20")?,
+            from_rad: rad(part.number("from_deg")?),
+            roughness_m: part.number("roughness_m")?,
+        }),
+        "microburst" => Wind::Microburst(Microburst {
+            outflow_m_s: part.number("outflow_m_s")?,
+            radius_m: part.number("radius_m")?,
+            peak_height_m: part.number("peak_height_m")?,
+            axis_m: [part.number("north_m")?, part.number("east_m")?],
+        }),
+        _ => Wind::Steady(steady(part)?),
+    })
+}
+
+/// The air moves away from where the wind comes from.
+fn steady(part: &Section) -> Option<Steady> {
+    let speed_m_s = quantity(part, "speed")?;
+    let (east, north) = libm::sincos(rad(part.number("from_deg")?));
+    let earth_m_s = [-speed_m_s * north, -speed_m_s * east, -part.number("up_m_s")?];
+    Some(Steady { earth_m_s })
+}
+
+fn gust(part: &Section, way: Way) -> Option<Wind> {
+    let amplitude_m_s =
+        [part.number("forward_m_s")?, part.number("right_m_s")?, -part.number("up_m_s")?];
+    let start_m = part.number("at_s")? * way.course.airspeed_m_s;
+    Some(match part.kind {
+        "full-cycle" => {
+            let gradient_m = part.number("gradient_m")?;
+            Wind::FullCycle(FullCycle { amplitude_m_s, gradient_m, start_m })
+        }
+        _ => {
+            let length_m = part.number("length_m")?;
+            Wind::RampHold(RampHold { amplitude_m_s, length_m, start_m })
+        }
+    })
+}
+
+fn turbulence(report: &mut Report, part: Option<&Section>, way: Way) -> Option<Turbulence> {
+    let part = part.filter(|part| part.sound)?;
+    let (model, severity) = (part.text("model")?, part.text("intensity")?);
+    let aloft = Severity::ALL.into_iter().find(|word| word.name() == severity)?;
+    let intensity = match part.number("w20_m_s") {
+        Some(w20_m_s) => Intensity::new(w20_m_s, aloft),
+        None => Ok(aloft.into()),
+    };
+    Some(Turbulence {
+        specification: Specification::ALL.into_iter().find(|word| word.name() == model)?,
+        intensity: judged(report, (part, "w20_m_s"), intensity)?,
+        height_m: way.course.height_m,
+        airspeed_m_s: way.course.airspeed_m_s,
+        wing_span_m: way.span_m,
+        seed: u64::try_from(part.integer("seed")?).ok()?,
+    })
+}

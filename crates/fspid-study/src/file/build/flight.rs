@@ -1,0 +1,142 @@
+//! The aircraft of a scenario: read, trimmed, and flown nonlinear or linear.
+
+use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
+use fspid_aircraft::data::{AircraftData, DerivativeData, Laws, ModelData};
+use fspid_aircraft::{Aircraft, Environment, TrimTarget};
+use fspid_sim::aircraft::Forces;
+use fspid_sim::{AircraftPlant, Course, Plant, SimError};
+
+use super::{data, judged, rad};
+use crate::file::aircraft::{aircraft_data, aircraft_text, quantity};
+use crate::file::files::Files;
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::file::spec::AIRCRAFT_FILE;
+
+/// A plant and what the air around it depends on.
+pub(super) struct Flown {
+    pub(super) plant: Plant,
+    /// Where it flies, and its span; for an aircraft.
+    pub(super) way: Option<Way>,
+}
+
+/// The way of an aircraft.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    pub(super) course: Course,
+    pub(super) span_m: f64,
+}
+
+/// What flies, of the scenario's `plant` or `aircraft`.
+pub(super) fn flown(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+) -> Option<Flown> {
+    let sound = |name: &str| section.section(name).filter(|part| part.sound);
+    if let Some(part) = sound("aircraft") {
+        return aircraft(report, files, part);
+    }
+    let plant = data::plant(report, files, sound("plant")?)?;
+    Some(Flown { plant: plant.into(), way: None })
+}
+
+fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
+    let key = if part.given("file") { "file" } else { "name" };
+    let derivatives = match read(report, files, part)?.model {
+        ModelData::Derivatives(derivatives) => derivatives,
+        ModelData::Linear(_) => {
+            let message = "only a linear model of it is known; it has no trim";
+            let allowed = "an aircraft with stability derivatives, or a `plant`";
+            report.value(part.at(key), &part.path(key), message, allowed);
+            return None;
+        }
+    };
+    let target = target(part)?;
+    let aircraft = derivatives.aircraft(laws(part)?, environment(part, &derivatives)?);
+    let aircraft = judged(report, (part, key), aircraft)?;
+    let plant = trimmed(report, part, &with_forces(&aircraft)?, target)?;
+    let plant = match part.text("model")? {
+        "linear" => Plant::Linear(judged(report, (part, key), plant.linear())?),
+        _ => plant.into(),
+    };
+    let way = Way { course: course(part, target)?, span_m: derivatives.geometry.span_m };
+    Some(Flown { plant, way: Some(way) })
+}
+
+fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {
+    let (key, section) = match part.text("name") {
+        Some(name) => {
+            let named = (name, aircraft_text(name)?);
+            ("name", data::carried(report, files, &AIRCRAFT_FILE, named)?)
+        }
+        None => {
+            let at = (part.at("file"), part.path("file"));
+            ("file", data::referred(report, files, &AIRCRAFT_FILE, (part.text("file")?, at))?)
+        }
+    };
+    let aircraft = aircraft_data(report, &section);
+    files.keep(part.path(key), &AIRCRAFT_FILE, section);
+    aircraft
+}
+
+fn target(part: &Section) -> Option<TrimTarget> {
+    Some(TrimTarget {
+        airspeed_m_s: quantity(part, "airspeed")?,
+        altitude_m: quantity(part, "altitude")?,
+        flight_path_rad: 0.0,
+    })
+}
+
+fn laws(part: &Section) -> Option<Laws> {
+    let drag = match part.text("drag")? {
+        "polar" => DragLaw::Polar,
+        _ => DragLaw::Linear,
+    };
+    let thrust = match part.text("thrust")? {
+        "with-speed" => ThrustLaw::WithSpeed,
+        _ => ThrustLaw::Constant,
+    };
+    Some(Laws { drag, thrust })
+}
+
+fn environment(part: &Section, derivatives: &DerivativeData) -> Option<Environment> {
+    Some(match part.text("atmosphere")? {
+        "reference" => derivatives.reference_environment(),
+        _ => Environment::STANDARD,
+    })
+}
+
+/// The aircraft as scenarios hold it.
+fn with_forces(
+    aircraft: &Aircraft<fspid_aircraft::aerodynamics::derivatives::DerivativeModel>,
+) -> Option<Aircraft<Forces>> {
+    let forces = Forces::from(*aircraft.model());
+    Aircraft::new(*aircraft.mass(), forces, *aircraft.environment()).ok()
+}
+
+/// The aircraft at its trim, or a problem at the speed that it cannot fly.
+fn trimmed(
+    report: &mut Report,
+    part: &Section,
+    aircraft: &Aircraft<Forces>,
+    target: TrimTarget,
+) -> Option<AircraftPlant> {
+    let plant = AircraftPlant::trimmed(aircraft.clone(), target);
+    if let Err(SimError::Trim(failure)) = &plant {
+        let keys = ["airspeed_m_s", "airspeed_kt", "airspeed_ft_s"];
+        let key = keys.into_iter().find(|key| part.given(key)).unwrap_or("airspeed_m_s");
+        let allowed = "a speed and an altitude at which the aircraft can be trimmed";
+        report.value(part.at(key), &part.path(key), failure.to_string(), allowed);
+    }
+    plant.ok()
+}
+
+fn course(part: &Section, target: TrimTarget) -> Option<Course> {
+    Some(Course {
+        airspeed_m_s: target.airspeed_m_s,
+        height_m: target.altitude_m - part.number("ground_m")?,
+        heading_rad: rad(part.number("heading_deg")?),
+        start_m: [0.0; 2],
+    })
+}
