@@ -60,7 +60,7 @@ impl Autopilot {
         let (above, below) = (plant.numerator(), plant.denominator());
         let sign = ElevatorSign::NoseDownPositive;
         let plant = LinearPlant::new(above.coefficients(), below.coefficients(), sign).ok()?;
-        let scenario = Scenario { plant, ..self.scenario.clone() };
+        let scenario = Scenario { plant: fspid_sim::Plant::Linear(plant), ..self.scenario.clone() };
         let controller = &self.controller.controller;
         loop_spectral_radius(&scenario, controller.nominal(), controller.shell()).ok()
     }
