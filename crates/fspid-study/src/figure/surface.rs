@@ -187,11 +187,11 @@ impl Surface {
             gaps::hatch(canvas, area);
         }
         self.paint_map(canvas, &grid, &z);
+        canvas.end();
+        map_axes(canvas, area, &x, &y);
         if hatched {
             gaps::crosses(canvas, &grid);
         }
-        canvas.end();
-        map_axes(canvas, area, &x, &y);
         canvas.text(
             area.x + MAP / 2.0,
             top + MAP + 36.0,
