@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, ignore_case = true)]
     class: Option<Class>,
     /// Bandwidth of the servo in rad/s; 0 for none.
-    #[arg(long, value_name = "RAD/S", default_value_t = 10.0)]
+    #[arg(long, value_name = "RAD/S", default_value_t = 10.0, allow_negative_numbers = true)]
     servo: f64,
     /// Dead time between the command and the servo, such as 0.05s or 50ms.
     #[arg(long, value_name = "TIME", default_value = "0s", allow_hyphen_values = true)]

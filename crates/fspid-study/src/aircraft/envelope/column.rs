@@ -66,7 +66,7 @@ static COLUMNS: [Column; 13] = [
     Column {
         drawn: false,
         ..column("level of the control anticipation parameter", "cap_level", Kind::Plain, |held| {
-            level_number(held.short_period.as_ref()?.cap_level.level)
+            level_number(held.short_period.as_ref()?.cap_level.level).map(f64::from)
         })
     },
     autopilot("loop, gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {

@@ -132,11 +132,11 @@ fn of_flight(
 }
 
 /// The number of a level; none for what is worse than all.
-pub(super) const fn level_number(level: Level) -> Option<f64> {
+pub(super) const fn level_number(level: Level) -> Option<u8> {
     match level {
-        Level::One => Some(1.0),
-        Level::Two => Some(2.0),
-        Level::Three => Some(3.0),
+        Level::One => Some(1),
+        Level::Two => Some(2),
+        Level::Three => Some(3),
         Level::Worse => None,
     }
 }
