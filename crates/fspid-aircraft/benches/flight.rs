@@ -10,11 +10,15 @@
 )]
 
 use std::hint::black_box;
+use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::data::Laws;
+use fspid_aircraft::envelope::EnvelopeGrid;
+use fspid_aircraft::qualities::CommandPath;
 use fspid_aircraft::{AirMotion, Aircraft, Environment, TrimTarget, Vector3};
+use fspid_lti::{FrequencyResponse, TransferFunction};
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -34,6 +38,7 @@ fn main() {
     };
     report("trim and linearisation", 2.0, || trim_and_linearise(&aircraft, target));
     report("60 s at 100 Hz with gusts", 60.0, || fly(&aircraft, target));
+    report("envelope of 600 points on 2 threads", 3000.0, || map(&aircraft));
 }
 
 /// Times some work and prints the best round in milliseconds.
@@ -53,6 +58,21 @@ fn trim_and_linearise(aircraft: &Aircraft<DerivativeModel>, target: TrimTarget) 
     let trim = aircraft.trim(black_box(target)).expect("a flight that can be held");
     let plant = aircraft.linearise(&trim).theta_over_elevator().expect("a plant");
     plant.dc_gain().expect("no integrator")
+}
+
+/// Trim, linear model, modes, qualities and a gain margin at 30 airspeeds and 20 altitudes.
+fn map(aircraft: &Aircraft<DerivativeModel>) -> f64 {
+    let servo = TransferFunction::new(&[10.0], &[1.0, 10.0]).expect("a servo");
+    let path = CommandPath { servo: Some(servo.clone()), delay_s: 0.05 };
+    let grid = EnvelopeGrid { path, ..EnvelopeGrid::even((100.0, 290.0, 30), (0.0, 12_000.0, 20)) };
+    let threads = NonZeroUsize::new(2).expect("two");
+    let rows = aircraft.envelope(black_box(&grid), threads, |linear| {
+        let plant = linear.theta_over_elevator().expect("a plant").negated();
+        let open = plant.series(&servo).expect("small");
+        FrequencyResponse::new(open, 0.05).expect("roots").margins().expect("a loop").gain_margin()
+    });
+    let flights = rows.iter().filter_map(|row| row.flight.as_ref().ok());
+    flights.map(|flight| flight.beside.unwrap_or(0.0)).sum()
 }
 
 /// A flight through gusts that change at each sample; their filters are not part of this crate.

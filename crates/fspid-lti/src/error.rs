@@ -147,6 +147,11 @@ pub enum LtiError {
         /// How many it may have.
         allowed: usize,
     },
+    /// A control problem that no feedback solves.
+    #[error(
+        "no feedback makes this system stable at finite cost: a mode is out of reach, or is neutral and costs nothing"
+    )]
+    NotStabilisable,
     /// An iteration that used up its limit.
     #[error("the {what} had not converged after {iterations} iterations, the most allowed")]
     NotConverged {

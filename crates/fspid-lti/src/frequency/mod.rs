@@ -221,6 +221,18 @@ mod tests {
     }
 
     #[test]
+    fn a_lead_reaches_its_highest_phase_between_zeros_and_poles() {
+        let lead = response(&[1.0, 3.0, 3.0, 1.0], &[1.0, 30.0, 300.0, 1000.0], 0.0);
+        let middle_rad_s = 10.0_f64.sqrt();
+        let nearest = lead.phase_turns_rad_s.iter().map(|turn| (turn - middle_rad_s).abs());
+        assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-9, "{:?}", lead.phase_turns_rad_s);
+        let almost = lead.phase_rad(middle_rad_s) - 1e-9;
+        let crossings = lead.phase_crossings(almost);
+        assert_eq!(crossings.len(), 2);
+        assert!((crossings[0] * crossings[1] - 10.0).abs() < 1e-6, "{crossings:?}");
+    }
+
+    #[test]
     fn dead_times_that_no_loop_has_are_refused() {
         let system = TransferFunction::new(&[1.0], &[1.0, 1.0]).expect("a lag");
         assert!(FrequencyResponse::new(system.clone(), -0.1).is_err());
