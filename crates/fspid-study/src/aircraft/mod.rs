@@ -18,6 +18,7 @@ mod number;
 mod parse;
 mod plant_file;
 mod polynomial;
+mod qualities;
 mod show;
 mod state_model;
 mod table;
@@ -25,6 +26,7 @@ mod trim;
 mod units;
 
 pub use fspid_aircraft::VelocityForm;
+pub use fspid_aircraft::qualities::{Category, Class};
 
 pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, flight};
 
@@ -36,6 +38,7 @@ pub use linearise::{Linear, linearise};
 pub use list::{List, list};
 pub use load::load;
 pub use modes::{Modes, modes};
+pub use qualities::{Judged, QualitiesQuestion, qualities};
 pub use show::{Show, show};
 pub use trim::{Trimmed, trim};
 pub use units::Units;

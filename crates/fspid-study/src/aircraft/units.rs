@@ -35,6 +35,9 @@ pub(super) enum Kind {
     SquaredRate,
     PerLength,
     PerLengthTime,
+    CapUnit,
+    LoadPerAngle,
+    Decibel,
     Time,
 }
 
@@ -62,6 +65,9 @@ impl Units {
             (Kind::Frequency, _) => unit("rad/s", "rad_s", 1.0),
             (Kind::Rate, _) => unit("1/s", "per_s", 1.0),
             (Kind::SquaredRate, _) => unit("1/s²", "per_s2", 1.0),
+            (Kind::CapUnit, _) => unit("rad/s² per g", "rad_s2_per_g", 1.0),
+            (Kind::LoadPerAngle, _) => unit("g/rad", "g_per_rad", 1.0),
+            (Kind::Decibel, _) => unit("dB", "db", 1.0),
             (Kind::Time, _) => unit("s", "s", 1.0),
             (_, Self::Si) => si(kind),
             (_, Self::English) => english(kind),

@@ -44,6 +44,8 @@ pub struct Surface {
 }
 
 const WIDTH: f64 = 500.0;
+/// Width of a map whose axes may have long numbers.
+const WIDE: f64 = 548.0;
 const MAP: f64 = 336.0;
 const VIEW: f64 = 330.0;
 const BAR: f64 = 14.0;
@@ -113,7 +115,7 @@ impl Surface {
         page::title(&mut canvas, &self.title);
         self.draw_view(&mut canvas, top + 12.0, WIDTH - 2.0 * EDGE, Light::FromTheLeft);
         canvas.begin_shift(WIDTH, 0.0);
-        self.draw_map(&mut canvas, top + 4.0, false);
+        self.draw_map(&mut canvas, top + 4.0, (WIDTH, false));
         canvas.end();
         canvas.finish(&self.title, &self.describe("Surface in space, and as a map"))
     }
@@ -155,23 +157,23 @@ impl Surface {
         let top = page::title_height(&self.title, WIDTH) + 4.0;
         let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
         page::title(&mut canvas, &self.title);
-        self.draw_map(&mut canvas, top, false);
+        self.draw_map(&mut canvas, top, (WIDTH, false));
         canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
     }
 
     /// Draws the map with hatching where values are missing; `words` say what that means.
     #[must_use]
     pub fn map_with_gaps(&self, words: &str) -> Svg {
-        let top = page::title_height(&self.title, WIDTH) + 4.0;
-        let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0 + gaps::LEGEND);
+        let top = page::title_height(&self.title, WIDE) + 4.0;
+        let mut canvas = Canvas::new(WIDE, top + MAP + 48.0 + gaps::LEGEND);
         page::title(&mut canvas, &self.title);
-        self.draw_map(&mut canvas, top, true);
+        self.draw_map(&mut canvas, top, (WIDE, true));
         gaps::legend(&mut canvas, (WIDTH / 2.0, top + MAP + 46.0), words);
         let kind = format!("Map with lines of equal value; hatched: {words}");
         canvas.finish(&self.title, &self.describe(&kind))
     }
 
-    fn draw_map(&self, canvas: &mut Canvas, top: f64, hatched: bool) {
+    fn draw_map(&self, canvas: &mut Canvas, top: f64, (edge, hatched): (f64, bool)) {
         let [x, y] =
             [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
@@ -187,11 +189,11 @@ impl Surface {
             gaps::hatch(canvas, area);
         }
         self.paint_map(canvas, &grid, &z);
+        canvas.end();
+        map_axes(canvas, area, &x, &y);
         if hatched {
             gaps::crosses(canvas, &grid);
         }
-        canvas.end();
-        map_axes(canvas, area, &x, &y);
         canvas.text(
             area.x + MAP / 2.0,
             top + MAP + 36.0,
@@ -205,7 +207,7 @@ impl Surface {
             std::slice::from_ref(&self.y_label),
         );
         let bar = Rect { x: area.x + MAP + 22.0, y: top, width: BAR, height: MAP };
-        self.bar(canvas, (bar, WIDTH), &z, &bands(&z));
+        self.bar(canvas, (bar, edge), &z, &bands(&z));
         for level in levels(&z) {
             let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
             canvas.line((bar.x, y), (bar.x + bar.width, y), &level_line(level, z.step()));

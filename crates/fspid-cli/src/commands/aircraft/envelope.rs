@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::super::{Format, drawings, json_text};
+use super::qualities::Category;
 use super::{Answer, Plane};
 use crate::exit::{Failure, note, print};
 use fspid_study::aircraft::{EnvelopeQuestion, envelope};
@@ -24,6 +25,9 @@ pub(super) struct Arguments {
     /// Altitudes, such as 0:4000:5 or 0:15000ft:4.
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true)]
     altitudes: String,
+    /// For what flying qualities are judged.
+    #[arg(long, value_enum, ignore_case = true, default_value_t = Category::B)]
+    category: Category,
     /// A scenario with the autopilot: its servo, sample period and controller.
     #[arg(long, value_name = "FILE.toml")]
     scenario: Option<PathBuf>,
@@ -46,6 +50,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         question: arguments.plane.question(answer.units()),
         speeds: &arguments.speeds,
         altitudes: &arguments.altitudes,
+        category: arguments.category.into(),
         scenario: arguments.scenario.as_deref(),
         controller: arguments.controller.as_deref(),
     };

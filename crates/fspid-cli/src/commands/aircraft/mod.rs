@@ -6,6 +6,7 @@ mod import;
 mod linearise;
 mod list;
 mod modes;
+mod qualities;
 mod show;
 mod trim;
 
@@ -33,6 +34,7 @@ enum Command {
     Trim(trim::Arguments),
     Linearise(linearise::Arguments),
     Modes(modes::Arguments),
+    Qualities(qualities::Arguments),
     Envelope(envelope::Arguments),
     Derive(derive::Arguments),
     Import(import::Arguments),
@@ -45,6 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Trim(arguments) => trim::run(arguments),
         Command::Linearise(arguments) => linearise::run(arguments),
         Command::Modes(arguments) => modes::run(arguments),
+        Command::Qualities(arguments) => qualities::run(arguments),
         Command::Envelope(arguments) => envelope::run(arguments),
         Command::Derive(arguments) => derive::run(arguments),
         Command::Import(arguments) => import::run(arguments),

@@ -169,7 +169,11 @@ impl Comparison {
         let rows: Vec<Vec<String>> = self.rows.iter().map(cells).collect();
         let headings = ["coefficient", "printed", "derived", "off, half digits", "by the source"];
         let (model, verdict) = (self.model, self.verdict());
-        format!("\nthe paper's {model}: {verdict}\n{}\n{}", table(&headings, &rows), self.how)
+        format!(
+            "\nthe paper's {model}: {verdict}\n{}\n{}",
+            table(&headings, &rows),
+            paragraph(&self.how)
+        )
     }
 
     pub(super) fn json(&self) -> Value {

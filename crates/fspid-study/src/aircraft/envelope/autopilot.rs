@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fspid_core::Gains;
 use fspid_lti::TransferFunction;
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, NamedController, Scenario};
@@ -12,6 +13,23 @@ use crate::inference::Refused;
 
 /// A radius this close below 1 counts as unstable, as in the simulation.
 const MARGIN: f64 = 1e-9;
+
+/// End of the search for a gain margin.
+pub(super) const MOST_DB: f64 = 40.0;
+
+/// Steps of that search: two changes within one of them are not seen.
+const STEP_DB: f64 = 0.5;
+
+/// A sampled loop around rest, with the gains that it starts from and without limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Loop {
+    /// Below 1 if it is stable.
+    pub(super) spectral_radius: f64,
+    /// How fast its slowest motion dies out; negative if it grows.
+    pub(super) decay_per_s: f64,
+    /// How much the gains may rise before it is unstable; none if it is unstable already.
+    pub(super) gain_margin_db: Option<f64>,
+}
 
 /// A controller with the servo and the sample period of its scenario.
 #[derive(Clone, Debug)]
@@ -55,15 +73,62 @@ impl Autopilot {
         format!("loop of {name}, sampled every {dt_s} s, without limits, at {gains}")
     }
 
-    /// Spectral radius of the sampled loop around a plant, below 1 if it is stable.
-    pub(super) fn radius(&self, plant: &TransferFunction) -> Option<f64> {
+    /// How the sampled loop around a plant stands.
+    pub(super) fn judge(&self, plant: &TransferFunction) -> Option<Loop> {
         let (above, below) = (plant.numerator(), plant.denominator());
         let sign = ElevatorSign::NoseDownPositive;
         let plant = LinearPlant::new(above.coefficients(), below.coefficients(), sign).ok()?;
-        let scenario = Scenario { plant: fspid_sim::Plant::Linear(plant), ..self.scenario.clone() };
-        let controller = &self.controller.controller;
-        loop_spectral_radius(&scenario, controller.nominal(), controller.shell()).ok()
+        let plant = fspid_sim::Plant::Linear(plant);
+        let scenario = Scenario { plant, controllers: Vec::new(), ..self.scenario.clone() };
+        let radius = self.radius(&scenario, 1.0)?;
+        let stable = is_stable(radius);
+        let gain_margin_db = if stable { self.gain_margin_db(&scenario) } else { None };
+        let decay_per_s = -libm::log(radius) / self.dt_s();
+        Some(Loop { spectral_radius: radius, decay_per_s, gain_margin_db })
     }
+
+    fn dt_s(&self) -> f64 {
+        self.controller.controller.shell().dt_s
+    }
+
+    /// Spectral radius with everything that the controller commands times a factor.
+    fn radius(&self, scenario: &Scenario, factor: f64) -> Option<f64> {
+        let controller = &self.controller.controller;
+        let Gains { kp, ki, kd } = controller.nominal();
+        let gains = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor };
+        let mut shell = *controller.shell();
+        shell.rate_gain_s *= factor;
+        loop_spectral_radius(scenario, gains, &shell).ok()
+    }
+
+    /// First factor from 1 upwards at which the loop is not stable, in dB; the end of the search where there is none.
+    fn gain_margin_db(&self, scenario: &Scenario) -> Option<f64> {
+        let holds = |db: f64| Some(is_stable(self.radius(scenario, libm::pow(10.0, db / 20.0))?));
+        let mut below = 0.0;
+        while below < MOST_DB {
+            let above = below + STEP_DB;
+            if !holds(above)? {
+                return bisected((below, above), holds);
+            }
+            below = above;
+        }
+        Some(MOST_DB)
+    }
+}
+
+/// Where a condition that holds at the first end stops to hold, to a hundredth of a decibel.
+fn bisected(
+    (mut below, mut above): (f64, f64),
+    holds: impl Fn(f64) -> Option<bool>,
+) -> Option<f64> {
+    while above - below > 0.01 {
+        let middle = 0.5 * (below + above);
+        match holds(middle)? {
+            true => below = middle,
+            false => above = middle,
+        }
+    }
+    Some(below)
 }
 
 /// Whether a loop of this spectral radius is stable; NaN is not.

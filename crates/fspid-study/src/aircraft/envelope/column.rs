@@ -3,6 +3,7 @@
 use fspid_aircraft::ModeName;
 
 use super::point::{Held, Point};
+use crate::aircraft::qualities::level_number;
 use crate::aircraft::units::Kind;
 
 /// A quantity over an envelope.
@@ -13,6 +14,8 @@ pub(super) struct Column {
     /// Name for programs and files, without the unit.
     pub(super) key: &'static str,
     pub(super) kind: Kind,
+    /// False for what a map would not show.
+    pub(super) drawn: bool,
     /// True for what an autopilot has to be there for.
     needs_autopilot: bool,
     read: fn(&Held) -> Option<f64>,
@@ -24,10 +27,19 @@ const fn column(
     kind: Kind,
     read: fn(&Held) -> Option<f64>,
 ) -> Column {
-    Column { name, key, kind, needs_autopilot: false, read }
+    Column { name, key, kind, drawn: true, needs_autopilot: false, read }
 }
 
-static COLUMNS: [Column; 9] = [
+const fn autopilot(
+    name: &'static str,
+    key: &'static str,
+    kind: Kind,
+    read: fn(&Held) -> Option<f64>,
+) -> Column {
+    Column { needs_autopilot: true, ..column(name, key, kind, read) }
+}
+
+static COLUMNS: [Column; 13] = [
     column("angle of attack, from the reference", "alpha", Kind::Angle, |held| {
         Some(held.trim.point.alpha_rad)
     }),
@@ -48,13 +60,30 @@ static COLUMNS: [Column; 9] = [
     column("phugoid, damping", "phugoid_damping", Kind::Plain, |held| {
         Some(held.pair(ModeName::Phugoid)?.damping_ratio)
     }),
+    column("control anticipation parameter", "cap", Kind::CapUnit, |held| {
+        Some(held.short_period.as_ref()?.cap)
+    }),
     Column {
-        needs_autopilot: true,
-        ..column("loop, spectral radius", "loop_spectral_radius", Kind::Plain, |held| held.radius)
+        drawn: false,
+        ..column("level of the control anticipation parameter", "cap_level", Kind::Plain, |held| {
+            level_number(held.short_period.as_ref()?.cap_level.level).map(f64::from)
+        })
+    },
+    autopilot("loop, gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
+        held.judged?.gain_margin_db
+    }),
+    autopilot("loop, decay of its slowest motion", "loop_decay", Kind::Rate, |held| {
+        Some(held.judged?.decay_per_s)
+    }),
+    Column {
+        drawn: false,
+        ..autopilot("loop, spectral radius", "loop_spectral_radius", Kind::Plain, |held| {
+            Some(held.judged?.spectral_radius)
+        })
     },
 ];
 
-/// The quantities that are known.
+/// What is told with or without an autopilot.
 pub(super) fn columns(has_autopilot: bool) -> Vec<&'static Column> {
     COLUMNS.iter().filter(|column| has_autopilot || !column.needs_autopilot).collect()
 }

@@ -14,10 +14,10 @@ impl Envelope {
     /// A drawing for each quantity, with its name.
     #[must_use]
     pub fn figures(&self) -> Vec<(&'static str, Svg)> {
-        let columns = self.columns().into_iter();
+        let columns = self.columns().into_iter().filter(|column| column.drawn);
         let known = columns.filter(|column| self.points.iter().any(|p| column.of(p).is_some()));
         let drawn = known.map(|column| (column.key, self.figure(column)));
-        drawn.chain(self.stability()).collect()
+        drawn.chain(self.levels()).chain(self.stability()).collect()
     }
 
     fn figure(&self, column: &Column) -> Svg {
@@ -29,7 +29,7 @@ impl Envelope {
     }
 
     fn title(&self, name: &str) -> String {
-        format!("{}: {name}", self.title)
+        format!("{}: {name}", self.name)
     }
 
     fn told(&self, kind: Kind, values: &[f64]) -> Vec<f64> {
@@ -81,22 +81,50 @@ impl Envelope {
     fn stability(&self) -> Option<(&'static str, Svg)> {
         let autopilot = self.autopilot.as_ref()?;
         let class = |point: &Point| {
-            let radius = point.held.as_ref().ok()?.radius?;
-            Some(usize::from(!is_stable(radius)))
+            let judged = point.held.as_ref().ok()?.judged?;
+            Some(usize::from(!is_stable(judged.spectral_radius)))
         };
-        let classes: Vec<Option<usize>> = self.points.iter().map(class).collect();
         let names = [("+", "stable"), ("!", "unstable")];
-        let tiles = Tiles {
-            title: self.title(&autopilot.words()),
+        let tiles = self.tiles(&autopilot.words(), &names, class);
+        Some(("loop_stability", tiles.render()))
+    }
+
+    /// Levels by the control anticipation parameter.
+    fn levels(&self) -> Option<(&'static str, Svg)> {
+        let class = |point: &Point| {
+            let found = point.held.as_ref().ok()?.short_period?.cap_level;
+            Some(found.level as usize)
+        };
+        let names =
+            [("1", "level 1"), ("2", "level 2"), ("3", "level 3"), ("worse", "worse than level 3")];
+        let category = self.category;
+        let name = format!(
+            "level by the control anticipation parameter, category {category:?} (MIL-STD-1797A)"
+        );
+        self.points
+            .iter()
+            .any(|point| class(point).is_some())
+            .then(|| ("cap_level", self.tiles(&name, &names, class).render()))
+    }
+
+    fn tiles(
+        &self,
+        name: &str,
+        names: &[(&str, &str)],
+        class: impl Fn(&Point) -> Option<usize>,
+    ) -> Tiles {
+        let classes: Vec<Option<usize>> = self.points.iter().map(class).collect();
+        let owned = |(sign, name): &(&str, &str)| ((*sign).to_owned(), (*name).to_owned());
+        Tiles {
+            title: self.title(name),
             x_label: label("true airspeed", Kind::Speed, self.units),
             y_label: label("altitude", Kind::Length, self.units),
             xs: self.told(Kind::Speed, &self.speeds_m_s),
             ys: self.told(Kind::Length, &self.altitudes_m),
             classes: self.rows(&classes),
-            names: names.map(|(sign, name)| (sign.to_owned(), name.to_owned())).to_vec(),
+            names: names.iter().map(owned).collect(),
             missing: MISSING.to_owned(),
-        };
-        Some(("loop_stability", tiles.render()))
+        }
     }
 }
 

@@ -9,6 +9,7 @@ mod text;
 
 use std::path::Path;
 
+use fspid_aircraft::qualities::Category;
 use serde_json::{Map, Value, json};
 
 use super::condition::{AirChoice, Question};
@@ -30,6 +31,8 @@ pub struct EnvelopeQuestion<'a> {
     pub speeds: &'a str,
     /// Altitudes, as `first:last:count`.
     pub altitudes: &'a str,
+    /// For which flying qualities are judged.
+    pub category: Category,
     /// A scenario whose controller flies the aircraft.
     pub scenario: Option<&'a Path>,
     /// Which of its controllers, if there are several.
@@ -43,6 +46,7 @@ pub struct Envelope {
     name: String,
     units: Units,
     air: AirChoice,
+    category: Category,
     speeds_m_s: Vec<f64>,
     altitudes_m: Vec<f64>,
     /// One for each altitude and speed, the speeds running fastest.
@@ -62,11 +66,12 @@ pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFai
     let (speeds_m_s, altitudes_m) = grid(question, units)?;
     let autopilot =
         question.scenario.map(|path| Autopilot::load(path, question.controller)).transpose()?;
+    let (category, asked) = (question.category, (question.category, autopilot.as_ref()));
     let nodes = altitudes_m.iter().flat_map(|&h| speeds_m_s.iter().map(move |&v| (v, h)));
-    let points = nodes.map(|node| Point::of(&aircraft, node, autopilot.as_ref())).collect();
+    let points = nodes.map(|node| Point::of(&aircraft, node, asked)).collect();
     let (title, name) = (data.title, data.name);
     let air = question.question.air;
-    Ok(Envelope { title, name, units, air, speeds_m_s, altitudes_m, points, autopilot })
+    Ok(Envelope { title, name, units, air, category, speeds_m_s, altitudes_m, points, autopilot })
 }
 
 fn grid(
@@ -105,6 +110,7 @@ impl Envelope {
         let mut put = |key: &str, value: Value| whole.insert(key.to_owned(), value);
         put("aircraft", json!(self.name));
         put("units", json!(units.name()));
+        put("category", json!(format!("{:?}", self.category)));
         put("controller", json!(self.autopilot.as_ref().map(Autopilot::name)));
         let speeds = list(Kind::Speed, &self.speeds_m_s);
         put(&key("airspeeds", Kind::Speed, units), json!(speeds));

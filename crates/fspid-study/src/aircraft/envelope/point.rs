@@ -1,12 +1,13 @@
 //! One speed and altitude.
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
+use fspid_aircraft::qualities::{Category, PitchModel, ShortPeriod};
 use fspid_aircraft::{
     Aircraft, AircraftMode, Linearisation, ModeName, Trim, TrimFailure, TrimTarget, VelocityForm,
     longitudinal_modes,
 };
 
-use super::autopilot::Autopilot;
+use super::autopilot::{Autopilot, Loop};
 use crate::aircraft::failure::departure;
 use crate::aircraft::units::Units;
 
@@ -24,19 +25,26 @@ pub(super) struct Point {
 pub(super) struct Held {
     pub(super) trim: Trim,
     pub(super) modes: Vec<AircraftMode>,
-    /// Spectral radius of the sampled loop, where there is an autopilot.
-    pub(super) radius: Option<f64>,
+    /// Short period with its control anticipation, judged.
+    pub(super) short_period: Option<ShortPeriod>,
+    /// The sampled loop, where there is an autopilot.
+    pub(super) judged: Option<Loop>,
 }
 
 impl Point {
     pub(super) fn of(
         aircraft: &Aircraft<DerivativeModel>,
         (airspeed_m_s, altitude_m): (f64, f64),
-        autopilot: Option<&Autopilot>,
+        (category, autopilot): (Category, Option<&Autopilot>),
     ) -> Self {
+        let gravity_m_s2 = aircraft.environment().gravity_m_s2;
         let target = TrimTarget { airspeed_m_s, altitude_m, flight_path_rad: 0.0 };
         let held = match aircraft.trim(target) {
-            Ok(trim) => Ok(Held::of(&aircraft.linearise(&trim), autopilot)),
+            Ok(trim) => {
+                let model = aircraft.linearise(&trim);
+                let short_period = short_period(&model, gravity_m_s2, category);
+                Ok(Held { short_period, ..Held::of(&model, autopilot) })
+            }
             Err(failure) => Err(Box::new(failure)),
         };
         Self { airspeed_m_s, altitude_m, held }
@@ -59,8 +67,9 @@ impl Held {
         let longitudinal = model.longitudinal(VelocityForm::Components).ok();
         let modes = longitudinal.and_then(|system| longitudinal_modes(&system).ok());
         let plant = model.theta_over_elevator().ok();
-        let radius = autopilot.and_then(|autopilot| autopilot.radius(&plant?));
-        Self { trim: model.trim, modes: modes.unwrap_or_default(), radius }
+        let judged = autopilot.and_then(|autopilot| autopilot.judge(&plant?));
+        let modes = modes.unwrap_or_default();
+        Self { trim: model.trim, modes, short_period: None, judged }
     }
 
     /// Frequency and damping of a mode that is a pair.
@@ -68,4 +77,13 @@ impl Held {
         let found = self.modes.iter().find(|mode| mode.name == name && mode.oscillates());
         found.and_then(|mode| mode.mode().ok())
     }
+}
+
+fn short_period(
+    model: &Linearisation,
+    gravity_m_s2: f64,
+    category: Category,
+) -> Option<ShortPeriod> {
+    let model = PitchModel::of(model, gravity_m_s2).ok()?;
+    ShortPeriod::of(&model, category).ok()
 }

@@ -87,7 +87,13 @@ impl Envelope {
         let Some(autopilot) = &self.autopilot else { return String::new() };
         let held = self.points.iter().filter_map(|point| point.held.as_ref().ok());
         let (flown, stable) = held.fold((0, 0), |(flown, stable), held| {
-            (flown + 1, stable + usize::from(held.radius.is_some_and(is_stable)))
+            (
+                flown + 1,
+                stable
+                    + usize::from(
+                        held.judged.is_some_and(|judged| is_stable(judged.spectral_radius)),
+                    ),
+            )
         });
         format!("\n{}\n  stable at {stable} of {flown} points\n", autopilot.words())
     }
