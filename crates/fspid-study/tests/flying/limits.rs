@@ -101,7 +101,8 @@ fn a_trace_has_the_columns_of_its_flight_and_no_others() {
 /// What is allocated is allocated before the first sample: a longer flight needs no more.
 #[test]
 fn a_step_of_an_aircraft_allocates_nothing() {
-    let text = format!("{NAVION}[turbulence]\nintensity = \"light\"\n[sensor]\npreset = \"ahrs\"\n");
+    let text =
+        format!("{NAVION}[turbulence]\nintensity = \"light\"\n[sensor]\npreset = \"ahrs\"\n");
     let allocations = |duration: &str| {
         let scenario = study(&text, &[duration]).scenario;
         let prepared = scenario.prepare().expect("it flies");
