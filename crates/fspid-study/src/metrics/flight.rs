@@ -85,6 +85,8 @@ pub struct FlightMetrics {
     pub edges: Vec<EdgeMetrics>,
     /// Integrals of the error over the whole flight.
     pub integrals: Result<ErrorIntegrals, Absent>,
+    /// Root mean square of the error over the samples of the whole flight, rad.
+    pub rms_error_rad: Measured,
     /// Effort of the command over the whole flight.
     pub effort: Result<CommandEffort, Absent>,
 }
@@ -111,6 +113,10 @@ impl FlightMetrics {
                 Some(reason) => Err(reason),
                 None => Ok(ErrorIntegrals::of(errors, timing.dt_s(), &restarts)),
             },
+            rms_error_rad: match absence {
+                Some(reason) => Err(reason),
+                None => Ok(rms_error_rad(trace)),
+            },
             effort: match absence {
                 Some(reason) => Err(reason),
                 None => Ok(CommandEffort::of(&trace.command_rad, timing.dt_s())),
@@ -133,6 +139,12 @@ impl FlightMetrics {
     pub fn of_step(&self, index: usize, measure: impl Fn(&StepMetrics) -> Measured) -> Measured {
         self.edges.get(index).map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
     }
+}
+
+fn rms_error_rad(trace: &Trace) -> f64 {
+    let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
+    let squares: f64 = errors.map(|error| error * error).sum();
+    (squares / trace.rows() as f64).sqrt()
 }
 
 fn edge_metrics(

@@ -1,8 +1,9 @@
-//! Measures of a step by name, for requirements and claims.
+//! Measures of a flight by name, for requirements and claims.
 
-use super::{FlightMetrics, Measured, StepMetrics};
+use super::{Absent, FlightMetrics, Measured, StepMetrics};
+use crate::units::degrees;
 
-/// A measure of a step response that can be asked for by name.
+/// A measure of a flight that can be asked for by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// 10 % to 90 %, s.
@@ -13,12 +14,14 @@ pub enum Measure {
     Overshoot,
     /// Left at the end of the window, %.
     FinalError,
+    /// Root mean square of the error over the whole flight, deg: for flights in moving air.
+    RmsError,
 }
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 4] =
-        [Self::Overshoot, Self::RiseTime, Self::SettlingTime, Self::FinalError];
+    pub const ALL: [Self; 5] =
+        [Self::Overshoot, Self::RiseTime, Self::SettlingTime, Self::FinalError, Self::RmsError];
 
     /// Name in files and answers, with its unit.
     #[must_use]
@@ -28,6 +31,7 @@ impl Measure {
             Self::SettlingTime => "settling_time_s",
             Self::Overshoot => "overshoot_pct",
             Self::FinalError => "final_error_pct",
+            Self::RmsError => "rms_error_deg",
         }
     }
 
@@ -37,7 +41,7 @@ impl Measure {
         Self::ALL.into_iter().find(|measure| measure.name() == name)
     }
 
-    /// Its value for one step, or why there is none.
+    /// Its value for one step, or why there is none; [`RmsError`](Self::RmsError) has none for a step.
     ///
     /// # Errors
     /// The reason in the metrics.
@@ -47,6 +51,7 @@ impl Measure {
             Self::SettlingTime => step.settling_time_s,
             Self::Overshoot => step.overshoot_pct,
             Self::FinalError => step.final_error_pct,
+            Self::RmsError => Err(Absent::NoStep),
         }
     }
 
@@ -55,6 +60,9 @@ impl Measure {
     /// # Errors
     /// The reason of the first step without a value.
     pub fn worst(self, flight: &FlightMetrics) -> Measured {
+        if self == Self::RmsError {
+            return flight.rms_error_rad.map(degrees);
+        }
         let mut worst = self.of(&flight.first_step())?;
         for edge in &flight.edges {
             let value = self.of(&edge.step)?;

@@ -23,6 +23,13 @@ pub(super) struct Drawing<'a> {
     pub(super) width_px: f64,
 }
 
+/// What a nonlinear aircraft adds to the panels: label and column.
+const AIRCRAFT: [(&str, &str); 3] = [
+    ("airspeed (m/s)", "airspeed_m_s"),
+    ("altitude (m)", "altitude_m"),
+    ("air, downward (m/s)", "air_down_m_s"),
+];
+
 /// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
 const SPIKE: f64 = 3.0;
 /// A pitch panel shows at most this many times the largest good excursion where a loop fails.
@@ -47,6 +54,9 @@ impl Drawing<'_> {
             vec![self.pitch(), self.angle("command u (deg)", |r| &r.trace.command_rad)];
         if self.detailed {
             panels.push(self.angle("elevator (deg)", |r| &r.trace.elevator_rad));
+        }
+        if self.detailed {
+            panels.extend(AIRCRAFT.iter().filter_map(|(label, name)| self.column(label, name)));
         }
         if self.flown().any(|(_, result)| self.is_tuned(&result.name)) {
             panels.push(self.gain("k_{p}", |gains| gains.kp));
@@ -121,6 +131,15 @@ impl Drawing<'_> {
             x_range: self.window(),
             ..LinePanel::default()
         }
+    }
+
+    /// A column that only some flights have, if these have it.
+    fn column(&self, label: &str, name: &str) -> Option<LinePanel> {
+        let values = |trace: &Trace| Some(shown(trace, trace.column(name)?).to_vec());
+        self.flown().find_map(|(_, result)| values(&result.trace))?;
+        let series = self.series(|result| values(&result.trace).unwrap_or_default(), false);
+        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        Some(LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() })
     }
 
     /// A range without the spikes of single samples, if there are any.

@@ -142,7 +142,11 @@ impl User<'_> {
         let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
                        of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
                        self-tuning controllers.";
-        let caption = format!("{caption}{}", drawing.spikes());
+        let aircraft = match self.study.scenario.plant.aircraft() {
+            Some(_) => " Pitch counts from the trim; the elevator is the whole deflection.",
+            None => "",
+        };
+        let caption = format!("{caption}{aircraft}{}", drawing.spikes());
         let figure = Figure::new("responses-figure", drawing.render(), caption);
         Section::of(
             "responses",

@@ -147,6 +147,7 @@ const fn value(
     let unit = match reading.measure {
         Measure::RiseTime | Measure::SettlingTime => "s",
         Measure::Overshoot | Measure::FinalError => "%",
+        Measure::RmsError => "deg",
     };
     Claim { id, quantity, paper: Printed(paper), unit, source: Quantity::Value(reading) }
 }

@@ -141,8 +141,8 @@ static LOOP: Table = plain(
 );
 
 /// Words for what a requirement measures.
-pub(crate) const MEASURES: [&str; 4] =
-    ["overshoot_pct", "rise_time_s", "settling_time_s", "final_error_pct"];
+pub(crate) const MEASURES: [&str; 5] =
+    ["overshoot_pct", "rise_time_s", "settling_time_s", "final_error_pct", "rms_error_deg"];
 
 static REQUIREMENT: Table = plain(
     "A bound that the response to the first command must meet.",
@@ -150,7 +150,7 @@ static REQUIREMENT: Table = plain(
         required(
             "measure",
             Kind::Word(&MEASURES),
-            "What is measured; final_error_pct counts by its size.",
+            "What is measured: of the worst step (final_error_pct by its size), or rms_error_deg of the whole flight.",
         ),
         required(
             "most",

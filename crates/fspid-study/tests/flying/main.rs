@@ -1,0 +1,64 @@
+//! Nonlinear aircraft in the loop: against the linear model, in moving air, at their limits.
+#![allow(clippy::float_cmp, reason = "the same bits are asked for")]
+
+mod agreement;
+mod gallery;
+mod limits;
+mod moving_air;
+
+use fspid_sim::Trace;
+use fspid_study::file::{self, Study};
+use fspid_study::simulation::Simulation;
+
+/// A quiet flight of the Navion at its reference speed.
+const NAVION: &str = r#"
+schema = 1
+name = "navion"
+[aircraft]
+name = "navion"
+airspeed_ft_s = 176.0
+altitude_ft = 1000.0
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 10.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.1
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.82
+ki = 0.43
+kd = 0.165
+derivative_filter_s = 0.05
+"#;
+
+/// A scenario with changes, as `--set` has them.
+fn study(text: &str, set: &[&str]) -> Study {
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+    file::parse(text, "test.toml", None, &set).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The trace of the only controller.
+fn flown(text: &str, set: &[&str]) -> Trace {
+    let simulation = Simulation::of(&study(text, set)).expect("it flies");
+    simulation.results.into_iter().next().expect("there is a controller").trace
+}
+
+/// A column that the flight has.
+fn column<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
+    trace.column(name).unwrap_or_else(|| panic!("{name}"))
+}
+
+/// Largest distance between two columns.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
