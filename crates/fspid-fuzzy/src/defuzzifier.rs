@@ -8,24 +8,26 @@ use crate::error::FuzzyError;
 /// Most samples a sampled centroid may take; more only costs time.
 pub const MAX_SAMPLES: u32 = 1_000_000;
 
-/// A rule for the centre of gravity of the output set.
+/// How an integral over an output's universe is computed: the centre of gravity, or what other tools
+/// compute in its place.
 ///
-/// Only [`Exact`](Self::Exact) is the centre of gravity; the others are what other tools compute in
-/// its place, and they differ from it by up to 1.7 % of the half range on the paper's rule base.
+/// Only [`Exact`](Self::Exact) is the integral: in closed form where all sets are piecewise linear,
+/// else with a certified error bound. On the paper's rule base the others differ from it by up to
+/// 1.7 % of the half range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Defuzzifier {
-    /// The centroid in closed form, without samples.
+    /// The integral itself, without samples.
     #[default]
     Exact,
     /// Sum over N equally spaced samples, both ends included and fully counted (MATLAB: 101).
     Endpoints(u32),
     /// Sum over the midpoints of N equal cells (fuzzylite: 100 or 1000).
     Midpoint(u32),
-    /// Trapezoidal integral over N equally spaced samples, both ends included.
+    /// Trapezoidal rule over N equally spaced samples, both ends included.
     Trapezoid(u32),
     /// Sum over the left ends of N equal cells (jFuzzyLogic: 1000).
     LeftEnd(u32),
-    /// Trapezoidal integral over N equally spaced samples and the points where each set is cut, but
+    /// Trapezoidal rule over N equally spaced samples and the points where each set is cut, but
     /// not those where two sets cross (scikit-fuzzy).
     Vertices(u32),
 }

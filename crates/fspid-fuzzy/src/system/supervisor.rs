@@ -4,30 +4,16 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::defuzzifier::{Defuzzifier, Sampling};
+use super::defuzzifier::Defuzzifier;
 use super::norms::{SNorm, TNorm};
 use super::parts::{
     Activation, Antecedent, Conclusion, Consequent, Fallback, FallbackValue, Input, Membership,
     Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
-use crate::defuzzifier;
 use crate::label::Label;
 use crate::membership::ShapeKind;
 use crate::rule_table;
 use crate::supervisor::Supervisor;
-
-impl From<defuzzifier::Defuzzifier> for Sampling {
-    fn from(rule: defuzzifier::Defuzzifier) -> Self {
-        match rule {
-            defuzzifier::Defuzzifier::Exact => Self::Exact,
-            defuzzifier::Defuzzifier::Endpoints(n) => Self::Endpoints(n),
-            defuzzifier::Defuzzifier::Midpoint(n) => Self::Midpoint(n),
-            defuzzifier::Defuzzifier::Trapezoid(n) => Self::Trapezoid(n),
-            defuzzifier::Defuzzifier::LeftEnd(n) => Self::LeftEnd(n),
-            defuzzifier::Defuzzifier::Vertices(n) => Self::Vertices(n),
-        }
-    }
-}
 
 impl From<&Supervisor<f64>> for Parts {
     /// Inputs `error` and `change`, outputs `delta_kp`, `delta_ki`, `delta_kd`; answers the same bits.
@@ -42,7 +28,7 @@ impl From<&Supervisor<f64>> for Parts {
             out_of_range: supervisor.out_of_range(),
             terms: input_terms(supervisor),
         };
-        let defuzzifier = Defuzzifier::Centroid(supervisor.defuzzifier().into());
+        let defuzzifier = Defuzzifier::Centroid(supervisor.defuzzifier());
         let output = |name: &str| Output {
             name: name.to_string(),
             description: String::new(),

@@ -55,10 +55,15 @@ impl ConclusionFigure {
         }
         canvas.end();
         plot::draw(&mut canvas, &frame, &self.content());
+        for (n, part) in self.parts.iter().enumerate() {
+            stems(&mut canvas, &frame, part, Role::Series(n));
+        }
         self.names(&mut canvas, &frame);
         self.answer(&mut canvas, &frame);
         let right = EDGE + page::upright_room(1) - 3.0;
-        page::upright_label(&mut canvas, right, area.y + HEIGHT / 2.0, &["grade".to_owned()]);
+        let is_weighted = self.parts.iter().any(|part| !part.stems.is_empty());
+        let label = if is_weighted { "weight" } else { "grade" };
+        page::upright_label(&mut canvas, right, area.y + HEIGHT / 2.0, &[label.to_owned()]);
         let below = (area.x + area.width / 2.0, area.y + HEIGHT + 36.0);
         canvas.text(below.0, below.1, &self.x_label, Font::new(LABEL_PX, Anchor::Middle));
         canvas.finish(&self.title, &self.describe())
@@ -141,6 +146,10 @@ fn draw(canvas: &mut Canvas, frame: &Frame, part: &Part, role: Role) {
         canvas.path(&faces, &Paint::face(role).opacity(0.35));
         canvas.path(&tops, &Paint::line(role, 2.0));
     }
+}
+
+/// Numbers stand on the axis, as high as their weights.
+fn stems(canvas: &mut Canvas, frame: &Frame, part: &Part, role: Role) {
     for &(x, weight) in &part.stems {
         let (top, foot) = (frame.place(x, weight), frame.place(x, 0.0));
         canvas.line(foot, top, &Paint::line(role, 4.0));

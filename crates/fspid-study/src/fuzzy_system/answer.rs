@@ -175,7 +175,11 @@ impl<'a> Asked<'a> {
             inputs.map(|(input, value)| (input.name.clone(), json!(value))).collect();
         let outputs: Map<String, Value> = self
             .answers()
-            .map(|(output, answer)| (output.name.clone(), answer_json(output, answer)))
+            .enumerate()
+            .map(|(index, (output, answer))| {
+                let interval = self.workspace.interval(index);
+                (output.name.clone(), answer_json(output, answer, interval))
+            })
             .collect();
         let names = |clamped: bool| -> Vec<&str> {
             self.outside().filter(|found| found.1 == clamped).map(|found| found.0).collect()
@@ -198,10 +202,14 @@ impl<'a> Asked<'a> {
         let names = self.system.parts().outputs.iter().map(|output| output.name.chars().count());
         let width = names.max().unwrap_or(0);
         let mut out = String::new();
-        for (output, answer) in self.answers() {
+        for (index, (output, answer)) in self.answers().enumerate() {
+            let interval = self.workspace.interval(index);
+            let between = interval.map(|[from, to]| format!(", middle of {from:.6} to {to:.6}"));
+            let between = between.unwrap_or_default();
             let number = answer.value.map_or("none".to_owned(), |value| format!("{value:.12}"));
             let name = &output.name;
-            out.push_str(&format!("{name:width$} {number:>20}  {}\n", remarks(output, answer)));
+            let remarks = remarks(output, answer);
+            out.push_str(&format!("{name:width$} {number:>20}  {remarks}{between}\n"));
         }
         for (name, moved) in self.outside() {
             let done = if moved { "moved to the end of its range" } else { "used as it is" };
@@ -211,12 +219,15 @@ impl<'a> Asked<'a> {
     }
 }
 
-fn answer_json(output: &Output, answer: &Answer) -> Value {
+fn answer_json(output: &Output, answer: &Answer, interval: Option<[f64; 2]>) -> Value {
     let mut found = json!({
         "value": answer.value, "rule": rule(output), "source": source(answer.source),
     });
     if answer.error_bound > 0.0 {
         found["error_bound"] = json!(answer.error_bound);
+    }
+    if let Some(interval) = interval {
+        found["interval"] = json!(interval);
     }
     found
 }

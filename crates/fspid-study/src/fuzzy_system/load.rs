@@ -183,7 +183,11 @@ fn of_tool(
         None => format!("{name}: {}", note.message),
     };
     let notes = reading.notes.into_iter().map(note).collect();
-    Ok(Loaded { system: built(reading.parts)?, notes })
+    let system = System::new(reading.parts).map_err(|errors| {
+        let told = errors.iter().map(|error| format!("{name}: {error}"));
+        LoadError::Refused(Refused::all(told.collect()))
+    })?;
+    Ok(Loaded { system, notes })
 }
 
 /// The problems of a reader as those of our own files are told.

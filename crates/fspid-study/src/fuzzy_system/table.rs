@@ -35,8 +35,8 @@ impl Table for SystemTable<'_> {
     }
 
     fn check(&self, row: &[f64]) -> Result<(), String> {
-        let inputs = self.system.parts().inputs.iter().zip(row);
-        inputs.map(|(input, value)| check(input, *value)).collect()
+        let mut inputs = self.system.parts().inputs.iter().zip(row);
+        inputs.try_for_each(|(input, value)| check(input, *value))
     }
 
     fn answer(&mut self, row: &[f64], line: &mut String) -> Result<(), String> {

@@ -14,6 +14,8 @@ use fspid_study::fuzzy_system::{System, parse};
 const TIP: &str = include_str!("../systems/tip.toml");
 /// Every key and every way of saying something.
 const EVERY_KEY: &str = include_str!("../systems/every-key.toml");
+/// An interval type-2 system.
+const TYPE_2: &str = include_str!("../systems/type2.toml");
 
 fn tip() -> System {
     parse(TIP, "tip.toml").expect("a good file")

@@ -2,7 +2,7 @@
 
 use fspid_study::fuzzy_system::parse;
 
-use super::TIP;
+use super::{EVERY_KEY, TIP};
 
 /// The problems of the file with replacements.
 fn problems(changes: &[(&str, &str)]) -> String {
@@ -110,4 +110,24 @@ fn another_kind_of_file_is_refused() {
     let told = parse("schema = 1\nname = \"a flight\"\n", "a.toml").expect_err("wrong").to_string();
     assert!(told.contains("kind: missing key\n    allowed: \"fuzzy-system\""), "{told}");
     assert!(parse("", "a.toml").is_err() && parse("[", "a.toml").is_err());
+}
+
+#[test]
+fn a_damaged_file_gives_problems_with_places_and_never_a_panic() {
+    let mut refused = 0;
+    for cut in (0..EVERY_KEY.len()).step_by(3).filter(|at| EVERY_KEY.is_char_boundary(*at)) {
+        let (before, after) = EVERY_KEY.split_at(cut);
+        let damaged = [
+            before.to_owned(),
+            format!("{before}\u{7f}é\"{after}"),
+            format!("{before}{}", after.get(1..).unwrap_or_default()),
+        ];
+        for text in damaged {
+            if let Err(problems) = parse(&text, "a.toml") {
+                refused += 1;
+                assert!(problems.list.iter().all(|found| found.line > 0 && found.column > 0));
+            }
+        }
+    }
+    assert!(refused > 1000, "{refused}");
 }

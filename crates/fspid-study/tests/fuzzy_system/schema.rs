@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{EVERY_KEY, TIP};
+use super::{EVERY_KEY, TIP, TYPE_2};
 
 /// What is wrong with a value: the part of draft 2020-12 that the schema uses. A word that is not
 /// known here fails the test.
@@ -19,7 +19,13 @@ fn word_fault(
     let members = || value.as_object().into_iter().flatten();
     let inner = |rule: &Value, item: &Value, key: &str| fault(rule, item, &format!("{path}.{key}"));
     let good = match word {
-        "$schema" | "title" | "description" | "default" => true,
+        "$ref" => {
+            let name = rule.as_str().and_then(|path| path.strip_prefix("#/$defs/"));
+            let definitions = &fspid_study::fuzzy_system::schema()["$defs"];
+            let found = name.and_then(|name| definitions.get(name)).expect("it is defined");
+            return fault(found, value, path);
+        }
+        "$defs" | "$schema" | "title" | "description" | "default" => true,
         "properties" => {
             return members().find_map(|(key, item)| inner(rule.get(key)?, item, key));
         }
@@ -100,7 +106,7 @@ fn json(text: &str) -> Value {
 #[test]
 fn the_schema_allows_every_key_and_refuses_what_is_wrong() {
     let schema = fspid_study::fuzzy_system::schema();
-    for text in [TIP, EVERY_KEY] {
+    for text in [TIP, EVERY_KEY, TYPE_2] {
         assert_eq!(fault(&schema, &json(text), "$"), None);
     }
     for (from, to) in [

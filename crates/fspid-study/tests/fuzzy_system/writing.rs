@@ -4,7 +4,7 @@ use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::Parts;
 use fspid_study::fuzzy_system::{Options, System, load, parse, write};
 
-use super::{EVERY_KEY, TIP};
+use super::{EVERY_KEY, TIP, TYPE_2};
 
 fn written(text: &str) -> (System, String) {
     let system = parse(text, "a.toml").unwrap_or_else(|problems| panic!("{problems}\n{text}"));
@@ -23,7 +23,7 @@ fn comes_back(parts: &Parts) -> String {
 
 #[test]
 fn every_key_is_read_written_and_read_back_as_the_same() {
-    for text in [TIP, EVERY_KEY] {
+    for text in [TIP, EVERY_KEY, TYPE_2] {
         let (system, _) = written(text);
         comes_back(system.parts());
     }
@@ -69,8 +69,9 @@ fn every_shape_comes_back_with_the_bits_of_its_parameters() {
         let mut parts = system.parts().clone();
         let params: Vec<f64> = kind.example().to_vec();
         let membership = Membership::Shape { kind: *kind, params, height: 0.1 + 0.2 };
-        parts.inputs[0].terms[0].lower = Some(membership.clone());
-        parts.inputs[0].terms[0].membership = membership;
+        parts.inputs[0].terms[0].membership = membership.clone();
+        comes_back(&parts);
+        parts.inputs[0].terms[0].lower = Some(membership);
         comes_back(&parts);
     }
 }

@@ -31,7 +31,7 @@ impl Partition {
     /// The partition that an output's terms make, if they do and are joined as the formula needs.
     pub(crate) fn of(output: &Output, actors: &Actors) -> Option<Self> {
         let Defuzzifier::Centroid(sampling) = output.defuzzifier else { return None };
-        let (rule, universe) = (sampling.fixed_size(), output.universe?);
+        let (rule, universe) = (sampling, output.universe?);
         let joined = output.aggregation.is(SNormKind::Maximum)
             && actors.list().iter().all(|actor| actor.implication.is(TNormKind::Minimum));
         if !joined || actors.len() == 0 || !COUNTS.contains(&output.terms.len()) {

@@ -68,6 +68,9 @@ impl Explanation<'_> {
         });
         let list: Vec<Value> = shares.list.iter().map(one).collect();
         let mut value = json!({ "basis": basis, "sum": shares.sum, "rules": list });
+        if self.asked.workspace().interval(output).is_some() {
+            value["of"] = json!("upper sets");
+        }
         if shares.basis == Basis::Outline {
             value["polygon"] = json!(polygon.collect::<Vec<_>>());
         }

@@ -11,6 +11,8 @@ use crate::fuzzy_system::words;
 
 /// Rules that are drawn each in a colour of its own.
 const OWN_COLOUR: usize = 6;
+/// Smallest part that has a colour of its own.
+const SEEN: f64 = 5e-4;
 /// Points of a curved set.
 const POINTS: u32 = 200;
 
@@ -74,10 +76,13 @@ impl Explanation<'_> {
             stems: share.of.value.map(|value| (value, share.of.degree)).into_iter().collect(),
         };
         let with_a_part = shares.list.iter().filter(|share| share.part > 0.0);
+        let is_seen = |share: &&Share| share.part >= SEEN;
+        let own = with_a_part.clone().filter(is_seen).take(OWN_COLOUR).count();
         let mut all: Vec<Part> = with_a_part.map(&mut part).collect();
-        let others = all.split_off(all.len().min(OWN_COLOUR));
+        let others = all.split_off(own);
         if !others.is_empty() {
-            let name = format!("{} other rules", others.len());
+            let plural = if others.len() == 1 { "" } else { "s" };
+            let name = format!("{} other rule{plural}", others.len());
             let (pieces, stems): (Vec<_>, Vec<_>) =
                 others.into_iter().map(|part| (part.pieces, part.stems)).unzip();
             all.push(Part { name, pieces: pieces.concat(), stems: stems.concat() });

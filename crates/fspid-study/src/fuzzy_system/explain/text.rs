@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Explanation;
 use super::share::{Basis, Shares};
 use super::why_not::{Lack, WhyNot};
-use crate::fuzzy_system::words;
+use crate::fuzzy_system::{answer, words};
 
 /// Most rules that are listed.
 const MOST: usize = 20;
@@ -50,7 +50,8 @@ impl Explanation<'_> {
             let text = self.rule(firing.block, firing.rule);
             let idle =
                 if firing.acting > 0.0 { "" } else { "  (left out by the block's activation)" };
-            let _ = writeln!(out, "  {:.6}  {name}: {text}{idle}", firing.strength);
+            let strength = grade(firing.strength);
+            let _ = writeln!(out, "  {strength}  {name}: {text}{idle}");
         }
         let more = self.rules.len().saturating_sub(MOST);
         if more > 0 {
@@ -76,7 +77,27 @@ impl Explanation<'_> {
         }
         if let Some(sum) = shares.sum {
             let _ = writeln!(out, "  100.00 %  {sum:+.6}  together");
+            self.difference(index, sum, out);
         }
+    }
+
+    /// Why the answer is not what the shares sum to, where it is not.
+    fn difference(&self, index: usize, sum: f64, out: &mut String) {
+        let output = self.system().parts().outputs.get(index);
+        let answer = self.asked.workspace().answers().get(index);
+        let (Some(output), Some(value)) = (output, answer.and_then(|answer| answer.value)) else {
+            return;
+        };
+        if (value - sum).abs() <= 1e-9 * value.abs().max(1.0) {
+            return;
+        }
+        let why = match self.asked.workspace().interval(index) {
+            Some(_) => {
+                "is the middle of an interval; the shares are those of the upper sets".into()
+            }
+            None => format!("is computed by {}", answer::rule(output)),
+        };
+        let _ = writeln!(out, "  the answer, {value:.6}, {why}");
     }
 
     fn why_not_in_words(&self, why_not: &WhyNot, out: &mut String) {
@@ -100,18 +121,23 @@ impl Explanation<'_> {
     fn lack_in_words(&self, lack: &Lack, out: &mut String) {
         let [block, rule] = lack.rule;
         let (name, text) = (self.rule_name(block, rule), self.rule(block, rule));
-        let _ = writeln!(out, "  {:.6}  {name}: {text}", lack.strength);
+        let _ = writeln!(out, "  {}  {name}: {text}", grade(lack.strength));
         if !lack.enabled {
             let _ = writeln!(out, "            it is switched off");
         } else if lack.acting <= 0.0 && lack.strength > 0.0 {
             let _ = writeln!(out, "            the block's activation leaves it out");
         }
-        for (index, (statement, grade)) in lack.statements.iter().enumerate() {
+        for (index, (statement, found)) in lack.statements.iter().enumerate() {
             let text = words::statement(statement, self.system().parts());
             let limit = if lack.limit == Some(index) { "  <- holds it down" } else { "" };
-            let _ = writeln!(out, "            {grade:.6}  {text}{limit}");
+            let _ = writeln!(out, "            {}  {text}{limit}", grade(*found));
         }
     }
+}
+
+/// A grade in eight characters; one that six decimals would hide, as a power of ten.
+fn grade(grade: f64) -> String {
+    if grade > 0.0 && grade < 5e-7 { format!("{grade:8.1e}") } else { format!("{grade:.6}") }
 }
 
 fn kind_of(basis: Basis) -> String {

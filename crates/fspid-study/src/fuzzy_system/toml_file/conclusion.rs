@@ -132,7 +132,7 @@ pub(super) fn terms_schema() -> Value {
         table(json!({ "constant": number, "slopes": slopes }), &["constant"]),
         table(json!({ "between": ends }), &["between"]),
         table(json!({ "value": { "type": "string" } }), &["value"]),
-        membership::set_schema(true),
+        membership::set_reference(),
     ];
     json!({ "type": "object", "additionalProperties": { "oneOf": ways } })
 }

@@ -172,11 +172,21 @@ pub(super) fn set_in_words() -> String {
 }
 
 pub(super) fn terms_schema() -> Value {
-    json!({ "type": "object", "additionalProperties": set_schema(true) })
+    json!({ "type": "object", "additionalProperties": set_reference() })
+}
+
+/// A set, by its name in the schema.
+pub(super) fn set_reference() -> Value {
+    json!({ "$ref": "#/$defs/set" })
+}
+
+/// What the schema refers to by name.
+pub(super) fn definitions() -> Value {
+    json!({ "set": set_schema(true), "lower_set": set_schema(false) })
 }
 
 /// A set; `lower` says whether it may have a lower membership function.
-pub(super) fn set_schema(lower: bool) -> Value {
+fn set_schema(lower: bool) -> Value {
     let mut ways: Vec<Value> =
         ShapeKind::ALL.iter().map(|kind| shape_schema(*kind, lower)).collect();
     let formula = [("formula", json!({ "type": "string" }))];
@@ -208,7 +218,7 @@ fn object_schema(properties: Vec<(&str, Value)>, required: &[&str], lower: bool)
     let height = json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 1, "default": 1 });
     all.insert("height".to_owned(), height);
     if lower {
-        all.insert("lower".to_owned(), set_schema(false));
+        all.insert("lower".to_owned(), json!({ "$ref": "#/$defs/lower_set" }));
     }
     json!({ "type": "object", "properties": all, "required": required, "additionalProperties": false })
 }

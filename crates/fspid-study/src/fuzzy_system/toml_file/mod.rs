@@ -24,7 +24,9 @@ pub use write::write;
 /// The JSON Schema (draft 2020-12) of a fuzzy system's file.
 #[must_use]
 pub fn schema() -> Value {
-    schema_of(&spec::FUZZY_SYSTEM, "fspid fuzzy system")
+    let mut schema = schema_of(&spec::FUZZY_SYSTEM, "fspid fuzzy system");
+    schema["$defs"] = membership::definitions();
+    schema
 }
 
 /// True for a text that says it is a fuzzy system; also for one with other mistakes.

@@ -199,6 +199,7 @@ fn block(
     let activation = activation::read(report, section.item("activation"), &path);
     let rules = rules::read(report, section, vocabulary)?;
     let name = section.text("name").unwrap_or_default().to_owned();
+    places.insert(format!("rule block {}", index + 1), section.place);
     for (number, (_, place)) in (1..).zip(&rules) {
         // In the words of `System::new`.
         let words = match (count, name.as_str()) {
