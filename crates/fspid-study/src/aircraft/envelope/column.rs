@@ -3,7 +3,6 @@
 use fspid_aircraft::ModeName;
 
 use super::point::{Held, Point, pair, short_period};
-use crate::aircraft::qualities::level_number;
 use crate::aircraft::units::Kind;
 
 /// A quantity over an envelope.
@@ -71,8 +70,8 @@ static COLUMNS: [Column; 15] = [
     }),
     Column {
         drawn: false,
-        ..column("level of the control anticipation parameter", "cap_level", Kind::Plain, |held| {
-            level_number(short_period(held)?.cap_level.level).map(f64::from)
+        ..column("its level, 4 for worse than 3", "cap_level", Kind::Plain, |held| {
+            Some(f64::from(short_period(held)?.cap_level.level as u8) + 1.0)
         })
     },
     autopilot("loop, gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
