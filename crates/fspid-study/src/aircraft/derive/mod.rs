@@ -49,7 +49,7 @@ pub fn derive(name: &str, units: Units) -> Result<Derivation, AircraftFailure> {
     Ok(Derivation {
         variants: variants(known, &condition)?,
         short_period: derivatives.short_period(condition.airspeed_m_s)?,
-        paper: paper::comparison(&data.name, known)?,
+        paper: paper::comparison(name, known)?,
         derivatives,
         units,
         data,

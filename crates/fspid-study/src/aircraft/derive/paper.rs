@@ -79,7 +79,7 @@ impl Row {
     }
 }
 
-/// The comparison for the aircraft that the paper has.
+/// The comparison for the aircraft that the paper has, by the name under which the program carries it.
 pub(super) fn comparison(
     name: &str,
     data: &DerivativeData,

@@ -2,8 +2,7 @@
 
 use fspid_aircraft::ModeName;
 
-use super::point::{Held, Point};
-use crate::aircraft::qualities::level_number;
+use super::point::{Held, Point, pair, short_period};
 use crate::aircraft::units::Kind;
 
 /// A quantity over an envelope.
@@ -39,46 +38,52 @@ const fn autopilot(
     Column { needs_autopilot: true, ..column(name, key, kind, read) }
 }
 
-static COLUMNS: [Column; 13] = [
+static COLUMNS: [Column; 15] = [
     column("angle of attack, from the reference", "alpha", Kind::Angle, |held| {
-        Some(held.trim.point.alpha_rad)
+        Some(held.linear.trim.point.alpha_rad)
     }),
-    column("elevator", "elevator", Kind::Angle, |held| Some(held.trim.point.elevator_rad)),
+    column("elevator", "elevator", Kind::Angle, |held| Some(held.linear.trim.point.elevator_rad)),
     column("throttle, 1 at the reference", "throttle", Kind::Plain, |held| {
-        Some(held.trim.point.throttle)
+        Some(held.linear.trim.point.throttle)
     }),
-    column("thrust", "thrust", Kind::Force, |held| Some(held.trim.thrust_n)),
+    column("thrust", "thrust", Kind::Force, |held| Some(held.linear.trim.thrust_n)),
     column("short period, frequency", "short_period_frequency", Kind::Frequency, |held| {
-        Some(held.pair(ModeName::ShortPeriod)?.natural_frequency_rad_s)
+        Some(pair(held, ModeName::ShortPeriod)?.natural_frequency_rad_s)
     }),
     column("short period, damping", "short_period_damping", Kind::Plain, |held| {
-        Some(held.pair(ModeName::ShortPeriod)?.damping_ratio)
+        Some(pair(held, ModeName::ShortPeriod)?.damping_ratio)
     }),
     column("phugoid, frequency", "phugoid_frequency", Kind::Frequency, |held| {
-        Some(held.pair(ModeName::Phugoid)?.natural_frequency_rad_s)
+        Some(pair(held, ModeName::Phugoid)?.natural_frequency_rad_s)
     }),
     column("phugoid, damping", "phugoid_damping", Kind::Plain, |held| {
-        Some(held.pair(ModeName::Phugoid)?.damping_ratio)
+        Some(pair(held, ModeName::Phugoid)?.damping_ratio)
+    }),
+    column("Dutch roll, frequency", "dutch_roll_frequency", Kind::Frequency, |held| {
+        Some(pair(held, ModeName::DutchRoll)?.natural_frequency_rad_s)
+    }),
+    column("Dutch roll, damping", "dutch_roll_damping", Kind::Plain, |held| {
+        Some(pair(held, ModeName::DutchRoll)?.damping_ratio)
     }),
     column("control anticipation parameter", "cap", Kind::CapUnit, |held| {
-        Some(held.short_period.as_ref()?.cap)
+        Some(short_period(held)?.cap)
     }),
     Column {
         drawn: false,
-        ..column("level of the control anticipation parameter", "cap_level", Kind::Plain, |held| {
-            level_number(held.short_period.as_ref()?.cap_level.level).map(f64::from)
+        ..column("its level, 4 for worse than 3", "cap_level", Kind::Plain, |held| {
+            Some(f64::from(short_period(held)?.cap_level.level as u8) + 1.0)
         })
     },
     autopilot("loop, gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
-        held.judged?.gain_margin_db
+        held.beside?.gain_margin_db
     }),
     autopilot("loop, decay of its slowest motion", "loop_decay", Kind::Rate, |held| {
-        Some(held.judged?.decay_per_s)
+        Some(held.beside?.decay_per_s)
     }),
     Column {
         drawn: false,
         ..autopilot("loop, spectral radius", "loop_spectral_radius", Kind::Plain, |held| {
-            Some(held.judged?.spectral_radius)
+            Some(held.beside?.spectral_radius)
         })
     },
 ];
@@ -91,6 +96,6 @@ pub(super) fn columns(has_autopilot: bool) -> Vec<&'static Column> {
 impl Column {
     /// The value at a point in SI; none where it cannot be flown, and where a motion is no oscillation.
     pub(super) fn of(&self, point: &Point) -> Option<f64> {
-        point.held.as_ref().ok().and_then(self.read)
+        point.flight.as_ref().ok().and_then(self.read)
     }
 }

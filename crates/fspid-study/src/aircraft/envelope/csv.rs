@@ -1,7 +1,7 @@
 //! The envelope as CSV: a line a point.
 
 use super::Envelope;
-use super::point::Point;
+use super::point::{Point, reason};
 use crate::aircraft::facts::key;
 use crate::aircraft::units::Kind;
 use crate::rows::quoted;
@@ -32,10 +32,10 @@ impl Envelope {
         let units = self.units;
         let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
         let mut cells = vec![
-            number(Some(units.told(Kind::Speed, point.airspeed_m_s))),
-            number(Some(units.told(Kind::Length, point.altitude_m))),
-            point.held.is_ok().to_string(),
-            quoted(&point.reason(units).unwrap_or_default()),
+            number(Some(units.told(Kind::Speed, point.target.airspeed_m_s))),
+            number(Some(units.told(Kind::Length, point.target.altitude_m))),
+            point.flight.is_ok().to_string(),
+            quoted(&reason(point, units).unwrap_or_default()),
         ];
         let columns = self.columns();
         let told = columns

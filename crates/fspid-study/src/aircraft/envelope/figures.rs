@@ -3,7 +3,7 @@
 use super::Envelope;
 use super::autopilot::is_stable;
 use super::column::Column;
-use super::point::Point;
+use super::point::{Point, short_period};
 use crate::aircraft::units::{Kind, Units};
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
 
@@ -81,7 +81,7 @@ impl Envelope {
     fn stability(&self) -> Option<(&'static str, Svg)> {
         let autopilot = self.autopilot.as_ref()?;
         let class = |point: &Point| {
-            let judged = point.held.as_ref().ok()?.judged?;
+            let judged = point.flight.as_ref().ok()?.beside?;
             Some(usize::from(!is_stable(judged.spectral_radius)))
         };
         let names = [("+", "stable"), ("!", "unstable")];
@@ -92,7 +92,7 @@ impl Envelope {
     /// Levels by the control anticipation parameter.
     fn levels(&self) -> Option<(&'static str, Svg)> {
         let class = |point: &Point| {
-            let found = point.held.as_ref().ok()?.short_period?.cap_level;
+            let found = short_period(point.flight.as_ref().ok()?)?.cap_level;
             Some(found.level as usize)
         };
         let names =

@@ -9,6 +9,7 @@ mod text;
 
 use std::path::Path;
 
+use fspid_aircraft::envelope::{EnvelopeGrid, one_thread};
 use fspid_aircraft::qualities::Category;
 use serde_json::{Map, Value, json};
 
@@ -20,7 +21,7 @@ use super::units::{Kind, LENGTHS, SPEEDS, Units};
 use crate::inference::Refused;
 use autopilot::Autopilot;
 use column::{Column, columns};
-use point::Point;
+use point::{Point, reason};
 
 /// Speeds and altitudes, and whose loop is judged there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,9 +67,17 @@ pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFai
     let (speeds_m_s, altitudes_m) = grid(question, units)?;
     let autopilot =
         question.scenario.map(|path| Autopilot::load(path, question.controller)).transpose()?;
-    let (category, asked) = (question.category, (question.category, autopilot.as_ref()));
-    let nodes = altitudes_m.iter().flat_map(|&h| speeds_m_s.iter().map(move |&v| (v, h)));
-    let points = nodes.map(|node| Point::of(&aircraft, node, asked)).collect();
+    let category = question.category;
+    let grid = EnvelopeGrid {
+        airspeeds_m_s: speeds_m_s.clone(),
+        altitudes_m: altitudes_m.clone(),
+        category,
+        ..EnvelopeGrid::even((0.0, 0.0, 0), (0.0, 0.0, 0))
+    };
+    let threads = std::thread::available_parallelism().unwrap_or(one_thread());
+    let points = aircraft.envelope(&grid, threads, |linear| {
+        autopilot.as_ref()?.judge(&linear.theta_over_elevator().ok()?)
+    });
     let (title, name) = (data.title, data.name);
     let air = question.question.air;
     Ok(Envelope { title, name, units, air, category, speeds_m_s, altitudes_m, points, autopilot })
@@ -123,14 +132,15 @@ impl Envelope {
 
     fn point_json(&self, point: &Point) -> Value {
         let units = self.units;
-        let speed = (key("airspeed", Kind::Speed, units), point.airspeed_m_s, Kind::Speed);
-        let altitude = (key("altitude", Kind::Length, units), point.altitude_m, Kind::Length);
+        let speed = (key("airspeed", Kind::Speed, units), point.target.airspeed_m_s, Kind::Speed);
+        let altitude =
+            (key("altitude", Kind::Length, units), point.target.altitude_m, Kind::Length);
         let mut entry = Map::new();
         for (key, value, kind) in [speed, altitude] {
             entry.insert(key, json!(units.told(kind, value)));
         }
-        entry.insert("flyable".to_owned(), json!(point.held.is_ok()));
-        entry.insert("reason".to_owned(), json!(point.reason(units)));
+        entry.insert("flyable".to_owned(), json!(point.flight.is_ok()));
+        entry.insert("reason".to_owned(), json!(reason(point, units)));
         for column in self.columns() {
             let value = column.of(point).map(|value| units.told(column.kind, value));
             entry.insert(key(column.key, column.kind, units), json!(value));

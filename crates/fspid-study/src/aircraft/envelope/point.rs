@@ -1,89 +1,39 @@
-//! One speed and altitude.
+//! One speed and altitude: what is read off a row of the envelope.
 
-use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
-use fspid_aircraft::qualities::{Category, PitchModel, ShortPeriod};
-use fspid_aircraft::{
-    Aircraft, AircraftMode, Linearisation, ModeName, Trim, TrimFailure, TrimTarget, VelocityForm,
-    longitudinal_modes,
-};
+use fspid_aircraft::ModeName;
+use fspid_aircraft::envelope::{EnvelopeFlight, EnvelopeRow};
+use fspid_aircraft::qualities::ShortPeriod;
+use fspid_lti::Mode;
 
-use super::autopilot::{Autopilot, Loop};
+use super::autopilot::Loop;
 use crate::aircraft::failure::departure;
 use crate::aircraft::units::Units;
 
-/// A speed and altitude, and what the aircraft is like there.
-#[derive(Clone, Debug)]
-pub(super) struct Point {
-    pub(super) airspeed_m_s: f64,
-    pub(super) altitude_m: f64,
-    /// The flight, or why there is none.
-    pub(super) held: Result<Held, Box<TrimFailure>>,
+/// A speed and altitude, and what the aircraft is like there or why it cannot fly there.
+pub(super) type Point = EnvelopeRow<Option<Loop>>;
+
+/// A flight that is held, with the sampled loop where there is an autopilot.
+pub(super) type Held = EnvelopeFlight<Option<Loop>>;
+
+/// Why a point cannot be flown, in a line.
+pub(super) fn reason(point: &Point, units: Units) -> Option<String> {
+    let failure = point.flight.as_ref().err()?;
+    let limits: Vec<String> = failure.limits.iter().map(|limit| departure(limit, units)).collect();
+    Some(match limits.is_empty() {
+        true => "no balance of forces found".to_owned(),
+        false => limits.join("; "),
+    })
 }
 
-/// A flight that is held.
-#[derive(Clone, Debug)]
-pub(super) struct Held {
-    pub(super) trim: Trim,
-    pub(super) modes: Vec<AircraftMode>,
-    /// Short period with its control anticipation, judged.
-    pub(super) short_period: Option<ShortPeriod>,
-    /// The sampled loop, where there is an autopilot.
-    pub(super) judged: Option<Loop>,
+/// Frequency and damping of a motion that is a pair.
+pub(super) fn pair(held: &Held, name: ModeName) -> Option<Mode> {
+    let all = [&held.longitudinal, &held.lateral];
+    let mut modes = all.into_iter().flatten().flatten();
+    let found = modes.find(|mode| mode.name == name && mode.oscillates());
+    found.and_then(|mode| mode.mode().ok())
 }
 
-impl Point {
-    pub(super) fn of(
-        aircraft: &Aircraft<DerivativeModel>,
-        (airspeed_m_s, altitude_m): (f64, f64),
-        (category, autopilot): (Category, Option<&Autopilot>),
-    ) -> Self {
-        let gravity_m_s2 = aircraft.environment().gravity_m_s2;
-        let target = TrimTarget { airspeed_m_s, altitude_m, flight_path_rad: 0.0 };
-        let held = match aircraft.trim(target) {
-            Ok(trim) => {
-                let model = aircraft.linearise(&trim);
-                let short_period = short_period(&model, gravity_m_s2, category);
-                Ok(Held { short_period, ..Held::of(&model, autopilot) })
-            }
-            Err(failure) => Err(Box::new(failure)),
-        };
-        Self { airspeed_m_s, altitude_m, held }
-    }
-
-    /// Why it cannot be flown, in a line.
-    pub(super) fn reason(&self, units: Units) -> Option<String> {
-        let failure = self.held.as_ref().err()?;
-        let limits: Vec<String> =
-            failure.limits.iter().map(|limit| departure(limit, units)).collect();
-        Some(match limits.is_empty() {
-            true => "no balance of forces found".to_owned(),
-            false => limits.join("; "),
-        })
-    }
-}
-
-impl Held {
-    fn of(model: &Linearisation, autopilot: Option<&Autopilot>) -> Self {
-        let longitudinal = model.longitudinal(VelocityForm::Components).ok();
-        let modes = longitudinal.and_then(|system| longitudinal_modes(&system).ok());
-        let plant = model.theta_over_elevator().ok();
-        let judged = autopilot.and_then(|autopilot| autopilot.judge(&plant?));
-        let modes = modes.unwrap_or_default();
-        Self { trim: model.trim, modes, short_period: None, judged }
-    }
-
-    /// Frequency and damping of a mode that is a pair.
-    pub(super) fn pair(&self, name: ModeName) -> Option<fspid_lti::Mode> {
-        let found = self.modes.iter().find(|mode| mode.name == name && mode.oscillates());
-        found.and_then(|mode| mode.mode().ok())
-    }
-}
-
-fn short_period(
-    model: &Linearisation,
-    gravity_m_s2: f64,
-    category: Category,
-) -> Option<ShortPeriod> {
-    let model = PitchModel::of(model, gravity_m_s2).ok()?;
-    ShortPeriod::of(&model, category).ok()
+/// The short period, judged.
+pub(super) fn short_period(held: &Held) -> Option<ShortPeriod> {
+    held.qualities.as_ref().ok()?.short_period.ok()
 }

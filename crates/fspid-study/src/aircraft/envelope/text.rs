@@ -23,7 +23,7 @@ impl Envelope {
             "{}\n{}\n{} of {} points can be flown\n\n{}",
             self.title,
             self.where_in_words(),
-            self.points.iter().filter(|point| point.held.is_ok()).count(),
+            self.points.iter().filter(|point| point.flight.is_ok()).count(),
             self.points.len(),
             table(&headings, &rows),
         );
@@ -62,14 +62,14 @@ impl Envelope {
     }
 
     fn place(&self, point: &Point) -> String {
-        let speed = quantity(self.units, Kind::Speed, point.airspeed_m_s);
-        format!("{speed}, {}", quantity(self.units, Kind::Length, point.altitude_m))
+        let speed = quantity(self.units, Kind::Speed, point.target.airspeed_m_s);
+        format!("{speed}, {}", quantity(self.units, Kind::Length, point.target.altitude_m))
     }
 
     /// Which limits stand in the way, and at how many points.
     fn obstacles(&self) -> String {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-        for failure in self.points.iter().filter_map(|point| point.held.as_ref().err()) {
+        for failure in self.points.iter().filter_map(|point| point.flight.as_ref().err()) {
             let names = failure.limits.iter().map(|limit| limit.quantity.name());
             let none = failure.limits.is_empty().then_some("no balance of forces");
             for name in names.chain(none) {
@@ -85,13 +85,13 @@ impl Envelope {
 
     fn loop_in_words(&self) -> String {
         let Some(autopilot) = &self.autopilot else { return String::new() };
-        let held = self.points.iter().filter_map(|point| point.held.as_ref().ok());
+        let held = self.points.iter().filter_map(|point| point.flight.as_ref().ok());
         let (flown, stable) = held.fold((0, 0), |(flown, stable), held| {
             (
                 flown + 1,
                 stable
                     + usize::from(
-                        held.judged.is_some_and(|judged| is_stable(judged.spectral_radius)),
+                        held.beside.is_some_and(|judged| is_stable(judged.spectral_radius)),
                     ),
             )
         });

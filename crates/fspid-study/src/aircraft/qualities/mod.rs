@@ -132,7 +132,7 @@ fn of_flight(
 }
 
 /// The number of a level; none for what is worse than all.
-pub(super) const fn level_number(level: Level) -> Option<u8> {
+const fn level_number(level: Level) -> Option<u8> {
     match level {
         Level::One => Some(1),
         Level::Two => Some(2),
