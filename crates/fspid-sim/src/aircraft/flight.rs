@@ -247,3 +247,19 @@ fn start(plant: &AircraftPlant, atmosphere: &Atmosphere) -> RigidState {
     let drift_m_s = still.attitude.to_body(wind_ned_m_s);
     RigidState { velocity_body_m_s: still.velocity_body_m_s + drift_m_s, ..still }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_period_is_cut_into_equal_steps_of_at_most_ten_milliseconds() {
+        for (dt_s, count) in
+            [(0.001, 1), (0.01, 1), (0.010_001, 2), (0.025, 3), (0.1, 10), (0.7, 70)]
+        {
+            let steps = SubSteps::of(dt_s);
+            assert_eq!(steps.count, count, "{dt_s}");
+            assert!((steps.step_s * f64::from(count) - dt_s).abs() < 1e-15);
+        }
+    }
+}

@@ -57,3 +57,71 @@ fn roll_acceleration<M: ForceModel>(
 ) -> f64 {
     aircraft.instant(state, controls, &AirMotion::STILL).accelerations.angular_rad_s2.x
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_aircraft::aerodynamics::derivatives::{
+        DerivativeModel, DragLaw, Geometry, Lateral, LateralCoefficient, Longitudinal,
+        LongitudinalCoefficient, ThrustLaw,
+    };
+    use fspid_aircraft::{Environment, MassProperties, Travel, TrimTarget, Validity};
+
+    use super::*;
+
+    /// Lengths and inertias of 1, a reference at 50 m/s in air of 1 kg/m³, roll derivatives as given.
+    fn leveller(roll: LateralCoefficient) -> WingLeveller {
+        let coefficient = |reference, alpha, elevator| LongitudinalCoefficient {
+            reference,
+            alpha,
+            elevator,
+            ..LongitudinalCoefficient::default()
+        };
+        let model = DerivativeModel {
+            geometry: Geometry { area_m2: 1.0, span_m: 1.0, chord_m: 1.0 },
+            longitudinal: Longitudinal {
+                lift: coefficient(10.0 / 1250.0, 5.0, 0.0),
+                drag: coefficient(0.01, 0.0, 0.0),
+                pitch: coefficient(0.0, -1.0, -1.0),
+                thrust_speed: 0.0,
+            },
+            lateral: Lateral { roll, ..Lateral::default() },
+            reference_airspeed_m_s: 50.0,
+            reference_thrust_n: 12.5,
+            drag_law: DragLaw::Linear,
+            thrust_law: ThrustLaw::Constant,
+            validity: Validity::EVERYWHERE,
+            travel: Travel::UNLIMITED,
+        };
+        let mass = MassProperties {
+            mass_kg: 1.0,
+            ix_kg_m2: 1.0,
+            iy_kg_m2: 1.0,
+            iz_kg_m2: 1.0,
+            ixz_kg_m2: 0.0,
+            engine_kg_m2_s: 0.0,
+        };
+        let environment = Environment::uniform(10.0, 1.0, 340.0);
+        let aircraft = Aircraft::new(mass, model, environment).expect("a body");
+        let target = TrimTarget { airspeed_m_s: 50.0, altitude_m: 0.0, flight_path_rad: 0.0 };
+        WingLeveller::of(&aircraft, &aircraft.trim(target).expect("the reference"))
+    }
+
+    /// Lp = Clp b/2V and Lδ = Clδ share their factor: k = 0.4 · (1/100) / (0.1 · 2).
+    #[test]
+    fn the_gain_is_roll_damping_over_aileron_power_and_time() {
+        for power in [0.1, -0.1] {
+            let roll = LateralCoefficient { roll_rate: -0.4, aileron: power, ..Default::default() };
+            let gain = leveller(roll).gain;
+            assert!((gain - 0.004 / (power * LEVELLING_TIME_S)).abs() < 1e-9, "{gain}");
+            assert!(leveller(roll).aileron_rad(0.1) * power < 0.0);
+        }
+    }
+
+    #[test]
+    fn without_aileron_or_roll_damping_there_is_no_leveller() {
+        for (roll_rate, aileron) in [(0.0, 0.1), (0.2, 0.1), (-0.4, 0.0)] {
+            let roll = LateralCoefficient { roll_rate, aileron, ..Default::default() };
+            assert_eq!(leveller(roll), WingLeveller::default());
+        }
+    }
+}

@@ -23,18 +23,23 @@ pub(crate) fn text(path: &str) -> String {
     std::fs::read_to_string(repository(path)).expect("the file is part of the repository")
 }
 
-/// Names and texts of the scenarios that come with the program.
+/// Names and texts of the scenarios that come with the program, those of the gallery too.
 pub(crate) fn shipped() -> Vec<(String, String)> {
-    let folder =
-        std::fs::read_dir(repository("scenarios")).expect("there is a folder of scenarios");
-    let mut names: Vec<String> = folder
-        .map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".toml"))
-        .collect();
-    names.sort();
+    let mut names = scenarios_in("");
+    names.extend(scenarios_in("gallery/"));
     let read = |name: String| {
         let text = text(&format!("scenarios/{name}"));
         (name, text)
     };
     names.into_iter().map(read).collect()
+}
+
+/// Names of the scenarios in a folder of `scenarios`, in order, with the folder.
+fn scenarios_in(folder: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(repository("scenarios").join(folder)).expect("a folder");
+    let names = entries.map(|entry| entry.expect("readable").file_name());
+    let names = names.map(|name| format!("{folder}{}", name.to_string_lossy()));
+    let mut names: Vec<String> = names.filter(|name| name.ends_with(".toml")).collect();
+    names.sort();
+    names
 }

@@ -66,6 +66,8 @@ fn what_an_aircraft_cannot_do_is_refused_with_a_reason() {
         ),
         ("[loop]", "[plant]\npreset = \"ctms-pitch\"\n[loop]", "not together with `"),
         ("airspeed_ft_s = 176.0", "", "airspeed_kt"),
+        ("[loop]", "[aircraft.x]\n[loop]", "unknown key"),
+        ("altitude_ft = 1000.0", "altitude_ft = 1000.0\nground_m = 400.0", "ground is above"),
         ("time_constant_s = 0.1", "natural_frequency_rad_s = 30.0", "it goes with"),
         ("time_constant_s = 0.1", "time_constant_s = 0.1\ndamping = 0.7", "not together with"),
         ("time_constant_s = 0.1", "travel_deg = [2.0, 5.0]", "an interval with 0 in it"),

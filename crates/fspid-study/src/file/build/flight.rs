@@ -53,6 +53,7 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
         }
     };
     let target = target(part)?;
+    check_ground(report, part, target);
     let aircraft = derivatives.aircraft(laws(part)?, environment(part, &derivatives)?);
     let aircraft = judged(report, (part, key), aircraft)?;
     let plant = trimmed(report, part, &with_forces(&aircraft)?, target)?;
@@ -86,6 +87,15 @@ fn target(part: &Section) -> Option<TrimTarget> {
         altitude_m: quantity(part, "altitude")?,
         flight_path_rad: 0.0,
     })
+}
+
+fn check_ground(report: &mut Report, part: &Section, target: TrimTarget) {
+    let ground_m = part.number("ground_m").filter(|_| part.given("ground_m"));
+    if ground_m.is_some_and(|ground_m| ground_m > target.altitude_m) {
+        let allowed = format!("up to the altitude of the aircraft, {:?} m", target.altitude_m);
+        let (place, path) = (part.at("ground_m"), part.path("ground_m"));
+        report.value(place, &path, "the ground is above the aircraft", allowed);
+    }
 }
 
 fn laws(part: &Section) -> Option<Laws> {
