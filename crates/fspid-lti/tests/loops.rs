@@ -1,6 +1,9 @@
 //! Margins and time responses of the paper's two loops, against numbers computed independently.
 
-use fspid_lti::{FrequencyResponse, LtiError, Margins, TransferFunction, step_response};
+use fspid_lti::{
+    Complex, FrequencyResponse, LtiError, Margins, Polynomial, TransferFunction, modulus,
+    step_response,
+};
 
 type Outcome = Result<(), LtiError>;
 
@@ -151,6 +154,108 @@ fn closed_loops_answer_a_step_as_in_the_handbook() -> Outcome {
         for (index, value) in [1, 2, 5, 10, 20, 30].into_iter().zip(values) {
             assert!((found[index] - value).abs() < 5.1e-6, "{} is not {value}", found[index]);
         }
+    }
+    Ok(())
+}
+
+/// Pitch by K (r - theta) less Kr times pitch rate, ahead of the servo.
+fn with_rate_gyro(
+    plant: &TransferFunction,
+    k: f64,
+    rate: f64,
+) -> Result<TransferFunction, LtiError> {
+    let forward = plant.series(&servo()?)?;
+    let feedback = forward.numerator().product(&Polynomial::new(&[rate, k])?)?;
+    let denominator = forward.denominator().sum(&feedback)?;
+    TransferFunction::from_polynomials(forward.numerator().scaled(k)?, denominator)
+}
+
+/// What a step of a minute, sampled each millisecond, is known by.
+struct Shape {
+    overshoot_pct: f64,
+    peak_s: f64,
+    rise_s: f64,
+    /// When it stays within 2 %; nothing if it does not within the minute.
+    settling_s: Option<f64>,
+}
+
+/// Sample period of [`Shape`], s: half of it is the error of a peak's place, and crossings are
+/// interpolated.
+const FINE_S: f64 = 1e-3;
+
+fn shape(system: &TransferFunction) -> Result<Shape, LtiError> {
+    let y = step_response(system, FINE_S, 60_001)?;
+    let peak = (0..y.len()).max_by(|&a, &b| y[a].total_cmp(&y[b])).unwrap_or(0);
+    let crossing =
+        |at: usize, level: f64| (at as f64 + (level - y[at]) / (y[at + 1] - y[at])) * FINE_S;
+    let reach = |level: f64| {
+        let at = (0..y.len() - 1).find(|&k| y[k] < level && y[k + 1] >= level).unwrap_or(0);
+        crossing(at, level)
+    };
+    let last_out = (0..y.len()).rev().find(|&k| (y[k] - 1.0).abs() > 0.02).unwrap_or(0);
+    let settling_s = (last_out + 1 < y.len())
+        .then(|| crossing(last_out, if y[last_out] > 1.0 { 1.02 } else { 0.98 }));
+    Ok(Shape {
+        overshoot_pct: 100.0 * (y[peak] - 1.0),
+        peak_s: peak as f64 * FINE_S,
+        rise_s: reach(0.9) - reach(0.1),
+        settling_s,
+    })
+}
+
+#[test]
+fn closed_loops_peak_rise_and_settle_as_in_the_handbook() -> Outcome {
+    let loop_of = |plant: TransferFunction, gains: [f64; 3]| {
+        let controller =
+            if gains[1] > 0.0 { pid(gains)? } else { TransferFunction::new(&[gains[0]], &[1.0])? };
+        closed(&plant.series(&servo()?)?.series(&controller)?)
+    };
+    let rows = [
+        (loop_of(b747()?, [1.0, 0.0, 0.0])?, [2.9386, 2.150, 1.155], None, 5.1e-5),
+        (loop_of(b747()?, [1.33, 1.43, 1.22])?, [9.165, 1.375, 0.548], Some(6.369), 5.1e-4),
+        (with_rate_gyro(&b747()?, 3.5287, 0.91438)?, [14.603, 1.315, 0.601], None, 5.1e-4),
+        (loop_of(navion()?, [1.0, 0.0, 0.0])?, [3.5224, 1.001, 0.515], Some(2.314), 5.1e-5),
+        (loop_of(navion()?, [0.82, 0.43, 0.165])?, [13.555, 2.868, 0.588], Some(6.413), 5.1e-4),
+    ];
+    for (system, [overshoot, peak, rise], settling, last_digit) in rows {
+        let found = shape(&system)?;
+        assert!((found.overshoot_pct - overshoot).abs() < last_digit, "{}", found.overshoot_pct);
+        assert!((found.peak_s - peak).abs() < 1.01e-3, "peak {} {peak}", found.peak_s);
+        assert!((found.rise_s - rise).abs() < 5.1e-4, "rise {} {rise}", found.rise_s);
+        match (found.settling_s, settling) {
+            // Cut, not rounded, to a millisecond: 2.3145 is printed as 2.314.
+            (Some(found), Some(printed)) => assert!((found - printed).abs() < 1.01e-3, "{found}"),
+            (found, printed) => assert!(found.is_none() && printed.is_none(), "{found:?}"),
+        }
+    }
+    let y = step_response(&with_rate_gyro(&b747()?, 3.5287, 0.91438)?, 1.0, 31)?;
+    for (index, value) in
+        [(1, 1.02534), (2, 0.90467), (5, 0.95906), (10, 0.98228), (20, 0.96474), (30, 0.94610)]
+    {
+        assert!((y[index] - value).abs() < 5.1e-6, "{} is not {value}", y[index]);
+    }
+    Ok(())
+}
+
+#[test]
+fn the_peak_of_the_sensitivity_is_that_of_the_handbook() -> Outcome {
+    let rows = [
+        (b747()?, [1.0, 0.0, 0.0], 1.9829),
+        (b747()?, [1.33, 1.43, 1.22], 1.2882),
+        (navion()?, [1.0, 0.0, 0.0], 1.7109),
+        (navion()?, [0.82, 0.43, 0.165], 1.3293),
+    ];
+    for (plant, gains, printed) in rows {
+        let controller =
+            if gains[1] > 0.0 { pid(gains)? } else { TransferFunction::new(&[1.0], &[1.0])? };
+        let open = plant.series(&servo()?)?.series(&controller)?;
+        // Twenty thousand frequencies over four decades: the peak is flat to 1e-7 between two.
+        let sensitivity = |n: i32| {
+            let omega = 1e-2 * libm::exp(f64::from(n) * (libm::log(1e4) / 20_000.0));
+            1.0 / modulus(Complex::new(1.0, 0.0) + open.at(Complex::new(0.0, omega)))
+        };
+        let peak = (0..=20_000).map(sensitivity).fold(0.0, f64::max);
+        assert!((peak - printed).abs() < 5.1e-5, "{peak} is not {printed}");
     }
     Ok(())
 }
