@@ -221,9 +221,9 @@ fn closed_loops_peak_rise_and_settle_as_in_the_handbook() -> Outcome {
         let found = shape(&system)?;
         assert!((found.overshoot_pct - overshoot).abs() < last_digit, "{}", found.overshoot_pct);
         assert!((found.peak_s - peak).abs() < 1.01e-3, "peak {} {peak}", found.peak_s);
-        assert!((found.rise_s - rise).abs() < 5.1e-4, "rise {} {rise}", found.rise_s);
+        // The handbook's times are cut, not rounded, to a millisecond: 0.58885 is printed as 0.588.
+        assert!((found.rise_s - rise).abs() < 1.01e-3, "rise {} {rise}", found.rise_s);
         match (found.settling_s, settling) {
-            // Cut, not rounded, to a millisecond: 2.3145 is printed as 2.314.
             (Some(found), Some(printed)) => assert!((found - printed).abs() < 1.01e-3, "{found}"),
             (found, printed) => assert!(found.is_none() && printed.is_none(), "{found:?}"),
         }
