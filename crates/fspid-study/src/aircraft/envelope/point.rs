@@ -1,11 +1,11 @@
 //! One speed and altitude.
 
-use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::qualities::{Category, PitchModel, ShortPeriod};
 use fspid_aircraft::{
     Aircraft, AircraftMode, Linearisation, ModeName, Trim, TrimFailure, TrimTarget, VelocityForm,
     longitudinal_modes,
 };
+use fspid_sim::aircraft::Forces;
 
 use super::autopilot::{Autopilot, Loop};
 use crate::aircraft::failure::departure;
@@ -33,7 +33,7 @@ pub(super) struct Held {
 
 impl Point {
     pub(super) fn of(
-        aircraft: &Aircraft<DerivativeModel>,
+        aircraft: &Aircraft<Forces>,
         (airspeed_m_s, altitude_m): (f64, f64),
         (category, autopilot): (Category, Option<&Autopilot>),
     ) -> Self {
