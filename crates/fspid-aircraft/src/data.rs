@@ -1,12 +1,16 @@
 //! An aircraft as its source describes it, in SI units, before anything is made of it.
 
+use std::fmt;
+use std::sync::Arc;
+
 use fspid_lti::{Matrix, StateSpace, TransferFunction};
 
+use crate::aerodynamics::ForceModel;
 use crate::aerodynamics::derivatives::{
     DerivativeModel, DragLaw, Geometry, Lateral, Longitudinal, ThrustLaw,
 };
 use crate::aircraft::Aircraft;
-use crate::atmosphere::Environment;
+use crate::atmosphere::{Air, AirModel, Environment};
 use crate::error::AircraftError;
 use crate::mass::MassProperties;
 use crate::transfer::transfer_function;
@@ -34,6 +38,41 @@ pub enum ModelData {
     Derivatives(Box<DerivativeData>),
     /// A linear model at one condition, and nothing else.
     Linear(LinearData),
+    /// Forces by any other model, such as tables: it can be trimmed and flown where they are valid.
+    Forces(Box<ForceData>),
+}
+
+/// An aircraft described by a model of its forces.
+#[derive(Clone)]
+pub struct ForceData {
+    /// Mass properties in the axes of the forces.
+    pub mass: MassProperties,
+    /// Lengths to which its source refers coefficients.
+    pub geometry: Geometry,
+    /// Gravity with which the source flies.
+    pub gravity_m_s2: f64,
+    /// Air of the source, the same everywhere, if it has one.
+    pub air: Option<Air>,
+    /// Forces; they say where they are valid and how far the controls go.
+    pub forces: Arc<dyn ForceModel + Send + Sync>,
+}
+
+/// Forces are equal by being the same object.
+impl PartialEq for ForceData {
+    fn eq(&self, other: &Self) -> bool {
+        let numbers = |data: &Self| (data.mass, data.geometry, data.gravity_m_s2, data.air);
+        numbers(self) == numbers(other) && Arc::ptr_eq(&self.forces, &other.forces)
+    }
+}
+
+impl fmt::Debug for ForceData {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mass, geometry, gravity_m_s2, air, forces: _ } = self;
+        let mut shown = formatter.debug_struct("ForceData");
+        shown.field("mass", mass).field("geometry", geometry).field("gravity_m_s2", gravity_m_s2);
+        shown.field("air", air);
+        shown.finish_non_exhaustive()
+    }
 }
 
 /// Flight condition to which derivatives belong.
@@ -130,18 +169,55 @@ impl AircraftData {
     /// The derivatives.
     ///
     /// # Errors
-    /// An aircraft of which only a linear model is known.
+    /// An aircraft of which only a linear model is known, or forces by another model.
     pub fn derivatives(&self) -> Result<&DerivativeData, AircraftError> {
         match &self.model {
             ModelData::Derivatives(data) => Ok(data),
             ModelData::Linear(_) => Err(AircraftError::LinearOnly { name: self.name.clone() }),
+            ModelData::Forces(_) => Err(AircraftError::NoDerivatives { name: self.name.clone() }),
+        }
+    }
+
+    /// Whether its motion to the side is known.
+    #[must_use]
+    pub fn has_lateral(&self) -> bool {
+        match &self.model {
+            ModelData::Derivatives(data) => data.lateral.is_some(),
+            ModelData::Linear(_) => false,
+            ModelData::Forces(_) => true,
+        }
+    }
+
+    /// The standard atmosphere, with the gravity of the source where forces are known, else with standard gravity.
+    #[must_use]
+    pub fn standard_environment(&self) -> Environment {
+        match &self.model {
+            ModelData::Forces(data) => {
+                Environment { gravity_m_s2: data.gravity_m_s2, air: AirModel::Standard }
+            }
+            _ => Environment::STANDARD,
+        }
+    }
+
+    /// Density and gravity of the source, everywhere.
+    ///
+    /// # Errors
+    /// An aircraft whose source has no such air.
+    pub fn reference_environment(&self) -> Result<Environment, AircraftError> {
+        match &self.model {
+            ModelData::Forces(data) => {
+                let air =
+                    data.air.ok_or_else(|| AircraftError::NoAir { name: self.name.clone() })?;
+                Ok(Environment { gravity_m_s2: data.gravity_m_s2, air: AirModel::Uniform(air) })
+            }
+            _ => Ok(self.derivatives()?.reference_environment()),
         }
     }
 
     /// An aircraft that can be trimmed and flown.
     ///
     /// # Errors
-    /// An aircraft of which only a linear model is known; numbers that no aircraft has.
+    /// As [`Self::derivatives`]; numbers that no aircraft has.
     pub fn aircraft(
         &self,
         laws: Laws,

@@ -65,6 +65,20 @@ pub enum AircraftError {
         /// Which aircraft.
         name: String,
     },
+    /// An aircraft of which the forces are known, and no derivatives.
+    #[error("{name} is known by tables; it has no stability derivatives")]
+    NoDerivatives {
+        /// Which aircraft.
+        name: String,
+    },
+    /// An aircraft whose source has no air of its own.
+    #[error(
+        "{name} is known by tables, and its file says no air of its own; fly it in the standard atmosphere"
+    )]
+    NoAir {
+        /// Which aircraft.
+        name: String,
+    },
     /// A linear model in which nothing is the pitch angle.
     #[error("none of the states of the linear model is the pitch angle")]
     NoPitch,

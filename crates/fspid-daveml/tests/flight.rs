@@ -128,3 +128,14 @@ fn a_body_that_is_not_symmetric_is_refused() {
     let error = Body::of(&model(&text), &[25.0], 0.0).unwrap_err();
     assert!(matches!(error, FlightError::Lopsided { name: "bodyProductOfInertia_XY", .. }));
 }
+
+#[test]
+fn a_body_is_placed_by_percent_of_the_chord_or_stays_where_its_file_has_it() {
+    let placed = |text: &str, place| Body::placed(&model(text), place, 0.0);
+    assert_eq!(placed(BODY, Some(30.0)).unwrap(), body(30.0));
+    assert_eq!(placed(BODY, None).unwrap(), body(25.0));
+    let open = BODY.replace(" initialValue=\"25\"", "");
+    assert!(matches!(placed(&open, None).unwrap_err(), FlightError::Input { .. }));
+    let fixed = BODY.replace("vrsPositionOfCM", "fuel");
+    assert!(matches!(placed(&fixed, Some(30.0)).unwrap_err(), FlightError::NoInput { .. }));
+}

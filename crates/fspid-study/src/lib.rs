@@ -16,6 +16,7 @@ pub mod aircraft;
 pub mod figure;
 pub mod file;
 pub mod fly;
+mod flyer;
 pub mod fuzzy_system;
 pub mod inference;
 pub mod metrics;

@@ -15,6 +15,11 @@ pub enum FlightError {
         /// Names that a flight has, with commas.
         known: String,
     },
+    /// An input that is to be set and is not there.
+    NoInput {
+        /// Its name.
+        name: &'static str,
+    },
     /// An output that is not there.
     Output {
         /// Its name.
@@ -54,6 +59,9 @@ impl fmt::Display for FlightError {
                 f,
                 "a flight has no `{name}`, and the file gives it no initial value; known are {known}"
             ),
+            Self::NoInput { name } => {
+                write!(f, "there is no input `{name}`; leave out what it is to be set to")
+            }
             Self::Output { name } => write!(
                 f,
                 "the output `{name}` is missing; mark a variable of that name with <isOutput/>"

@@ -9,6 +9,7 @@ mod error;
 mod port;
 mod quantity;
 
+use fspid_aircraft::aerodynamics::derivatives::Geometry;
 use fspid_aircraft::{
     Controls, Flow, ForceModel, Loads, Quantity as Limit, Range, Travel, Validity, Vector3,
 };
@@ -26,7 +27,7 @@ use quantity::{Quantities, Quantity};
 pub struct TableForces {
     aerodynamics: Wired<6>,
     engine: Option<Wired<6>>,
-    reference: Reference,
+    reference: Geometry,
     setting: Setting,
     validity: Validity,
 }
@@ -48,14 +49,6 @@ struct Wired<const N: usize> {
     model: Model,
     inputs: Wiring,
     answers: Answers<N>,
-}
-
-/// What makes forces of coefficients.
-#[derive(Clone, Copy, Debug)]
-struct Reference {
-    area_m2: f64,
-    span_m: f64,
-    chord_m: f64,
 }
 
 const COEFFICIENTS: [&str; 6] = [
@@ -99,10 +92,16 @@ impl TableForces {
         Ok(Self {
             aerodynamics: Wired::new(aerodynamics, &COEFFICIENTS)?,
             engine: engine.map(|engine| Wired::new(engine, &THRUST)).transpose()?,
-            reference: Reference { area_m2, span_m, chord_m },
+            reference: Geometry { area_m2, span_m, chord_m },
             setting,
             validity,
         })
+    }
+
+    /// Area, span and chord that make forces and moments of coefficients.
+    #[must_use]
+    pub fn geometry(&self) -> Geometry {
+        self.reference
     }
 
     /// Loads of the air about the moment reference centre.
@@ -110,7 +109,7 @@ impl TableForces {
     /// $$ F = \bar q S\, C_F, \quad M = \bar q S\,(b\, C_l,\ \bar c\, C_m,\ b\, C_n) $$
     fn air(&self, quantities: &Quantities, dynamic_pressure_pa: f64) -> Loads {
         let [x, y, z, roll, pitch, yaw] = self.aerodynamics.answer(quantities);
-        let Reference { area_m2, span_m, chord_m } = self.reference;
+        let Geometry { area_m2, span_m, chord_m } = self.reference;
         let scale_n = dynamic_pressure_pa * area_m2;
         Loads {
             force_n: scale_n * Vector3::new(x, y, z),

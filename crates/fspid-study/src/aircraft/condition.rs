@@ -1,14 +1,16 @@
 //! The flight that a question is about: which aircraft, how fast, how high, in which air.
 
-use fspid_aircraft::aerodynamics::derivatives::{DerivativeModel, DragLaw, ThrustLaw};
+use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::atmosphere::{ALTITUDE_MAX_M, ALTITUDE_MIN_M};
-use fspid_aircraft::data::{AircraftData, DerivativeData, Laws};
-use fspid_aircraft::{Air, Aircraft, Environment, Trim, TrimTarget};
+use fspid_aircraft::data::{AircraftData, Laws, ModelData, Reference};
+use fspid_aircraft::{Air, Aircraft, Trim, TrimTarget};
+use fspid_sim::aircraft::Forces;
 
 use super::failure::AircraftFailure;
 use super::load::load;
 use super::parse::quantity;
 use super::units::{ANGLES, Kind, LENGTHS, SPEEDS, Units};
+use crate::flyer::flyer;
 use crate::inference::Refused;
 
 /// Which air and gravity.
@@ -66,7 +68,7 @@ pub struct Question<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
     pub(super) data: AircraftData,
-    pub(super) aircraft: Aircraft<DerivativeModel>,
+    pub(super) aircraft: Aircraft<Forces>,
     pub(super) target: TrimTarget,
     pub(super) units: Units,
     pub(super) air: AirChoice,
@@ -96,25 +98,32 @@ impl Question<'_> {
         }
     }
 
-    fn environment(&self, data: &DerivativeData) -> Environment {
-        match self.air {
-            AirChoice::Standard => Environment::STANDARD,
-            AirChoice::Source => data.reference_environment(),
-        }
-    }
-
     /// The aircraft in the air that is asked for.
     pub(super) fn aircraft_of(
         &self,
         data: &AircraftData,
-    ) -> Result<Aircraft<DerivativeModel>, AircraftFailure> {
-        let environment = self.environment(data.derivatives()?);
-        Ok(data.aircraft(self.laws(), environment)?)
+    ) -> Result<Aircraft<Forces>, AircraftFailure> {
+        let laws = self.laws();
+        if matches!(data.model, ModelData::Forces(_)) && laws != Laws::default() {
+            let message = "--drag and --thrust are for derivatives; tables say it themselves";
+            return Err(AircraftFailure::Refused(Refused::one(message.to_owned())));
+        }
+        Ok(flyer(data, laws, self.air == AirChoice::Source)?)
+    }
+
+    /// What has to be named, because the aircraft's source has no flight of its own.
+    fn missing(&self, reference: Option<&Reference>) -> Vec<String> {
+        let options = [("--speed", self.speed), ("--altitude", self.altitude)];
+        let missing = options.iter().filter(|(_, text)| reference.is_none() && text.is_none());
+        let told = |(option, _): &(&str, _)| {
+            format!("{option} is missing: the aircraft is known by tables, not at one flight")
+        };
+        missing.map(told).collect()
     }
 
     /// The flight, every mistake in it at once.
-    fn target(&self, data: &DerivativeData) -> Result<TrimTarget, Refused> {
-        let mut problems = Vec::new();
+    fn target(&self, reference: Option<&Reference>) -> Result<TrimTarget, Refused> {
+        let mut problems = self.missing(reference);
         let units = self.units;
         let mut read = |option, text: Option<&str>, known: &[_], kind, without| match text {
             None => without,
@@ -123,11 +132,11 @@ impl Question<'_> {
                 without
             }),
         };
-        let reference = &data.reference;
-        let airspeed_m_s =
-            read("--speed", self.speed, &SPEEDS, Kind::Speed, reference.airspeed_m_s);
-        let altitude_m =
-            read("--altitude", self.altitude, &LENGTHS, Kind::Length, reference.altitude_m);
+        // What stands in for an option that is missing; the flight is refused then.
+        let (airspeed_m_s, altitude_m) =
+            reference.map_or((1.0, 0.0), |flight| (flight.airspeed_m_s, flight.altitude_m));
+        let airspeed_m_s = read("--speed", self.speed, &SPEEDS, Kind::Speed, airspeed_m_s);
+        let altitude_m = read("--altitude", self.altitude, &LENGTHS, Kind::Length, altitude_m);
         let flight_path_rad = read("--climb-angle", self.climb_angle, &ANGLES, Kind::Angle, 0.0);
         if !(airspeed_m_s > 0.0) {
             problems.push("--speed must be above 0".to_owned());
@@ -154,10 +163,18 @@ impl Question<'_> {
 /// [`AircraftFailure`]: an aircraft that is not known or has only a linear model, numbers that cannot be used.
 pub fn flight(question: &Question<'_>) -> Result<Flight, AircraftFailure> {
     let data = question.data()?;
-    let derivatives = data.derivatives()?;
-    let target = question.target(derivatives).map_err(AircraftFailure::Refused)?;
+    let reference = reference(&data)?;
+    let target = question.target(reference).map_err(AircraftFailure::Refused)?;
     let aircraft = question.aircraft_of(&data)?;
     Ok(Flight { aircraft, target, units: question.units, air: question.air, data })
+}
+
+/// The flight of the aircraft's source; tables have none.
+fn reference(data: &AircraftData) -> Result<Option<&Reference>, AircraftFailure> {
+    match &data.model {
+        ModelData::Forces(_) => Ok(None),
+        _ => Ok(Some(&data.derivatives()?.reference)),
+    }
 }
 
 impl Flight {

@@ -79,6 +79,9 @@ impl Fact {
         let (unit, value) = (units.of(self.kind), |si: f64| units.told(self.kind, si));
         let text = match self.told {
             Told::Number(si) => significant(value(si), DIGITS),
+            Told::Range(min, max) if min == f64::NEG_INFINITY && max == f64::INFINITY => {
+                return "any".to_owned();
+            }
             Told::Range(min, max) => format!("{} to {}", end(value(min)), end(value(max))),
         };
         format!("{text} {}", unit.symbol).trim_end().to_owned()

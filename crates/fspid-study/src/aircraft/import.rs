@@ -10,6 +10,7 @@ use super::failure::AircraftFailure;
 use super::load::text;
 use super::number::significant;
 use super::table::table;
+use crate::file::tables::read_model;
 
 /// A model that was read, and what came out of its check cases.
 #[derive(Clone, Debug)]
@@ -85,13 +86,8 @@ fn failed_shot(f: &mut fmt::Formatter<'_>, shot: &ShotReport) -> fmt::Result {
 pub fn import(path: &Path) -> Result<Imported, ImportFailure> {
     let file = path.display().to_string();
     let text = text(path).map_err(ImportFailure::Unreadable)?;
-    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    let reading = match is_toml {
-        true => fspid_daveml::data::read(&text),
-        false => fspid_daveml::read(&text),
-    };
-    let reading =
-        reading.map_err(|problems| ImportFailure::Problems { file: file.clone(), problems })?;
+    let reading = read_model(path, &text)
+        .map_err(|problems| ImportFailure::Problems { file: file.clone(), problems })?;
     let report = reading.model.check();
     match report.passed() {
         true => Ok(Imported { file, reading, report }),

@@ -41,7 +41,7 @@ pub fn linearise(question: &Question<'_>, form: VelocityForm) -> Result<Linear, 
 
 fn of_flight(trimmed: Trimmed, form: VelocityForm) -> Result<Linear, AircraftFailure> {
     let model = trimmed.flight.aircraft.linearise(&trimmed.trim);
-    let has_lateral = trimmed.flight.data.derivatives()?.lateral.is_some();
+    let has_lateral = trimmed.flight.data.has_lateral();
     let lateral = match has_lateral {
         true => Some(StateModel::lateral(model.lateral(form)?, form)),
         false => None,

@@ -21,6 +21,7 @@ pub(super) const fn kind(model: &ModelData) -> &'static str {
     match model {
         ModelData::Derivatives(_) => "derivatives",
         ModelData::Linear(_) => "linear",
+        ModelData::Forces(_) => "tables",
     }
 }
 

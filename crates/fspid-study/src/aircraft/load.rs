@@ -22,7 +22,7 @@ pub fn load(name: &str) -> Result<AircraftData, AircraftFailure> {
         return Err(AircraftFailure::unknown(name, &aircraft_names()));
     }
     let text = text(path)?;
-    file::parse_aircraft(&text, name).map_err(AircraftFailure::Problems)
+    file::parse_aircraft(&text, name, path.parent()).map_err(AircraftFailure::Problems)
 }
 
 /// The text of a file.

@@ -10,6 +10,7 @@ mod envelope;
 mod facts;
 mod failure;
 mod import;
+mod limits;
 mod linearise;
 mod list;
 mod load;
@@ -22,6 +23,7 @@ mod qualities;
 mod show;
 mod state_model;
 mod table;
+mod tables;
 mod trim;
 mod units;
 

@@ -52,9 +52,9 @@ pub fn modes(question: &Question<'_>) -> Result<Modes, AircraftFailure> {
 fn of_flight(trimmed: Trimmed) -> Result<Modes, AircraftFailure> {
     let model = trimmed.flight.aircraft.linearise(&trimmed.trim);
     let data = trimmed.flight.data.clone();
-    let lateral = match data.derivatives()?.lateral {
-        Some(_) => named(lateral_modes(&model.lateral(VelocityForm::Components)?)?),
-        None => Vec::new(),
+    let lateral = match data.has_lateral() {
+        true => named(lateral_modes(&model.lateral(VelocityForm::Components)?)?),
+        false => Vec::new(),
     };
     Ok(Modes {
         units: trimmed.flight.units,

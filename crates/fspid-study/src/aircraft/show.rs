@@ -8,13 +8,14 @@ use serde_json::{Value, json};
 
 use super::facts::Facts;
 use super::failure::AircraftFailure;
+use super::limits::{travel, validity};
 use super::linearise::linearise;
 use super::list::kind;
 use super::load::load;
 use super::number::short;
 use super::table::table;
 use super::units::{Kind, Units};
-use super::{Question, polynomial};
+use super::{Question, polynomial, tables};
 
 /// An aircraft, to be told.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +33,7 @@ pub struct Show {
 pub fn show(name: &str, units: Units) -> Result<Show, AircraftFailure> {
     let data = load(name)?;
     let linear = match &data.model {
-        ModelData::Derivatives(_) => None,
+        ModelData::Derivatives(_) | ModelData::Forces(_) => None,
         ModelData::Linear(_) => {
             let question = Question { aircraft: name, units, ..Question::default() };
             Some(linearise(&question, fspid_aircraft::VelocityForm::Components)?)
@@ -72,29 +73,8 @@ fn body(data: &DerivativeData) -> Facts {
         .number("Ixz", "ixz", Kind::Inertia, inertia.ixz_kg_m2)
 }
 
-fn validity(data: &DerivativeData) -> Facts {
-    let validity = &data.validity;
-    Facts::default()
-        .range("true airspeed", "airspeed", Kind::Speed, validity.airspeed_m_s)
-        .range("Mach number", "mach", Kind::Plain, validity.mach)
-        .range("angle of attack, from the reference", "alpha", Kind::Angle, validity.alpha_rad)
-        .range("sideslip", "beta", Kind::Angle, validity.beta_rad)
-        .range("altitude", "altitude", Kind::Length, validity.altitude_m)
-}
-
-fn travel(data: &DerivativeData) -> Facts {
-    let travel = &data.travel;
-    Facts::default()
-        .range(
-            "elevator, trailing edge down positive",
-            "elevator",
-            Kind::Angle,
-            travel.elevator_rad,
-        )
-        .range("aileron", "aileron", Kind::Angle, travel.aileron_rad)
-        .range("rudder", "rudder", Kind::Angle, travel.rudder_rad)
-        .range("throttle, 1 at the reference", "throttle", Kind::Plain, travel.throttle)
-}
+const FROM_REFERENCE: &str = "angle of attack, from the reference";
+const AT_REFERENCE: &str = "throttle, 1 at the reference";
 
 const LONGITUDINAL: [&str; 7] =
     ["coefficient", "reference", "alpha", "alpha rate", "pitch rate", "speed", "elevator"];
@@ -173,9 +153,10 @@ impl Show {
                 reference(data).text(units),
                 body(data).text(units),
                 coefficients_text(data),
-                validity(data).text(units),
-                travel(data).text(units),
+                validity(FROM_REFERENCE, &data.validity).text(units),
+                travel(AT_REFERENCE, &data.travel).text(units),
             ),
+            (ModelData::Forces(data), _) => tables::text(data, units),
             (_, Some(linear)) => {
                 let equations = linear.longitudinal.text(units);
                 let plant = polynomial::fraction(&linear.plant);
@@ -200,8 +181,11 @@ impl Show {
             whole["reference"] = reference(data).json(self.units);
             whole["body"] = body(data).json(self.units);
             whole["coefficients"] = coefficients_json(data);
-            whole["validity"] = validity(data).json(self.units);
-            whole["travel"] = travel(data).json(self.units);
+            whole["validity"] = validity(FROM_REFERENCE, &data.validity).json(self.units);
+            whole["travel"] = travel(AT_REFERENCE, &data.travel).json(self.units);
+        }
+        if let ModelData::Forces(data) = &self.data.model {
+            tables::json(data, self.units, &mut whole);
         }
         if let Some(linear) = &self.linear {
             whole["longitudinal"] = linear.longitudinal.json(self.units);

@@ -81,9 +81,13 @@ impl Trimmed {
     fn point(&self) -> Facts {
         let (trim, point) = (&self.trim, &self.trim.point);
         let theta_rad = point.alpha_rad + trim.target.flight_path_rad;
-        let facts = Facts::default()
-            .number("angle of attack, from the reference", "alpha", Kind::Angle, point.alpha_rad)
-            .number("pitch angle, from the reference", "theta", Kind::Angle, theta_rad);
+        let [alpha, theta, throttle] = self.names();
+        let facts = Facts::default().number(alpha, "alpha", Kind::Angle, point.alpha_rad).number(
+            theta,
+            "theta",
+            Kind::Angle,
+            theta_rad,
+        );
         self.fuselage(facts)
             .number(
                 "elevator, trailing edge down positive",
@@ -91,8 +95,20 @@ impl Trimmed {
                 Kind::Angle,
                 point.elevator_rad,
             )
-            .number("throttle, 1 at the reference", "throttle", Kind::Plain, point.throttle)
+            .number(throttle, "throttle", Kind::Plain, point.throttle)
             .number("thrust", "thrust", Kind::Force, trim.thrust_n)
+    }
+
+    /// What angle of attack, pitch angle and throttle are called: tables have no reference.
+    fn names(&self) -> [&'static str; 3] {
+        match self.flight.data.derivatives() {
+            Ok(_) => [
+                "angle of attack, from the reference",
+                "pitch angle, from the reference",
+                "throttle, 1 at the reference",
+            ],
+            Err(_) => ["angle of attack", "pitch angle", "throttle, of its travel"],
+        }
     }
 
     /// The angle of attack of the fuselage, where the reference is not along it.

@@ -1,5 +1,7 @@
 //! Aircraft that the program carries, and files of the same form: from the units of a source to SI.
 
+use std::path::Path;
+
 use fspid_aircraft::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
@@ -11,10 +13,12 @@ use fspid_lti::Matrix;
 
 use crate::file::check;
 use crate::file::document;
+use crate::file::files::Files;
 use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 
 /// Aircraft by name.
@@ -29,7 +33,7 @@ const AIRCRAFT: [(&str, &str); 7] = [
 ];
 
 /// Units that a key may end with, and their size in SI; degrees stand apart.
-const UNITS: [(&str, f64); 17] = [
+const UNITS: [(&str, f64); 19] = [
     ("kt", KNOT_M_S),
     ("ft_s", FOOT_M),
     ("m_s", 1.0),
@@ -44,8 +48,10 @@ const UNITS: [(&str, f64); 17] = [
     ("psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
     ("pa", 1.0),
     ("slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
+    ("slug_ft2_s", SLUG_KG * FOOT_M * FOOT_M),
     ("slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
     ("kg_m2", 1.0),
+    ("kg_m2_s", 1.0),
     ("kg_m3", 1.0),
 ];
 
@@ -65,27 +71,39 @@ pub(super) fn aircraft_text(name: &str) -> Option<&'static str> {
 #[must_use]
 pub fn aircraft(name: &str) -> Option<AircraftData> {
     // The tests read every aircraft that is carried.
-    parse_aircraft(aircraft_text(name)?, name).ok()
+    parse_aircraft(aircraft_text(name)?, name, None).ok()
 }
 
-/// Reads an aircraft file.
+/// Reads an aircraft file from a text called `name` in messages. Files of tables are relative to `folder`; without one
+/// there can be none.
 ///
 /// # Errors
 /// Everything that is wrong with it.
-pub fn parse_aircraft(text: &str, name: &str) -> Result<AircraftData, Problems> {
+pub fn parse_aircraft(
+    text: &str,
+    name: &str,
+    folder: Option<&Path>,
+) -> Result<AircraftData, Problems> {
     let mut report = Report::default();
+    let mut files = Files::new(folder);
     let file = document::read(&mut report, None, text)
         .and_then(|item| check::table(&mut report, &AIRCRAFT_FILE, &item, ""))
         .filter(|section| section.sound)
-        .and_then(|section| aircraft_data(&mut report, &section));
+        .and_then(|section| aircraft_data(&mut report, &mut files, (&section, Path::new(""))));
     report.finish(name)?;
     file.ok_or_else(|| Problems::new(name, Vec::new(), 0))
 }
 
-pub(super) fn aircraft_data(report: &mut Report, section: &Section) -> Option<AircraftData> {
+/// The aircraft of a checked file, whose tables are relative to `place` in the folder of `files`.
+pub(super) fn aircraft_data(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (section, place): (&Section, &Path),
+) -> Option<AircraftData> {
     let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
     let model = match section.kind {
         "linear" => ModelData::Linear(linear(report, section.sections("equations"))?),
+        "tables" => ModelData::Forces(Box::new(tables(report, files, (section, place))?)),
         _ => ModelData::Derivatives(Box::new(derivatives(report, section)?)),
     };
     Some(AircraftData {
@@ -198,11 +216,16 @@ fn validity(section: &Section) -> Option<Validity> {
 }
 
 fn travel(section: &Section) -> Option<Travel> {
+    Some(Travel { throttle: range(section, "throttle")?, ..surfaces(section)? })
+}
+
+/// Travel of the surfaces, with a throttle from 0 to 1.
+pub(super) fn surfaces(section: &Section) -> Option<Travel> {
     Some(Travel {
         elevator_rad: range(section, "elevator")?,
         aileron_rad: range(section, "aileron")?,
         rudder_rad: range(section, "rudder")?,
-        throttle: range(section, "throttle")?,
+        throttle: Range { min: 0.0, max: 1.0 },
     })
 }
 
@@ -283,7 +306,7 @@ mod tests {
     #[test]
     fn every_aircraft_that_is_carried_reads_under_its_own_name() {
         for (name, text) in AIRCRAFT {
-            let data = parse_aircraft(text, name).expect("a shipped file is right");
+            let data = parse_aircraft(text, name, None).expect("a shipped file is right");
             assert_eq!(data.name, name);
             assert!(!data.source.is_empty());
         }
@@ -309,7 +332,7 @@ mod tests {
             .replace("airspeed_ft_s = 176.0", "airspeed_m_s = 53.6448")
             .replace("chord_ft = 5.7", "chord_m = 1.73736")
             .replace("altitude_ft = [-1000.0, 15000.0]", "altitude_m = [-304.8, 4572.0]");
-        let metric = parse_aircraft(&metric, "metric").expect("right");
+        let metric = parse_aircraft(&metric, "metric", None).expect("right");
         let [imperial, metric] =
             [imperial, metric].map(|data| *data.derivatives().expect("derivatives"));
         assert!((metric.geometry.chord_m - imperial.geometry.chord_m).abs() < 1e-12);
@@ -320,20 +343,21 @@ mod tests {
     #[test]
     fn a_quantity_in_two_units_or_in_none_is_a_problem() {
         let both = text("navion").replace("span_ft = 33.4", "span_ft = 33.4\nspan_m = 10.18");
-        let problems = parse_aircraft(&both, "both.toml").expect_err("two spans").to_string();
+        let problems = parse_aircraft(&both, "both.toml", None).expect_err("two spans").to_string();
         assert!(problems.contains("not together with `span_ft`"), "{problems}");
         let none = text("navion").replace("span_ft = 33.4\n", "");
-        let problems = parse_aircraft(&none, "none.toml").expect_err("no span").to_string();
+        let problems = parse_aircraft(&none, "none.toml", None).expect_err("no span").to_string();
         assert!(problems.contains("span_ft"), "{problems}");
     }
 
     #[test]
     fn inertias_of_no_body_and_equations_of_the_wrong_length_are_problems() {
         let flat = text("navion").replace("ixz_slug_ft2 = 0.0", "ixz_slug_ft2 = 9000.0");
-        let problems = parse_aircraft(&flat, "flat.toml").expect_err("no body").to_string();
+        let problems = parse_aircraft(&flat, "flat.toml", None).expect_err("no body").to_string();
         assert!(problems.contains("belong to no body"), "{problems}");
         let short = text("ctms-transport").replace("[0.0, 56.7, 0.0]", "[0.0, 56.7]");
-        let problems = parse_aircraft(&short, "short.toml").expect_err("too short").to_string();
+        let problems =
+            parse_aircraft(&short, "short.toml", None).expect_err("too short").to_string();
         assert!(problems.contains("2 numbers for 3 states"), "{problems}");
     }
 

@@ -29,6 +29,7 @@ pub(crate) mod schema;
 pub(crate) mod section;
 mod setting;
 pub(crate) mod spec;
+pub(crate) mod tables;
 
 use std::fmt;
 use std::path::Path;

@@ -116,7 +116,7 @@ fn of_flight(
     let linear = aircraft.linearise(&trimmed.trim);
     let model = PitchModel::of(&linear, aircraft.environment().gravity_m_s2)?;
     let title = format!("{}\n{}", trimmed.flight.data.title, trimmed.condition());
-    let has_lateral = trimmed.flight.data.derivatives()?.lateral.is_some();
+    let has_lateral = trimmed.flight.data.has_lateral();
     let lateral = match question.class.filter(|_| has_lateral) {
         None => Vec::new(),
         Some(class) => {

@@ -1,8 +1,10 @@
 //! The aircraft of a scenario: read, trimmed, and flown nonlinear or linear.
 
+use std::path::Path;
+
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
-use fspid_aircraft::data::{AircraftData, DerivativeData, Laws, ModelData};
-use fspid_aircraft::{Aircraft, Environment, TrimTarget};
+use fspid_aircraft::data::{AircraftData, Laws, ModelData};
+use fspid_aircraft::{Aircraft, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
@@ -12,6 +14,7 @@ use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
+use crate::flyer::flyer;
 
 /// A plant and what the air around it depends on.
 pub(super) struct Flown {
@@ -43,40 +46,45 @@ pub(super) fn flown(
 
 fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
     let key = if part.given("file") { "file" } else { "name" };
-    let derivatives = match read(report, files, part)?.model {
-        ModelData::Derivatives(derivatives) => derivatives,
+    let data = read(report, files, part)?;
+    let span_m = match &data.model {
+        ModelData::Derivatives(data) => data.geometry.span_m,
+        ModelData::Forces(data) => data.geometry.span_m,
         ModelData::Linear(_) => {
             let message = "only a linear model of it is known; it has no trim";
-            let allowed = "an aircraft with stability derivatives, or a `plant`";
+            let allowed = "an aircraft with stability derivatives or tables, or a `plant`";
             report.value(part.at(key), &part.path(key), message, allowed);
             return None;
         }
     };
+    fits(report, part, &data)?;
     let target = target(part)?;
     check_ground(report, part, target);
-    let aircraft = derivatives.aircraft(laws(part)?, environment(part, &derivatives)?);
+    let aircraft = flyer(&data, laws(part)?, part.text("atmosphere")? == "reference");
     let aircraft = judged(report, (part, key), aircraft)?;
-    let plant = trimmed(report, part, &with_forces(&aircraft)?, target)?;
+    let plant = trimmed(report, part, &aircraft, target)?;
     let plant = match part.text("model")? {
         "linear" => Plant::Linear(judged(report, (part, key), plant.linear())?),
         _ => plant.into(),
     };
-    let way = Way { course: course(part, target)?, span_m: derivatives.geometry.span_m };
+    let way = Way { course: course(part, target)?, span_m };
     Some(Flown { plant, way: Some(way) })
 }
 
 fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {
-    let (key, section) = match part.text("name") {
+    let (key, section, place) = match part.text("name") {
         Some(name) => {
             let named = (name, aircraft_text(name)?);
-            ("name", data::carried(report, files, &AIRCRAFT_FILE, named)?)
+            ("name", data::carried(report, files, &AIRCRAFT_FILE, named)?, None)
         }
         None => {
-            let at = (part.at("file"), part.path("file"));
-            ("file", data::referred(report, files, &AIRCRAFT_FILE, (part.text("file")?, at))?)
+            let (file, at) = (part.text("file")?, (part.at("file"), part.path("file")));
+            let section = data::referred(report, files, &AIRCRAFT_FILE, (file, at))?;
+            ("file", section, Path::new(file).parent())
         }
     };
-    let aircraft = aircraft_data(report, &section);
+    let place = place.unwrap_or(Path::new(""));
+    let aircraft = aircraft_data(report, files, (&section, place));
     files.keep(part.path(key), &AIRCRAFT_FILE, section);
     aircraft
 }
@@ -110,19 +118,21 @@ fn laws(part: &Section) -> Option<Laws> {
     Some(Laws { drag, thrust })
 }
 
-fn environment(part: &Section, derivatives: &DerivativeData) -> Option<Environment> {
-    Some(match part.text("atmosphere")? {
-        "reference" => derivatives.reference_environment(),
-        _ => Environment::STANDARD,
-    })
-}
-
-/// The aircraft as scenarios hold it.
-fn with_forces(
-    aircraft: &Aircraft<fspid_aircraft::aerodynamics::derivatives::DerivativeModel>,
-) -> Option<Aircraft<Forces>> {
-    let forces = Forces::from(*aircraft.model());
-    Aircraft::new(*aircraft.mass(), forces, *aircraft.environment()).ok()
+/// Refuses what only derivatives can do, where there are tables.
+fn fits(report: &mut Report, part: &Section, data: &AircraftData) -> Option<()> {
+    let before = report.count();
+    if let ModelData::Forces(data) = &data.model {
+        for key in ["drag", "thrust"].into_iter().filter(|key| part.given(key)) {
+            let message = "the aircraft is known by tables, which say it themselves";
+            report.value(part.at(key), &part.path(key), message, "nothing; leave it out");
+        }
+        if part.text("atmosphere") == Some("reference") && data.air.is_none() {
+            let message = "the aircraft is known by tables, and its file says no air of its own";
+            let at = (part.at("atmosphere"), part.path("atmosphere"));
+            report.value(at.0, &at.1, message, "\"standard\"");
+        }
+    }
+    (report.count() == before).then_some(())
 }
 
 /// The aircraft at its trim, or a problem at the speed that it cannot fly.

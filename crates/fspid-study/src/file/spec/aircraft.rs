@@ -1,5 +1,6 @@
-//! Aircraft files: stability derivatives or a linear model, in the units of their source.
+//! Aircraft files: stability derivatives, a linear model or tables, in the units of their source.
 
+use super::tables::TABLES;
 use super::{
     Choice, Key, Kind, Range, Table, Variant, Way, finite, optional, plain, positive, required,
 };
@@ -29,6 +30,7 @@ pub(crate) static AIRCRAFT_FILE: Table = Table {
     variants: &[
         Variant { name: "derivatives", table: plain("Stability derivatives.", &[DERIVATIVES]) },
         Variant { name: "linear", table: plain("A linear model.", &[LINEAR]) },
+        Variant { name: "tables", table: plain("Tables in files of their own.", &[TABLES]) },
     ],
 };
 
@@ -176,14 +178,18 @@ static VALIDITY: Table = Table {
     variants: &[],
 };
 
+pub(super) const SURFACE_KEYS: &[Key] = &[
+    required("elevator_deg", DEG_RANGE, "Elevator, trailing edge down positive."),
+    required("aileron_deg", DEG_RANGE, "Aileron."),
+    required("rudder_deg", DEG_RANGE, "Rudder."),
+];
+
 static TRAVEL: Table = plain(
     "How far the controls go.",
-    &[&[
-        required("elevator_deg", DEG_RANGE, "Elevator, trailing edge down positive."),
-        required("aileron_deg", DEG_RANGE, "Aileron."),
-        required("rudder_deg", DEG_RANGE, "Rudder."),
-        required("throttle", interval(""), "Thrust in multiples of that of the reference."),
-    ]],
+    &[
+        SURFACE_KEYS,
+        &[required("throttle", interval(""), "Thrust in multiples of that of the reference.")],
+    ],
 );
 
 static EQUATION: Table = plain(

@@ -19,6 +19,7 @@ mod flight;
 mod scenario;
 mod sensor;
 mod signal;
+mod tables;
 
 pub(crate) use aircraft::AIRCRAFT_FILE;
 pub(crate) use data::{PLANT_FILE, RULE_FILE};

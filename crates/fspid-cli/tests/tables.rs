@@ -1,0 +1,98 @@
+//! An aircraft that is made of tables, wherever one of derivatives can be asked about.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fspid-daveml/tests/data");
+
+const AIRCRAFT: &str = r#"
+kind = "tables"
+name = "lines"
+title = "Straight lines"
+source = "invented"
+
+[tables]
+aerodynamics = "aero.toml"
+inertia = "body.toml"
+propulsion = "engine.toml"
+
+[body]
+gravity_m_s2 = 9.8
+
+[engine]
+angular_momentum_kg_m2_s = 0.0
+
+[travel]
+elevator_deg = [-25.0, 20.0]
+aileron_deg = [-20.0, 20.0]
+rudder_deg = [-30.0, 30.0]
+"#;
+
+fn aircraft(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    command.arg("aircraft").args(arguments).current_dir(folder).output().expect("it starts")
+}
+
+/// A folder with the aircraft, its tables imported by the program.
+fn hangar() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["aero", "body", "engine"] {
+        let (from, to) = (format!("{DATA}/glider_{part}.dml"), format!("{part}.toml"));
+        let output = aircraft(folder.path(), &["import", &from, "--out", &to]);
+        assert_eq!(output.status.code(), Some(0));
+    }
+    std::fs::write(folder.path().join("lines.toml"), AIRCRAFT).expect("written");
+    folder
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+#[test]
+fn every_question_about_a_flight_is_answered_for_tables() {
+    let folder = hangar();
+    let flight = ["--speed", "80", "--altitude", "1000"];
+    for verb in ["trim", "linearise", "modes", "qualities"] {
+        let output = aircraft(folder.path(), &[&[verb, "lines.toml"], &flight[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{verb}: {}", text(&output.stderr));
+    }
+    let map = ["envelope", "lines.toml", "--speeds", "70:90:3", "--altitudes", "0:1000:2"];
+    assert_eq!(aircraft(folder.path(), &map).status.code(), Some(0));
+    let show = aircraft(folder.path(), &["show", "lines.toml"]);
+    assert!(text(&show.stdout).contains("angle of attack"), "{}", text(&show.stderr));
+}
+
+/// Closed form of `lift` and `moment` as in the tests of `fspid-daveml`, here in the standard atmosphere.
+#[test]
+fn a_trim_of_tables_balances_the_forces_of_its_straight_lines() {
+    let folder = hangar();
+    let asked = ["trim", "lines.toml", "--speed", "80", "--altitude", "0", "--format", "json"];
+    let output = aircraft(folder.path(), &asked);
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let number = |key: &str| answer["trim"][key].as_f64().expect("a number");
+    let (scale_n, weight_n) = (0.5 * 1.225 * 6400.0 * 18.580_608, 1_459.390_293_720_636 * 9.8);
+    let (alpha_deg, thrust_n) = (number("alpha_deg"), number("thrust_n"));
+    let (sin, cos) = alpha_deg.to_radians().sin_cos();
+    let lift_n = (0.2 + 0.08 * alpha_deg) * scale_n;
+    assert!((lift_n - weight_n * cos).abs() < 1e-4 * weight_n);
+    assert!((thrust_n - 0.03 * scale_n - weight_n * sin).abs() < 1e-4 * weight_n);
+    assert!((number("throttle") - thrust_n / (2000.0 * 4.448_221_615_260_5)).abs() < 1e-9);
+}
+
+#[test]
+fn what_tables_cannot_answer_is_refused_with_the_reason() {
+    let folder = hangar();
+    let flight = ["trim", "lines.toml", "--speed", "80", "--altitude", "0"];
+    let cases: [(&[&str], &str); 4] = [
+        (&["trim", "lines.toml"], "--speed is missing"),
+        (&["derive", "lines.toml"], "it has no stability derivatives"),
+        (&[&flight[..], &["--air", "source"]].concat(), "says no air of its own"),
+        (&[&flight[..], &["--drag", "polar"]].concat(), "--drag and --thrust are for derivatives"),
+    ];
+    for (asked, reason) in cases {
+        let output = aircraft(folder.path(), asked);
+        assert_eq!(output.status.code(), Some(2), "{asked:?}");
+        assert!(text(&output.stderr).contains(reason), "{}", text(&output.stderr));
+    }
+}

@@ -1,0 +1,152 @@
+//! Aircraft whose forces and body are tables in files of their own.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use fspid_aircraft::data::ForceData;
+use fspid_aircraft::{Air, Vector3};
+use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
+use fspid_daveml::{Model, Problem, Reading};
+
+use crate::file::aircraft::{quantity, surfaces};
+use crate::file::files::Files;
+use crate::file::report::{Place, Report};
+use crate::file::section::Section;
+
+/// What each file of tables may be.
+const ALLOWED: &str =
+    "a DAVE-ML file, or one that `fspid aircraft import` wrote, its path relative to this file";
+
+/// Reads a model as the ending of its file says.
+pub(crate) fn read_model(path: &Path, text: &str) -> Result<Reading, fspid_daveml::Problems> {
+    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    if is_toml { fspid_daveml::data::read(text) } else { fspid_daveml::read(text) }
+}
+
+/// The forces and the body of an aircraft file, whose tables are relative to `place` in the folder of `files`.
+pub(super) fn tables(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (section, place): (&Section, &Path),
+) -> Option<ForceData> {
+    let part = section.section("tables")?;
+    let [aerodynamics, inertia, propulsion] = ["aerodynamics", "inertia", "propulsion"]
+        .map(|key| model(report, files, (part, key), place));
+    let body = inertia.and_then(|inertia| body(report, section, &inertia));
+    // Without a body the forces are looked at all the same, so that all problems are told at once.
+    let centre_of_mass_m = body.map_or(Vector3::ZERO, |body| body.centre_of_mass_m);
+    let forces = forces(report, section, [aerodynamics?, propulsion?], centre_of_mass_m)?;
+    Some(ForceData {
+        mass: body?.mass,
+        geometry: forces.geometry(),
+        gravity_m_s2: quantity(section.section("body")?, "gravity")?,
+        air: section.section("air").and_then(air),
+        forces: Arc::new(forces),
+    })
+}
+
+fn air(section: &Section) -> Option<Air> {
+    Some(Air::with_density(quantity(section, "density")?, quantity(section, "speed_of_sound")?))
+}
+
+/// The model in the file that a key names, if its check cases pass.
+fn model(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (part, key): (&Section, &str),
+    place: &Path,
+) -> Option<Model> {
+    let path = place.join(part.text(key)?);
+    let name = path.display().to_string();
+    let text = files.read(&name).map_err(|reason| {
+        report.value(part.at(key), &part.path(key), format!("cannot be read: {reason}"), ALLOWED);
+    });
+    let text = text.ok()?;
+    files.digest(&text);
+    match read_model(&path, &text) {
+        Ok(reading) => checked(report, (part, key), reading.model),
+        Err(problems) => {
+            let source = report.add_source(Some(name), &text);
+            problems.0.iter().for_each(|problem| located(report, (source, &text), problem));
+            None
+        }
+    }
+}
+
+/// The model if it gives what its own check cases say.
+fn checked(report: &mut Report, (part, key): (&Section, &str), model: Model) -> Option<Model> {
+    let checks = model.check();
+    let failed = checks.shots.iter().find(|shot| !shot.passed());
+    let Some(shot) = failed else { return Some(model) };
+    let message = format!("its check case `{}` fails", shot.name);
+    report.value(part.at(key), &part.path(key), message, "a file whose check cases pass");
+    None
+}
+
+/// A problem of a model at its place in the text of its file.
+fn located(report: &mut Report, (source, text): (usize, &str), problem: &Problem) {
+    let at = problem.place.map_or(0, |place| offset(text, place));
+    let message = match problem.word.as_str() {
+        "" => problem.message.clone(),
+        word => format!("`{word}`: {}", problem.message),
+    };
+    let place = Place { source, start: at, end: at };
+    report.missing(place, "", message, problem.expected.clone());
+}
+
+/// Bytes before a line and column.
+fn offset(text: &str, place: fspid_daveml::Place) -> usize {
+    let before = text.split_inclusive('\n').take(place.line.saturating_sub(1));
+    let begin: usize = before.map(str::len).sum();
+    let line = text.get(begin..).unwrap_or_default();
+    let column = line.chars().take(place.column.saturating_sub(1));
+    begin + column.map(char::len_utf8).sum::<usize>()
+}
+
+fn body(report: &mut Report, section: &Section, inertia: &Model) -> Option<Body> {
+    let place_pct = section.section("body")?.number("centre_of_mass_pct");
+    let engine_kg_m2_s = quantity(section.section("engine")?, "angular_momentum")?;
+    fitting(report, (section, "inertia"), Body::placed(inertia, place_pct, engine_kg_m2_s))
+}
+
+/// Aerodynamics alone first, so that a problem is told of the file that has it.
+fn forces(
+    report: &mut Report,
+    section: &Section,
+    [aerodynamics, propulsion]: [Model; 2],
+    centre_of_mass_m: Vector3,
+) -> Option<TableForces> {
+    let setting = Setting {
+        centre_of_mass_m,
+        gearing: gearing(section.section("engine")?)?,
+        travel: surfaces(section.section("travel")?)?,
+    };
+    let alone = TableForces::new(aerodynamics.clone(), None, setting);
+    fitting(report, (section, "aerodynamics"), alone)?;
+    let both = TableForces::new(aerodynamics, Some(propulsion), setting);
+    fitting(report, (section, "propulsion"), both)
+}
+
+fn gearing(engine: &Section) -> Option<Gearing> {
+    Some(match engine.text("gearing")? {
+        "stevens-lewis" => Gearing::StevensLewis,
+        _ => Gearing::Proportional,
+    })
+}
+
+/// A part of the aircraft, or a problem at the file that does not make it.
+fn fitting<T>(
+    report: &mut Report,
+    (section, key): (&Section, &str),
+    part: Result<T, FlightError>,
+) -> Option<T> {
+    let tables = section.section("tables")?;
+    let told = |error: FlightError| {
+        let allowed = "tables with the names and units of AIAA S-119";
+        report.value(tables.at(key), &tables.path(key), error.to_string(), allowed);
+    };
+    part.map_err(told).ok()
+}
+
+#[cfg(test)]
+mod tests;
