@@ -18,10 +18,45 @@ const SETPOINTS: [&str; 6] = [
     "kind = \"table\"\ntime_s = [0.0, 1.0]\nvalue_deg = [1.0, 2.0]\ninterpolation = \"linear\"\n",
 ];
 
-/// The file with every key, once for each set-point.
+/// Speed, altitude and wind of the flying file: every unit and every kind.
+const FLIGHTS: [[&str; 3]; 5] = [
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"steady\"\nspeed_m_s = 5.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+    ],
+    [
+        "airspeed_kt = 104.0",
+        "altitude_ft = 1000.0",
+        "kind = \"steady\"\nspeed_kt = 10.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+    ],
+    [
+        "airspeed_ft_s = 176.0",
+        "altitude_m = 300.0",
+        "kind = \"log-shear\"\nw20_m_s = 5.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"log-shear\"\nw20_kt = 10.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"microburst\"\noutflow_m_s = 8.0\nradius_m = 600.0\npeak_height_m = 40.0\nnorth_m = 700.0\neast_m = 50.0\n",
+    ],
+];
+
+/// The files with every key, once for each set-point, and once for each speed, altitude and wind.
 pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-study/tests/scenarios/every-key.toml");
-    SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint)).to_vec()
+    let flying = text("crates/fspid-study/tests/scenarios/every-key-aircraft.toml");
+    let commands = SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint));
+    let flights = FLIGHTS.map(|flight| {
+        let parts = FLIGHTS[0].into_iter().zip(flight);
+        parts.fold(flying.clone(), |text, (from, to)| text.replace(from, to))
+    });
+    commands.into_iter().chain(flights).collect()
 }
 
 /// A number in the file: its line, what stands before it, and whether it is in a list.

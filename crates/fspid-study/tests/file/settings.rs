@@ -53,7 +53,7 @@ fn walk(table: &Table, path: &str, keys: &mut BTreeMap<String, Value>) {
 
 /// True for what a preset says, which stands in no scenario.
 fn is_of_preset(setting: &Setting) -> bool {
-    setting.path.contains(".preset.")
+    [".preset.", ".name."].iter().any(|key| setting.path.contains(key))
 }
 
 #[test]
