@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// The first states: forward and downward velocity, or airspeed and angle of attack.
     #[arg(long, value_enum, default_value_t = States::Components)]
     states: States,
-    /// Write pitch over elevator as a plant file; a scenario names it under [plant] as file = "OUT.toml".
+    /// Write pitch over elevator as a plant file; a scenario names it under `[plant]` as `file = "OUT.toml"`.
     #[arg(long, value_name = "OUT.toml")]
     plant: Option<PathBuf>,
     #[command(flatten)]
