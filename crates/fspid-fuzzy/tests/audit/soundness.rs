@@ -10,6 +10,7 @@ use fspid_fuzzy::system::{
     System, Term, Universe, Variable,
 };
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Rounding in an evaluation and in the difference of two.
 const ROUNDING: f64 = 1e-9;
@@ -183,7 +184,11 @@ fn check(system: &System, proved: &OutputSurface, point: &[f64]) -> Result<(), T
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    // The same systems at each run; other seeds belong to the long checks.
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(60),
+        ..ProptestConfig::with_cases(60)
+    })]
 
     #[test]
     fn no_random_point_lies_outside_of_proved_bounds(

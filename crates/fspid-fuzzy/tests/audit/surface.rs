@@ -285,3 +285,17 @@ fn sampled_centroids_are_bounded_as_they_are_computed() {
         assert!(proved.most.bounds[1] < 4.5 && proved.least.bounds[0] > -4.5);
     }
 }
+
+/// It used to be said of such a rule that it does nothing, because another is always stronger; but
+/// without it the shares of all the others are larger.
+#[test]
+fn a_rule_that_takes_a_share_of_the_strength_is_never_said_to_have_no_effect() {
+    let mut parts = parts(PRINTED, Defuzzifier::Exact);
+    let mut weaker = parts.blocks[0].rules[8].clone();
+    weaker.weight = 0.5;
+    parts.blocks[0].rules.push(weaker);
+    parts.blocks[0].activation = system::Activation::Proportional;
+    let audit = surface(&System::new(parts).expect("a sound system"), &few()).expect("universes");
+    let none = audit.rules.iter().find(|rule| matches!(rule, RuleEffect::None { .. }));
+    assert_eq!(none, None);
+}

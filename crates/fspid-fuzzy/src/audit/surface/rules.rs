@@ -9,7 +9,7 @@ use crate::audit::rule_base::{RulePosition, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
 use crate::norm::SNormKind;
 use crate::scalar::{Interval, Scalar};
-use crate::system::{Defuzzifier, System};
+use crate::system::{Activation, Defuzzifier, System};
 
 /// Boxes for each rule and term; a point is mostly found at once.
 const BOXES: u64 = 2_000;
@@ -100,7 +100,7 @@ pub(super) fn effects(
     let redundant = rule_base(system).redundant;
     let each = system.rules.iter().enumerate().map(|(rule, resolved)| {
         let position = RulePosition { block: resolved.block, rule: resolved.rule };
-        if redundant.iter().any(|known| known.rule == position) {
+        if stands_alone(system, rule) && redundant.iter().any(|known| known.rule == position) {
             return RuleEffect::None { rule: position };
         }
         effect(field, (rule, position), domain, effort)
@@ -115,7 +115,7 @@ fn effect(
     effort: Effort,
 ) -> RuleEffect {
     let system = field.firing.system;
-    let mut all_none = true;
+    let mut all_none = stands_alone(system, rule);
     for rivals in rivals(system, rule) {
         let mut lead = Lead { firing: &mut field.firing, rule, rivals: &rivals };
         let found = best_lead(&mut lead, domain, effort);
@@ -132,6 +132,13 @@ fn effect(
         all_none &= found.bounds[1] <= 0.0;
     }
     if all_none { RuleEffect::None { rule: position } } else { RuleEffect::Open { rule: position } }
+}
+
+/// True if leaving a rule out does not change how strongly the others act: not where strengths are
+/// divided by their sum, or rules are counted or ranked.
+fn stands_alone(system: &System, rule: usize) -> bool {
+    let block = system.rules.get(rule).and_then(|rule| system.parts.blocks.get(rule.block));
+    block.is_some_and(|block| block.activation == Activation::General)
 }
 
 /// A search that is content with a point where the lead is nearly as large as it gets.
