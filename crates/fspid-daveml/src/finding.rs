@@ -1,6 +1,6 @@
 //! Problems and notes while they are collected: by byte, and turned into lines and columns at the end.
 
-use crate::problem::{Note, Place, Problem, Problems};
+use fspid_formats::{Note, Place, Problem, Problems};
 
 /// Most problems and most notes that are kept.
 const MAX_FINDINGS: usize = 100;

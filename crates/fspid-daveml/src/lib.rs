@@ -47,14 +47,13 @@ mod finding;
 pub mod flight;
 mod model;
 mod number;
-mod problem;
 mod xml;
 
 pub use document::Document;
 pub use expression::{Expression, Function, One, Two};
+pub use fspid_formats::{Note, Place, Problem, Problems};
 pub use model::{Bounds, CheckReport, Deviation, EvaluateError, Model, Port, ShotReport};
 pub use number::Number;
-pub use problem::{Note, Place, Problem, Problems};
 pub use xml::{Reading, read};
 
 /// Longest text that is read, bytes.

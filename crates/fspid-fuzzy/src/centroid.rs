@@ -4,7 +4,7 @@
 //! each cut at the firing strength $s_i$ of its label, over the universe from the first peak to the
 //! last. All functions here work in units of the spacing, with the peaks at $-3, -2, \dots, 3$.
 
-use crate::defuzzifier::Defuzzifier;
+use crate::defuzzifier::{Defuzzifier, SampleGrid};
 use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::scalar::Scalar as _;
@@ -21,20 +21,13 @@ fn half_span<R: Real, T>(strengths: &[T]) -> R {
 /// The strengths must lie in [0, 1] and in each lane one must be at least `R::MIN_POSITIVE`.
 #[inline(always)]
 pub(crate) fn centroid<L: Lanes>(rule: Defuzzifier, strengths: &[L], zero: L) -> L {
-    let (none, half, one) = (L::Number::ZERO, L::Number::HALF, L::Number::ONE);
-    let sampled = |samples, cells, offset, end_weight| {
-        sampled(strengths, zero, [samples, cells], [offset, end_weight])
-    };
-    match rule {
-        Defuzzifier::Exact => exact(strengths, zero),
-        Defuzzifier::Endpoints(samples) => sampled(samples, samples - 1, none, one),
-        Defuzzifier::Midpoint(cells) => sampled(cells, cells, half, one),
-        Defuzzifier::Trapezoid(samples) => sampled(samples, samples - 1, none, half),
-        Defuzzifier::LeftEnd(cells) => sampled(cells, cells, none, one),
+    match (rule, rule.samples()) {
         // The cuts lie elsewhere in each lane.
-        Defuzzifier::Vertices(samples) => {
+        (Defuzzifier::Vertices(samples), _) => {
             L::lane_by_lane(strengths, zero, |strengths| vertices(strengths, samples))
         }
+        (_, Some(grid)) => sampled(strengths, zero, grid),
+        (_, None) => exact(strengths, zero),
     }
 }
 
@@ -87,21 +80,16 @@ fn inner_moment<L: Lanes>(s: L) -> L {
     s * (half - s * (half - s * sixth))
 }
 
-/// $\sum x_n \mu(x_n) / \sum \mu(x_n)$ over `samples` points, the first `offset` cells from the
-/// lower end, `cells` cells in all, the two end samples counted with `end_weight`.
+/// $\sum w_n x_n \mu(x_n) / \sum w_n \mu(x_n)$ over the samples.
 #[inline(always)]
-fn sampled<L: Lanes>(
-    strengths: &[L],
-    zero: L,
-    [samples, cells]: [u32; 2],
-    [offset, end_weight]: [L::Number; 2],
-) -> L {
+fn sampled<L: Lanes>(strengths: &[L], zero: L, grid: SampleGrid) -> L {
+    let [offset, end_weight] = [grid.offset, grid.end_weight].map(L::Number::from_f64);
     let c = |value| zero.same(value);
     let half_span = half_span::<L::Number, L>(strengths);
-    let cell = (half_span + half_span) / L::Number::from_f64(f64::from(cells));
+    let cell = (half_span + half_span) / L::Number::from_f64(f64::from(grid.cells));
     let (mut area, mut moment) = (zero, zero);
-    for n in 0..samples {
-        let is_end = n == 0 || n == samples - 1;
+    for n in 0..grid.count {
+        let is_end = n == 0 || n == grid.count - 1;
         let weight = if is_end { end_weight } else { L::Number::ONE };
         let x = (L::Number::from_f64(f64::from(n)) + offset) * cell - half_span;
         let grade = c(weight) * union_grade(strengths, zero, x);

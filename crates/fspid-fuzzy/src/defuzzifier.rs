@@ -32,7 +32,46 @@ pub enum Defuzzifier {
     Vertices(u32),
 }
 
+/// The equally spaced samples that a rule takes of a universe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SampleGrid {
+    /// How many.
+    pub(crate) count: u32,
+    /// Cells between the ends of the universe.
+    pub(crate) cells: u32,
+    /// Where in its cell a sample lies.
+    pub(crate) offset: f64,
+    /// How much a sample at either end counts.
+    pub(crate) end_weight: f64,
+}
+
+#[cfg(feature = "alloc")]
+impl SampleGrid {
+    /// Place and weight of a sample of the universe from `lower` to `upper`.
+    pub(crate) fn at(&self, n: u32, [lower, upper]: [f64; 2]) -> (f64, f64) {
+        let is_end = n == 0 || n == self.count - 1;
+        let cell = (upper - lower) / f64::from(self.cells);
+        let x = lower + (f64::from(n) + self.offset) * cell;
+        (x, if is_end { self.end_weight } else { 1.0 })
+    }
+}
+
 impl Defuzzifier {
+    /// The samples of the rule; nothing where it takes none. Those of [`Vertices`](Self::Vertices)
+    /// are its equally spaced ones.
+    pub(crate) fn samples(self) -> Option<SampleGrid> {
+        let grid = |count, cells, offset, end_weight| {
+            Some(SampleGrid { count, cells, offset, end_weight })
+        };
+        match self {
+            Self::Exact => None,
+            Self::Endpoints(n) | Self::Vertices(n) => grid(n, n - 1, 0.0, 1.0),
+            Self::Trapezoid(n) => grid(n, n - 1, 0.0, 0.5),
+            Self::Midpoint(n) => grid(n, n, 0.5, 1.0),
+            Self::LeftEnd(n) => grid(n, n, 0.0, 1.0),
+        }
+    }
+
     /// What can be written for a defuzzifier.
     pub const NAMES: &'static str =
         "exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N, vertices:N";

@@ -9,6 +9,7 @@
 use fspid_core::{Gains, Shell};
 use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
+use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -28,14 +29,18 @@ pub struct Unstable {
 }
 
 /// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
-/// tell of (self-tuning gains, limits of the controller, nonlinear aircraft).
+/// tell of (self-tuning gains, limits of the controller).
+///
+/// A nonlinear aircraft is judged by its linear model around the trim: where that grows, the flight
+/// leaves the trim, however small the disturbance.
 ///
 /// Limits of the servo are passed over: around rest, where they do not act, they save no loop that
 /// is unstable without them. Deadband and play of an actuator are passed over as well, and so is
 /// what sensors do to a measurement: the answer is that of the loop without them.
 ///
 /// # Errors
-/// [`SimError`] where the plant cannot be discretised or the eigenvalues are not found.
+/// [`SimError`] where the plant cannot be discretised, an aircraft has no linear model, or the
+/// eigenvalues are not found.
 pub fn instability(
     scenario: &Scenario,
     controller: &Controller,
@@ -46,7 +51,9 @@ pub fn instability(
     if !pid.shell().is_linear() {
         return Ok(None);
     }
-    for (from_s, plant) in scenario.lasting_plants() {
+    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
+    let around_trim = trimmed.iter().map(|plant| (0.0, plant));
+    for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
         let step = linear_step(scenario, plant, scenario.timing.dt_s())?;
         let radius = spectral_radius(&closed_loop(&step, pid.gains(), pid.shell())?)?;
         // Written so that NaN counts as unstable.

@@ -12,7 +12,7 @@ use crate::MAX_VARIABLES;
 use crate::document::Document;
 use crate::finding::{Findings, Origin};
 use crate::model::{Axis, Grid, Model, Step};
-use crate::problem::Problems;
+use fspid_formats::Problems;
 use names::Names;
 use variables::Definition;
 

@@ -36,8 +36,8 @@ use crate::MAX_INPUT_BYTES;
 use crate::compile::compile;
 use crate::document::{Breakpoints, Document, Header, Shot, Table, TableFunction, Variable};
 use crate::finding::{Findings, Origin};
-use crate::problem::Problems;
 use crate::xml::Reading;
+use fspid_formats::Problems;
 
 pub(crate) use formula::{is_name, text_of_formula};
 

@@ -2,7 +2,7 @@
 //!
 //! Entities that a file declares could blow up a short text; a model needs none of them.
 
-use crate::problem::{Place, Problem};
+use fspid_formats::{Place, Problem};
 
 /// Refuses a document type with declarations inside the file, which begin with `[`.
 pub(super) fn check(text: &str) -> Result<(), Problem> {

@@ -15,9 +15,9 @@ use crate::compile::compile;
 use crate::document::Document;
 use crate::finding::{Findings, Origin};
 use crate::model::Model;
-use crate::problem::{Note, Place, Problem, Problems};
 use crate::{MAX_DEPTH, MAX_INPUT_BYTES};
 use element::Element;
+use fspid_formats::{Note, Place, Problem, Problems};
 
 /// Most elements and texts of a file; each takes some hundred bytes of memory.
 const MAX_NODES: u32 = 2_000_000;

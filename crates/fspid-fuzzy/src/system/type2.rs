@@ -16,6 +16,7 @@ use super::parts::{Activation, Variable};
 use super::parts::{Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement};
 use super::program::{STACK, Step};
 use super::workspace::Workspace;
+use crate::defuzzifier::SampleGrid;
 use crate::hedge::Hedge;
 use crate::karnik_mendel::{Straight, WeightedPoint, average_end_points, centroid_end_points};
 
@@ -133,7 +134,7 @@ impl Type2 {
     /// Memory for evaluations.
     pub(crate) fn room(&self, system: &System) -> Type2Room {
         let most = system.outputs.iter().map(|o| o.conclusions.len()).max().unwrap_or(0);
-        let sampled = system.parts.outputs.iter().filter_map(samples).map(|(count, _)| count).max();
+        let sampled = system.parts.outputs.iter().filter_map(samples).map(|grid| grid.count).max();
         let mut outline = Room::default();
         for (output, both) in system.outputs.iter().zip(&self.outlines) {
             for each in both.iter().flatten() {
@@ -223,8 +224,8 @@ impl System {
                 sum_end_points(&workspace.type2.as_ref()?.points)
             }
             _ => match samples(output) {
-                Some(plan) => {
-                    self.sampled_points(index, output, plan, workspace)?;
+                Some(grid) => {
+                    self.sampled_points(index, output, grid, workspace)?;
                     average_end_points(&workspace.type2.as_ref()?.points)
                 }
                 None => self.exact_interval(index, workspace),
@@ -276,15 +277,15 @@ impl System {
         &self,
         index: usize,
         output: &Output,
-        (count, [offset, cells, end_weight]): (u32, [f64; 3]),
+        grid: SampleGrid,
         workspace: &mut Workspace,
     ) -> Option<()> {
         let universe = output.universe?;
         let Workspace { inputs, scratch, type2, .. } = workspace;
         let room = type2.as_mut()?;
         room.points.clear();
-        for n in 0..count {
-            let x = universe.lower + (f64::from(n) + offset) * (universe.span() / cells);
+        for n in 0..grid.count {
+            let (x, counts) = grid.at(n, [universe.lower, universe.upper]);
             let mut weight = [0.0; 2];
             for &position in &self.outputs.get(index)?.conclusions {
                 let resolved = self.conclusions.get(position)?;
@@ -304,8 +305,7 @@ impl System {
                     *joined = output.aggregation.apply(*joined, shaped);
                 }
             }
-            let is_end = n == 0 || n == count - 1;
-            let weight = weight.map(|w| if is_end { end_weight * w } else { w });
+            let weight = weight.map(|w| counts * w);
             room.points.push(WeightedPoint { value: [x; 2], weight });
         }
         Some(())
@@ -325,16 +325,10 @@ fn ordinary(output: &Output, lowered: bool) -> Output {
     ordinary
 }
 
-/// Number of samples of a sampled centroid; offset, number of cells, and how much a sample at either
-/// end counts.
-fn samples(output: &Output) -> Option<(u32, [f64; 3])> {
-    use super::Sampling::{Endpoints, Exact, LeftEnd, Midpoint, Trapezoid, Vertices};
+/// The samples of a sampled centroid.
+fn samples(output: &Output) -> Option<SampleGrid> {
     match output.defuzzifier {
-        Defuzzifier::Centroid(Endpoints(n)) => Some((n, [0.0, f64::from(n - 1), 1.0])),
-        Defuzzifier::Centroid(Trapezoid(n)) => Some((n, [0.0, f64::from(n - 1), 0.5])),
-        Defuzzifier::Centroid(Midpoint(n)) => Some((n, [0.5, f64::from(n), 1.0])),
-        Defuzzifier::Centroid(LeftEnd(n)) => Some((n, [0.0, f64::from(n), 1.0])),
-        Defuzzifier::Centroid(Exact | Vertices(_)) => None,
+        Defuzzifier::Centroid(sampling) => sampling.samples(),
         _ => None,
     }
 }

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use fspid_aircraft::Quantity;
 use fspid_sim::{Outcome, fly};
 use fspid_study::file;
+use fspid_study::metrics::Verdict;
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
 
@@ -31,6 +32,19 @@ fn an_aircraft_on_its_back_has_diverged() {
     assert!(matches!(trace.outcome, Outcome::Diverged { .. }), "{:?}", trace.outcome);
     assert!(trace.rows() < 6001);
     assert!(trace.theta_rad.iter().all(|theta| theta.is_finite()));
+}
+
+/// It used to be called flown: the window ends long before the growth shows.
+#[test]
+fn a_loop_that_grows_slowly_around_the_trim_is_called_unstable_and_meets_nothing() {
+    let weak = ["controller.PID.kp=-0.02", "controller.PID.ki=0.0", "controller.PID.kd=0.0"];
+    let text = format!("{NAVION}\n[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 1000.0\n");
+    let simulation = Simulation::of(&study(&text, &weak)).expect("it flies");
+    let result = &simulation.results[0];
+    assert_eq!(result.trace.outcome, Outcome::Completed);
+    assert!(result.trace.theta_rad.iter().all(|theta| theta.abs() < 0.1), "it looks calm");
+    assert!(matches!(result.metrics.verdict, Verdict::Unstable { .. }), "{:?}", result.metrics);
+    assert!(!simulation.requirements_met());
 }
 
 #[test]

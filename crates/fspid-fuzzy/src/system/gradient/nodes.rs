@@ -189,21 +189,14 @@ impl Top {
 
 /// The samples of a sampled centroid with their weights.
 fn samples(sampling: Sampling, output: &Output) -> Vec<Node> {
-    let Some(universe) = output.universe else { return Vec::new() };
-    let (count, cells, offset, end_weight) = match sampling {
-        Sampling::Endpoints(n) => (n, n - 1, 0.0, 1.0),
-        Sampling::Trapezoid(n) => (n, n - 1, 0.0, 0.5),
-        Sampling::Midpoint(n) => (n, n, 0.5, 1.0),
-        Sampling::LeftEnd(n) => (n, n, 0.0, 1.0),
-        Sampling::Vertices(_) | Sampling::Exact => return Vec::new(),
+    let (Some(grid), Some(universe)) = (sampling.samples(), output.universe) else {
+        return Vec::new();
     };
-    let cell = universe.span() / f64::from(cells);
-    let sample = |n: u32| {
-        let is_end = n == 0 || n == count - 1;
-        let x = universe.lower + (f64::from(n) + offset) * cell;
-        Node { x, weight: if is_end { end_weight } else { 1.0 } }
+    let sample = |n| {
+        let (x, weight) = grid.at(n, [universe.lower, universe.upper]);
+        Node { x, weight }
     };
-    (0..count).map(sample).collect()
+    (0..grid.count).map(sample).collect()
 }
 
 fn gauss_2(from: f64, to: f64, nodes: &mut Vec<Node>) {

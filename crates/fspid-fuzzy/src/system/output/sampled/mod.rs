@@ -11,6 +11,7 @@ use super::super::norms::TNorm;
 use super::super::parts::{Conclusion, Membership, Output};
 use super::actors::{Actors, Level};
 use super::{roomy_clone, set_grade};
+use crate::defuzzifier::SampleGrid;
 use crate::norm::{SNormKind, TNormKind};
 
 /// Most grades that are computed once and for all.
@@ -72,14 +73,7 @@ impl Sampled {
     /// The samples of an output; nothing where the integral itself is asked for.
     pub(crate) fn of(output: &Output) -> Option<Self> {
         let (sampling, universe) = (output.defuzzifier.sampling()?, output.universe?);
-        let (count, cells, offset) = match sampling {
-            Sampling::Exact => return None,
-            Sampling::Midpoint(n) => (n, n, 0.5),
-            Sampling::LeftEnd(n) => (n, n, 0.0),
-            Sampling::Endpoints(n) | Sampling::Trapezoid(n) | Sampling::Vertices(n) => {
-                (n, n - 1, 0.0)
-            }
-        };
+        let SampleGrid { count, cells, offset, .. } = sampling.samples()?;
         let mut own = Self {
             sampling,
             lower: universe.lower,
