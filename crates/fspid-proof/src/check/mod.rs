@@ -1,0 +1,1 @@
+//! The re-check in interval arithmetic: what a certificate is believed for.

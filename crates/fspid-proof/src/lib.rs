@@ -1,0 +1,16 @@
+//! Stability certificates of sampled loops whose gains move.
+//!
+//! The one-sample matrix of the loop is affine in the gains, so that one quadratic form that falls at
+//! the corners of a set of gains falls for every gain in it, however fast the gains move:
+//!
+//! $$ M(k)^T P M(k) \prec \rho^2 P \quad \text{for every corner } k $$
+//!
+//! A solver looks for the matrix P in ordinary arithmetic and need not be trusted. What is believed
+//! is the re-check: interval arithmetic that encloses the sampled plant (a matrix exponential), the
+//! gains that the supervisor can produce, and the definiteness of every difference.
+//!
+//! Not here: files, texts, scenarios.
+
+pub mod check;
+pub mod gain_set;
+pub mod solve;
