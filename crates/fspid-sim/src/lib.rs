@@ -25,6 +25,7 @@ mod error;
 mod gust_entry;
 mod law;
 mod longitudinal;
+pub mod loop_model;
 mod math;
 mod plant;
 mod propagation;

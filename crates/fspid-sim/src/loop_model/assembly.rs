@@ -1,0 +1,309 @@
+//! From plant, queues and controller to one matrix.
+
+use fspid_core::{Gains, IntegralForm};
+use fspid_fuzzy::Scalar;
+
+use super::{BreakPoint, LoopModel, Sensing};
+
+/// Where the parts of the state stand; a part that is not there has no place.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    plant: usize,
+    queue: usize,
+    pitch: usize,
+    rate: usize,
+    pub(super) integral: Option<usize>,
+    pub(super) derivative: Option<usize>,
+    pub(super) previous: Option<usize>,
+    size: usize,
+}
+
+impl Layout {
+    pub(super) fn size(&self) -> usize {
+        self.size
+    }
+
+    fn pitch_from(&self) -> usize {
+        self.plant + self.queue
+    }
+
+    fn rate_from(&self) -> usize {
+        self.pitch_from() + self.pitch
+    }
+
+    pub(super) fn names(&self) -> Vec<String> {
+        let numbered = |what: &str, count: usize| -> Vec<String> {
+            (1..=count).map(|number| format!("{what} {number}")).collect()
+        };
+        let mut names = numbered("plant", self.plant);
+        names.extend(numbered("command on its way", self.queue));
+        names.extend(numbered("pitch before", self.pitch));
+        names.extend(numbered("rate before", self.rate));
+        names.extend(self.integral.map(|_| "integral".to_owned()));
+        names.extend(self.derivative.map(|_| "derivative".to_owned()));
+        names.extend(self.previous.map(|_| "last sample".to_owned()));
+        names
+    }
+}
+
+/// A loop with its gains, taken apart at the command, the seen pitch and the seen rate.
+#[derive(Clone, Debug)]
+pub(super) struct Assembly<T> {
+    pub(super) layout: Layout,
+    /// Next state by state, with command, seen pitch and seen rate at zero.
+    free: Vec<Vec<T>>,
+    /// Next state by command.
+    by_command: Vec<T>,
+    /// Next memory of the controller by seen pitch.
+    memory_by_pitch: Vec<T>,
+    /// Seen pitch and seen rate by state.
+    pitch: Vec<T>,
+    rate: Vec<T>,
+    /// Command by memory, by seen pitch, by seen rate.
+    own_command: Vec<T>,
+    command_by_pitch: T,
+    command_by_rate: T,
+}
+
+/// A loop that is broken: next state by state and by the signal that enters, and what comes back.
+#[derive(Clone, Debug)]
+pub(super) struct Broken<T> {
+    pub(super) matrix: Vec<Vec<T>>,
+    pub(super) entry: Vec<T>,
+    pub(super) exit: Vec<T>,
+}
+
+/// The controller at one sample: its command and next memory, by memory (over the state) and by seen
+/// pitch; the rate only enters the command.
+struct ControllerRows<T> {
+    command: Vec<T>,
+    command_by_pitch: T,
+    command_by_rate: T,
+    /// Place in the state, next value by state, by seen pitch.
+    memory: Vec<(usize, Vec<T>, T)>,
+}
+
+impl<T: Scalar> LoopModel<T> {
+    pub(super) fn layout(&self) -> Layout {
+        let settings = &self.settings;
+        let plant = self.plant.states;
+        let queue = settings.delay_samples;
+        let pitch = settings.pitch.remembered();
+        let uses_rate = settings.shell.rate_gain_s != 0.0;
+        let rate = if uses_rate { settings.rate.remembered() } else { 0 };
+        let mut size = plant + queue + pitch + rate;
+        let mut place = |there: bool| {
+            there.then(|| {
+                size += 1;
+                size - 1
+            })
+        };
+        let memory = settings.memory;
+        let integral = place(memory.integral);
+        let derivative = place(memory.derivative);
+        let previous = place(memory.previous);
+        Layout { plant, queue, pitch, rate, integral, derivative, previous, size }
+    }
+
+    pub(super) fn assembly(&self, gains: Gains<T>) -> Assembly<T> {
+        let layout = self.layout();
+        let size = layout.size;
+        let zeros = || vec![T::zero(); size];
+        let pitch = seen(&self.settings.pitch, &unit(0, size), layout.pitch_from());
+        let mut rate = zeros();
+        if self.settings.shell.rate_gain_s != 0.0 {
+            let mut now = zeros();
+            now[..layout.plant].copy_from_slice(&self.plant.rate);
+            rate = seen(&self.settings.rate, &now, layout.rate_from());
+        }
+        let mut free = vec![zeros(); size];
+        let mut by_command = zeros();
+        self.place_plant(&layout, &mut free, &mut by_command);
+        self.place_queues(&layout, &mut free, &mut by_command);
+
+        let controller = self.controller(gains, &layout);
+        let mut memory_by_pitch = zeros();
+        for (place, by_state, by_seen_pitch) in controller.memory {
+            free[place] = by_state;
+            memory_by_pitch[place] = by_seen_pitch;
+        }
+        Assembly {
+            layout,
+            free,
+            by_command,
+            memory_by_pitch,
+            pitch,
+            rate,
+            own_command: controller.command,
+            command_by_pitch: controller.command_by_pitch,
+            command_by_rate: controller.command_by_rate,
+        }
+    }
+
+    fn place_plant(&self, layout: &Layout, free: &mut [Vec<T>], by_command: &mut [T]) {
+        let states = layout.plant;
+        for (place, row) in self.plant.rows.chunks_exact(states + 1).enumerate() {
+            let (by_state, by_arriving) = row.split_at(states);
+            free[place][..states].copy_from_slice(by_state);
+            // The oldest command of the queue arrives, or this sample's own.
+            if layout.queue > 0 {
+                free[place][states] = by_arriving[0];
+            } else {
+                by_command[place] = by_arriving[0];
+            }
+        }
+    }
+
+    fn place_queues(&self, layout: &Layout, free: &mut [Vec<T>], by_command: &mut [T]) {
+        for place in 0..layout.queue {
+            let row = layout.plant + place;
+            if place + 1 == layout.queue {
+                by_command[row] = T::one();
+            } else {
+                free[row][row + 1] = T::one();
+            }
+        }
+        for place in 0..layout.pitch {
+            let row = layout.pitch_from() + place;
+            let from = if place == 0 { 0 } else { row - 1 };
+            free[row][from] = T::one();
+        }
+        for place in 0..layout.rate {
+            let row = layout.rate_from() + place;
+            if place == 0 {
+                free[row][..layout.plant].copy_from_slice(&self.plant.rate);
+            } else {
+                free[row][row - 1] = T::one();
+            }
+        }
+    }
+
+    /// The controller of `Shell::step` with the set-point at zero, $e = -y$:
+    ///
+    /// $$ u = -k_p y + I + k_d d - K_r q, \quad I = I_{k-1} - k_i T y, \quad
+    /// d = \frac{T_f d_{k-1} - y - c_{k-1}}{T_f + T}, \quad c = -y $$
+    fn controller(&self, gains: Gains<T>, layout: &Layout) -> ControllerRows<T> {
+        let shell = &self.settings.shell;
+        let constant = T::constant;
+        let size = layout.size;
+        let mut command = vec![T::zero(); size];
+        let mut command_by_pitch = -gains.kp;
+        let mut memory = Vec::new();
+        if let Some(place) = layout.integral {
+            let by_error = gains.ki * constant(shell.dt_s);
+            // What is remembered is I in rad (bumpless) or the sum of errors (literal).
+            let (by_memory, by_sum) = match shell.integral {
+                IntegralForm::Bumpless => (T::one(), by_error),
+                IntegralForm::Literal => (by_error, T::one()),
+            };
+            command[place] = by_memory;
+            command_by_pitch = command_by_pitch - by_error;
+            memory.push((place, unit(place, size), -by_sum));
+        }
+        if let Some(previous) = layout.previous {
+            let filter_s = constant(shell.derivative.filter_s);
+            let time_s = filter_s + constant(shell.dt_s);
+            let by_difference = T::one() / time_s;
+            let mut derivative = vec![T::zero(); size];
+            derivative[previous] = -by_difference;
+            if let Some(place) = layout.derivative {
+                derivative[place] = filter_s / time_s;
+            }
+            for (own, by) in command.iter_mut().zip(&derivative) {
+                *own = *own + gains.kd * *by;
+            }
+            command_by_pitch = command_by_pitch - gains.kd * by_difference;
+            if let Some(place) = layout.derivative {
+                memory.push((place, derivative, -by_difference));
+            }
+            memory.push((previous, vec![T::zero(); size], -T::one()));
+        }
+        let command_by_rate = -constant(shell.rate_gain_s);
+        ControllerRows { command, command_by_pitch, command_by_rate, memory }
+    }
+}
+
+impl<T: Scalar> Assembly<T> {
+    /// Command by state, through pitch and rate where these loops are closed.
+    fn command_through(&self, pitch: bool, rate: bool) -> Vec<T> {
+        let by_pitch = if pitch { self.command_by_pitch } else { T::zero() };
+        let by_rate = if rate { self.command_by_rate } else { T::zero() };
+        let seen = self.pitch.iter().zip(&self.rate);
+        let rows = self.own_command.iter().zip(seen);
+        rows.map(|(own, (y, q))| *own + by_pitch * *y + by_rate * *q).collect()
+    }
+
+    /// Command by state.
+    pub(super) fn command(&self) -> Vec<T> {
+        self.command_through(true, true)
+    }
+
+    pub(super) fn closed(&self) -> Vec<Vec<T>> {
+        let remembering = with(&self.free, &self.memory_by_pitch, &self.pitch);
+        with(&remembering, &self.by_command, &self.command())
+    }
+
+    pub(super) fn broken(&self, point: BreakPoint) -> Broken<T> {
+        let remembering = || with(&self.free, &self.memory_by_pitch, &self.pitch);
+        match point {
+            BreakPoint::Command => Broken {
+                matrix: remembering(),
+                entry: self.by_command.clone(),
+                exit: self.command(),
+            },
+            BreakPoint::Pitch => {
+                let own = self.memory_by_pitch.iter().zip(&self.by_command);
+                Broken {
+                    matrix: with(&self.free, &self.by_command, &self.command_through(false, true)),
+                    entry: own.map(|(own, by)| *own + self.command_by_pitch * *by).collect(),
+                    exit: self.pitch.clone(),
+                }
+            }
+            BreakPoint::Rate => Broken {
+                matrix: with(&remembering(), &self.by_command, &self.command_through(true, false)),
+                entry: self.by_command.iter().map(|by| self.command_by_rate * *by).collect(),
+                exit: self.rate.clone(),
+            },
+        }
+    }
+
+    pub(super) fn error_rows(&self) -> [Vec<T>; 2] {
+        let error: Vec<T> = self.pitch.iter().map(|y| -*y).collect();
+        let mut change = vec![T::zero(); error.len()];
+        if let Some(previous) = self.layout.previous {
+            change.clone_from(&error);
+            // With the set-point at zero the last derivative input is the last error.
+            change[previous] = change[previous] - T::one();
+        }
+        [error, change]
+    }
+}
+
+/// A matrix with an outer product added.
+fn with<T: Scalar>(rows: &[Vec<T>], column: &[T], row: &[T]) -> Vec<Vec<T>> {
+    let added = |(entries, by): (&Vec<T>, &T)| -> Vec<T> {
+        entries.iter().zip(row).map(|(entry, value)| *entry + *by * *value).collect()
+    };
+    rows.iter().zip(column).map(added).collect()
+}
+
+fn unit<T: Scalar>(place: usize, size: usize) -> Vec<T> {
+    (0..size).map(|column| if column == place { T::one() } else { T::zero() }).collect()
+}
+
+/// What a sensor shows, by state, of a quantity that is `now` and was at the places from `before` on.
+fn seen<T: Scalar>(sensing: &Sensing, now: &[T], before: usize) -> Vec<T> {
+    let aged = |samples: usize| match samples {
+        0 => now.to_vec(),
+        _ => unit(before + samples - 1, now.len()),
+    };
+    let scale = T::constant(sensing.scale);
+    let newer = aged(sensing.samples);
+    if sensing.part == 0.0 {
+        return newer.into_iter().map(|value| scale * value).collect();
+    }
+    let part = T::constant(sensing.part);
+    let older = aged(sensing.samples + 1);
+    let between = newer.into_iter().zip(older).map(|(new, old)| new + part * (old - new));
+    between.map(|value| scale * value).collect()
+}

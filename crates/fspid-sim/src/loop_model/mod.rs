@@ -1,0 +1,169 @@
+//! The sampled loop around rest as one matrix that is affine in the gains.
+//!
+//! Plant and actuator between two samples, the queue of delayed commands, what the sensors still hold
+//! back, and the controller as it is implemented:
+//!
+//! $$ z_{k+1} = M(k_p, k_i, k_d)\, z_k, \qquad
+//! z = (x, \delta, \text{commands}, \text{pitch}, \text{rate}, I, d, c_{k-1}) $$
+//!
+//! with the set-point at zero and no limit at work. The bumpless integral, the literal one, a filtered
+//! or plain derivative and whole-sample delays all leave M affine in the three gains, which is what
+//! proofs over corners of a set of gains rest on. An adapted filter or set-point weight would not;
+//! there is none.
+//!
+//! The equations are generic over the number, so that an enclosure in intervals and the analysis in
+//! floats are of the same loop.
+
+mod assembly;
+mod memory;
+mod opening;
+mod sensing;
+#[cfg(test)]
+mod tests;
+
+use fspid_core::{Gains, Shell};
+use fspid_fuzzy::Scalar;
+use fspid_lti::Matrix;
+
+use crate::error::SimError;
+use crate::plant::LinearPlant;
+use crate::scenario::Scenario;
+
+pub use memory::Memory;
+pub use opening::BreakPoint;
+pub use sensing::Sensing;
+
+/// Plant and actuator over one sample without limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledPlant<T> {
+    /// States of plant and actuator, pitch angle first.
+    pub states: usize,
+    /// Rows over states and arriving command, one after the other.
+    pub rows: Vec<T>,
+    /// Row from states to pitch rate.
+    pub rate: Vec<T>,
+}
+
+/// Everything of a loop around rest but its gains and its plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopSettings {
+    /// Everything of the controller but its gains.
+    pub shell: Shell<f64>,
+    /// What of the controller's memory is part of the loop.
+    pub memory: Memory,
+    /// Whole samples by which a command arrives late.
+    pub delay_samples: usize,
+    /// How the pitch angle is seen.
+    pub pitch: Sensing,
+    /// How the pitch rate is seen.
+    pub rate: Sensing,
+}
+
+/// A sampled loop around rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopModel<T> {
+    plant: SampledPlant<T>,
+    settings: LoopSettings,
+}
+
+impl<T: Scalar> LoopModel<T> {
+    /// A loop of a sampled plant.
+    #[must_use]
+    pub fn new(plant: SampledPlant<T>, settings: LoopSettings) -> Self {
+        Self { plant, settings }
+    }
+
+    /// Everything but gains and plant.
+    #[must_use]
+    pub fn settings(&self) -> &LoopSettings {
+        &self.settings
+    }
+
+    /// The loop as if sensors whose values change their age showed the quantity as it is.
+    #[must_use]
+    pub fn without_changing_ages(mut self) -> Self {
+        for sensing in [&mut self.settings.pitch, &mut self.settings.rate] {
+            if sensing.at_largest_age {
+                *sensing = Sensing::DIRECT;
+            }
+        }
+        self
+    }
+
+    /// The plant.
+    #[must_use]
+    pub fn plant(&self) -> &SampledPlant<T> {
+        &self.plant
+    }
+
+    /// Number of states.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.layout().size()
+    }
+
+    /// What each state is, in the order of the matrix.
+    #[must_use]
+    pub fn state_names(&self) -> Vec<String> {
+        self.layout().names()
+    }
+
+    /// The one-sample matrix of the closed loop, row after row.
+    #[must_use]
+    pub fn closed(&self, gains: Gains<T>) -> Vec<Vec<T>> {
+        self.assembly(gains).closed()
+    }
+
+    /// The row from the state to the command, rad, limits left out.
+    #[must_use]
+    pub fn command_row(&self, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).command()
+    }
+
+    /// Rows from the state to the error, rad, and its change since the last sample, rad, as the
+    /// controller sees them; the change is 0 in a loop that does not remember the last sample.
+    #[must_use]
+    pub fn error_rows(&self) -> [Vec<T>; 2] {
+        self.assembly(zero_gains()).error_rows()
+    }
+}
+
+impl LoopModel<f64> {
+    /// The loop of one of a scenario's plants with a controller's shell.
+    ///
+    /// # Errors
+    /// [`SimError`] where the plant cannot be sampled.
+    pub fn of(
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        shell: &Shell<f64>,
+        memory: Memory,
+    ) -> Result<Self, SimError> {
+        let dt_s = shell.dt_s;
+        let step = scenario.propagation(plant, dt_s)?.linear_step().ok_or(SimError::NotLinear)?;
+        let by_state_and_command = step.rows.chunks_exact(step.states + 2);
+        let rows = by_state_and_command.flat_map(|row| &row[..=step.states]).copied().collect();
+        let surroundings = &scenario.surroundings;
+        let settings = LoopSettings {
+            shell: *shell,
+            memory,
+            delay_samples: step.delay_samples,
+            pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), dt_s),
+            rate: Sensing::through(surroundings.rate_sensor.as_ref(), dt_s),
+        };
+        let plant = SampledPlant { states: step.states, rows, rate: step.rate_row };
+        Ok(Self::new(plant, settings))
+    }
+
+    /// The one-sample matrix of the closed loop.
+    ///
+    /// # Errors
+    /// Gains so large that an entry overflows.
+    pub fn closed_matrix(&self, gains: Gains<f64>) -> Result<Matrix, SimError> {
+        Ok(Matrix::from_rows(&self.closed(gains))?)
+    }
+}
+
+fn zero_gains<T: Scalar>() -> Gains<T> {
+    Gains { kp: T::zero(), ki: T::zero(), kd: T::zero() }
+}

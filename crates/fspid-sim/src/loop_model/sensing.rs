@@ -1,0 +1,95 @@
+//! How a linear loop sees a quantity through a sensor.
+
+use crate::sensor::Sensor;
+
+/// How far from a whole number of samples an age may lie and still count as whole.
+const SAME_SAMPLE: f64 = 1e-6;
+
+/// A sensor as the loop around rest sees it: scale and age. Bias, drift, noise and resolution are no
+/// part of a linear loop.
+///
+/// $$ m_k = s \left( (1 - f)\, y_{k-n} + f\, y_{k-n-1} \right) $$
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensing {
+    /// Factor s on the quantity.
+    pub scale: f64,
+    /// Whole samples n that the value is old.
+    pub samples: usize,
+    /// Part f of a sample beyond them.
+    pub part: f64,
+    /// The sensor has a clock of its own, so that the age of its values changes; taken is the largest.
+    pub at_largest_age: bool,
+}
+
+impl Sensing {
+    /// The quantity as it is.
+    pub const DIRECT: Self = Self { scale: 1.0, samples: 0, part: 0.0, at_largest_age: false };
+
+    /// Through a sensor that is read every `dt_s`, if there is one.
+    pub(super) fn through(sensor: Option<&Sensor>, dt_s: f64) -> Self {
+        let Some(model) = sensor.map(Sensor::model) else {
+            return Self::DIRECT;
+        };
+        let scale = 1.0 + model.scale_error;
+        let delay = model.delay_s / dt_s;
+        if model.period_s == 0.0 {
+            let whole = (delay + SAME_SAMPLE).floor();
+            let part = (delay - whole).max(0.0);
+            let part = if part <= SAME_SAMPLE { 0.0 } else { part };
+            return Self { scale, samples: count(whole), part, at_largest_age: false };
+        }
+        let period = model.period_s / dt_s;
+        let aligned = (period - period.round()).abs() <= SAME_SAMPLE;
+        // Sampling times that are those of the loop leave out the age of a whole period.
+        let beyond = if aligned { period.round() - 1.0 } else { period };
+        let age = (delay - SAME_SAMPLE).ceil().max(0.0) + beyond.max(0.0);
+        let at_largest_age = !(aligned && period.round() == 1.0);
+        Self { scale, samples: count(age.ceil()), part: 0.0, at_largest_age }
+    }
+
+    /// How many samples of the quantity the loop has to remember.
+    pub(super) fn remembered(&self) -> usize {
+        self.samples + usize::from(self.part > 0.0)
+    }
+}
+
+fn count(samples: f64) -> usize {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "not negative, and the cast saturates"
+    )]
+    let count = samples as usize;
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::SensorModel;
+
+    fn seen(period_s: f64, delay_s: f64) -> Sensing {
+        let model = SensorModel { period_s, delay_s, ..SensorModel::default() };
+        let sensor = Sensor::new(model, 1, 0).expect("a sensor");
+        Sensing::through(Some(&sensor), 0.01)
+    }
+
+    #[test]
+    fn a_delay_of_one_and_a_half_samples_lies_between_the_second_and_third_last_value() {
+        let sensing = seen(0.0, 0.015);
+        assert_eq!((sensing.samples, sensing.remembered()), (1, 2));
+        assert!((sensing.part - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_sensor_with_the_period_of_the_loop_is_late_by_whole_samples() {
+        let sensing = seen(0.01, 0.015);
+        assert_eq!((sensing.samples, sensing.at_largest_age), (2, false));
+    }
+
+    #[test]
+    fn a_slower_sensor_is_taken_at_its_largest_age() {
+        let sensing = seen(0.04, 0.01);
+        assert_eq!((sensing.samples, sensing.at_largest_age), (4, true));
+    }
+}

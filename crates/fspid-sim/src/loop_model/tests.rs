@@ -1,0 +1,168 @@
+//! The matrix must fly as the simulation does.
+
+use fspid_core::{Derivative, Gains, IntegralForm, Pid, SetpointWeights, Shell};
+use fspid_lti::{Matrix, spectral_radius};
+
+use super::{BreakPoint, LoopModel, Memory};
+use crate::actuator::{Actuator, Lag};
+use crate::sensor::{PITCH, RATE, Sensor, SensorModel};
+use crate::signal::{Disturbance, Entry, Profile, Shape};
+use crate::{
+    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+    simulate,
+};
+
+const DT_S: f64 = 0.01;
+/// The paper's 747 and Navion: numerator, denominator, sign.
+const PLANTS: [(&[f64], &[f64], ElevatorSign); 2] = [
+    (
+        &[-1.69144, -0.84341, -0.0099096],
+        &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
+        ElevatorSign::NoseDownPositive,
+    ),
+    (&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0], ElevatorSign::NoseUpPositive),
+];
+
+struct Case {
+    plant: usize,
+    gains: Gains<f64>,
+    shell: Shell<f64>,
+    surroundings: Surroundings,
+    delay_samples: usize,
+}
+
+impl Case {
+    fn plant(&self) -> LinearPlant {
+        let (numerator, denominator, sign) = PLANTS[self.plant];
+        LinearPlant::new(numerator, denominator, sign).expect("allowed")
+    }
+
+    fn scenario(&self) -> Scenario {
+        let pid = Pid::new(self.gains, self.shell).expect("allowed");
+        let kick = Shape::Pulse { at_s: 0.0, width_s: DT_S };
+        let named = NamedController { name: "C".into(), controller: Controller::Fixed(pid) };
+        let servo = Servo::first_order(0.1).and_then(|servo| servo.with_delay(self.delay_samples));
+        Scenario {
+            name: "matrix".into(),
+            plant: self.plant().into(),
+            plant_changes: Vec::new(),
+            servo: servo.expect("allowed"),
+            timing: Timing::new(DT_S, 5.0).expect("allowed"),
+            setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
+            disturbances: vec![Disturbance::new(Entry::Elevator, 0.1, kick).expect("allowed")],
+            controllers: vec![named],
+            surroundings: self.surroundings.clone(),
+        }
+    }
+
+    fn model(&self) -> LoopModel<f64> {
+        let memory = Memory::of_gains(self.gains, &self.shell);
+        LoopModel::of(&self.scenario(), &self.plant(), &self.shell, memory).expect("a loop")
+    }
+
+    /// State after the kick of the first sample.
+    fn kicked(&self, size: usize) -> Vec<f64> {
+        let scenario = self.scenario();
+        let step = scenario.propagation(&self.plant(), DT_S).expect("sampled").linear_step();
+        let step = step.expect("linear");
+        let mut state = vec![0.0; size];
+        for (place, row) in step.rows.chunks_exact(step.states + 2).enumerate() {
+            state[place] = 0.1 * row[step.states + 1];
+        }
+        state
+    }
+}
+
+fn sensor(delay_s: f64, scale_error: f64, channel: u32) -> Option<Sensor> {
+    let model = SensorModel { delay_s, scale_error, ..SensorModel::default() };
+    Some(Sensor::new(model, 1, channel).expect("allowed"))
+}
+
+fn cases() -> Vec<Case> {
+    let plain = Shell::sampled_every(DT_S);
+    let rich = Shell {
+        rate_gain_s: 0.4,
+        derivative: Derivative { filter_s: 0.05 },
+        integral: IntegralForm::Literal,
+        setpoint_weights: SetpointWeights { proportional: 0.3, derivative: 0.0 },
+        ..plain
+    };
+    let lag = Lag::second_order(20.0, 0.7).expect("allowed");
+    let actuator = Actuator::new(lag).with_delay(3).expect("allowed");
+    let seen = Surroundings {
+        actuator: Some(actuator),
+        pitch_sensor: sensor(0.015, 0.02, PITCH),
+        rate_sensor: sensor(0.02, -0.01, RATE),
+        ..Surroundings::default()
+    };
+    let calm = Surroundings::default;
+    let gains = Gains { kp: 0.8, ki: 0.4, kd: 0.2 };
+    vec![
+        Case { plant: 0, gains, shell: plain, surroundings: calm(), delay_samples: 0 },
+        Case { plant: 1, gains, shell: rich, surroundings: calm(), delay_samples: 2 },
+        Case { plant: 1, gains, shell: rich, surroundings: seen.clone(), delay_samples: 0 },
+        Case {
+            plant: 0,
+            gains: Gains { ki: 0.0, kd: 0.0, ..gains },
+            shell: Shell { rate_gain_s: 0.9, ..plain },
+            surroundings: seen,
+            delay_samples: 0,
+        },
+    ]
+}
+
+#[test]
+fn powers_of_the_matrix_are_the_simulated_flight() {
+    for (number, case) in cases().iter().enumerate() {
+        let matrix = case.model().closed_matrix(case.gains).expect("finite");
+        let trace = simulate(&case.scenario()).expect("flies").traces.remove(0);
+        let mut state = case.kicked(matrix.rows());
+        let mut next = state.clone();
+        let largest = trace.theta_rad.iter().fold(0.0_f64, |most, theta| most.max(theta.abs()));
+        for (k, theta_rad) in trace.theta_rad.iter().enumerate().skip(1) {
+            // Rounding of some hundred products.
+            let off = (state[0] - theta_rad).abs();
+            assert!(off < 1e-12 * largest, "case {number}, sample {k}: {off:e}");
+            matrix.apply(&state, &mut next).expect("square");
+            std::mem::swap(&mut state, &mut next);
+        }
+    }
+}
+
+#[test]
+fn a_loop_that_is_closed_again_at_any_point_is_the_closed_loop() {
+    for case in cases() {
+        let (model, gains) = (case.model(), case.gains);
+        let closed = model.closed_matrix(gains).expect("finite");
+        for point in BreakPoint::ALL {
+            let open = model.open(gains, point).expect("finite").closed_matrix();
+            let difference = closed.sum(&open.scaled(-1.0)).expect("same size").norm_one();
+            assert!(difference < 1e-13 * closed.norm_one(), "{point:?}: {difference:e}");
+        }
+    }
+}
+
+#[test]
+fn the_literal_and_the_bumpless_integral_have_the_same_poles_for_fixed_gains() {
+    let case = cases().remove(1);
+    let radius = |integral| {
+        let shell = Shell { integral, ..case.shell };
+        let memory = Memory::of_gains(case.gains, &shell);
+        let model = LoopModel::of(&case.scenario(), &case.plant(), &shell, memory);
+        let matrix: Matrix = model.expect("a loop").closed_matrix(case.gains).expect("finite");
+        spectral_radius(&matrix).expect("found")
+    };
+    let difference = radius(IntegralForm::Bumpless) - radius(IntegralForm::Literal);
+    assert!(difference.abs() < 1e-12, "{difference:e}");
+}
+
+#[test]
+fn the_matrix_is_affine_in_the_gains() {
+    let case = cases().remove(1);
+    let model = case.model();
+    let at = |kp, ki, kd| model.closed_matrix(Gains { kp, ki, kd }).expect("finite");
+    let (one, other) = (at(0.2, 0.9, -0.3), at(1.4, 0.1, 0.7));
+    let half = one.sum(&other).expect("same size").scaled(0.5);
+    let difference = half.sum(&at(0.8, 0.5, 0.2).scaled(-1.0)).expect("same size").norm_one();
+    assert!(difference < 1e-14, "{difference:e}");
+}
