@@ -43,7 +43,7 @@ impl Sensing {
         // Sampling times that are those of the loop leave out the age of a whole period.
         let beyond = if aligned { period.round() - 1.0 } else { period };
         let age = (delay - SAME_SAMPLE).ceil().max(0.0) + beyond.max(0.0);
-        let at_largest_age = !(aligned && period.round() == 1.0);
+        let at_largest_age = !aligned || beyond > 0.0;
         Self { scale, samples: count(age.ceil()), part: 0.0, at_largest_age }
     }
 
