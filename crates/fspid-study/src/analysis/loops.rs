@@ -86,8 +86,10 @@ impl AnalysedLoop {
     /// The worst of all frozen gains over all plants, with the time from which the plant is that one.
     #[must_use]
     pub fn worst_frozen(&self) -> Option<(f64, &FrozenPoint)> {
-        let mapped = |plant: &'_ PlantLoop| Some((plant.from_s, plant.map.as_ref()?));
-        let worst = self.plants.iter().filter_map(mapped).map(|(from_s, map)| (from_s, &map.worst));
+        let worst = self.plants.iter().filter_map(|plant| {
+            let map = plant.map.as_ref()?;
+            Some((plant.from_s, &map.worst))
+        });
         worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
     }
 
