@@ -3,9 +3,12 @@
 use core::fmt;
 
 use fspid_core::AntiWindup;
+use fspid_fuzzy::scalar::Interval;
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::{LoopSettings, Memory, Sensing};
+use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
+
+use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,6 +136,21 @@ impl LoopDescription {
             pitch: self.pitch,
             rate: self.rate,
         }
+    }
+
+    /// The loop with every number enclosed.
+    ///
+    /// # Errors
+    /// [`NotProved`] for a plant that cannot be sampled.
+    pub fn enclosed(&self) -> Result<LoopModel<Interval>, NotProved> {
+        let plant = PrintedPlant {
+            numerator: &self.numerator,
+            denominator: &self.denominator,
+            elevator_sign: self.elevator_sign,
+            lag: ActuatorLag::from(self.actuator.lag()),
+            dt_s: self.controller.shell().dt_s,
+        };
+        Ok(LoopModel::new(plant.sampled()?, self.settings()))
     }
 
     /// What limits motions that are not small, in words; a proof of the loop around rest leaves
