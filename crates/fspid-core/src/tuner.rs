@@ -189,12 +189,23 @@ impl<R: Real> SelfTuner<R> {
         if !(error.is_finite() && change.is_finite()) {
             return Err(Faults::OVERFLOW);
         }
+        self.inferred(error, change)
+    }
+
+    /// Scaled increments for inputs as the supervisor sees them.
+    fn inferred(&self, error: R, change: R) -> Result<(Gains<R>, Faults), Faults> {
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
         let fault = if inference.underflowed { Faults::UNDERFLOW } else { Faults::NONE };
         let delta = Gains::from(inference.delta);
-        Ok((settings.output_scale.zip(delta, |s, d| s * d), fault))
+        Ok((self.settings.output_scale.zip(delta, |s, d| s * d), fault))
+    }
+
+    /// Scaled increments $s \Delta k$ where the supervisor sees `error` and `change`, in its own units
+    /// and with its sign, outside of any dead zone; `None` for inputs that it refuses.
+    pub fn increments_where_seen(&self, error: R, change: R) -> Option<Gains<R>> {
+        self.inferred(error, change).ok().map(|(increments, _)| increments)
     }
 
     /// The gains of this sample; `previous` are those of the last one, `None` at the first. With
@@ -239,26 +250,6 @@ impl<R: Real> SelfTuner<R> {
     pub fn gains_at_rest(&self) -> Gains<R> {
         // The origin is within every range, so there always is an answer.
         let (added, _) = self.increments(R::ZERO, R::ZERO).unwrap_or((Gains::ZERO, Faults::NONE));
-        self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
-    }
-
-    /// The gains that the memoryless law answers for an error and a change in the supervisor's own
-    /// units, behind sign and factors; inputs that the supervisor refuses leave the nominal gains.
-    pub fn gains_for(&self, error: R, change: R) -> Gains<R> {
-        let settings = &self.settings;
-        let sign = match settings.error_sign {
-            ErrorSign::SetpointMinusMeasurement => R::ONE,
-            ErrorSign::MeasurementMinusSetpoint => -R::ONE,
-        };
-        let back = |input: R, per_rad: R| match per_rad {
-            per_rad if per_rad == R::ZERO => R::ZERO,
-            per_rad => sign * input / per_rad,
-        };
-        let scale = settings.input_scale;
-        let error_rad = back(error, scale.error_per_rad);
-        let change_rad = back(change, scale.change_per_rad);
-        let (added, _) =
-            self.increments(error_rad, change_rad).unwrap_or((Gains::ZERO, Faults::NONE));
         self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
     }
 

@@ -1,6 +1,5 @@
 //! What is claimed of a loop, with everything that a re-check needs.
 
-use fspid_core::Gains;
 use fspid_lti::Matrix;
 
 use crate::description::LoopDescription;
@@ -42,23 +41,29 @@ pub enum Claim {
         /// τ of each cone, 0 or above.
         multipliers: Vec<f64>,
     },
-    /// For every gain that the tuner can produce, as long as no gain moves by more than a step in a
-    /// sample: $V = z^T P(k) z$ with $P(k)$ affine in the gains falls.
+    /// For every gain in a box around all that the tuner can produce, as long as no gain moves by more
+    /// than a share of its half width in a sample: $V = z^T P(\kappa) z$ falls, with $P(\kappa)$ affine
+    /// in the gains κ counted in half widths of the box.
     BoundedRate {
-        /// $P_0$, and what each gain adds to it per unit.
+        /// Lower and upper end of each gain.
+        ends: [[f64; 2]; 3],
+        /// Largest change of each gain in a sample, in half widths.
+        changes: [f64; 3],
+        /// $P_0$, and what each gain adds to it per half width.
         forms: [Matrix; 4],
         /// The slack matrix G of the condition.
         slack: Matrix,
         /// ρ, at most 1.
         rate: f64,
-        /// Largest change of each gain in a sample.
-        step: Gains<f64>,
     },
     /// Gains that the supervisor produces at an input, standing still, let the loop grow.
     FrozenGrowth {
         /// Error and change, supervisor units.
         input: [f64; 2],
-        /// A form that grows with each sample.
+        /// Factor σ per sample, at least 1, beyond which the form grows:
+        /// $M^T P M \succ \sigma^2 P$.
+        factor: f64,
+        /// P.
         form: Matrix,
         /// A state at which it is positive.
         direction: Vec<f64>,
@@ -68,7 +73,9 @@ pub enum Claim {
     SequenceGrowth {
         /// Error and change at each sample of the period, supervisor units.
         inputs: Vec<[f64; 2]>,
-        /// A form that grows with each period.
+        /// Factor σ per period, at least 1, beyond which the form grows.
+        factor: f64,
+        /// P.
         form: Matrix,
         /// A state at which it is positive.
         direction: Vec<f64>,
@@ -85,6 +92,17 @@ impl Claim {
             Self::BoundedRate { .. } => "stable-at-bounded-rate",
             Self::FrozenGrowth { .. } => "unstable-with-frozen-gains",
             Self::SequenceGrowth { .. } => "unstable-with-a-sequence-of-gains",
+        }
+    }
+
+    /// The factor per sample by which the root of the form falls, of a claim of stability.
+    #[must_use]
+    pub const fn rate(&self) -> Option<f64> {
+        match self {
+            Self::AnySpeed { rate, .. }
+            | Self::Tied { rate, .. }
+            | Self::BoundedRate { rate, .. } => Some(*rate),
+            Self::FrozenGrowth { .. } | Self::SequenceGrowth { .. } => None,
         }
     }
 

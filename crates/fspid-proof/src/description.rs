@@ -9,6 +9,7 @@ use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
+use crate::gain_set::NoBound;
 
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,12 +41,11 @@ pub enum NotProvable {
     /// A sensor with a clock of its own: there is no single matrix from one sample to the next.
     ChangingAge,
     /// Nothing bounds the gains of an accumulating law.
-    UnboundedGains {
-        /// What to change.
-        advice: String,
-    },
+    UnboundedGains(NoBound),
     /// The model is refused.
     Model(SimError),
+    /// The plant cannot be enclosed.
+    Plant(NotProved),
 }
 
 impl fmt::Display for NotProvable {
@@ -58,13 +58,26 @@ impl fmt::Display for NotProvable {
             Self::ChangingAge => f.write_str(
                 "a sensor samples with a clock of its own, so that the age of its values changes and no single matrix leads from one sample to the next; a proof needs period_s to be that of the loop, or 0",
             ),
-            Self::UnboundedGains { advice } => write!(f, "nothing bounds the gains: {advice}"),
+            Self::UnboundedGains(reason) => reason.fmt(f),
+            Self::Plant(reason) => reason.fmt(f),
             Self::Model(error) => error.fmt(f),
         }
     }
 }
 
 impl core::error::Error for NotProvable {}
+
+impl From<NoBound> for NotProvable {
+    fn from(reason: NoBound) -> Self {
+        Self::UnboundedGains(reason)
+    }
+}
+
+impl From<NotProved> for NotProvable {
+    fn from(reason: NotProved) -> Self {
+        Self::Plant(reason)
+    }
+}
 
 impl From<SimError> for NotProvable {
     fn from(error: SimError) -> Self {

@@ -14,6 +14,7 @@
 
 pub mod aircraft;
 pub mod analysis;
+pub mod certify;
 pub mod figure;
 pub mod file;
 pub mod fly;

@@ -32,7 +32,7 @@ pub fn falls(
     p: &Matrix,
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &Matrix)>,
+    relaxation: Option<(f64, &IntervalMatrix)>,
 ) -> Result<(), NotProved> {
     let own = symmetric("Lyapunov matrix", p)?;
     prove_fall([&own, &own], rate, matrix, relaxation)
@@ -52,7 +52,7 @@ pub fn falls_between(
     p_next: &Matrix,
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &Matrix)>,
+    relaxation: Option<(f64, &IntervalMatrix)>,
 ) -> Result<(), NotProved> {
     let now = symmetric("Lyapunov matrix", p_now)?;
     let next = symmetric("next Lyapunov matrix", p_next)?;
@@ -66,7 +66,7 @@ fn prove_fall(
     [now, next]: [&IntervalMatrix; 2],
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &Matrix)>,
+    relaxation: Option<(f64, &IntervalMatrix)>,
 ) -> Result<(), NotProved> {
     const WHAT: &str = "fall of the Lyapunov function";
     let size = now.rows();
@@ -89,13 +89,13 @@ fn prove_fall(
     prove_named(WHAT, &fall)
 }
 
-/// $\tau Q$ with τ ≥ 0 and a symmetric Q.
-fn weighed(tau: f64, q: &Matrix, size: usize) -> Result<IntervalMatrix, NotProved> {
+/// $\tau Q$ with τ ≥ 0; of the matrices inside Q the symmetric ones are meant.
+fn weighed(tau: f64, q: &IntervalMatrix, size: usize) -> Result<IntervalMatrix, NotProved> {
     if !(tau >= 0.0 && tau.is_finite()) {
         let allowed = "a finite number, 0 or above";
         return Err(NotProved::Number { what: "weight of the relaxation", found: tau, allowed });
     }
-    let q = symmetric("matrix of the relaxation", q)?;
+    require_bounded("matrix of the relaxation", q)?;
     q.require_shape("matrix of the relaxation", size, size)?;
     Ok(q.scaled(Interval::point(tau)))
 }

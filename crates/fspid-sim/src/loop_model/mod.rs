@@ -23,6 +23,7 @@ mod tests;
 
 use fspid_core::{Gains, Shell};
 use fspid_fuzzy::Scalar;
+use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
 
 use crate::error::SimError;
@@ -180,6 +181,20 @@ impl LoopModel<f64> {
     /// Gains so large that an entry overflows.
     pub fn closed_matrix(&self, gains: Gains<f64>) -> Result<Matrix, SimError> {
         Ok(Matrix::from_rows(&self.closed(gains))?)
+    }
+}
+
+impl LoopModel<Interval> {
+    /// The loop of the middles of all numbers.
+    #[must_use]
+    pub fn midpoint(&self) -> LoopModel<f64> {
+        let middles = |values: &[Interval]| values.iter().map(|value| value.midpoint()).collect();
+        let plant = SampledPlant {
+            states: self.plant.states,
+            rows: middles(&self.plant.rows),
+            rate: middles(&self.plant.rate),
+        };
+        LoopModel::new(plant, self.settings.clone())
     }
 }
 

@@ -1,6 +1,7 @@
 //! Margins at every gain that a supervisor can produce, the gains standing still.
 
 use fspid_core::{Fspid, Gains};
+use fspid_proof::gain_set::producible;
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
@@ -104,7 +105,7 @@ impl Mapper<'_> {
     }
 
     fn point(&self, input: [f64; 2]) -> Result<FrozenPoint, SimError> {
-        let gains = self.fspid.tuner().gains_for(input[0], input[1]);
+        let gains = producible(self.fspid.tuner(), input[0], input[1]);
         let memory = Memory::of_gains(gains, self.fspid.shell());
         let model = LoopModel::of(self.scenario, self.plant, self.fspid.shell(), memory)?;
         let stability = model.open(gains, self.question.point)?.margins()?;

@@ -1,12 +1,11 @@
 //! Certificates as files: JSON that is complete in itself, read back bit for bit.
 
-use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_proof::{Certificate, Claim, LoopDescription};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::controller_file::{ControllerFile, GainsFile};
+use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
 
 /// First words of every certificate.
@@ -53,9 +52,15 @@ type Rows = Vec<Vec<f64>>;
 enum ClaimFile {
     StableAtAnySpeed { rate: f64, form: Rows },
     StableAsTiedToTheError { rate: f64, form: Rows, multipliers: Vec<f64> },
-    StableAtBoundedRate { rate: f64, step: GainsFile, forms: [Rows; 4], slack: Rows },
-    UnstableWithFrozenGains { input: [f64; 2], form: Rows, direction: Vec<f64> },
-    UnstableWithASequenceOfGains { inputs: Vec<[f64; 2]>, form: Rows, direction: Vec<f64> },
+    StableAtBoundedRate {
+        rate: f64,
+        ends: [[f64; 2]; 3],
+        changes: [f64; 3],
+        forms: [Rows; 4],
+        slack: Rows,
+    },
+    UnstableWithFrozenGains { input: [f64; 2], factor: f64, form: Rows, direction: Vec<f64> },
+    UnstableWithASequenceOfGains { inputs: Vec<[f64; 2]>, factor: f64, form: Rows, direction: Vec<f64> },
 }
 
 /// A certificate as text.
@@ -122,20 +127,23 @@ fn claim_file(claim: &Claim) -> ClaimFile {
             form: rows(form),
             multipliers: multipliers.clone(),
         },
-        Claim::BoundedRate { forms, slack, rate, step } => ClaimFile::StableAtBoundedRate {
+        Claim::BoundedRate { ends, changes, forms, slack, rate } => ClaimFile::StableAtBoundedRate {
             rate: *rate,
-            step: GainsFile::of(*step),
+            ends: *ends,
+            changes: *changes,
             forms: forms.each_ref().map(rows),
             slack: rows(slack),
         },
-        Claim::FrozenGrowth { input, form, direction } => ClaimFile::UnstableWithFrozenGains {
+        Claim::FrozenGrowth { input, factor, form, direction } => ClaimFile::UnstableWithFrozenGains {
             input: *input,
+            factor: *factor,
             form: rows(form),
             direction: direction.clone(),
         },
-        Claim::SequenceGrowth { inputs, form, direction } => {
+        Claim::SequenceGrowth { inputs, factor, form, direction } => {
             ClaimFile::UnstableWithASequenceOfGains {
                 inputs: inputs.clone(),
+                factor: *factor,
                 form: rows(form),
                 direction: direction.clone(),
             }
@@ -152,17 +160,16 @@ impl ClaimFile {
             Self::StableAsTiedToTheError { rate, form, multipliers } => {
                 Claim::Tied { form: matrix(&form)?, rate, multipliers }
             }
-            Self::StableAtBoundedRate { rate, step, forms, slack } => {
+            Self::StableAtBoundedRate { rate, ends, changes, forms, slack } => {
                 let [constant, kp, ki, kd] = &forms;
                 let forms = [matrix(constant)?, matrix(kp)?, matrix(ki)?, matrix(kd)?];
-                let step: Gains<f64> = step.build();
-                Claim::BoundedRate { forms, slack: matrix(&slack)?, rate, step }
+                Claim::BoundedRate { ends, changes, forms, slack: matrix(&slack)?, rate }
             }
-            Self::UnstableWithFrozenGains { input, form, direction } => {
-                Claim::FrozenGrowth { input, form: matrix(&form)?, direction }
+            Self::UnstableWithFrozenGains { input, factor, form, direction } => {
+                Claim::FrozenGrowth { input, factor, form: matrix(&form)?, direction }
             }
-            Self::UnstableWithASequenceOfGains { inputs, form, direction } => {
-                Claim::SequenceGrowth { inputs, form: matrix(&form)?, direction }
+            Self::UnstableWithASequenceOfGains { inputs, factor, form, direction } => {
+                Claim::SequenceGrowth { inputs, factor, form: matrix(&form)?, direction }
             }
         })
     }

@@ -109,6 +109,20 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
     parse(&text, &name, Some(folder), overrides).map_err(LoadError::Problems)
 }
 
+/// The text of a file that is no scenario.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, LoadError> {
+    let name = path.display().to_string();
+    let unreadable = |reason| LoadError::Unreadable { path: name.clone(), reason };
+    let bytes = files::read_regular(path).map_err(unreadable)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let position = error.utf8_error().valid_up_to();
+        unreadable(format!("not UTF-8 from byte {position} on"))
+    })
+}
+
 fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
     let before = bytes.get(..position).unwrap_or_default();
     let line_start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
