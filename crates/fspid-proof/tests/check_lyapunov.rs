@@ -373,6 +373,20 @@ fn a_form_that_is_not_positive_proves_nothing() {
     assert_eq!(is_positive(&matrix(2, &[2.0, 1.0, 1.0, 2.0])), Ok(()));
 }
 
+/// With $b^2 - 1 = (b - 1)(b + 1)$ the determinant of P is -1: indefinite, though rounding lets it have
+/// a Cholesky factor. The loop runs away along the direction in which P is negative, where V falls.
+#[test]
+fn a_form_that_is_indefinite_by_less_than_rounding_proves_nothing() {
+    for step in 0..400 {
+        let b = libm::exp2(40.0 + f64::from(step % 10)) + 12_345.0 * f64::from(step) + 1.0;
+        let p = matrix(2, &[b - 1.0, b, b, b + 1.0]);
+        let (v, w) = ([b, 1.0 - b], libm::exp2(-20.0));
+        let runaway = matrix(2, &[v[0] * w, -v[0] * w, v[1] * w, -v[1] * w]);
+        assert!(falls(&p, 1.0, &point(&runaway), None).is_err(), "{b}");
+        assert!(is_positive(&p).is_err(), "{b}");
+    }
+}
+
 #[test]
 fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
     let (p, m) = (Matrix::identity(2), Matrix::identity(2).scaled(0.5));
