@@ -242,6 +242,26 @@ impl<R: Real> SelfTuner<R> {
         self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
     }
 
+    /// The gains that the memoryless law answers for an error and a change in the supervisor's own
+    /// units, behind sign and factors; inputs that the supervisor refuses leave the nominal gains.
+    pub fn gains_for(&self, error: R, change: R) -> Gains<R> {
+        let settings = &self.settings;
+        let sign = match settings.error_sign {
+            ErrorSign::SetpointMinusMeasurement => R::ONE,
+            ErrorSign::MeasurementMinusSetpoint => -R::ONE,
+        };
+        let back = |input: R, per_rad: R| match per_rad {
+            per_rad if per_rad == R::ZERO => R::ZERO,
+            per_rad => sign * input / per_rad,
+        };
+        let scale = settings.input_scale;
+        let error_rad = back(error, scale.error_per_rad);
+        let change_rad = back(change, scale.change_per_rad);
+        let (added, _) =
+            self.increments(error_rad, change_rad).unwrap_or((Gains::ZERO, Faults::NONE));
+        self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
+    }
+
     fn limited(&self, gains: Gains<R>) -> Gains<R> {
         let limits = self.settings.gain_limits;
         limits.map_or(gains, |limits| limits.apply(gains))

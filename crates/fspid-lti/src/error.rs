@@ -152,6 +152,14 @@ pub enum LtiError {
         "no feedback makes this system stable at finite cost: a mode is out of reach, or is neutral and costs nothing"
     )]
     NotStabilisable,
+    /// A question about the margins of a sampled loop that has none.
+    #[error(
+        "the closed loop is not stable: its spectral radius is {spectral_radius}; margins and peaks exist below 1 only"
+    )]
+    UnstableLoop {
+        /// Largest modulus of a closed-loop pole in the z plane.
+        spectral_radius: f64,
+    },
     /// An iteration that used up its limit.
     #[error("the {what} had not converged after {iterations} iterations, the most allowed")]
     NotConverged {

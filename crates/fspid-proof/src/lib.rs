@@ -11,6 +11,11 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod certificate;
 pub mod check;
+mod description;
 pub mod gain_set;
 pub mod solve;
+
+pub use certificate::{Certificate, Claim};
+pub use description::{LoopDescription, NotProvable};

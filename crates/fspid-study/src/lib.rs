@@ -13,6 +13,7 @@
 )]
 
 pub mod aircraft;
+pub mod analysis;
 pub mod figure;
 pub mod file;
 pub mod fly;

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub(crate) mod aircraft;
+pub(crate) mod analyse;
 pub(crate) mod audit;
 pub(crate) mod check;
 pub(crate) mod convert;

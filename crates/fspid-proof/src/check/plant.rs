@@ -1,6 +1,7 @@
 //! The sampled plant from printed coefficients, with proof.
 
 use fspid_fuzzy::scalar::Interval;
+use fspid_sim::actuator::Lag;
 use fspid_sim::loop_model::SampledPlant;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
@@ -151,6 +152,18 @@ impl PrintedPlant<'_> {
             a.push(row);
         }
         Ok((a, b))
+    }
+}
+
+impl From<Lag> for ActuatorLag {
+    fn from(lag: Lag) -> Self {
+        match (lag.time_constant_s(), lag.second_order_parameters()) {
+            (Some(time_constant_s), _) => Self::First { time_constant_s },
+            (None, Some((natural_frequency_rad_s, damping))) => {
+                Self::Second { natural_frequency_rad_s, damping }
+            }
+            (None, None) => Self::None,
+        }
     }
 }
 

@@ -42,6 +42,26 @@ impl Lag {
         Ok(Self(Kind::Second { natural_frequency_rad_s, damping }))
     }
 
+    /// Time constant of a lag of first order, s.
+    #[must_use]
+    pub const fn time_constant_s(&self) -> Option<f64> {
+        match self.0 {
+            Kind::First { time_constant_s } => Some(time_constant_s),
+            _ => None,
+        }
+    }
+
+    /// Natural frequency, rad/s, and damping ratio of a lag of second order.
+    #[must_use]
+    pub const fn second_order_parameters(&self) -> Option<(f64, f64)> {
+        match self.0 {
+            Kind::Second { natural_frequency_rad_s, damping } => {
+                Some((natural_frequency_rad_s, damping))
+            }
+            _ => None,
+        }
+    }
+
     /// Order of the lag: 0, 1 or 2.
     #[must_use]
     pub const fn order(&self) -> usize {

@@ -120,6 +120,25 @@ impl<T: Scalar> LoopModel<T> {
         self.assembly(gains).command()
     }
 
+    /// The row from the state to the command that arrives at the actuator now, rad.
+    #[must_use]
+    pub fn arriving_row(&self, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).arriving()
+    }
+
+    /// The row from the state to the integral's term of the command, rad; zeros without an integral.
+    #[must_use]
+    pub fn integral_row(&self, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).integral_term(gains.ki, &self.settings)
+    }
+
+    /// The state in which the pitch angle is off by `pitch`, as long as the loop remembers, and
+    /// everything else at rest.
+    #[must_use]
+    pub fn pitch_off(&self, pitch: T) -> Vec<T> {
+        self.assembly(zero_gains()).pitch_off(pitch, self.settings.pitch.scale)
+    }
+
     /// Rows from the state to the error, rad, and its change since the last sample, rad, as the
     /// controller sees them; the change is 0 in a loop that does not remember the last sample.
     #[must_use]

@@ -1,0 +1,183 @@
+//! How far a sampled loop is from its limit of stability.
+
+use core::f64::consts::{PI, TAU};
+
+use super::{DiskMargin, Peak, SampledLoop, poles};
+use crate::complex::{Complex, modulus};
+use crate::error::LtiError;
+
+/// Factors beyond this one, and below its inverse, are no limits of a gain: 160 dB.
+const FACTOR_MAX: f64 = 1e8;
+/// Factors that differ by less than this share are one: at a touching of the unit circle they come in pairs.
+const SAME_FACTOR: f64 = 1e-9;
+
+/// A factor on the gain at which a stable loop becomes unstable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GainLimit {
+    /// The factor.
+    pub factor: f64,
+    /// Frequency of the undamped oscillation there; 0 for a pole at 1, Nyquist's for one at −1.
+    pub omega_rad_s: f64,
+}
+
+/// A frequency at which the gain of a sampled loop is 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SampledCrossover {
+    /// Frequency.
+    pub omega_rad_s: f64,
+    /// Distance of the phase from ±π in rad, between −π and π; positive if lag is missing to an oscillation.
+    pub phase_margin_rad: f64,
+    /// Dead time in s that would bring the phase to −π here, as a lag $\omega \tau$ ahead of the sampler.
+    pub delay_s: f64,
+}
+
+/// What is known of the stability of a sampled loop.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stability {
+    /// All closed-loop poles lie within the unit circle.
+    Stable(Box<SampledMargins>),
+    /// Some do not: there are no margins.
+    Unstable {
+        /// Closed-loop poles with a modulus of $1 - 10^{-9}$ or more.
+        poles: Vec<Complex>,
+        /// Largest modulus of a closed-loop pole.
+        spectral_radius: f64,
+    },
+}
+
+/// Margins of a stable sampled loop with negative feedback.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledMargins {
+    /// The factor below 1 at which the loop becomes unstable; `None` if none down to 0 does.
+    pub gain_low: Option<GainLimit>,
+    /// The factor above 1 at which the loop becomes unstable; `None` if none does.
+    pub gain_high: Option<GainLimit>,
+    /// Where the gain is 1, by rising frequency.
+    pub crossovers: Vec<SampledCrossover>,
+    /// The crossover nearest to an oscillation; `None` if the gain is nowhere 1.
+    pub phase_margin: Option<SampledCrossover>,
+    /// Smallest dead time that makes the loop unstable; `None` if the gain is nowhere 1.
+    ///
+    /// $$ \tau = \min \frac{\varphi_m \bmod 2 \pi}{\omega} $$
+    ///
+    /// A dead time τ ahead of the sampler is taken for the factor $e^{-j \omega \tau}$ on L. That is exact for whole
+    /// samples, and between them as good as the signal is free of frequencies beyond Nyquist's.
+    pub delay_margin_s: Option<f64>,
+    /// Largest sensitivity $M_s$.
+    pub sensitivity_peak: Peak,
+    /// Largest complementary sensitivity $M_t$.
+    pub complementary_peak: Peak,
+    /// Smallest distance of L from −1, $1 / M_s$.
+    pub modulus_margin: f64,
+    /// Disk margin of skew 0.
+    pub disk: DiskMargin,
+    /// Largest modulus of a closed-loop pole.
+    pub spectral_radius: f64,
+}
+
+impl SampledLoop {
+    /// Margins of the loop closed with negative feedback, or the poles for which there are none.
+    ///
+    /// A spectral radius of $1 - 10^{-9}$ or more counts as unstable, and so does one that is NaN. Limits of the gain
+    /// are the factors $-1/L$ at frequencies where L is real; each is confirmed by the eigenvalues of the closed loop
+    /// beside it, so that poles which touch the unit circle and turn back make no limit.
+    ///
+    /// # Errors
+    /// Eigenvalues that do not converge.
+    pub fn margins(&self) -> Result<Stability, LtiError> {
+        let poles = self.closed_poles()?;
+        let spectral_radius = poles::radius(&poles);
+        if !(spectral_radius < poles::STABLE_BELOW) {
+            let outside = |pole: &Complex| !(modulus(*pole) < poles::STABLE_BELOW);
+            let poles = poles.into_iter().filter(outside).collect();
+            return Ok(Stability::Unstable { poles, spectral_radius });
+        }
+        let limits = self.gain_candidates()?;
+        let crossovers = self.crossovers()?;
+        let sensitivity_peak = self.peak_of(1.0, &poles)?;
+        Ok(Stability::Stable(Box::new(SampledMargins {
+            gain_low: self
+                .first_limit(limits.iter().rev().filter(|limit| limit.factor < 1.0), 0.5)?,
+            gain_high: self.first_limit(limits.iter().filter(|limit| limit.factor > 1.0), 2.0)?,
+            phase_margin: nearest(&crossovers),
+            delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
+            crossovers,
+            sensitivity_peak,
+            complementary_peak: self.peak_of(0.0, &poles)?,
+            modulus_margin: 1.0 / sensitivity_peak.value,
+            disk: self.disk_with(0.0, &poles)?,
+            spectral_radius,
+        })))
+    }
+
+    /// Positive factors that bring a pole to the unit circle, rising.
+    fn gain_candidates(&self) -> Result<Vec<GainLimit>, LtiError> {
+        let limit = |angle_rad: f64| {
+            let response = self.response(angle_rad);
+            let factor = -crate::complex::quotient(response.under, response.over).re;
+            GainLimit { factor, omega_rad_s: angle_rad / self.dt_s }
+        };
+        let mut limits: Vec<GainLimit> = self.real_angles()?.into_iter().map(limit).collect();
+        limits.retain(|limit| limit.factor > 1.0 / FACTOR_MAX && limit.factor < FACTOR_MAX);
+        limits.sort_by(|left, right| left.factor.total_cmp(&right.factor));
+        Ok(limits)
+    }
+
+    /// The first candidate beyond which the loop is unstable; candidates come in the order of their distance from 1.
+    ///
+    /// Between two candidates the number of unstable poles does not change, so one factor between them tells it.
+    fn first_limit<'a>(
+        &self,
+        candidates: impl Iterator<Item = &'a GainLimit>,
+        step: f64,
+    ) -> Result<Option<GainLimit>, LtiError> {
+        let mut candidates = candidates.peekable();
+        while let Some(&limit) = candidates.next() {
+            let beyond = match candidates.peek() {
+                Some(next) if same(limit.factor, next.factor) => continue,
+                Some(next) => (limit.factor * next.factor).sqrt(),
+                None => limit.factor * step,
+            };
+            if !(poles::radius(&self.closed_poles_at(beyond)?) < 1.0) {
+                return Ok(Some(limit));
+            }
+        }
+        Ok(None)
+    }
+
+    fn crossovers(&self) -> Result<Vec<SampledCrossover>, LtiError> {
+        let crossover = |omega_rad_s: f64| {
+            let margin = libm::remainder(self.phase_rad(omega_rad_s) + PI, TAU);
+            let lag = if margin < 0.0 { margin + TAU } else { margin };
+            SampledCrossover { omega_rad_s, phase_margin_rad: margin, delay_s: lag / omega_rad_s }
+        };
+        Ok(self.gain_crossings(1.0)?.into_iter().map(crossover).collect())
+    }
+
+    /// Bandwidth in rad/s: where $|T|$ first falls 3 dB below its value at rest; `None` if it does not, if it is 0 at
+    /// rest, or if the closed loop is not stable.
+    ///
+    /// 3 dB is the factor $10^{-3/20}$, 0.70795.
+    #[must_use]
+    pub fn bandwidth_rad_s(&self) -> Option<f64> {
+        let poles = self.closed_poles().ok()?;
+        if !(poles::radius(&poles) < poles::STABLE_BELOW) {
+            return None;
+        }
+        let at_rest = modulus(self.response(0.0).closed());
+        let level = at_rest * libm::pow(10.0, -3.0 / 20.0);
+        let closed =
+            Self::new(self.closed_matrix(), self.b.clone(), self.c.clone(), self.dt_s).ok()?;
+        closed.gain_crossings(level).ok()?.first().copied()
+    }
+}
+
+fn same(left: f64, right: f64) -> bool {
+    (left - right).abs() <= SAME_FACTOR * left.max(right)
+}
+
+/// The crossover with the smallest phase margin to either side.
+fn nearest(crossovers: &[SampledCrossover]) -> Option<SampledCrossover> {
+    let size = |at: &SampledCrossover| at.phase_margin_rad.abs();
+    crossovers.iter().copied().min_by(|left, right| size(left).total_cmp(&size(right)))
+}
