@@ -207,3 +207,31 @@ pub(super) fn require_finite(what: &'static str, matrix: &Matrix) -> Result<(), 
 fn too_large() -> NotProved {
     NotProved::Unbounded { what: "matrix exponential", row: 0, column: 0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rest of the series of $e^x - 1$ begins with $x^{19} / 19!$ and is little more.
+    #[test]
+    fn what_the_series_leaves_out_is_bounded_from_above_and_closely() {
+        let x = 0.25_f64;
+        let first = (1..=19).fold(1.0, |power, term| power * x / f64::from(term));
+        let matrix = IntervalMatrix::from_rows(&[[Interval::point(x)]]).expect("square");
+        let rest = rest_of_series(&matrix)[0];
+        assert!(rest > first * (1.0 + x / 20.0) && rest < 1.001 * first * (1.0 + x / 20.0));
+        // Of a narrow column beside wide ones it is a part of the narrow column.
+        let row = |left: f64, right: f64| [left, right].map(Interval::point);
+        let matrix = IntervalMatrix::from_rows(&[row(x, 1e-30), row(0.0, 0.0)]).expect("square");
+        let rest = rest_of_series(&matrix);
+        assert!((rest[1] / rest[0] - 1e-30 / x).abs() < 1e-40);
+        assert_eq!(reached(&matrix), [true, true, false, false]);
+        // Without rounding but for that of twice the working precision: what is left out shows.
+        let mut chain = Matrix::zeros(3, 3);
+        chain.set(0, 1, x).and_then(|()| chain.set(1, 2, x)).expect("the entries exist");
+        let chain = IntervalMatrix::from(&chain);
+        let (sum, rest) = (series(&chain).expect("square"), rest_of_series(&chain));
+        assert!(sum.radius[2] >= rest[2] && sum.radius[2] < 1.1 * rest[2]);
+        assert!(sum.radius[6].max(sum.radius[0]) <= 0.0);
+    }
+}

@@ -23,7 +23,9 @@ pub fn is_positive(p: &Matrix) -> Result<(), NotProved> {
 /// With a relaxation (τ, Q), τ ≥ 0, only for states with $z^T Q z \ge 0$ (the S-procedure); without
 /// one for all states but zero. The rate lies between 0 and 1.
 ///
-/// That P is positive definite is proved as well.
+/// That P is positive definite is proved as well. `matrix` is meant to be narrow (rounding, the enclosure
+/// of a plant): the bounds for wide ones are not the closest. A set of gains is given by its corners,
+/// as $M^T P M$ is convex in M.
 ///
 /// # Errors
 /// [`NotProved`] where shapes do not fit, an entry is not finite, P or Q is not symmetric, rate or τ

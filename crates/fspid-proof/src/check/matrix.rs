@@ -177,10 +177,18 @@ impl IntervalMatrix {
         result
     }
 
-    /// Every entry times a factor.
+    /// Every entry times a factor; an entry without bounds keeps none.
     #[must_use]
     pub fn scaled(&self, factor: Interval) -> Self {
-        Self::from_entries(self.rows, self.columns, self.entries().map(|entry| entry * factor))
+        let mut result = self.clone();
+        for (middle, radius) in result.middle.iter_mut().zip(&mut result.radius) {
+            let (product, own) = middle_and_radius(Interval::point(*middle) * factor);
+            let spread = (Interval::point(*radius) * Interval::point(factor.magnitude())).upper();
+            let known = radius.is_finite();
+            let whole = if known { sum_up(own, spread) } else { f64::INFINITY };
+            (*middle, *radius) = bounded(product, whole);
+        }
+        result
     }
 
     /// Row i times $2^{r_i}$ and column j times $2^{c_j}$, which is exact within the range of floats.
@@ -304,6 +312,7 @@ mod tests {
         assert!(!broken.contains(&Matrix::identity(2).scaled(f64::NAN)));
         let zero = broken.difference(&broken).expect("the same shape");
         assert_eq!(zero.get(0, 1), Some(Interval::ENTIRE));
+        assert_eq!(broken.scaled(Interval::ZERO).get(1, 0), Some(Interval::ENTIRE));
         let square = broken.product(&broken).expect("square");
         assert!(square.entries().all(|entry| !entry.is_bounded()));
         let unbounded = interval(0.0, f64::INFINITY);

@@ -9,6 +9,9 @@ use super::error::{NotProved, positive};
 use super::exponential::held;
 use super::matrix::IntervalMatrix;
 
+/// A matrix row by row.
+type Rows = Vec<Vec<Interval>>;
+
 /// How an actuator follows its command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActuatorLag {
@@ -123,32 +126,31 @@ impl PrintedPlant<'_> {
         rate
     }
 
-    /// State and input matrices of plant and actuator. Without a lag the elevator is the command, and
-    /// the deflection does not move by itself.
+    /// Rows of state matrix and input of plant and actuator. Without a lag the elevator is the command,
+    /// and the deflection does not move by itself.
     fn with_actuator(
         &self,
-        mut a: Vec<Vec<Interval>>,
+        mut a: Rows,
         by_elevator: &[Interval],
-    ) -> Result<(Vec<Vec<Interval>>, Vec<[Interval; 1]>), NotProved> {
+    ) -> Result<(Rows, Rows), NotProved> {
         let order = a.len();
         let (own, by_command) = self.lag.rows()?;
         let states = order + own.len();
-        let zeros = || vec![Interval::ZERO; states];
-        let mut b = vec![[Interval::ZERO]; states];
+        let mut b = vec![vec![Interval::ZERO]; states];
+        b[states - 1] = vec![by_command];
         for ((row, b), &h) in a.iter_mut().zip(&mut b).zip(by_elevator) {
             row.resize(states, Interval::ZERO);
             if self.lag == ActuatorLag::None {
-                *b = [h];
+                *b = vec![h];
             } else {
                 row[order] = h;
             }
         }
         for by_own in own {
-            let mut row = zeros();
+            let mut row = vec![Interval::ZERO; states];
             row[order..].copy_from_slice(&by_own);
             a.push(row);
         }
-        b[states - 1] = [by_command];
         Ok((a, b))
     }
 }
@@ -167,7 +169,7 @@ impl From<Lag> for ActuatorLag {
 
 impl ActuatorLag {
     /// Derivatives of the actuator's states by these states, and of the last of them by the command.
-    fn rows(self) -> Result<(Vec<Vec<Interval>>, Interval), NotProved> {
+    fn rows(self) -> Result<(Rows, Interval), NotProved> {
         match self {
             Self::None => Ok((vec![vec![Interval::ZERO]], Interval::ZERO)),
             Self::First { time_constant_s } => {
@@ -188,7 +190,7 @@ impl ActuatorLag {
 }
 
 /// The companion matrix of a monic denominator, last row last.
-fn companion(alpha: &[Interval]) -> Vec<Vec<Interval>> {
+fn companion(alpha: &[Interval]) -> Rows {
     let order = alpha.len();
     let entry = |row: usize, column: usize| match row + 1 {
         next if next == order => -alpha[order - 1 - column],

@@ -276,14 +276,39 @@ mod tests {
         assert!(entry.contains(-e * e) && entry.radius() < 1e-29, "{entry:?}");
     }
 
+    /// What is left when the large parts cancel is 1 + 2^-160, and the sum of the small parts can only
+    /// say 1.
+    #[test]
+    fn what_doubled_precision_drops_is_in_the_radius() {
+        let most = exact_power(53) - 1.0;
+        let small = exact_power(-80);
+        let left = [most, exact_power(53), most * small, exact_power(53) * small];
+        let right = [most, 2.0 - exact_power(53), most * small, (2.0 - exact_power(53)) * small];
+        let row = Matrix::from_rows(&[left]).expect("finite");
+        let column = Matrix::from_rows(&right.map(|entry| [entry])).expect("finite");
+        let product = product(&IntervalMatrix::from(&row), &IntervalMatrix::from(&column));
+        let entry = product.get(0, 0).expect("exists");
+        assert!(entry.contains(1.0) && entry.upper() > 1.0, "{entry:?}");
+    }
+
     #[test]
     fn entries_at_the_ends_of_the_range_are_multiplied_in_plain_intervals() {
-        for size in [1e-200, 1e200] {
-            let matrix = point(&[[size, 1.0], [0.0, 1.0 / size]]);
+        for size in [1e-200, 1e-140, 1e140, 1e200] {
+            let matrix = point(&[[size, 1.0], [0.0, 0.1]]);
             let square = product(&matrix, &matrix);
             assert_eq!(square, entry_by_entry(&matrix, &matrix));
             let corner = square.get(0, 0).expect("exists");
             assert!(corner.upper() > 0.0 && corner.upper() >= size * size);
+        }
+        let mut narrow = point(&[[1.0, 0.1], [0.0, 0.1]]);
+        narrow.radius[0] = 1e-200;
+        assert_eq!(product(&narrow, &narrow), entry_by_entry(&narrow, &narrow));
+        let one = IntervalMatrix::identity(2);
+        let square = square_beyond_identity(&narrow).plus(&one);
+        let whole = narrow.plus(&one);
+        let plain = entry_by_entry(&whole, &whole);
+        for (found, expected) in square.entries().zip(plain.entries()) {
+            assert!(found.intersection(expected).is_some() && found.radius() < 1e-14);
         }
     }
 
