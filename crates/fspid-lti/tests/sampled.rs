@@ -60,11 +60,21 @@ fn paper_loop() -> Outcome {
     let plant = TransferFunction::new(
         &[1.69144, 0.84341, 0.0099096],
         &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
-    )?.series(&TransferFunction::new(&[20.0], &[1.0, 10.0])?)?;
-    for (dt, delay) in [(1e-4,0),(0.01,0),(0.05,0),(0.05,1),(0.1,0),(0.1,1),(0.01,20)] {
+    )?
+    .series(&TransferFunction::new(&[20.0], &[1.0, 10.0])?)?;
+    for (dt, delay) in [(1e-4, 0), (0.01, 0), (0.05, 0), (0.05, 1), (0.1, 0), (0.1, 1), (0.01, 20)]
+    {
         match sampled(&plant, dt, delay)?.margins()? {
-        Stability::Stable(f) => println!("{dt} {delay}: {:.3} {:.3} {:.6} {:?} {}", 20.0*f.gain_high.unwrap().factor.log10(), RAD_DEG * f.phase_margin.unwrap().phase_margin_rad, f.disk.size, f.delay_margin_s, f.sensitivity_peak.value),
-        o => println!("{dt} {delay} {o:?}") }
+            Stability::Stable(f) => println!(
+                "{dt} {delay}: {:.3} {:.3} {:.6} {:?} {}",
+                20.0 * f.gain_high.unwrap().factor.log10(),
+                RAD_DEG * f.phase_margin.unwrap().phase_margin_rad,
+                f.disk.size,
+                f.delay_margin_s,
+                f.sensitivity_peak.value
+            ),
+            o => println!("{dt} {delay} {o:?}"),
+        }
     }
     Ok(())
 }
