@@ -5,8 +5,12 @@ use core::f64::consts::PI;
 use super::bilinear::Bilinear;
 use super::reduced::Response;
 use super::{SampledLoop, scan};
+use crate::complex::modulus;
 use crate::error::LtiError;
 
+/// Values beyond this are those of a pole on the unit circle: rounding splits several at one place, and between the
+/// parts the phase means nothing.
+const POLE: f64 = 1e10;
 /// Angles this near to 0 and π are taken for them: rounding decides the sign of what is real there.
 const END_RAD: f64 = 1e-10;
 
@@ -29,7 +33,8 @@ impl SampledLoop {
 
     /// All frequencies in rad/s at which the value is real, rising: 0 and Nyquist's always, and those between.
     ///
-    /// At a pole on the unit circle, where the value jumps from one end of an axis to the other, there is no crossing.
+    /// At a pole on the unit circle, where the value jumps from one end of an axis to the other, there is no crossing:
+    /// values beyond 10¹⁰ are left out.
     ///
     /// # Errors
     /// As [`SampledLoop::gain_crossings`].
@@ -41,7 +46,8 @@ impl SampledLoop {
     pub(super) fn real_angles(&self) -> Result<Vec<f64>, LtiError> {
         let candidates = Bilinear::angles_of_real_values(&self.reduced)?;
         let across = |angle_rad: f64| sine(self.response(angle_rad));
-        let inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
+        let mut inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
+        inside.retain(|&angle_rad| modulus(self.response(angle_rad).open()) < POLE);
         Ok(core::iter::once(0.0).chain(inside).chain([PI]).collect())
     }
 

@@ -2,23 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 
-use super::{DiskMargin, Peak, SampledLoop, poles};
+use super::{DiskMargin, GainLimit, Peak, SampledLoop, poles};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
-
-/// Factors beyond this one, and below its inverse, are no limits of a gain: 160 dB.
-const FACTOR_MAX: f64 = 1e8;
-/// Factors that differ by less than this share are one: at a touching of the unit circle they come in pairs.
-const SAME_FACTOR: f64 = 1e-9;
-
-/// A factor on the gain at which a stable loop becomes unstable.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GainLimit {
-    /// The factor.
-    pub factor: f64,
-    /// Frequency of the undamped oscillation there; 0 for a pole at 1, Nyquist's for one at −1.
-    pub omega_rad_s: f64,
-}
 
 /// A frequency at which the gain of a sampled loop is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +34,9 @@ pub enum Stability {
 /// Margins of a stable sampled loop with negative feedback.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledMargins {
-    /// The factor below 1 at which the loop becomes unstable; `None` if none down to 0 does.
+    /// The factor below 1 at which the loop becomes unstable; `None` if none down to 10⁻⁶ does.
     pub gain_low: Option<GainLimit>,
-    /// The factor above 1 at which the loop becomes unstable; `None` if none does.
+    /// The factor above 1 at which the loop becomes unstable; `None` if none up to 10⁶ does.
     pub gain_high: Option<GainLimit>,
     /// Where the gain is 1, by rising frequency.
     pub crossovers: Vec<SampledCrossover>,
@@ -92,13 +78,12 @@ impl SampledLoop {
             let poles = poles.into_iter().filter(outside).collect();
             return Ok(Stability::Unstable { poles, spectral_radius });
         }
-        let limits = self.gain_candidates()?;
+        let [gain_low, gain_high] = self.gain_limits()?;
         let crossovers = self.crossovers()?;
         let sensitivity_peak = self.peak_of(1.0, &poles)?;
         Ok(Stability::Stable(Box::new(SampledMargins {
-            gain_low: self
-                .first_limit(limits.iter().rev().filter(|limit| limit.factor < 1.0), 0.5)?,
-            gain_high: self.first_limit(limits.iter().filter(|limit| limit.factor > 1.0), 2.0)?,
+            gain_low,
+            gain_high,
             phase_margin: nearest(&crossovers),
             delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
             crossovers,
@@ -108,41 +93,6 @@ impl SampledLoop {
             disk: self.disk_with(0.0, &poles)?,
             spectral_radius,
         })))
-    }
-
-    /// Positive factors that bring a pole to the unit circle, rising.
-    fn gain_candidates(&self) -> Result<Vec<GainLimit>, LtiError> {
-        let limit = |angle_rad: f64| {
-            let response = self.response(angle_rad);
-            let factor = -crate::complex::quotient(response.under, response.over).re;
-            GainLimit { factor, omega_rad_s: angle_rad / self.dt_s }
-        };
-        let mut limits: Vec<GainLimit> = self.real_angles()?.into_iter().map(limit).collect();
-        limits.retain(|limit| limit.factor > 1.0 / FACTOR_MAX && limit.factor < FACTOR_MAX);
-        limits.sort_by(|left, right| left.factor.total_cmp(&right.factor));
-        Ok(limits)
-    }
-
-    /// The first candidate beyond which the loop is unstable; candidates come in the order of their distance from 1.
-    ///
-    /// Between two candidates the number of unstable poles does not change, so one factor between them tells it.
-    fn first_limit<'a>(
-        &self,
-        candidates: impl Iterator<Item = &'a GainLimit>,
-        step: f64,
-    ) -> Result<Option<GainLimit>, LtiError> {
-        let mut candidates = candidates.peekable();
-        while let Some(&limit) = candidates.next() {
-            let beyond = match candidates.peek() {
-                Some(next) if same(limit.factor, next.factor) => continue,
-                Some(next) => (limit.factor * next.factor).sqrt(),
-                None => limit.factor * step,
-            };
-            if !(poles::radius(&self.closed_poles_at(beyond)?) < 1.0) {
-                return Ok(Some(limit));
-            }
-        }
-        Ok(None)
     }
 
     fn crossovers(&self) -> Result<Vec<SampledCrossover>, LtiError> {
@@ -170,10 +120,6 @@ impl SampledLoop {
             Self::new(self.closed_matrix(), self.b.clone(), self.c.clone(), self.dt_s).ok()?;
         closed.gain_crossings(level).ok()?.first().copied()
     }
-}
-
-fn same(left: f64, right: f64) -> bool {
-    (left - right).abs() <= SAME_FACTOR * left.max(right)
 }
 
 /// The crossover with the smallest phase margin to either side.

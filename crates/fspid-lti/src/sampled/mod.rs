@@ -8,6 +8,7 @@
 mod bilinear;
 mod crossings;
 mod disk;
+mod gain_limits;
 mod margins;
 mod peak;
 mod poles;
@@ -23,7 +24,8 @@ use crate::matrix::Matrix;
 use reduced::{Reduced, Response};
 
 pub use disk::DiskMargin;
-pub use margins::{GainLimit, SampledCrossover, SampledMargins, Stability};
+pub use gain_limits::GainLimit;
+pub use margins::{SampledCrossover, SampledMargins, Stability};
 pub use peak::Peak;
 
 /// Halvings of a step between two frequencies while its phase is being followed.
