@@ -215,6 +215,9 @@ impl<'a> Prover<'a> {
             let (claim, level) = claim(solution, rate);
             self.rechecked(claim, factor, level.filter(|_| self.covers_limits()))
         };
+        let t0 = std::time::Instant::now();
+        let x = plain();
+        eprintln!("factor {factor} cones {} conditions {} n {}: plain {:?} found {} steps {:?}", problem.cones.len(), problem.conditions.len(), problem.conditions[0].matrix.rows(), t0.elapsed(), x.is_some(), x.as_ref().map(|s| s.0.steps));
         let at_best = if best_rate { best().and_then(rechecked) } else { None };
         at_best.or_else(|| plain().and_then(rechecked))
     }
