@@ -24,8 +24,8 @@ pub struct Cone {
 }
 
 impl GainSet {
-    /// Divides the plane of the supervisor's inputs into `count` double cones of equal angles; at least
-    /// one, which is the whole plane.
+    /// Divides the plane of the supervisor's inputs into `count` double cones of equal angles; at
+    /// least one, which is the whole plane.
     ///
     /// Every point lies in a cone, and where a point of a cone lies in a cell, the cone names the
     /// cell: also on borders, and also if both are moved by rounding.
@@ -53,11 +53,13 @@ impl GainSet {
 
 /// Whether a cell and a double cone have a point in common.
 ///
-/// They have none if and only if all of the cell lies between the two halves, where the two products are
-/// of opposite and everywhere the same signs. Over a box a linear form takes just the values of its interval.
+/// They have none if and only if all of the cell lies between the two halves, where the two
+/// products are of opposite and everywhere the same signs. Over a box a linear form takes just the
+/// values of its interval.
 fn meets(cell: &GainCell, normals: [[f64; 2]; 2]) -> bool {
     let [error, change] = [cell.error, cell.change].map(widened);
-    let [one, other] = normals.map(|[x, y]| Interval::point(x) * error + Interval::point(y) * change);
+    let [one, other] =
+        normals.map(|[x, y]| Interval::point(x) * error + Interval::point(y) * change);
     let apart = |one: Interval, other: Interval| one.lower() > 0.0 && other.upper() < 0.0;
     !(apart(one, other) || apart(other, one))
 }

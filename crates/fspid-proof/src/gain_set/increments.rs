@@ -1,28 +1,29 @@
 //! Increments of the gains over cells of the supervisor's inputs, enclosed once for all scales.
 
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_core::SelfTuner;
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_fuzzy::audit::Reach;
 use fspid_fuzzy::scalar::Interval;
 use fspid_fuzzy::system::{Parts, System};
 
 use super::{EVERYWHERE, GainSet, NoBound, law};
 
-/// How far the supervisor's own arithmetic may be off its centre of gravity, as a share of its range:
-/// $2^{-38}$.
+/// How far the supervisor's own arithmetic may be off its centre of gravity, as a share of its
+/// range: $2^{-40}$, which is $8192 \epsilon$ with $\epsilon = 2^{-53}$.
 ///
-/// What is enclosed is the centre of gravity for every strength that the rules may have, as computed. The
-/// closed form for it suffers less than 100 roundings of numbers up to 3 in the area, 200 in the moment, at
-/// an area of at least $\tfrac38$ (some rule fires to one half), in units of the spacing, a third
-/// of the range: less than $400 \cdot 2^{-53}$ of the range, and as much for strengths of any other size, to
-/// which they are relative. Corners of the triangles that are rounded ($2^{-53}$ of the range each) and, where
-/// a cell is enclosed by its slopes, grades that are, add less than $2000 \cdot 2^{-53}$ within the range and
-/// $2^{14} \cdot 2^{-53}$ within twice the range. This is $2^{15} \cdot 2^{-53}$.
-const ROUNDING: f64 = 1.0 / (1_u64 << 38) as f64;
-/// What each sample of a sampled centroid adds to [`ROUNDING`]: two roundings of sums up to the range.
+/// What is enclosed is the centre of gravity for all strengths that the rules can have, as
+/// computed. Its closed form suffers less than $60 \epsilon$ in the area and $200 \epsilon$ in the
+/// moment (in spacings, a third of the range), at an area of at least $\tfrac38$ because some rule
+/// fires to one half: $400 \epsilon$ of the range. Corners of triangles that are rounded add
+/// $500 \epsilon$; grades that are, where a cell is enclosed by its slopes, $300 \epsilon$. The
+/// places of samples, with at least [`FEWEST_CELLS`] between them, would add $2000 \epsilon$.
+const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
+/// What each sample of a sampled centroid adds to [`ROUNDING`]: two roundings of sums up to the
+/// range.
 const ROUNDING_PER_SAMPLE: f64 = 1.0 / (1_u64 << 50) as f64;
-/// With so many cells between its samples, a sampled centroid meets every triangle at one half of its height
-/// or above, so that its area is not small; with fewer, nothing is said but that it lies in the range.
+/// With so many cells between its samples, a sampled centroid meets every triangle at half its
+/// height or above, so that its area is not small. With fewer, nothing is said but that it lies in
+/// the range.
 const FEWEST_CELLS: u32 = 12;
 
 /// What the rules add to the gains, cell by cell, before the output factors.
@@ -51,16 +52,20 @@ impl IncrementMap {
     /// Encloses the increments of a tuner over `divisions` cells along each input within the range.
     ///
     /// The boxes shrink in proportion to the cells; multiples of 12 put the centres of the sets and
-    /// the places where neighbours cross on borders of cells. Where inputs beyond the range are evaluated as
-    /// they are, there are cells up to twice the range, and beyond that nothing is said but that increments lie
-    /// in the range.
+    /// the places where neighbours cross on borders of cells. Where inputs beyond the range are
+    /// evaluated as they are, four cells around all others say no more than where every answer
+    /// lies.
     ///
     /// # Errors
     /// [`NoBound`] for an accumulating law that nothing holds back.
     pub fn of(tuner: &SelfTuner<f64>, divisions: usize) -> Result<Self, NoBound> {
         let system = System::new(Parts::from(tuner.supervisor())).ok();
         let mut enclosure = Enclosure::new(tuner, system.as_ref());
-        let rest = enclosure.over([Side::point(0.0); 2]);
+        // The origin is in every dead zone, also in one without width.
+        let rest = match tuner.settings().dead_zone {
+            Some(_) => [Interval::ZERO; 3],
+            None => enclosure.over([Side::point(0.0); 2]),
+        };
         let scale = tuner.settings().input_scale;
         let [errors, changes] = [scale.error_per_rad, scale.change_per_rad]
             .map(|scale| sides(tuner.supervisor(), divisions.max(1), scale));
@@ -83,8 +88,8 @@ impl IncrementMap {
     ///
     /// $$ k = k' + f s \Delta k, $$
     ///
-    /// moved into the gain limits, for the memoryless law; for the accumulating law one box over all inputs.
-    /// The factor is a finite number that is not negative; 1 for the tuner as it is.
+    /// moved into the gain limits, for the memoryless law; for the accumulating law one box over
+    /// all inputs. The factor is a finite number that is not negative; 1 for the tuner as it is.
     #[must_use]
     pub fn gains(&self, output_factor: f64) -> GainSet {
         law::gains(self, output_factor)
@@ -118,12 +123,7 @@ fn sides(supervisor: &Supervisor<f64>, divisions: usize, scale: f64) -> Vec<Side
     }
     let (range, count) = (supervisor.range(), divisions as f64);
     let at = |cell: f64| range * (2.0 * cell / count - 1.0);
-    let more = match supervisor.out_of_range() {
-        OutOfRange::Evaluate => divisions.div_ceil(2),
-        OutOfRange::Clamp | OutOfRange::Error => 0,
-    };
-    let first = -(more as f64);
-    let cells = (0..divisions + 2 * more).map(|cell| first + cell as f64);
+    let cells = (0..divisions).map(|cell| cell as f64);
     let mut sides: Vec<Side> = cells.map(|cell| Side::between(at(cell), at(cell + 1.0))).collect();
     if supervisor.out_of_range() == OutOfRange::Clamp {
         if let Some(first) = sides.first_mut() {
@@ -176,6 +176,8 @@ impl<'a> Enclosure<'a> {
         let slack = range * (ROUNDING + ROUNDING_PER_SAMPLE * f64::from(samples));
         let reach = system.filter(|_| is_dense(rule)).map(Reach::new);
         let slack = Interval::between(-slack, slack);
+        let half = furthest(range, rule);
+        let universe = Interval::between(-half, half) + slack;
         let settings = tuner.settings();
         let zone = settings.dead_zone.map(|zone| {
             let scale = settings.input_scale;
@@ -183,7 +185,7 @@ impl<'a> Enclosure<'a> {
             [scale.error_per_rad * zone.error_rad, scale.change_per_rad * zone.change_rad]
                 .map(f64::abs)
         });
-        Self { reach, universe: Interval::between(-range, range) + slack, slack, zone }
+        Self { reach, universe, slack, zone }
     }
 
     fn cell(&mut self, sides: [Side; 2]) -> IncrementCell {
@@ -210,9 +212,9 @@ impl<'a> Enclosure<'a> {
 
     /// The increments with the dead zone, in which there are none.
     ///
-    /// With $x = \mathrm{fl}(s y)$ the input that the supervisor sees of $y$ and
-    /// $z = \mathrm{fl}(|s| d)$ of the zone's half side $d$, rounding being monotone: $|y| \le d$ makes
-    /// $|x| \le z$, and $|x| < z$ comes from $|y| \le d$ only.
+    /// Let $x = \mathrm{fl}(s y)$ be what the supervisor sees of an input $y$, and
+    /// $z = \mathrm{fl}(|s| d)$ the same of the zone's half side $d$. Rounding is monotone:
+    /// $|y| \le d$ makes $|x| \le z$, and $|x| < z$ comes from $|y| \le d$ only.
     fn silenced(&self, inputs: [[f64; 2]; 2], delta: [Interval; 3]) -> [Interval; 3] {
         let Some(zone) = self.zone else { return delta };
         let mut sides = inputs.into_iter().zip(zone);
@@ -222,6 +224,24 @@ impl<'a> Enclosure<'a> {
         }
         let meets = |([lower, upper], zone): ([f64; 2], f64)| lower <= zone && upper >= -zone;
         if sides.all(meets) { delta.map(|delta| delta.hull(Interval::ZERO)) } else { delta }
+    }
+}
+
+/// The largest magnitude of any answer.
+///
+/// A centre of gravity lies where its set does. Without samples it is no further out than that of
+/// the outermost triangle, 8/3 spacings. For let the universe end at 3, and the union be cut into
+/// its level sets: at height $h$ the outermost triangle contributes $[2 + h, 3]$, and all others
+/// only what is below $2 + h$ and below $3 - h$, hence below 8/3. The former's moment about 8/3, up
+/// to the strength $s$, is
+///
+/// $$ \int_0^s \left( \tfrac{h}{2} - \tfrac16 \right) (1 - h) \,dh = -\tfrac{s}{6} (1 - s)^2 \le 0 $$
+fn furthest(range: f64, rule: Defuzzifier) -> f64 {
+    if rule == Defuzzifier::Exact {
+        let spacing = Interval::point(range) / Interval::point(3.0);
+        (spacing * (Interval::point(8.0) / Interval::point(3.0))).upper()
+    } else {
+        range
     }
 }
 

@@ -37,11 +37,12 @@ impl One {
     /// $x^+ = (1 - \lambda T) x + \lambda T \frac{s \Delta k}{\lambda}$ a mean of two numbers of
     /// $[L, U]$, and so $x$ never leaves it.
     ///
-    /// Rounded, with $\epsilon = 2^{-53}$ and $B = U - L$: where the computed slope is not positive, $k$
-    /// does not rise. Where it is, $\lambda x (1 - 2 \epsilon) < \lambda U$, so that $x$ was below
-    /// $U + 3 \epsilon B$, and the step and the sum leave it below $U + 10 \epsilon B + \epsilon |k^+|$. That
-    /// is no more at the thousandth sample than at the first: errors do not add up. Likewise from
-    /// below. The bounds are widened by $16 \epsilon (|k'| + B)$.
+    /// Rounded, with $\epsilon = 2^{-53}$ and $B = U - L$: where the computed slope is not positive,
+    /// $k$ does not rise. Where it is, $\lambda x (1 - 2 \epsilon) < \lambda U$, so that $x$ was
+    /// below $U + 3 \epsilon B$, and the step and the sum leave it below
+    /// $U + 10 \epsilon B + \epsilon |k^+|$. That is no more at the thousandth sample than at the
+    /// first: errors do not add up. Likewise from below. The bounds are widened by
+    /// $16 \epsilon (|k'| + B)$ and, for products that underflow, by the smallest normal number.
     ///
     /// Without leakage $x$ rises for ever if $s \Delta k$ can be positive, and falls if it can be
     /// negative; only the limits then hold it.
@@ -53,7 +54,7 @@ impl One {
         } else if self.leakage_per_s > 0.0 {
             let reach = increment / Interval::point(self.leakage_per_s);
             let reach = reach.hull(Interval::ZERO);
-            let slack = STEP_ROUNDINGS * (self.nominal.abs() + reach.width());
+            let slack = STEP_ROUNDINGS * (self.nominal.abs() + reach.width()) + f64::MIN_POSITIVE;
             nominal + reach + Interval::between(-slack, slack)
         } else {
             nominal + drift(increment)
@@ -64,21 +65,16 @@ impl One {
     /// Where the accumulating law tends to if the increments stay between bounds.
     fn settled(&self, delta: Interval) -> Interval {
         let (nominal, increment) = (Interval::point(self.nominal), self.factor * delta);
-        let still = increment.lower() >= 0.0 && increment.upper() <= 0.0;
-        if still {
-            return nominal;
-        }
-        if self.leakage_per_s > 0.0 {
-            return self.limited(nominal + increment / Interval::point(self.leakage_per_s));
-        }
-        let Some(limits) = self.limits else { return drift(increment) };
-        if increment.lower() > 0.0 {
-            Interval::point(limits.upper())
+        let free = if self.leakage_per_s > 0.0 {
+            nominal + increment / Interval::point(self.leakage_per_s)
+        } else if increment.lower() > 0.0 {
+            Interval::point(f64::INFINITY)
         } else if increment.upper() < 0.0 {
-            Interval::point(limits.lower())
+            Interval::point(f64::NEG_INFINITY)
         } else {
-            self.limited(nominal + drift(increment))
-        }
+            nominal + drift(increment)
+        };
+        self.limited(free)
     }
 
     fn limited(&self, gain: Interval) -> Interval {
@@ -165,8 +161,8 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
     GainSet { nominal, rest, cells }
 }
 
-/// A supervisor that refuses inputs leaves the gains as they were, at the first sample the nominal ones: the
-/// gains of any cell may be in force beyond the range, and that lies on all sides.
+/// A supervisor that refuses inputs leaves the gains as they were, at the first sample the nominal
+/// ones: the gains of any cell may be in force beyond the range, and that lies on all sides.
 fn hold(cells: &mut Vec<GainCell>, nominal: [Interval; 3]) {
     cells.push(GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: nominal });
     for cell in cells {

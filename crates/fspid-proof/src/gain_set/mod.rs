@@ -2,9 +2,9 @@
 //!
 //! The plane of the supervisor's inputs, error and change, is cut into cells. Over each the
 //! increments of the three gains are enclosed by interval arithmetic ([`IncrementMap`]); with the
-//! nominal gains, the output factors, the law and the gain limits they become a [`GainSet`]: a box of
-//! gains for each cell, which holds whatever the controller flies with while its inputs are in the
-//! cell, rounding of its own arithmetic included.
+//! nominal gains, the output factors, the law and the gain limits they become a [`GainSet`]: a box
+//! of gains for each cell, which holds whatever the controller flies with while its inputs are in
+//! the cell, rounding of its own arithmetic included.
 //!
 //! A set is used in two ways: whole, for gains that move in it as they like ([`GainSet::corners`],
 //! [`GainSet::hull`]), and cell by cell, for gains that belong to the inputs ([`GainSet::cones`]).
@@ -83,13 +83,6 @@ impl GainSet {
         Self { nominal: gains, rest: point, cells: vec![cell] }
     }
 
-    /// The part of the set over some of its cells.
-    #[must_use]
-    pub fn of_cells(&self, cells: &[usize]) -> Self {
-        let cells = cells.iter().filter_map(|&cell| self.cells.get(cell).copied()).collect();
-        Self { cells, ..self.clone() }
-    }
-
     /// The smallest box that holds the set.
     #[must_use]
     pub fn bounds(&self) -> [Interval; 3] {
@@ -102,8 +95,8 @@ impl GainSet {
         boxes.reduce(hull).unwrap_or(array(self.nominal).map(Interval::point))
     }
 
-    /// The corners of every box with the number of its cell; of a box that is flat along a gain only
-    /// those that differ.
+    /// The corners of every box with the number of its cell; of a box that is flat along a gain
+    /// only those that differ.
     pub fn corners(&self) -> impl Iterator<Item = (usize, Gains<f64>)> {
         let cells = self.cells.iter().enumerate();
         cells.flat_map(|(index, cell)| corners(cell.gains).map(move |corner| (index, corner)))
@@ -112,8 +105,8 @@ impl GainSet {
     /// Those of the [`corners`](Self::corners) that span the convex hull of all.
     ///
     /// Every corner lies inside or no further outside than $10^{-9}$, measured in halves of the
-    /// set's extent along each gain. Computed in ordinary arithmetic: good to look for a certificate
-    /// with, while the proof asks all corners.
+    /// set's extent along each gain. Computed in ordinary arithmetic: good to look for a
+    /// certificate with, while the proof asks all corners.
     #[must_use]
     pub fn hull(&self) -> Vec<Gains<f64>> {
         self.hull_within(0.0)
@@ -172,7 +165,8 @@ mod tests {
     fn a_box_has_eight_corners_and_a_flat_one_fewer() {
         let (wide, flat) = (Interval::between(1.0, 2.0), Interval::ONE);
         let set = of_boxes(&[[wide; 3], [wide, flat, wide], [flat; 3]]);
-        let counts = [0, 1, 2].map(|cell| set.corners().filter(|&(found, _)| found == cell).count());
+        let counts =
+            [0, 1, 2].map(|cell| set.corners().filter(|&(found, _)| found == cell).count());
         assert_eq!(counts, [8, 4, 1]);
         assert!(set.corners().all(|(_, corner)| set.contains(corner)));
     }

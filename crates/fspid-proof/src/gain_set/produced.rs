@@ -4,13 +4,13 @@ use fspid_core::{GainLimits, Gains, Law, Limits, SelfTuner};
 
 use super::{array, gains};
 
-/// The gains that a tuner answers where its supervisor sees `error` and `change`, in supervisor units
-/// and with its sign.
+/// The gains that a tuner answers where its supervisor sees `error` and `change`, in supervisor
+/// units and with its sign.
 ///
-/// With the memoryless law these are the controller's very bits. With the accumulating law they
-/// are those that it tends to while the inputs stay: $k' + s \Delta k / \lambda$, or, if nothing leaks, the
-/// limits (without limits, where it is after a second). Inputs that the supervisor refuses leave the nominal
-/// gains, as at the first sample.
+/// With the memoryless law these are the controller's very bits. With the accumulating law they are
+/// those that it tends to while the inputs stay: $k' + s \Delta k / \lambda$, or, if nothing leaks,
+/// the limits (without limits, where it is after a second). Inputs that the supervisor refuses
+/// leave the nominal gains, as at the first sample.
 #[must_use]
 pub fn producible(tuner: &SelfTuner<f64>, error: f64, change: f64) -> Gains<f64> {
     let increments = match tuner.increments_where_seen(error, change) {
@@ -34,7 +34,8 @@ pub fn producible(tuner: &SelfTuner<f64>, error: f64, change: f64) -> Gains<f64>
 }
 
 /// The gains that are produced at `count` by `count` points, evenly spaced over the range of the
-/// supervisor: error, change (both in supervisor units) and the gains of [`producible`], error by error.
+/// supervisor: error, change (both in supervisor units) and the gains of [`producible`], error by
+/// error.
 #[must_use]
 pub fn grid(tuner: &SelfTuner<f64>, count: usize) -> Vec<(f64, f64, Gains<f64>)> {
     let range = tuner.supervisor().range();
@@ -43,7 +44,8 @@ pub fn grid(tuner: &SelfTuner<f64>, count: usize) -> Vec<(f64, f64, Gains<f64>)>
         last => range * (2.0 * point as f64 / last as f64 - 1.0),
     };
     let points = (0..count).flat_map(|error| (0..count).map(move |change| (error, change)));
-    let answer = |(error, change)| (at(error), at(change), producible(tuner, at(error), at(change)));
+    let answer =
+        |(error, change)| (at(error), at(change), producible(tuner, at(error), at(change)));
     points.map(answer).collect()
 }
 

@@ -9,9 +9,9 @@ use crate::system::System;
 
 /// Slopes are asked for in boxes whose sides are narrower than this share of their universes.
 ///
-/// On the paper's supervisor the plain enclosure is 5 % wider than the range at every width, and its
-/// slopes cost six times as much. They begin to help at a hundredth of the universe: at 1/192 they take
-/// a quarter of the excess away, at 1/384 a half, at 1/96 a tenth and above that nothing.
+/// On the paper's supervisor the plain enclosure is 5 % wider than the range at every width, and
+/// its slopes cost six times as much. They begin to help at a hundredth of the universe: at 1/192
+/// they take a quarter of the excess away, at 1/384 a half, at 1/96 a tenth and above that nothing.
 const NARROW: f64 = 1.0 / 128.0;
 
 /// Encloses the outputs of a system over boxes of inputs.
@@ -23,9 +23,9 @@ const NARROW: f64 = 1.0 / 128.0;
 ///
 /// $$ f(X) \subseteq F(X) \cap \Big( f(m) + \sum_i f'_i(X) (X_i - m_i) \Big) $$
 ///
-/// where $F$ is that of interval arithmetic and $f'_i(X)$ holds all slopes along input $i$ (at kinks
-/// those of Clarke's generalised gradient; no bounds where the output may jump). In a wide box
-/// $F$ is the better one and stands alone.
+/// where $F$ is that of interval arithmetic and $f'_i(X)$ holds all slopes along input $i$ (at
+/// kinks those of Clarke's generalised gradient; no bounds where the output may jump). In a wide
+/// box $F$ is the better one and stands alone.
 ///
 /// Asked for one box after another, it keeps its room.
 ///
@@ -53,8 +53,8 @@ impl<'a> Reach<'a> {
 
     /// All values of each output over a box with one side for each input.
     ///
-    /// A side may be without bounds; so is an answer of which nothing is known, and every answer to a
-    /// box with too few or too many sides.
+    /// A side may be without bounds; so is an answer of which nothing is known, and every answer to
+    /// a box with too few or too many sides.
     pub fn over(&mut self, cell: &[Interval]) -> &[Interval] {
         if cell.len() != self.field.firing.system.parts.inputs.len() {
             self.answers.fill(Interval::ENTIRE);
