@@ -126,14 +126,19 @@ fn an_oscillator_whose_stiffness_switches_slowly_grows() {
     assert_grows(&set, &growth);
 }
 
-/// Measured: the searches meet neither at 53.5 % nor at 68 % (747), 54.5 % and 66.5 % (Navion).
+/// Measured in steps of 1.5 %: sequences are found from 68 % on (747) and 66.5 % (Navion), not at 66.5 % and 65 %.
 #[test]
-fn gains_that_jump_by_four_fifths_make_the_paper_s_loops_grow() {
-    for (plant, gains) in [(Plant::boeing_747(), GAINS_747), (Plant::navion(), GAINS_NAVION)] {
-        let corners = plant.corners(gains, 0.8);
+fn gains_that_jump_almost_to_zero_and_to_twice_make_the_paper_s_loops_grow() {
+    // The flights alone reach 1.0006 with the 747; steering by state and costate the rest.
+    for (plant, gains, part, least) in
+        [(Plant::boeing_747(), GAINS_747, 0.9, 1.001), (Plant::navion(), GAINS_NAVION, 0.8, 1.0013)]
+    {
+        let corners = plant.corners(gains, part);
         let frozen = corners.iter().map(|corner| spectral_radius(corner).unwrap());
         assert!(frozen.fold(0.0, f64::max) < 1.0, "each gain by itself is stable");
-        assert_grows(&corners, &search(&corners).unwrap());
+        let growth = search(&corners).unwrap();
+        assert!(growth.radius_per_step > least, "{}", growth.radius_per_step);
+        assert_grows(&corners, &growth);
     }
 }
 

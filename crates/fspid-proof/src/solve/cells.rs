@@ -258,16 +258,44 @@ mod tests {
         assert!(failing.iter().any(|(gains, _)| gains[0] > 0.9), "{failing:?}");
     }
 
+    /// The loop exchanges two states with the factors 1.05 (1 ± 0.9 κ): its radius is 0.46 at both ends, 1.05 between.
     #[test]
-    fn a_peak_between_the_corners_is_seen() {
-        // P(κ) = 1 is kept but M reaches 1.1 nowhere at the corners: M(κ) = 0.5 + 0.7 κ does, at κ = 1 only;
-        // a form that moves as 1 + 0.9 κ grows by more than it may in the middle when the gain moves by 0.3.
-        let motions = Motion::extremes(&[0.3]);
-        let moving = scalars(&[1.0, 0.9]);
-        assert!(!survey(&family(0.97, 0.97), &moving, &motions, 1.0).failures.is_empty());
+    fn a_loop_that_is_unstable_only_between_the_ends_is_seen() {
+        let end = |sign: f64| {
+            Matrix::from_rows(&[[0.0, 1.05 + sign * 0.945], [1.05 - sign * 0.945, 0.0]]).unwrap()
+        };
+        let family = GainFamily::from_corners(&[end(-1.0), end(1.0)]).unwrap();
+        let diagonal = |a: f64, b: f64| {
+            Dense::from_function(2, 2, |i, j| {
+                if i != j {
+                    0.0
+                } else if i == 0 {
+                    a
+                } else {
+                    b
+                }
+            })
+        };
+        let forms = [diagonal(8.5, 8.5), diagonal(-7.5, 7.5)];
         let still = Motion::extremes(&[0.0]);
         assert_eq!(still.len(), 1);
-        assert!(survey(&family(0.97, 0.97), &moving, &still, 1.0).failures.is_empty());
+        for end in [-1.0, 1.0] {
+            let after = combination(&forms, &[end]).congruence(&family.at(&[end]));
+            assert!(combination(&forms, &[end]).plus(-1.0, &after).cholesky().is_some());
+        }
+        let failures = survey(&family, &forms, &still, 1.0).failures;
+        assert!(failures.iter().any(|(gains, _)| gains[0].abs() < 0.1), "{failures:?}");
+    }
+
+    #[test]
+    fn a_form_that_moves_too_much_for_the_motion_does_not_fall() {
+        // A loop that keeps 0.97 of its state; 1 + 0.9 κ grows from 0.1 to 0.37 when κ leaves -1 by 0.3.
+        let moving = scalars(&[1.0, 0.9]);
+        let falls = |change: f64| {
+            let motions = Motion::extremes(&[change]);
+            survey(&family(0.97, 0.97), &moving, &motions, 1.0).failures.is_empty()
+        };
+        assert!(falls(0.0) && !falls(0.3));
     }
 
     #[test]

@@ -21,8 +21,10 @@
 //!
 //! A slack matrix G makes the condition affine in the gains (M. C. de Oliveira, J. Bernussou and J. C. Geromel,
 //! Systems & Control Letters 37 (1999) 261) and the corners enough, but costs $(G - P) P^{-1} (G - P)^T$ of the
-//! difference. In fast sampled loops the difference is $10^{-4}$ of the form, so that with one G the form can
-//! hardly move: measured on the paper's two loops at 100 Hz, G proved no more than a form at rest.
+//! difference. In fast sampled loops the difference is 10⁻⁴ of the form, so that with one G the form can
+//! hardly move. Measured with a version that is not kept, on the paper's loops at 100 Hz, gains within 60 %
+//! and $d = 0.01$: G misses by a margin of 4.8e-4 (747) and 6.2e-4 (Navion), the condition above misses by 1.8e-4
+//! and holds by 4.7e-4.
 
 use fspid_lti::Matrix;
 
