@@ -40,7 +40,7 @@ fn derivatives(system: &System, level: f64, x: &[f64], linear: &[f64]) -> Option
     for inequality in &system.inequalities {
         let inverse = system.value(inequality, x, level).cholesky()?.lower_inverse();
         let inverse = inverse.transpose_times(&inverse);
-        Part::new(system, inequality, level, inverse).add_to(&mut sum);
+        Part { system, inequality, level, inverse }.add_to(&mut sum);
     }
     Some(sum)
 }
@@ -51,128 +51,73 @@ struct Part<'a> {
     inequality: &'a Inequality,
     level: f64,
     inverse: Dense,
-    /// $U_f^T Z U_g$ for all factors.
-    table: Vec<Vec<Dense>>,
 }
 
-impl<'a> Part<'a> {
-    fn new(system: &'a System, inequality: &'a Inequality, level: f64, inverse: Dense) -> Self {
-        let after: Vec<Dense> =
-            inequality.factors.iter().map(|factor| factor.after(&inverse)).collect();
-        let table = inequality
-            .factors
-            .iter()
-            .map(|factor| after.iter().map(|after| factor.before(after)).collect())
-            .collect();
-        Self { system, inequality, level, inverse, table }
-    }
-
+impl Part<'_> {
     fn scale(&self, form: &Form) -> f64 {
         if form.rated { self.level } else { 1.0 }
     }
 
     fn add_to(&self, sum: &mut Derivatives) {
         for form in &self.inequality.forms {
-            self.add_slope_of_form(form, &mut sum.gradient);
+            let after = form.factor.after(&self.inverse);
+            self.add_slope(form, &form.factor.before(&after), &mut sum.gradient);
             for other in &self.inequality.forms {
-                self.add_forms(form, other, &mut sum.hessian);
+                // From this term's unknown to the other's: B' = W' Z U.
+                let b = other.factor.before(&after).transpose();
+                self.add_curvature(form, other, &b, &mut sum.hessian);
             }
-            self.add_form_and_cross(form, &mut sum.hessian);
         }
-        self.add_cross(sum);
-        self.add_scalars(sum);
+        for (number, matrix) in &self.inequality.multipliers {
+            self.add_multiplier(self.system.multiplier_place(*number), matrix, sum);
+        }
     }
 
-    fn add_slope_of_form(&self, form: &Form, gradient: &mut [f64]) {
-        let slope = pack(&self.table[form.factor][form.factor]);
-        for &(unknown, weight) in &form.weights {
-            let place = self.system.place(unknown);
+    /// $-s\, w_j \operatorname{tr}(U^T Z U X_j)$.
+    fn add_slope(&self, form: &Form, turned: &Dense, gradient: &mut [f64]) {
+        let slope = pack(turned);
+        for &(number, weight) in &form.weights {
+            let place = self.system.matrix_place(number);
             add_scaled(&mut gradient[place], -self.scale(form) * weight, &slope);
         }
     }
 
-    /// $\operatorname{tr}(X B Y B^T)$ with $B = U^T Z W$ for two forms in X and Y.
-    fn add_forms(&self, form: &Form, other: &Form, hessian: &mut Dense) {
-        let b = &self.table[form.factor][other.factor];
+    /// $\operatorname{tr}(X B Y B^T)$ with $B = U^T Z W$ for two terms in X and Y.
+    fn add_curvature(&self, form: &Form, other: &Form, b: &Dense, hessian: &mut Dense) {
         let scale = self.scale(form) * self.scale(other);
         let mut line = Vec::new();
-        let mut number = 0;
+        let mut entry = 0;
         for p in 0..b.rows {
             for q in p..b.rows {
                 kronecker_row(b, p, q, &mut line);
-                for &(unknown, weight) in &form.weights {
-                    let row = self.system.place(unknown).start + number;
-                    for &(next, next_weight) in other.weights.iter().filter(|to| to.0 >= unknown) {
-                        let at = row * hessian.columns + self.system.place(next).start;
-                        let target = &mut hessian.data[at..at + line.len()];
-                        add_scaled(target, scale * weight * next_weight, &line);
+                for &(number, weight) in &form.weights {
+                    let row = self.system.matrix_place(number).start + entry;
+                    // Only the upper triangle is read.
+                    for &(next, more) in other.weights.iter().filter(|to| to.0 >= number) {
+                        let place = self.system.matrix_place(next);
+                        let target = &mut hessian.row_mut(row)[place];
+                        add_scaled(target, scale * weight * more, &line);
                     }
                 }
-                number += 1;
+                entry += 1;
             }
         }
     }
 
-    /// The unknown of the cross comes after those of the forms.
-    fn add_form_and_cross(&self, form: &Form, hessian: &mut Dense) {
-        let Some(cross) = &self.inequality.cross else { return };
-        let a = &self.table[form.factor][cross.right];
-        let c = &self.table[form.factor][cross.left];
-        let scale = self.scale(form);
-        let mut line = vec![0.0; c.columns * a.columns];
-        let mut number = 0;
-        for p in 0..a.rows {
-            for q in p..a.rows {
-                cross_row(a, c, (p, q), &mut line);
-                for &(unknown, weight) in &form.weights {
-                    let row = self.system.place(unknown).start + number;
-                    let at = row * hessian.columns + self.system.place(cross.unknown).start;
-                    add_scaled(&mut hessian.data[at..at + line.len()], scale * weight, &line);
-                }
-                number += 1;
-            }
-        }
-    }
-
-    fn add_cross(&self, sum: &mut Derivatives) {
-        let Some(cross) = &self.inequality.cross else { return };
-        let start = self.system.place(cross.unknown).start;
-        let d = &self.table[cross.left][cross.right];
-        let (uu, vv) = (&self.table[cross.left][cross.left], &self.table[cross.right][cross.right]);
-        let size = d.columns;
-        for p in 0..d.rows {
-            for q in 0..size {
-                let row = start + p * size + q;
-                sum.gradient[row] -= 2.0 * d[(p, q)];
-                for r in 0..d.rows {
-                    for s in 0..size {
-                        let value = d[(p, s)] * d[(r, q)] + uu[(r, p)] * vv[(q, s)];
-                        sum.hessian[(row, start + r * size + s)] += 2.0 * value;
-                    }
+    fn add_multiplier(&self, column: usize, matrix: &Dense, sum: &mut Derivatives) {
+        sum.gradient[column] -= self.inverse.inner(matrix);
+        let turned = matrix.congruence(&self.inverse);
+        for form in &self.inequality.forms {
+            let slope = pack(&form.factor.before(&form.factor.after(&turned)));
+            for &(number, weight) in &form.weights {
+                let start = self.system.matrix_place(number).start;
+                for (entry, value) in slope.iter().enumerate() {
+                    sum.hessian[(start + entry, column)] += self.scale(form) * weight * value;
                 }
             }
         }
-    }
-
-    fn add_scalars(&self, sum: &mut Derivatives) {
-        for (unknown, matrix) in &self.inequality.scalars {
-            let column = self.system.place(*unknown).start;
-            sum.gradient[column] -= self.inverse.inner(matrix);
-            let turned = matrix.congruence(&self.inverse);
-            for form in &self.inequality.forms {
-                let factor = &self.inequality.factors[form.factor];
-                let slope = pack(&factor.before(&factor.after(&turned)));
-                for &(form_unknown, weight) in &form.weights {
-                    let start = self.system.place(form_unknown).start;
-                    for (number, value) in slope.iter().enumerate() {
-                        sum.hessian[(start + number, column)] += self.scale(form) * weight * value;
-                    }
-                }
-            }
-            for (other, other_matrix) in &self.inequality.scalars {
-                let other = self.system.place(*other).start;
-                sum.hessian[(column, other)] += turned.inner(other_matrix);
-            }
+        for (number, other) in &self.inequality.multipliers {
+            sum.hessian[(column, self.system.multiplier_place(*number))] += turned.inner(other);
         }
     }
 }
@@ -195,19 +140,6 @@ fn kronecker_row(b: &Dense, p: usize, q: usize, line: &mut Vec<f64>) {
     }
 }
 
-/// One row of twice tr(A' X C Y): that of the entry (p, q) of the symmetric X, for all entries of Y.
-fn cross_row(a: &Dense, c: &Dense, (p, q): (usize, usize), line: &mut [f64]) {
-    for r in 0..c.columns {
-        for s in 0..a.columns {
-            line[r * a.columns + s] = if p == q {
-                2.0 * a[(p, s)] * c[(p, r)]
-            } else {
-                SQRT_2 * (a[(p, s)] * c[(q, r)] + a[(q, s)] * c[(p, r)])
-            };
-        }
-    }
-}
-
 /// Slope of the linear term that keeps the size of the unknowns: the measures at their present values.
 ///
 /// $$ c^T x = \kappa \sum_m \operatorname{tr} \bigl( N_m(x_0)^{-1} N_m(x) \bigr) $$
@@ -222,7 +154,11 @@ pub(super) fn linear_term(system: &System, x: &[f64]) -> Option<Vec<f64>> {
         let slope = pack(&inverse.transpose_times(&inverse));
         degree += measure.multiplicity * inverse.rows as f64;
         for &(unknown, weight) in &measure.weights {
-            add_scaled(&mut linear[system.place(unknown)], measure.multiplicity * weight, &slope);
+            add_scaled(
+                &mut linear[system.matrix_place(unknown)],
+                measure.multiplicity * weight,
+                &slope,
+            );
         }
     }
     let scale = system.degree() / degree;
@@ -243,7 +179,9 @@ pub(super) fn centre(system: &System, level: f64, x: &[f64], steps_max: usize) -
     let linear = linear_term(system, x)?;
     let mut centre = Centre { x: x.to_vec(), steps: 0 };
     while centre.steps < steps_max {
-        let Some(step) = newton_step(derivatives(system, level, &centre.x, &linear)?) else { break };
+        let Some(step) = newton_step(derivatives(system, level, &centre.x, &linear)?) else {
+            break;
+        };
         centre.steps += 1;
         let Some(length) = step_length(system, level, &centre.x, &linear, &step) else { break };
         add_scaled(&mut centre.x, length, &step.direction);
@@ -283,13 +221,7 @@ fn newton_step(mut at: Derivatives) -> Option<Step> {
 }
 
 /// Largest trial step after which all inequalities hold and the barrier has fallen enough.
-fn step_length(
-    system: &System,
-    level: f64,
-    x: &[f64],
-    linear: &[f64],
-    step: &Step,
-) -> Option<f64> {
+fn step_length(system: &System, level: f64, x: &[f64], linear: &[f64], step: &Step) -> Option<f64> {
     let values = |x: &[f64]| -> Vec<Dense> {
         system.inequalities.iter().map(|inequality| system.value(inequality, x, level)).collect()
     };
@@ -324,42 +256,34 @@ fn barrier(values: &[Dense]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::inequality::{Cross, Factor, Measure, Unknown};
+    use crate::solve::inequality::{Factor, Measure};
 
     /// Every kind of term, twice over, at unknowns where the inequality holds.
     fn example() -> (System, Vec<f64>) {
-        let wide = |seed: usize| {
-            Factor::Matrix(Dense::from_function(4, 2, |i, j| ((i * 7 + j * 5 + seed) % 11) as f64 * 0.1))
+        let factor = |seed: usize| {
+            Factor::Matrix(Dense::from_function(4, 2, |i, j| {
+                ((i * 7 + j * 5 + seed) % 11) as f64 * 0.1
+            }))
         };
-        let unit = Factor::Unit { start: 2, size: 2 };
-        let forms = vec![
-            Form { factor: 0, rated: true, weights: vec![(0, 1.0), (1, 0.5)] },
-            Form { factor: 1, rated: false, weights: vec![(0, -0.05), (1, 0.2)] },
-            Form { factor: 2, rated: false, weights: vec![(1, 3.0)] },
-        ];
-        let cross = Inequality {
-            size: 4,
-            factors: vec![Factor::Unit { start: 0, size: 2 }, wide(1), unit.clone()],
-            forms: forms.clone(),
-            cross: Some(Cross { unknown: 3, left: 2, right: 1 }),
-            scalars: vec![],
+        let inequality = |seed: usize| {
+            let forms = [(true, vec![(0, 1.0), (1, 0.5)]), (false, vec![(0, -0.05), (1, 0.2)])];
+            let forms = forms.into_iter().enumerate().map(|(number, (rated, weights))| Form {
+                factor: factor(seed + 3 * number),
+                rated,
+                weights,
+            });
+            let multiplied = |i: usize, j: usize| if i == j { 1.0 } else { 0.1 * seed as f64 };
+            let multipliers = vec![
+                (0, Dense::from_function(4, 4, multiplied)),
+                (1, Dense::identity(4).scaled(-0.1)),
+            ];
+            Inequality { size: 4, forms: forms.collect(), multipliers }
         };
-        let scalar = Inequality {
-            cross: None,
-            scalars: vec![(2, Dense::from_function(4, 4, |i, j| if i == j { 1.0 } else { 0.1 }))],
-            factors: vec![Factor::Unit { start: 0, size: 2 }, wide(3), unit],
-            forms,
-            size: 4,
-        };
-        let unknowns = vec![
-            Unknown::Symmetric(2),
-            Unknown::Symmetric(2),
-            Unknown::Scalar,
-            Unknown::General(2),
-        ];
-        let measures = vec![Measure { weights: vec![(0, 1.0)], multiplicity: 8.0 }];
-        let system = System { unknowns, inequalities: vec![cross, scalar], measures };
-        (system, vec![3.0, 0.1, 2.5, 1.0, -0.2, 1.5, 4.0, 0.4, 0.3, -0.2, 0.5])
+        let mut inequalities = vec![inequality(1), inequality(2)];
+        inequalities.push(Inequality::positive(2, vec![(0, 1.0), (1, 0.1)]));
+        let measures = vec![Measure { weights: vec![(0, 1.0), (1, 0.1)], multiplicity: 8.0 }];
+        let system = System { size: 2, matrices: 2, multipliers: 2, inequalities, measures };
+        (system, vec![3.0, 0.1, 2.5, 1.0, -0.2, 1.5, 4.0, 0.7])
     }
 
     fn value(system: &System, x: &[f64]) -> f64 {

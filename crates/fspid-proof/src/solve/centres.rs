@@ -69,7 +69,7 @@ pub(super) fn descend(chart: &mut impl Chart, goal: Goal, steps_max: usize) -> O
         let (reached, taken) = centred(chart, level, STEPS_PER_CENTRE)?;
         steps += taken;
         bound = reached;
-        level = next_level(goal, level, bound);
+        level = bound + STEP_BACK * (level - bound);
     }
     let target = match goal {
         Goal::Below(target) => target,
@@ -83,10 +83,6 @@ pub(super) fn descend(chart: &mut impl Chart, goal: Goal, steps_max: usize) -> O
         }
     }
     Some(Descent { bound, steps })
-}
-
-fn next_level(_goal: Goal, level: f64, bound: f64) -> f64 {
-    bound + STEP_BACK * (level - bound)
 }
 
 fn is_done(goal: Goal, level: f64, bound: f64) -> bool {
@@ -130,10 +126,7 @@ pub(super) fn rated_room(system: &System, x: &[f64], level: f64) -> Option<f64> 
 
 fn room_of(system: &System, inequality: &Inequality, x: &[f64], level: f64) -> Option<f64> {
     let lower = system.value(inequality, x, level).cholesky()?;
-    if inequality.forms.iter().all(|form| !form.rated) {
-        return Some(f64::INFINITY);
-    }
-    let inverse = lower.lower_inverse().transpose();
-    let share = system.rated_part(inequality, x).congruence(&inverse);
+    let Some(rated) = system.rated_part(inequality, x) else { return Some(f64::INFINITY) };
+    let share = rated.congruence(&lower.lower_inverse().transpose());
     Some(1.0 / Spectrum::of(&share).largest())
 }

@@ -68,7 +68,7 @@ impl Dense {
         &self.data[row * self.columns..(row + 1) * self.columns]
     }
 
-    fn row_mut(&mut self, row: usize) -> &mut [f64] {
+    pub(super) fn row_mut(&mut self, row: usize) -> &mut [f64] {
         &mut self.data[row * self.columns..(row + 1) * self.columns]
     }
 
@@ -133,11 +133,6 @@ impl Dense {
 
     pub(super) fn times_vector(&self, x: &[f64]) -> Vec<f64> {
         (0..self.rows).map(|row| dot(self.row(row), x)).collect()
-    }
-
-    /// $x^T A x$.
-    pub(super) fn form_at(&self, x: &[f64]) -> f64 {
-        dot(&self.times_vector(x), x)
     }
 
     /// Sum of the products of the entries at the same places: the trace of $A^T B$.
@@ -216,7 +211,8 @@ mod tests {
 
     #[test]
     fn products_agree_with_hand_calculation() {
-        let (left, right) = (matrix(&[&[1.0, 2.0], &[3.0, 4.0]]), matrix(&[&[1.0, -1.0], &[0.0, 2.0]]));
+        let (left, right) =
+            (matrix(&[&[1.0, 2.0], &[3.0, 4.0]]), matrix(&[&[1.0, -1.0], &[0.0, 2.0]]));
         assert!(near(&left.times(&right), &matrix(&[&[1.0, 3.0], &[3.0, 5.0]])));
         assert!(near(&left.transpose_times(&right), &left.transpose().times(&right)));
         assert!(near(&left.symmetric().congruence(&right), &matrix(&[&[1.0, 4.0], &[4.0, 7.0]])));

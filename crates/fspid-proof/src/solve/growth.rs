@@ -15,9 +15,8 @@ use fspid_lti::{Matrix, spectral_radius};
 use super::Effort;
 use super::dense::{Dense, dot};
 use super::lyapunov::closest_form;
+use super::words::{Word, keep_best, runs, shortest, with_run_changed};
 
-/// Least excess of a product's spectral radius over 1 that counts: well above the rounding of eigenvalues.
-const EXCESS_MIN: f64 = 1e-7;
 /// Products kept at each length of the search in breadth.
 const BEAM: usize = 24;
 /// Longest product of the search in breadth.
@@ -68,30 +67,6 @@ pub fn growing_sequence(matrices: &[Matrix], effort: &Effort) -> Option<Growth> 
     polished.pop().filter(Word::grows).and_then(|word| set.growth(word))
 }
 
-/// A finite sequence and the logarithm of its growth.
-#[derive(Debug, Clone, PartialEq)]
-struct Word {
-    letters: Vec<usize>,
-    radius: f64,
-    /// Logarithm of the growth per sample.
-    rate: f64,
-}
-
-impl Word {
-    fn grows(&self) -> bool {
-        self.radius > 1.0 + EXCESS_MIN
-    }
-}
-
-/// Leaves the fastest ones, in order, shorter ones first where they are equally fast.
-fn keep_best(words: &mut Vec<Word>, count: usize) {
-    words.sort_by(|left, right| {
-        right.rate.total_cmp(&left.rate).then(left.letters.len().cmp(&right.letters.len()))
-    });
-    words.dedup_by(|left, right| left.letters == right.letters);
-    words.truncate(count);
-}
-
 /// The matrices in coordinates in which the form is the identity.
 struct Set {
     matrices: Vec<Dense>,
@@ -121,13 +96,14 @@ impl Set {
     }
 
     fn product(&self, letters: &[usize]) -> Dense {
-        letters.iter().fold(Dense::identity(self.size()), |product, &letter| {
-            self.matrices[letter].times(&product)
+        runs(letters).into_iter().fold(Dense::identity(self.size()), |product, (letter, count)| {
+            power(&self.matrices[letter], count).times(&product)
         })
     }
 
     /// `None` when the product is not finite or its eigenvalues are not found.
     fn word(&self, letters: Vec<usize>) -> Option<Word> {
+        let letters = shortest(&letters);
         let radius = spectral_radius(&self.product(&letters).to_matrix()?).ok()?;
         let rate = libm::log(radius) / letters.len() as f64;
         Some(Word { letters, radius, rate })
@@ -167,11 +143,8 @@ impl Set {
     fn flights(&self, effort: &Effort) -> Vec<Word> {
         let mut found = Vec::new();
         for outlook in OUTLOOKS {
-            let ahead: Vec<Dense> = self
-                .matrices
-                .iter()
-                .map(|matrix| (1..outlook).fold(matrix.clone(), |power, _| power.times(matrix)))
-                .collect();
+            let ahead: Vec<Dense> =
+                self.matrices.iter().map(|matrix| power(matrix, outlook)).collect();
             for start in 0..self.size() {
                 let flight = self.fly(&ahead, start, effort.flight_samples);
                 found.extend(self.periods(&flight));
@@ -234,7 +207,7 @@ impl Set {
             }
             for run in 0..runs(&best.letters).len() {
                 for shift in SHIFTS {
-                    let moved = with_run_changed(&best.letters, run, shift);
+                    let moved = with_run_changed(&best.letters, run, shift, 2 * PERIOD_MAX);
                     if let Some(moved) = moved.and_then(|letters| self.word(letters))
                         && moved.rate > best.rate
                     {
@@ -308,9 +281,25 @@ impl Set {
     }
 }
 
+/// The matrix applied `count` times, by squaring.
+fn power(matrix: &Dense, mut count: usize) -> Dense {
+    let (mut power, mut square) = (Dense::identity(matrix.rows), matrix.clone());
+    loop {
+        if count % 2 == 1 {
+            power = power.times(&square);
+        }
+        count /= 2;
+        if count == 0 {
+            return power;
+        }
+        square = square.times(&square);
+    }
+}
+
 /// A vector of the direction or plane that grows most: whatever decays faster is gone from it.
 fn leading_state(matrix: &Dense) -> Option<Vec<f64>> {
-    let mut state = vec![1.0; matrix.rows];
+    // No symmetry of the states hides the direction from this one.
+    let mut state: Vec<f64> = (0..matrix.rows).map(|i| 1.0 + 0.3 * i as f64).collect();
     for _ in 0..1000 {
         state = unit(&matrix.times_vector(&unit(&state)?))?;
     }
@@ -332,26 +321,4 @@ fn squared_length(x: &[f64]) -> f64 {
 fn unit(x: &[f64]) -> Option<Vec<f64>> {
     let length = squared_length(x).sqrt();
     (length > 0.0 && length.is_finite()).then(|| x.iter().map(|value| value / length).collect())
-}
-
-/// Letters with the number of times each is repeated.
-fn runs(letters: &[usize]) -> Vec<(usize, usize)> {
-    let mut runs: Vec<(usize, usize)> = Vec::new();
-    for &letter in letters {
-        match runs.last_mut() {
-            Some((last, count)) if *last == letter => *count += 1,
-            _ => runs.push((letter, 1)),
-        }
-    }
-    runs
-}
-
-/// The same word with one run longer or shorter; `None` when nothing would be left.
-fn with_run_changed(letters: &[usize], run: usize, shift: isize) -> Option<Vec<usize>> {
-    let mut runs = runs(letters);
-    let count = &mut runs.get_mut(run)?.1;
-    *count = count.saturating_add_signed(shift);
-    let letters: Vec<usize> =
-        runs.iter().flat_map(|&(letter, count)| core::iter::repeat_n(letter, count)).collect();
-    (!letters.is_empty() && letters.len() <= 2 * PERIOD_MAX).then_some(letters)
 }

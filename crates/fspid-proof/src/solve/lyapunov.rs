@@ -5,7 +5,7 @@ use fspid_lti::{Matrix, spectral_radius};
 use super::Effort;
 use super::centres::{Chart, Descent, Goal, descend};
 use super::dense::Dense;
-use super::inequality::{Factor, Form, Inequality, Measure, System, Unknown};
+use super::inequality::{Inequality, Measure, System};
 use super::stein::stable_sum;
 use super::symmetric::{Spectrum, pack, packed_len, unpack};
 
@@ -136,11 +136,11 @@ impl Search {
     fn start(problem: &Problem) -> Option<Self> {
         let matrices: Vec<Dense> =
             problem.conditions.iter().map(|condition| Dense::from(condition.matrix)).collect();
-        let cones: Vec<Dense> = problem.cones.iter().map(|cone| Dense::from(cone).symmetric()).collect();
+        let cones: Vec<Dense> =
+            problem.cones.iter().map(|cone| Dense::from(cone).symmetric()).collect();
         let size = matrices.first()?.rows;
-        let fits = |matrix: &Dense| {
-            matrix.rows == size && matrix.columns == size && matrix.is_finite()
-        };
+        let fits =
+            |matrix: &Dense| matrix.rows == size && matrix.columns == size && matrix.is_finite();
         let groups: Vec<Option<usize>> =
             problem.conditions.iter().map(|condition| condition.cone).collect();
         let known = groups.iter().flatten().all(|&group| group < cones.len());
@@ -152,7 +152,9 @@ impl Search {
         search.multipliers = search
             .cones
             .iter()
-            .map(|cone| START_MULTIPLIER / cone.congruence(&search.transform).norm().max(f64::MIN_POSITIVE))
+            .map(|cone| {
+                START_MULTIPLIER / cone.congruence(&search.transform).norm().max(f64::MIN_POSITIVE)
+            })
             .collect();
         Some(search)
     }
@@ -203,8 +205,10 @@ fn starting_coordinates(matrices: &[Dense]) -> Option<(Dense, Dense)> {
         mean.add(1.0 / matrices.len() as f64, matrix);
     }
     let mean = Dense::from_function(size, size, |i, j| mean[(i, j)] * scales[j] / scales[i]);
-    let radius = spectral_radius(&mean.to_matrix()?).ok()?.max(f64::MIN_POSITIVE);
-    let form = stable_sum(&mean.scaled(1.0 / (START_LOSS * radius)), &Dense::identity(size))?;
+    let radius = spectral_radius(&mean.to_matrix()?).ok()?;
+    // A matrix that is (nearly) nilpotent has no radius worth dividing by.
+    let size_of_mean = radius.max(0.01 * mean.norm()).max(f64::MIN_POSITIVE);
+    let form = stable_sum(&mean.scaled(1.0 / (START_LOSS * size_of_mean)), &Dense::identity(size))?;
     let lower = form.cholesky()?;
     let upper_inverse = lower.lower_inverse().transpose();
     let transform = Dense::from_function(size, size, |i, j| scales[i] * upper_inverse[(i, j)]);
@@ -227,7 +231,8 @@ fn balancing_scales(matrices: &[Dense]) -> Vec<f64> {
     for _ in 0..SWEEPS {
         for i in 0..size {
             let others = (0..size).filter(|&j| j != i);
-            let row = others.clone().fold(0.0, |sum, j| sum + largest[(i, j)] * scales[j]) / scales[i];
+            let row =
+                others.clone().fold(0.0, |sum, j| sum + largest[(i, j)] * scales[j]) / scales[i];
             let column = others.fold(0.0, |sum, j| sum + largest[(j, i)] / scales[j]) * scales[i];
             let ratio = (row / column).sqrt();
             if ratio > 0.0 && ratio.is_finite() {
@@ -241,19 +246,24 @@ fn balancing_scales(matrices: &[Dense]) -> Vec<f64> {
 impl Chart for Search {
     fn system(&self) -> System {
         let size = self.transform.rows;
-        let mut unknowns = vec![Unknown::Symmetric(size)];
-        unknowns.extend(self.cones.iter().map(|_| Unknown::Scalar));
-        let cones: Vec<Dense> =
-            self.cones.iter().map(|cone| cone.congruence(&self.transform).scaled(-1.0)).collect();
-        let mut inequalities = vec![positive_form(size)];
-        inequalities.extend((0..cones.len()).map(|group| positive_multiplier(group + 1)));
+        let only = || vec![(0, 1.0)];
+        let mut inequalities = vec![Inequality::positive(size, only())];
+        inequalities.extend((0..self.cones.len()).map(positive_multiplier));
         for (matrix, group) in self.matrices.iter().zip(&self.groups) {
             let matrix = self.inverse.times(matrix).times(&self.transform);
-            let cone = group.map(|group| (group + 1, cones[group].clone()));
-            inequalities.push(fall(&matrix, cone));
+            let mut fall = Inequality::fall(&matrix, only(), &only());
+            let cone = |group: usize| self.cones[group].congruence(&self.transform).scaled(-1.0);
+            fall.multipliers = group.map(|group| (group, cone(group))).into_iter().collect();
+            inequalities.push(fall);
         }
         let multiplicity = self.matrices.len() as f64;
-        System { unknowns, inequalities, measures: vec![Measure { weights: vec![(0, 1.0)], multiplicity }] }
+        System {
+            size,
+            matrices: 1,
+            multipliers: self.cones.len(),
+            inequalities,
+            measures: vec![Measure { weights: only(), multiplicity }],
+        }
     }
 
     fn point(&self) -> Vec<f64> {
@@ -273,30 +283,6 @@ impl Chart for Search {
     }
 }
 
-/// $\lambda P - M^T P M + \tau A \succ 0$.
-fn fall(matrix: &Dense, cone: Option<(usize, Dense)>) -> Inequality {
-    let size = matrix.rows;
-    Inequality {
-        size,
-        factors: vec![Factor::Unit { start: 0, size }, Factor::Matrix(matrix.transpose())],
-        forms: vec![
-            Form { factor: 0, rated: true, weights: vec![(0, 1.0)] },
-            Form { factor: 1, rated: false, weights: vec![(0, -1.0)] },
-        ],
-        cross: None,
-        scalars: cone.into_iter().collect(),
-    }
-}
-
-fn positive_form(size: usize) -> Inequality {
-    Inequality {
-        size,
-        factors: vec![Factor::Unit { start: 0, size }],
-        forms: vec![Form { factor: 0, rated: false, weights: vec![(0, 1.0)] }],
-        ..Inequality::default()
-    }
-}
-
-fn positive_multiplier(unknown: usize) -> Inequality {
-    Inequality { size: 1, scalars: vec![(unknown, Dense::identity(1))], ..Inequality::default() }
+fn positive_multiplier(number: usize) -> Inequality {
+    Inequality { size: 1, multipliers: vec![(number, Dense::identity(1))], ..Inequality::default() }
 }

@@ -53,7 +53,15 @@ mod tests {
     use super::*;
 
     fn triangular() -> Dense {
-        Dense::from_function(3, 3, |i, j| if j > i { 0.7 } else if i == j { 0.9 - 0.2 * i as f64 } else { 0.0 })
+        Dense::from_function(3, 3, |i, j| {
+            if j > i {
+                0.7
+            } else if i == j {
+                0.9 - 0.2 * i as f64
+            } else {
+                0.0
+            }
+        })
     }
 
     #[test]

@@ -158,9 +158,11 @@ mod tests {
     fn eigenvalues_of_a_hilbert_matrix_are_those_of_the_tables() {
         // Order 3: the roots of x³ - 23/15 x² + 127/720 x - 1/2160.
         let spectrum = Spectrum::of(&hilbert(3));
-        for (value, expected) in
-            spectrum.values.iter().zip([0.002_687_340_355_773_53, 0.122_327_065_853_906, 1.408_318_927_123_654])
-        {
+        for (value, expected) in spectrum.values.iter().zip([
+            0.002_687_340_355_773_53,
+            0.122_327_065_853_906,
+            1.408_318_927_123_654,
+        ]) {
             assert!((value - expected).abs() < 1e-14, "{value}");
         }
     }
@@ -189,7 +191,8 @@ mod tests {
 
     #[test]
     fn a_definite_system_is_solved_and_an_indefinite_one_refused() {
-        let x = solve_definite(&mut hilbert(5), &hilbert(5).times_vector(&[1.0, -2.0, 3.0, -4.0, 5.0]));
+        let x =
+            solve_definite(&mut hilbert(5), &hilbert(5).times_vector(&[1.0, -2.0, 3.0, -4.0, 5.0]));
         for (value, expected) in x.unwrap().iter().zip([1.0, -2.0, 3.0, -4.0, 5.0]) {
             assert!((value - expected).abs() < 1e-9, "{value}");
         }
