@@ -51,8 +51,6 @@ pub enum Claim {
         changes: [f64; 3],
         /// $P_0$, and what each gain adds to it per half width.
         forms: [Matrix; 4],
-        /// The slack matrix G of the condition.
-        slack: Matrix,
         /// ρ, at most 1.
         rate: f64,
     },

@@ -51,11 +51,9 @@ impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotProvable(reason) => reason.fmt(f),
-            Self::Inequality { gains: Some(gains), reason } => write!(
-                f,
-                "at kp {:?}, ki {:?}, kd {:?}: {reason}",
-                gains.kp, gains.ki, gains.kd
-            ),
+            Self::Inequality { gains: Some(gains), reason } => {
+                write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
+            }
             Self::Inequality { gains: None, reason } => reason.fmt(f),
             Self::Malformed { what } => f.write_str(what),
         }
@@ -109,11 +107,9 @@ impl<'a> Recheck<'a> {
         let model = description.enclosed()?;
         let set = match &description.controller {
             Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
-            Controller::SelfTuning(fspid) => {
-                IncrementMap::of(fspid.tuner(), certificate.divisions)
-                    .map_err(NotProvable::from)?
-                    .gains(certificate.output_factor)
-            }
+            Controller::SelfTuning(fspid) => IncrementMap::of(fspid.tuner(), certificate.divisions)
+                .map_err(NotProvable::from)?
+                .gains(certificate.output_factor),
         };
         Ok(Self::with(certificate, model, set))
     }

@@ -15,7 +15,9 @@ use fspid_study::{file, output};
 /// really produces let the loop grow), or open. What is proved is re-checked in interval arithmetic and written as a
 /// certificate, which `--check` verifies alone. Exit code 0 if every loop is proved, or the certificate holds; 1 if not.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json")]
+#[command(
+    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json"
+)]
 pub(crate) struct Arguments {
     /// The scenario file.
     #[arg(required_unless_present = "check")]
@@ -55,7 +57,9 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     if let Some(name) = only.filter(|name| !names.contains(name)) {
         let known = names.join(", ");
-        return Err(Failure::input(format_args!("no controller is called \"{name}\"; there are {known}")));
+        return Err(Failure::input(format_args!(
+            "no controller is called \"{name}\"; there are {known}"
+        )));
     }
     let certification =
         Certification::of(&study, only, &Effort::default()).map_err(Failure::input)?;

@@ -83,6 +83,13 @@ impl GainSet {
         Self { nominal: gains, rest: point, cells: vec![cell] }
     }
 
+    /// The part of the set over some of its cells.
+    #[must_use]
+    pub fn of_cells(&self, cells: &[usize]) -> Self {
+        let cells = cells.iter().filter_map(|&cell| self.cells.get(cell).copied()).collect();
+        Self { cells, ..self.clone() }
+    }
+
     /// The smallest box that holds the set.
     #[must_use]
     pub fn bounds(&self) -> [Interval; 3] {

@@ -260,8 +260,7 @@ impl TunerFile {
             let known: Vec<&str> = policies.map(OutOfRange::name).collect();
             format!("out_of_range: \"{}\"; allowed are {}", self.out_of_range, known.join(", "))
         })?;
-        let defuzzifier: Defuzzifier =
-            self.defuzzifier.parse().map_err(said("defuzzifier"))?;
+        let defuzzifier: Defuzzifier = self.defuzzifier.parse().map_err(said("defuzzifier"))?;
         let table = self.rules.build()?;
         Supervisor::new(&table, self.range, defuzzifier, policy).map_err(said("supervisor"))
     }

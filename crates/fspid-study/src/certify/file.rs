@@ -50,17 +50,33 @@ type Rows = Vec<Vec<f64>>;
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 enum ClaimFile {
-    StableAtAnySpeed { rate: f64, form: Rows },
-    StableAsTiedToTheError { rate: f64, form: Rows, multipliers: Vec<f64> },
+    StableAtAnySpeed {
+        rate: f64,
+        form: Rows,
+    },
+    StableAsTiedToTheError {
+        rate: f64,
+        form: Rows,
+        multipliers: Vec<f64>,
+    },
     StableAtBoundedRate {
         rate: f64,
         ends: [[f64; 2]; 3],
         changes: [f64; 3],
         forms: [Rows; 4],
-        slack: Rows,
     },
-    UnstableWithFrozenGains { input: [f64; 2], factor: f64, form: Rows, direction: Vec<f64> },
-    UnstableWithASequenceOfGains { inputs: Vec<[f64; 2]>, factor: f64, form: Rows, direction: Vec<f64> },
+    UnstableWithFrozenGains {
+        input: [f64; 2],
+        factor: f64,
+        form: Rows,
+        direction: Vec<f64>,
+    },
+    UnstableWithASequenceOfGains {
+        inputs: Vec<[f64; 2]>,
+        factor: f64,
+        form: Rows,
+        direction: Vec<f64>,
+    },
 }
 
 /// A certificate as text.
@@ -127,19 +143,20 @@ fn claim_file(claim: &Claim) -> ClaimFile {
             form: rows(form),
             multipliers: multipliers.clone(),
         },
-        Claim::BoundedRate { ends, changes, forms, slack, rate } => ClaimFile::StableAtBoundedRate {
+        Claim::BoundedRate { ends, changes, forms, rate } => ClaimFile::StableAtBoundedRate {
             rate: *rate,
             ends: *ends,
             changes: *changes,
             forms: forms.each_ref().map(rows),
-            slack: rows(slack),
         },
-        Claim::FrozenGrowth { input, factor, form, direction } => ClaimFile::UnstableWithFrozenGains {
-            input: *input,
-            factor: *factor,
-            form: rows(form),
-            direction: direction.clone(),
-        },
+        Claim::FrozenGrowth { input, factor, form, direction } => {
+            ClaimFile::UnstableWithFrozenGains {
+                input: *input,
+                factor: *factor,
+                form: rows(form),
+                direction: direction.clone(),
+            }
+        }
         Claim::SequenceGrowth { inputs, factor, form, direction } => {
             ClaimFile::UnstableWithASequenceOfGains {
                 inputs: inputs.clone(),
@@ -154,16 +171,14 @@ fn claim_file(claim: &Claim) -> ClaimFile {
 impl ClaimFile {
     fn build(self) -> Result<Claim, String> {
         Ok(match self {
-            Self::StableAtAnySpeed { rate, form } => {
-                Claim::AnySpeed { form: matrix(&form)?, rate }
-            }
+            Self::StableAtAnySpeed { rate, form } => Claim::AnySpeed { form: matrix(&form)?, rate },
             Self::StableAsTiedToTheError { rate, form, multipliers } => {
                 Claim::Tied { form: matrix(&form)?, rate, multipliers }
             }
-            Self::StableAtBoundedRate { rate, ends, changes, forms, slack } => {
+            Self::StableAtBoundedRate { rate, ends, changes, forms } => {
                 let [constant, kp, ki, kd] = &forms;
                 let forms = [matrix(constant)?, matrix(kp)?, matrix(ki)?, matrix(kd)?];
-                Claim::BoundedRate { ends, changes, forms, slack: matrix(&slack)?, rate }
+                Claim::BoundedRate { ends, changes, forms, rate }
             }
             Self::UnstableWithFrozenGains { input, factor, form, direction } => {
                 Claim::FrozenGrowth { input, factor, form: matrix(&form)?, direction }

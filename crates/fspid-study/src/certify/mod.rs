@@ -121,7 +121,9 @@ fn left_out(study: &Study, plants: usize) -> Vec<String> {
     let scenario = &study.scenario;
     let mut sentences = Vec::new();
     if scenario.plant.aircraft().is_some() {
-        sentences.push("The aircraft is nonlinear: proved is a statement about its linear model at the trim.");
+        sentences.push(
+            "The aircraft is nonlinear: proved is a statement about its linear model at the trim.",
+        );
     }
     if plants > 1 {
         sentences.push("Each plant is proved on its own; the passage from one to the next is not.");

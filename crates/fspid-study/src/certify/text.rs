@@ -177,7 +177,10 @@ impl CheckedFile {
         push_claim(&mut out, &self.certificate, dt_s);
         if (self.certificate.output_factor - 1.0).abs() > 0.0 {
             let factor = self.certificate.output_factor;
-            line(&mut out, format_args!("  output scale       {factor} times that of the controller"));
+            line(
+                &mut out,
+                format_args!("  output scale       {factor} times that of the controller"),
+            );
         }
         match &self.result {
             Ok(rechecked) => {
