@@ -69,5 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if analysis.all_stable() {
         return Ok(());
     }
-    Err(Failure::not_met("a loop is not stable"))
+    let unknown = analysis.loops.iter().all(|found| found.absent.is_some() || found.is_stable());
+    let reason = if unknown { "a loop has no margins" } else { "a loop is not stable" };
+    Err(Failure::not_met(reason))
 }

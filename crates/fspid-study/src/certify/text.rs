@@ -95,8 +95,19 @@ fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
         Claim::AnySpeed { rate, .. }
         | Claim::Tied { rate, .. }
         | Claim::BoundedRate { rate, .. } => push_rate(out, *rate, dt_s),
-        Claim::FrozenGrowth { factor, .. } | Claim::SequenceGrowth { factor, .. } => {
-            line(out, format_args!("  growth             by more than {factor:.6} a turn"));
+        Claim::FrozenGrowth { factor, .. } => {
+            line(
+                out,
+                format_args!("  growth             by a factor of at least {factor:.6} a sample"),
+            );
+        }
+        Claim::SequenceGrowth { factor, .. } => {
+            line(
+                out,
+                format_args!(
+                    "  growth             by a factor of at least {factor:.6} each time the sequence is repeated"
+                ),
+            );
         }
     }
 }

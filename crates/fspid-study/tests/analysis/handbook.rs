@@ -49,7 +49,8 @@ fn proportional_loops_have_the_continuous_margins_when_sampled_fast() {
     near(navion.phase_margin_deg, 65.44, 0.02);
     near(navion.phase_crossover_rad_s[1].expect("a limit"), 6.327, 0.002);
     near(navion.gain_crossover_rad_s.expect("a crossover"), 2.557, 0.001);
-    near(navion.sensitivity_peak, 1.7109, 3e-4);
+    // Half a sample of lag, 50 µs, still shows here.
+    near(navion.sensitivity_peak, 1.7109, 5e-4);
 }
 
 #[test]
@@ -58,7 +59,9 @@ fn an_unstable_loop_has_poles_and_no_margins() {
         let analysis = analysed(LOOP, &["loop.sample_period_s=0.01", gain]);
         assert!(!analysis.all_stable());
         let margins = analysis.loops[0].margins();
-        assert!(matches!(margins, Err(Absent::Unstable { spectral_radius }) if spectral_radius > 1.0));
+        assert!(
+            matches!(margins, Err(Absent::Unstable { spectral_radius }) if spectral_radius > 1.0)
+        );
         let answer = &analysis.json()["controllers"][0];
         assert_eq!(answer["stable"], false);
         assert_eq!(answer["unstable_poles"].as_array().map(Vec::len), Some(2));
@@ -78,12 +81,14 @@ fn a_positive_sign_of_the_elevator_makes_every_gain_unstable() {
 
 #[test]
 fn a_rate_loop_is_broken_with_the_pitch_loop_closed() {
-    let set = ["loop.sample_period_s=0.01", "controller.C.kp=3.5287", "controller.C.rate_gain=0.9144"];
+    let set =
+        ["loop.sample_period_s=0.01", "controller.C.kp=3.5287", "controller.C.rate_gain=0.9144"];
     let of = |point| analysed_at(LOOP, &set, point).loops[0].margins().expect("stable");
     let [command, pitch, rate] = BreakPoint::ALL.map(of);
-    // Without its rate loop this gain leaves 2.6 dB; the inner loop is what holds it.
-    assert!(pitch.gain_margin_db[1] > 12.0, "{pitch:?}");
-    assert!(rate.gain_margin_db[0] > -40.0 && rate.gain_margin_db[0] < 0.0, "{rate:?}");
+    // Without its rate loop this gain is 2.6 dB below the neutral 4.75: the rate loop may open, but
+    // it is what gives the pitch loop its margin.
+    assert!(pitch.gain_margin_db[1] > 11.0, "{pitch:?}");
+    assert!(rate.gain_margin_db[0].is_infinite(), "{rate:?}");
     assert!((command.disk_margin - pitch.disk_margin).abs() > 0.01);
     let none = analysed_at(LOOP, &["loop.sample_period_s=0.01"], BreakPoint::Rate);
     assert_eq!(none.loops[0].margins(), Err(Absent::NoRateLoop));

@@ -55,7 +55,8 @@ fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
     assert_eq!(map.points.len(), 81);
     assert!(map.is_stable());
     let worst = map.worst.margins.expect("stable").disk_margin;
-    let least = map.points.iter().filter_map(|point| Some(point.margins.as_ref().ok()?.disk_margin));
+    let least =
+        map.points.iter().filter_map(|point| Some(point.margins.as_ref().ok()?.disk_margin));
     assert!(least.fold(f64::INFINITY, f64::min) >= worst);
 }
 
