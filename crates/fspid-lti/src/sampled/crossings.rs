@@ -2,8 +2,8 @@
 
 use core::f64::consts::PI;
 
-use super::bilinear::Bilinear;
 use super::reduced::Response;
+use super::squares::Squares;
 use super::{SampledLoop, scan};
 use crate::complex::modulus;
 use crate::error::LtiError;
@@ -25,7 +25,7 @@ impl SampledLoop {
             return Err(LtiError::NotPositive { what: "gain to be crossed", value: level });
         }
         let scaled = self.reduced.scaled(1.0 / level);
-        let candidates = Bilinear::angles_of_unit_gain(&scaled)?;
+        let candidates = Squares::new(&scaled)?.angles_of_unit_gain()?;
         let above = |angle_rad: f64| excess(scaled.at(super::zeta(angle_rad)));
         let angles = scan::sign_changes(above, &candidates, (END_RAD, PI));
         Ok(self.frequencies(angles))
@@ -44,7 +44,7 @@ impl SampledLoop {
 
     /// The same as angles ωT.
     pub(super) fn real_angles(&self) -> Result<Vec<f64>, LtiError> {
-        let candidates = Bilinear::angles_of_real_values(&self.reduced)?;
+        let candidates = Squares::new(&self.reduced)?.angles_of_real_values()?;
         let across = |angle_rad: f64| sine(self.response(angle_rad));
         let mut inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
         inside.retain(|&angle_rad| modulus(self.response(angle_rad).open()) < POLE);

@@ -2,6 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use super::level_set::Mapped;
 use super::{DiskMargin, GainLimit, Peak, SampledLoop, poles};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
@@ -80,7 +81,8 @@ impl SampledLoop {
         }
         let [gain_low, gain_high] = self.gain_limits()?;
         let crossovers = self.crossovers()?;
-        let sensitivity_peak = self.peak_of(1.0, &poles)?;
+        let maps = Mapped::both(&self.reduced)?;
+        let sensitivity_peak = self.peak_of(1.0, &poles, &maps)?;
         Ok(Stability::Stable(Box::new(SampledMargins {
             gain_low,
             gain_high,
@@ -88,9 +90,9 @@ impl SampledLoop {
             delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
             crossovers,
             sensitivity_peak,
-            complementary_peak: self.peak_of(0.0, &poles)?,
+            complementary_peak: self.peak_of(0.0, &poles, &maps)?,
             modulus_margin: 1.0 / sensitivity_peak.value,
-            disk: self.disk_with(0.0, &poles)?,
+            disk: self.disk_with(0.0, &poles, &maps)?,
             spectral_radius,
         })))
     }
