@@ -1,6 +1,8 @@
 //! The factors on the gain between which a stable loop stays stable.
 
-use super::{SampledLoop, poles};
+use super::SampledLoop;
+use super::quick::quick_eigenvalues;
+use super::squares::Squares;
 use crate::complex::{Complex, modulus, quotient};
 use crate::error::LtiError;
 
@@ -26,8 +28,11 @@ pub struct GainLimit {
 
 impl SampledLoop {
     /// The nearest limits below and above 1, for a loop that is stable.
-    pub(super) fn gain_limits(&self) -> Result<[Option<GainLimit>; 2], LtiError> {
-        let mut candidates = self.gain_candidates()?;
+    pub(super) fn gain_limits(
+        &self,
+        squares: &Squares<'_>,
+    ) -> Result<[Option<GainLimit>; 2], LtiError> {
+        let mut candidates = self.gain_candidates(squares)?;
         let above = candidates.iter().copied().filter(|limit| limit.factor > 1.0).collect();
         candidates.retain(|limit| limit.factor < 1.0);
         candidates.reverse();
@@ -38,13 +43,14 @@ impl SampledLoop {
     }
 
     /// Positive factors that bring a pole to the unit circle, $-1/L$ where L is real, rising.
-    fn gain_candidates(&self) -> Result<Vec<GainLimit>, LtiError> {
+    fn gain_candidates(&self, squares: &Squares<'_>) -> Result<Vec<GainLimit>, LtiError> {
         let limit = |angle_rad: f64| {
             let response = self.response(angle_rad);
             let factor = -quotient(response.under, response.over).re;
             GainLimit { factor, omega_rad_s: angle_rad / self.dt_s() }
         };
-        let mut limits: Vec<GainLimit> = self.real_angles()?.into_iter().map(limit).collect();
+        let mut limits: Vec<GainLimit> =
+            self.real_angles(squares)?.into_iter().map(limit).collect();
         limits.retain(|limit| limit.factor > 1.0 / FACTOR_MAX && limit.factor < FACTOR_MAX);
         limits.sort_by(|left, right| left.factor.total_cmp(&right.factor));
         Ok(limits)
@@ -96,6 +102,7 @@ impl SampledLoop {
 
     /// Whether all poles lie within the unit circle with a factor on the gain.
     fn stable_with(&self, factor: f64) -> Result<bool, LtiError> {
-        Ok(poles::radius(&self.closed_poles_at(factor)?) < 1.0)
+        let inside = |zeta: &Complex| modulus(zeta + 1.0) < 1.0;
+        Ok(quick_eigenvalues(&self.reduced.closed(factor))?.iter().all(inside))
     }
 }

@@ -2,8 +2,8 @@
 
 use core::f64::consts::SQRT_2;
 
+use super::quick::quick_eigenvalues;
 use super::reduced::Reduced;
-use crate::eigenvalues::eigenvalues;
 use crate::error::LtiError;
 use crate::matrix::Matrix;
 
@@ -91,7 +91,7 @@ impl Mapped {
             }
         }
         let Some(map) = best else { return Ok(Vec::new()) };
-        let found = eigenvalues(&map.hamiltonian(centre, value)?)?;
+        let found = quick_eigenvalues(&map.hamiltonian(centre, value)?)?;
         Ok(found.into_iter().filter(|s| s.im > 0.0).map(|s| map.angle_rad(s.im)).collect())
     }
 

@@ -12,6 +12,7 @@ mod level_set;
 mod margins;
 mod peak;
 mod poles;
+mod quick;
 mod reduced;
 mod scan;
 mod squares;

@@ -5,6 +5,9 @@ use crate::complex::Complex;
 use crate::eigenvalues::to_hessenberg;
 use crate::matrix::Matrix;
 
+/// Rows up to this length are kept without an allocation.
+const SHORT: usize = 25;
+
 /// Loop in the variable $\zeta = z - 1$, balanced, with a Hessenberg matrix and one output coefficient.
 ///
 /// $$ L = \gamma\, e_n^T (\zeta I - H)^{-1} b, \quad H \sim A - I $$
@@ -92,7 +95,14 @@ impl Reduced {
     /// Elimination with exchange of neighbouring rows; only the row that is being passed down is kept.
     pub(super) fn at(&self, zeta: Complex) -> Response {
         let order = self.order();
-        let mut row = self.first_row(zeta);
+        let (mut short, mut long) = ([Complex::new(0.0, 0.0); SHORT], Vec::new());
+        let row = if order < SHORT {
+            &mut short[..=order]
+        } else {
+            long.resize(order + 1, Complex::new(0.0, 0.0));
+            long.as_mut_slice()
+        };
+        self.first_row(zeta, row);
         for k in 0..order - 1 {
             let below = self.h.row(k + 1);
             let (head, lead) = (row[k], -below[k]);
@@ -116,19 +126,19 @@ impl Reduced {
     }
 
     /// First row of the equations and their right side.
-    fn first_row(&self, zeta: Complex) -> Vec<Complex> {
-        let mut row: Vec<Complex> =
-            self.h.row(0).iter().map(|&entry| Complex::new(-entry, 0.0)).collect();
+    fn first_row(&self, zeta: Complex, row: &mut [Complex]) {
+        for (place, entry) in row.iter_mut().zip(self.h.row(0)) {
+            *place = Complex::new(-entry, 0.0);
+        }
         row[0] += zeta;
-        row.push(Complex::new(self.b[0], 0.0));
-        row
+        row[self.order()] = Complex::new(self.b[0], 0.0);
     }
 
     /// The response and the slopes of its parts, by differentiating every step of [`Reduced::at`].
     pub(super) fn slope_at(&self, zeta: Complex) -> Slope {
         let (order, zero, one) = (self.order(), Complex::new(0.0, 0.0), Complex::new(1.0, 0.0));
-        let mut row = self.first_row(zeta);
-        let mut slope = vec![zero; order + 1];
+        let (mut row, mut slope) = (vec![zero; order + 1], vec![zero; order + 1]);
+        self.first_row(zeta, &mut row);
         slope[0] = one;
         for k in 0..order - 1 {
             let below = self.h.row(k + 1);

@@ -1,13 +1,15 @@
 //! Where a loop has the gain 1 and where it is real, as eigenvalues of matrices of its own order.
 
+use super::quick::quick_eigenvalues;
 use super::reduced::Reduced;
 use crate::complex::{Complex, modulus, quotient, reciprocal};
-use crate::eigenvalues::eigenvalues;
 use crate::error::LtiError;
 use crate::matrix::Matrix;
 
 /// Places on the real axis are looked for between these, in units of $\tan (\omega T / 2)$.
 const BAND: (f64, f64) = (1e-9, 10.0);
+/// A pole is far enough from the unit circle if its distance in the z plane is about this.
+const CLEAR: f64 = 1e-3;
 /// Steps from the size that is asked for to places that may be farther from all poles.
 const STEPS: [f64; 8] = [1.0, 1.7, 0.6, 2.6, 0.37, 4.1, 0.23, 7.3];
 
@@ -32,6 +34,8 @@ pub(super) struct Squares<'a> {
     e: Matrix,
     /// Poles of $T_f$ in the s plane; the one at infinity, $z = -1$, left out.
     poles: Vec<Complex>,
+    /// From a place near the slow poles and from one near the fast ones: far from the place zeros are not found well.
+    shifted: Vec<Shifted>,
 }
 
 /// What both questions need of one place $s_0$.
@@ -52,19 +56,25 @@ impl<'a> Squares<'a> {
             let sizes = square.poles.iter().map(|s| s.re.abs() / (1.0 + s.norm_sqr()));
             sizes.fold(f64::INFINITY, f64::min)
         };
-        let positive = Self::with_factor(reduced, 1.0)?;
-        if clearance(&positive) > 1e-3 {
-            return Ok(positive);
+        let mut best = Self::with_factor(reduced, 1.0)?;
+        if !(clearance(&best) > CLEAR) {
+            let other = Self::with_factor(reduced, -1.0)?;
+            best = if clearance(&other) > clearance(&best) { other } else { best };
         }
-        let negative = Self::with_factor(reduced, -1.0)?;
-        Ok(if clearance(&negative) > clearance(&positive) { negative } else { positive })
+        let sizes = || best.poles.iter().map(|&s| modulus(s)).filter(|&size| size > 0.0);
+        let slow = sizes().fold(BAND.1, f64::min).max(BAND.0);
+        let fast = sizes().fold(slow, f64::max).min(BAND.1);
+        for size in [slow, fast] {
+            best.shifted.push(best.shifted(best.clear_of_poles(size))?);
+        }
+        Ok(best)
     }
 
     fn with_factor(reduced: &'a Reduced, factor: f64) -> Result<Self, LtiError> {
         let e = reduced.closed(factor);
-        let poles = eigenvalues(&e)?.into_iter().map(|zeta| quotient(zeta, zeta + 2.0));
+        let poles = quick_eigenvalues(&e)?.into_iter().map(|zeta| quotient(zeta, zeta + 2.0));
         let poles = poles.filter(|s| s.is_finite()).collect();
-        Ok(Self { reduced, factor, e, poles })
+        Ok(Self { reduced, factor, e, poles, shifted: Vec::new() })
     }
 
     /// Angles near which L is real, and others; without 0 and π.
@@ -94,16 +104,11 @@ impl<'a> Squares<'a> {
         quotient(value.over, value.under + value.over * self.factor).re
     }
 
-    /// Zeros of one part, from a place near the slow poles and from one near the fast ones: far from the place they are
-    /// not found well.
+    /// Zeros of one part, given by the output and the factor of a feedback.
     fn angles(&self, part: impl Fn(&Shifted) -> (Vec<f64>, f64)) -> Result<Vec<f64>, LtiError> {
-        let sizes = || self.poles.iter().map(|&s| modulus(s)).filter(|&size| size > 0.0);
-        let slow = sizes().fold(BAND.1, f64::min).max(BAND.0);
-        let fast = sizes().fold(slow, f64::max).min(BAND.1);
         let mut angles = Vec::new();
-        for size in [slow, fast] {
-            let shifted = self.shifted(self.clear_of_poles(size))?;
-            let (output, factor) = part(&shifted);
+        for shifted in &self.shifted {
+            let (output, factor) = part(shifted);
             if factor.is_finite() {
                 angles.extend(shifted.zeros(&output, factor)?);
             }
@@ -167,7 +172,7 @@ impl Shifted {
         let closed = Matrix::from_function(order, order, |row, column| {
             self.m.at(row, column) + factor * self.input[row] * output[column]
         });
-        let squares = eigenvalues(&closed)?.into_iter().map(|p| reciprocal(p) + self.centre);
+        let squares = quick_eigenvalues(&closed)?.into_iter().map(|p| reciprocal(p) + self.centre);
         // Exact ones are negative, w = −tan²; the others do no harm.
         let s = squares.map(|w| (0.5 * (modulus(w) - w.re)).sqrt());
         Ok(s.filter(|&s| s > 0.0).map(|s| 2.0 * libm::atan(s)).collect())
