@@ -201,3 +201,74 @@ fn flip(matrix: &Matrix) -> Matrix {
     let size = matrix.rows();
     Matrix::from_function(size, size, |row, column| matrix.at(size - 1 - column, size - 1 - row))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::modulus;
+
+    /// $1 / (z (z - 1/2)(z - 1))$ with states of very different size, and a dead state that nothing reads.
+    fn reduced() -> Reduced {
+        let a = Matrix::from_rows(&[
+            [0.0, 1e6, 0.0, 0.0],
+            [0.0, 0.5, 1e-9, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0, 0.25],
+        ])
+        .expect("a matrix");
+        Reduced::new(&a, &[0.0, 0.0, 1e3, 0.0], &[1.0, 0.0, 0.0, 0.0])
+    }
+
+    fn closed_form(zeta: Complex) -> Complex {
+        let z = zeta + 1.0;
+        crate::complex::reciprocal(z * (z - 0.5) * zeta)
+    }
+
+    #[test]
+    fn the_response_is_that_of_the_matrices_before_their_reduction() {
+        for zeta in [(0.1, 0.2), (-1e-9, 1e-7), (-2.0, 1e-8), (-1.0, 1.0), (3.0, -4.0)] {
+            let zeta = Complex::new(zeta.0, zeta.1);
+            let (found, expected) = (reduced().at(zeta).open(), closed_form(zeta));
+            assert!(modulus(found - expected) < 1e-13 * modulus(expected), "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_neighbouring_values() {
+        for zeta in [(0.1, 0.2), (-0.3, 0.7), (-1.9, 0.1)] {
+            let zeta = Complex::new(zeta.0, zeta.1);
+            let step = Complex::new(1e-6, 0.0);
+            let [before, after] = [zeta - step, zeta + step].map(|at| reduced().at(at).closed());
+            let slope = reduced().slope_at(zeta);
+            assert_eq!(slope.value, reduced().at(zeta));
+            let expected = (after - before) / (2.0 * step);
+            assert!(modulus(slope.closed() - expected) < 1e-8 * modulus(expected), "{zeta}");
+        }
+    }
+
+    #[test]
+    fn at_a_pole_the_closed_loop_follows_and_feels_nothing() {
+        let response = reduced().at(Complex::new(0.0, 0.0));
+        assert!(modulus(response.closed() - 1.0) < 1e-14);
+        assert!(modulus(response.closed_less(1.0)) < 1e-14);
+        assert!(!(modulus(response.open()) < 1e14));
+    }
+
+    #[test]
+    fn long_rows_are_treated_as_short_ones() {
+        let order = SHORT + 5;
+        let chain = Matrix::from_function(
+            order,
+            order,
+            |row, column| {
+                if column == row + 1 { 1.0 } else { 0.0 }
+            },
+        );
+        let (mut b, mut c) = (vec![0.0; order], vec![0.0; order]);
+        (b[order - 1], c[0]) = (1.0, 1.0);
+        let z = Complex::new(0.6, 0.8);
+        let found = Reduced::new(&chain, &b, &c).at(z - 1.0).open();
+        let expected = (0..order).fold(Complex::new(1.0, 0.0), |power, _| power * z.conj());
+        assert!(modulus(found - expected) < 1e-13, "{found} {expected}");
+    }
+}
