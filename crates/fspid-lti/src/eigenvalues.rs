@@ -182,7 +182,7 @@ fn block_eigenvalues(h: &Matrix, start: usize, end: usize) -> Vec<Complex> {
 }
 
 /// Eigenvalues of ((a, b), (c, d)), the larger real one first found and the other from the product.
-fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex; 2] {
+pub(crate) fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex; 2] {
     let half = 0.5 * (a - d);
     let discriminant = half * half + b * c;
     if discriminant < 0.0 {

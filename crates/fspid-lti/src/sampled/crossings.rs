@@ -2,8 +2,8 @@
 
 use core::f64::consts::PI;
 
-use super::bilinear::Bilinear;
-use super::reduced::Response;
+use super::reduced::{Reduced, Response};
+use super::squares::Squares;
 use super::{SampledLoop, scan};
 use crate::complex::modulus;
 use crate::error::LtiError;
@@ -25,9 +25,7 @@ impl SampledLoop {
             return Err(LtiError::NotPositive { what: "gain to be crossed", value: level });
         }
         let scaled = self.reduced.scaled(1.0 / level);
-        let candidates = Bilinear::angles_of_unit_gain(&scaled)?;
-        let above = |angle_rad: f64| excess(scaled.at(super::zeta(angle_rad)));
-        let angles = scan::sign_changes(above, &candidates, (END_RAD, PI));
+        let angles = unit_gain_angles(&scaled, &Squares::new(&scaled)?)?;
         Ok(self.frequencies(angles))
     }
 
@@ -39,12 +37,12 @@ impl SampledLoop {
     /// # Errors
     /// As [`SampledLoop::gain_crossings`].
     pub fn real_crossings(&self) -> Result<Vec<f64>, LtiError> {
-        Ok(self.frequencies(self.real_angles()?))
+        Ok(self.frequencies(self.real_angles(&Squares::new(&self.reduced)?)?))
     }
 
     /// The same as angles ωT.
-    pub(super) fn real_angles(&self) -> Result<Vec<f64>, LtiError> {
-        let candidates = Bilinear::angles_of_real_values(&self.reduced)?;
+    pub(super) fn real_angles(&self, squares: &Squares<'_>) -> Result<Vec<f64>, LtiError> {
+        let candidates = squares.angles_of_real_values()?;
         let across = |angle_rad: f64| sine(self.response(angle_rad));
         let mut inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
         inside.retain(|&angle_rad| modulus(self.response(angle_rad).open()) < POLE);
@@ -54,6 +52,16 @@ impl SampledLoop {
     pub(super) fn frequencies(&self, angles: Vec<f64>) -> Vec<f64> {
         angles.into_iter().map(|angle_rad| angle_rad / self.dt_s).collect()
     }
+}
+
+/// Angles ωT above 0 at which $|L| = 1$.
+pub(super) fn unit_gain_angles(
+    reduced: &Reduced,
+    squares: &Squares<'_>,
+) -> Result<Vec<f64>, LtiError> {
+    let candidates = squares.angles_of_unit_gain()?;
+    let above = |angle_rad: f64| excess(reduced.at(super::zeta(angle_rad)));
+    Ok(scan::sign_changes(above, &candidates, (END_RAD, PI)))
 }
 
 /// $|L|^2 - 1$ over $|L|^2 + 1$.

@@ -26,7 +26,7 @@ pub struct DiskMargin {
 
 impl DiskMargin {
     /// Margin of a size and skew at a frequency.
-    pub(super) fn new(size: f64, skew: f64, omega_rad_s: f64) -> Self {
+    pub(crate) fn new(size: f64, skew: f64, omega_rad_s: f64) -> Self {
         let (gain, phase_rad) = Self::ends(size, skew);
         Self { size, skew, omega_rad_s, gain, phase_rad }
     }

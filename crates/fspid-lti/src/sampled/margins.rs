@@ -2,6 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 
+use super::crossings::unit_gain_angles;
+use super::level_set::Mapped;
+use super::squares::Squares;
 use super::{DiskMargin, GainLimit, Peak, SampledLoop, poles};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
@@ -78,9 +81,11 @@ impl SampledLoop {
             let poles = poles.into_iter().filter(outside).collect();
             return Ok(Stability::Unstable { poles, spectral_radius });
         }
-        let [gain_low, gain_high] = self.gain_limits()?;
-        let crossovers = self.crossovers()?;
-        let sensitivity_peak = self.peak_of(1.0, &poles)?;
+        let squares = Squares::new(&self.reduced)?;
+        let [gain_low, gain_high] = self.gain_limits(&squares)?;
+        let crossovers = self.crossovers(&squares)?;
+        let maps = Mapped::both(&self.reduced)?;
+        let sensitivity_peak = self.peak_of(1.0, &poles, &maps)?;
         Ok(Stability::Stable(Box::new(SampledMargins {
             gain_low,
             gain_high,
@@ -88,20 +93,21 @@ impl SampledLoop {
             delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
             crossovers,
             sensitivity_peak,
-            complementary_peak: self.peak_of(0.0, &poles)?,
+            complementary_peak: self.peak_of(0.0, &poles, &maps)?,
             modulus_margin: 1.0 / sensitivity_peak.value,
-            disk: self.disk_with(0.0, &poles)?,
+            disk: self.disk_with(0.0, &poles, &maps)?,
             spectral_radius,
         })))
     }
 
-    fn crossovers(&self) -> Result<Vec<SampledCrossover>, LtiError> {
+    fn crossovers(&self, squares: &Squares<'_>) -> Result<Vec<SampledCrossover>, LtiError> {
         let crossover = |omega_rad_s: f64| {
             let margin = libm::remainder(self.phase_rad(omega_rad_s) + PI, TAU);
             let lag = if margin < 0.0 { margin + TAU } else { margin };
             SampledCrossover { omega_rad_s, phase_margin_rad: margin, delay_s: lag / omega_rad_s }
         };
-        Ok(self.gain_crossings(1.0)?.into_iter().map(crossover).collect())
+        let angles = unit_gain_angles(&self.reduced, squares)?;
+        Ok(self.frequencies(angles).into_iter().map(crossover).collect())
     }
 
     /// Bandwidth in rad/s: where $|T|$ first falls 3 dB below its value at rest; `None` if it does not, if it is 0 at

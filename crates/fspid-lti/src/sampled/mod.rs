@@ -5,15 +5,17 @@
 //! located to the last digits, and a loop that is not stable has no margins. Dead times of whole samples are states
 //! and may make the state matrix singular. Not for loops that pass their input on at once.
 
-mod bilinear;
 mod crossings;
 mod disk;
 mod gain_limits;
+mod level_set;
 mod margins;
 mod peak;
 mod poles;
+mod quick;
 mod reduced;
 mod scan;
+mod squares;
 mod zeros;
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};

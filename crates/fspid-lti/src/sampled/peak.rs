@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use super::bilinear::Bilinear;
+use super::level_set::Mapped;
 use super::{DiskMargin, SampledLoop, poles, scan, zeta};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
@@ -37,7 +37,7 @@ impl SampledLoop {
     /// # Errors
     /// A closed loop that is not stable; eigenvalues that do not converge.
     pub fn peak_sensitivity(&self) -> Result<Peak, LtiError> {
-        self.peak_of(1.0, &self.stable_poles()?)
+        self.peak_of(1.0, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
     }
 
     /// Largest complementary sensitivity $M_t = \max |T|$, $T = L / (1 + L)$, as [`SampledLoop::peak_sensitivity`].
@@ -45,7 +45,7 @@ impl SampledLoop {
     /// # Errors
     /// As [`SampledLoop::peak_sensitivity`].
     pub fn peak_complementary(&self) -> Result<Peak, LtiError> {
-        self.peak_of(0.0, &self.stable_poles()?)
+        self.peak_of(0.0, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
     }
 
     /// Disk margin of a skew.
@@ -54,12 +54,17 @@ impl SampledLoop {
     /// A skew that is not finite; as [`SampledLoop::peak_sensitivity`].
     pub fn disk_margin(&self, skew: f64) -> Result<DiskMargin, LtiError> {
         LtiError::unless_finite("skew of the disk", &[skew])?;
-        self.disk_with(skew, &self.stable_poles()?)
+        self.disk_with(skew, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
     }
 
-    pub(super) fn disk_with(&self, skew: f64, poles: &[Complex]) -> Result<DiskMargin, LtiError> {
+    pub(super) fn disk_with(
+        &self,
+        skew: f64,
+        poles: &[Complex],
+        maps: &[Mapped],
+    ) -> Result<DiskMargin, LtiError> {
         // S + (σ − 1)/2 = (1 + σ)/2 − T.
-        let peak = self.peak_of(0.5 * (1.0 + skew), poles)?;
+        let peak = self.peak_of(0.5 * (1.0 + skew), poles, maps)?;
         Ok(DiskMargin::new(1.0 / peak.value, skew, peak.omega_rad_s))
     }
 
@@ -74,7 +79,12 @@ impl SampledLoop {
     }
 
     /// Largest distance of T from a real value, for a loop that is stable with these closed poles.
-    pub(super) fn peak_of(&self, centre: f64, poles: &[Complex]) -> Result<Peak, LtiError> {
+    pub(super) fn peak_of(
+        &self,
+        centre: f64,
+        poles: &[Complex],
+        maps: &[Mapped],
+    ) -> Result<Peak, LtiError> {
         let mut angles = poles::angles_rad(poles);
         let (mut best, mut level) = ((0.0, 0.0), 0.0);
         for _ in 0..CLIMBS_MAX {
@@ -84,7 +94,7 @@ impl SampledLoop {
             }
             best = higher;
             level = best.1 * (1.0 + ABOVE);
-            angles = Bilinear::angles_of_distance(&self.reduced, centre, level)?;
+            angles = Mapped::angles_of_distance(maps, centre, level)?;
         }
         Err(LtiError::NotConverged { what: "peak of a response", iterations: CLIMBS_MAX })
     }

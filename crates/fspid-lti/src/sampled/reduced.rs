@@ -5,6 +5,9 @@ use crate::complex::Complex;
 use crate::eigenvalues::to_hessenberg;
 use crate::matrix::Matrix;
 
+/// Rows up to this length are kept without an allocation.
+const SHORT: usize = 25;
+
 /// Loop in the variable $\zeta = z - 1$, balanced, with a Hessenberg matrix and one output coefficient.
 ///
 /// $$ L = \gamma\, e_n^T (\zeta I - H)^{-1} b, \quad H \sim A - I $$
@@ -92,7 +95,14 @@ impl Reduced {
     /// Elimination with exchange of neighbouring rows; only the row that is being passed down is kept.
     pub(super) fn at(&self, zeta: Complex) -> Response {
         let order = self.order();
-        let mut row = self.first_row(zeta);
+        let (mut short, mut long) = ([Complex::new(0.0, 0.0); SHORT], Vec::new());
+        let row = if order < SHORT {
+            &mut short[..=order]
+        } else {
+            long.resize(order + 1, Complex::new(0.0, 0.0));
+            long.as_mut_slice()
+        };
+        self.first_row(zeta, row);
         for k in 0..order - 1 {
             let below = self.h.row(k + 1);
             let (head, lead) = (row[k], -below[k]);
@@ -116,19 +126,19 @@ impl Reduced {
     }
 
     /// First row of the equations and their right side.
-    fn first_row(&self, zeta: Complex) -> Vec<Complex> {
-        let mut row: Vec<Complex> =
-            self.h.row(0).iter().map(|&entry| Complex::new(-entry, 0.0)).collect();
+    fn first_row(&self, zeta: Complex, row: &mut [Complex]) {
+        for (place, entry) in row.iter_mut().zip(self.h.row(0)) {
+            *place = Complex::new(-entry, 0.0);
+        }
         row[0] += zeta;
-        row.push(Complex::new(self.b[0], 0.0));
-        row
+        row[self.order()] = Complex::new(self.b[0], 0.0);
     }
 
     /// The response and the slopes of its parts, by differentiating every step of [`Reduced::at`].
     pub(super) fn slope_at(&self, zeta: Complex) -> Slope {
         let (order, zero, one) = (self.order(), Complex::new(0.0, 0.0), Complex::new(1.0, 0.0));
-        let mut row = self.first_row(zeta);
-        let mut slope = vec![zero; order + 1];
+        let (mut row, mut slope) = (vec![zero; order + 1], vec![zero; order + 1]);
+        self.first_row(zeta, &mut row);
         slope[0] = one;
         for k in 0..order - 1 {
             let below = self.h.row(k + 1);
@@ -190,4 +200,75 @@ impl Slope {
 fn flip(matrix: &Matrix) -> Matrix {
     let size = matrix.rows();
     Matrix::from_function(size, size, |row, column| matrix.at(size - 1 - column, size - 1 - row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::modulus;
+
+    /// $1 / (z (z - 1/2)(z - 1))$ with states of very different size, and a dead state that nothing reads.
+    fn reduced() -> Reduced {
+        let a = Matrix::from_rows(&[
+            [0.0, 1e6, 0.0, 0.0],
+            [0.0, 0.5, 1e-9, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0, 0.25],
+        ])
+        .expect("a matrix");
+        Reduced::new(&a, &[0.0, 0.0, 1e3, 0.0], &[1.0, 0.0, 0.0, 0.0])
+    }
+
+    fn closed_form(zeta: Complex) -> Complex {
+        let z = zeta + 1.0;
+        crate::complex::reciprocal(z * (z - 0.5) * zeta)
+    }
+
+    #[test]
+    fn the_response_is_that_of_the_matrices_before_their_reduction() {
+        for zeta in [(0.1, 0.2), (-1e-9, 1e-7), (-2.0, 1e-8), (-1.0, 1.0), (3.0, -4.0)] {
+            let zeta = Complex::new(zeta.0, zeta.1);
+            let (found, expected) = (reduced().at(zeta).open(), closed_form(zeta));
+            assert!(modulus(found - expected) < 1e-13 * modulus(expected), "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_neighbouring_values() {
+        for zeta in [(0.1, 0.2), (-0.3, 0.7), (-1.9, 0.1)] {
+            let zeta = Complex::new(zeta.0, zeta.1);
+            let step = Complex::new(1e-6, 0.0);
+            let [before, after] = [zeta - step, zeta + step].map(|at| reduced().at(at).closed());
+            let slope = reduced().slope_at(zeta);
+            assert_eq!(slope.value, reduced().at(zeta));
+            let expected = (after - before) / (2.0 * step);
+            assert!(modulus(slope.closed() - expected) < 1e-8 * modulus(expected), "{zeta}");
+        }
+    }
+
+    #[test]
+    fn at_a_pole_the_closed_loop_follows_and_feels_nothing() {
+        let response = reduced().at(Complex::new(0.0, 0.0));
+        assert!(modulus(response.closed() - 1.0) < 1e-14);
+        assert!(modulus(response.closed_less(1.0)) < 1e-14);
+        assert!(!(modulus(response.open()) < 1e14));
+    }
+
+    #[test]
+    fn long_rows_are_treated_as_short_ones() {
+        let order = SHORT + 5;
+        let chain = Matrix::from_function(
+            order,
+            order,
+            |row, column| {
+                if column == row + 1 { 1.0 } else { 0.0 }
+            },
+        );
+        let (mut b, mut c) = (vec![0.0; order], vec![0.0; order]);
+        (b[order - 1], c[0]) = (1.0, 1.0);
+        let z = Complex::new(0.6, 0.8);
+        let found = Reduced::new(&chain, &b, &c).at(z - 1.0).open();
+        let expected = (0..order).fold(Complex::new(1.0, 0.0), |power, _| power * z.conj());
+        assert!(modulus(found - expected) < 1e-13, "{found} {expected}");
+    }
 }

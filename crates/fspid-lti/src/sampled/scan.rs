@@ -104,3 +104,49 @@ fn next_share(near: (f64, f64), far: (f64, f64), old: (f64, f64)) -> f64 {
         0.5
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_are_found_to_the_last_digits_between_rough_candidates() {
+        let found = sign_changes(libm::sin, &[3.0, 6.5, 9.0], (1.0, 10.0));
+        let expected = [1.0, 2.0, 3.0].map(|turns| turns * core::f64::consts::PI);
+        assert_eq!(found.len(), 3, "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() <= 2.0 * f64::EPSILON * expected,
+                "{found} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn two_zeros_around_a_candidate_are_told_apart() {
+        let found = sign_changes(|x| (x - 2.0) * (x - 2.0) - 1e-12, &[2.0], (1.0, 3.0));
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[1] - found[0] - 2e-6).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn zeros_at_candidates_and_ends_count_once_and_jumps_do_not_count() {
+        assert_eq!(sign_changes(|x| x - 2.0, &[2.0], (1.0, 3.0)), vec![2.0]);
+        assert_eq!(sign_changes(|x| x - 3.0, &[2.0], (1.0, 3.0)), vec![3.0]);
+        assert_eq!(sign_changes(|x| x - 1.0, &[], (1.0, 3.0)), vec![1.0]);
+        assert_eq!(sign_changes(|x| if x < 1.7 { -1.0 } else { 1.0 }, &[], (1.0, 3.0)), vec![]);
+    }
+
+    #[test]
+    fn a_root_is_bracketed_however_flat_or_steep_the_function() {
+        for power in [1, 3, 9] {
+            let function =
+                |x: f64| libm::pow((x - 0.3).abs(), f64::from(power)) * (x - 0.3).signum();
+            let (place, _) = root(&function, (0.0, function(0.0)), (1.0, function(1.0)));
+            assert!((place - 0.3).abs() < 1e-15, "{power}: {place}");
+        }
+        let steep = |x: f64| libm::atan(1e9 * (x - 0.3));
+        let (place, _) = root(&steep, (0.0, steep(0.0)), (1.0, steep(1.0)));
+        assert!((place - 0.3).abs() < 1e-15, "{place}");
+    }
+}
