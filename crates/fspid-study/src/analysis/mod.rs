@@ -10,6 +10,7 @@
 
 mod answer;
 mod equilibrium;
+pub(crate) mod figures;
 mod frozen;
 mod json;
 mod loops;
