@@ -15,6 +15,7 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
 pub(crate) mod surface;
+pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};
 

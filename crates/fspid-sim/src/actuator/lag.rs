@@ -1,5 +1,7 @@
 //! How an actuator follows its command where no limit holds it.
 
+use fspid_lti::TransferFunction;
+
 use crate::error::{SimError, positive};
 
 /// The linear part of an actuator, from command v to position x.
@@ -70,6 +72,21 @@ impl Lag {
             Kind::First { .. } => 1,
             Kind::Second { .. } => 2,
         }
+    }
+
+    /// From command to position; `None` for no lag.
+    ///
+    /// # Errors
+    /// A lag so quick that a coefficient overflows.
+    pub fn transfer_function(&self) -> Result<Option<TransferFunction>, SimError> {
+        let [by_position, by_rate, by_command] = self.coefficients();
+        let whole = [1.0, -by_rate, -by_position];
+        let denominator = match self.order() {
+            0 => return Ok(None),
+            1 => &[1.0, -by_position][..],
+            _ => &whole,
+        };
+        Ok(Some(TransferFunction::new(&[by_command], denominator)?))
     }
 
     /// By how much time a position that moves at a constant rate trails its command, s: $\tau$ or

@@ -130,9 +130,8 @@ fn factor(db: f64) -> f64 {
 fn curve(number: usize, shown: &Shown<'_>) -> LoopCurve {
     let open = &shown.plant.open;
     let last = open.nyquist_rad_s();
-    let place = |index: usize| {
-        last * libm::pow(10.0, DECADES * (index as f64 / (POINTS - 1) as f64 - 1.0))
-    };
+    let place =
+        |index: usize| last * libm::pow(10.0, DECADES * (index as f64 / (POINTS - 1) as f64 - 1.0));
     let point = |index| {
         let frequency_rad_s = place(index);
         let Complex { re, im } = open.at(frequency_rad_s);

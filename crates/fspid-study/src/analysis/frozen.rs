@@ -1,6 +1,6 @@
 //! Margins at every gain that a supervisor can produce, the gains standing still.
 
-use fspid_core::{Fspid, Gains};
+use fspid_core::{Fspid, Gains, Law};
 use fspid_proof::gain_set::producible;
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_sim::{LinearPlant, Scenario, SimError};
@@ -43,6 +43,9 @@ impl FrozenMap {
         fspid: &Fspid<f64>,
         question: Question,
     ) -> Result<Option<Self>, SimError> {
+        if fspid.tuner().settings().law != Law::Memoryless {
+            return Ok(None);
+        }
         Mapper { scenario, plant, fspid, question }.map()
     }
 

@@ -1,5 +1,6 @@
 //! What acts in flight and is not in the linear loop.
 
+use fspid_core::Law;
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, Scenario};
 
@@ -32,6 +33,14 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
     say(
         scenario.controllers.iter().any(tuning),
         "Self-tuning gains are taken as standing still; only a certificate speaks of gains that move.",
+    );
+    let accumulates = |named: &fspid_sim::NamedController| match &named.controller {
+        Controller::SelfTuning(fspid) => fspid.tuner().settings().law != Law::Memoryless,
+        Controller::Fixed(_) => false,
+    };
+    say(
+        scenario.controllers.iter().any(accumulates),
+        "An accumulating law is analysed at its equilibrium alone: where else its gains can stand, a certificate says.",
     );
     let dt_s = scenario.timing.dt_s();
     let aged = [surroundings.pitch_sensor.as_ref(), surroundings.rate_sensor.as_ref()]

@@ -7,7 +7,7 @@ mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
-pub use measure::Measure;
+pub use measure::{Family, Measure};
 pub use step::{StepMetrics, StepWindow};
 
 use std::fmt;
