@@ -8,7 +8,7 @@ use super::{Format, json_text};
 use crate::exit::{Failure, note, print};
 use fspid_study::analysis::BreakPoint;
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::file;
+use fspid_study::{file, output, report};
 
 /// Analyse the sampled loop of each controller: margins, poles, sensitivity, and every gain that a self-tuning
 /// controller can have.
@@ -28,6 +28,9 @@ pub(crate) struct Arguments {
     /// Points along each input of the frozen-gain map; 0 for no map.
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u16).range(0..=201))]
     map: u16,
+    /// Write a report that opens offline in a browser.
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -62,6 +65,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let question =
         Question { point: arguments.broken_at.into(), map_points: usize::from(arguments.map) };
     let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
+    if let Some(path) = &arguments.report {
+        output::write(path, report::of_analysis(&study, &analysis).map_err(Failure::input)?)?;
+        note(format_args!("wrote {}", path.display()));
+    }
     match arguments.format {
         Format::Text => print(&analysis.text())?,
         Format::Json => print(&json_text(&analysis.json()))?,

@@ -11,6 +11,7 @@
 mod answer;
 mod equilibrium;
 pub(crate) mod figures;
+mod flown;
 mod frozen;
 mod json;
 mod loops;
@@ -25,6 +26,7 @@ pub use answer::{Margins, decibels};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
+pub(crate) use flown::flown_inputs;
 pub(crate) use loops::lasting_plants;
 pub use loops::{AnalysedLoop, PlantLoop};
 pub use nonlinear_parts::not_in_the_linear_loop;

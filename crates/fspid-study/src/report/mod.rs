@@ -7,6 +7,7 @@
 
 mod audit;
 mod html;
+mod loops;
 mod markdown;
 mod measures;
 mod number;
@@ -19,6 +20,7 @@ mod traces;
 mod user;
 
 use crate::file::Study;
+use crate::analysis::Analysis;
 use crate::fuzzy_system::Audit;
 use crate::reproduce::{Library, Reproduction};
 use crate::simulation::Simulation;
@@ -33,6 +35,14 @@ pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
 #[must_use]
 pub fn of_audit(audit: &Audit<'_>) -> String {
     audit::report(audit)
+}
+
+/// The report of a loop analysis.
+///
+/// # Errors
+/// Eigenvalues that are not found.
+pub fn of_analysis(study: &Study, analysis: &Analysis) -> Result<String, fspid_sim::SimError> {
+    loops::report(study, analysis)
 }
 
 /// The report of the paper.

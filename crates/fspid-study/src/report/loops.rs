@@ -1,0 +1,201 @@
+//! The report of `fspid analyse`: verdicts, margins, figures.
+
+use fspid_sim::SimError;
+
+use super::analysis::{
+    AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
+};
+use super::number::{fixed, significant};
+use crate::analysis::figures::{LoopFigures, MapQuantity, gain_map, pole_zero, root_locus};
+use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
+use crate::file::Study;
+use crate::figure::Svg;
+
+/// The page.
+///
+/// # Errors
+/// Eigenvalues that are not found.
+pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimError> {
+    let point = analysis.question.point.name();
+    let mut chapters = vec![margins(analysis)];
+    chapters.extend(responses(analysis));
+    for found in &analysis.loops {
+        chapters.extend(poles(found)?);
+        chapters.extend(frozen(study, found));
+    }
+    let page = AnalysisPage {
+        title: format!("{}: loop analysis", analysis.scenario),
+        heading: analysis.scenario.clone(),
+        lead: format!(
+            "Linear analysis of the sampled loop, broken at the {point}, the others closed. Exact zero-order hold, actuator, delays and the controller as it is implemented; frequencies in rad/s."
+        ),
+        verdicts: analysis.loops.iter().map(verdict).collect(),
+        warnings: study.warnings.iter().chain(&analysis.left_out).cloned().collect(),
+        requirements: None,
+        chapters,
+        provenance: Provenance {
+            command: format!("fspid analyse FILE --broken-at {point} --report OUT.html"),
+            digest: study.digest.clone(),
+            further: Vec::new(),
+        },
+    };
+    Ok(page.render())
+}
+
+fn verdict(found: &AnalysedLoop) -> Verdict {
+    let (standing, word) = match (found.absent.is_some(), found.is_stable()) {
+        (true, _) => (Standing::Fair, "No margins"),
+        (false, true) => (Standing::Good, "Stable"),
+        (false, false) => (Standing::Bad, "UNSTABLE"),
+    };
+    let detail = match found.margins() {
+        Err(reason) => format!("{reason}."),
+        Ok(margins) => {
+            let at_rest = format!(
+                "At rest: gain margin {} dB, phase margin {} deg, disk margin {}.",
+                decimal(margins.smaller_gain_margin_db(), 2),
+                decimal(margins.phase_margin_deg, 1),
+                fixed(margins.disk_margin, 3)
+            );
+            format!("{at_rest}{}", of_frozen(found))
+        }
+    };
+    Verdict { standing, word: word.to_owned(), name: found.name.clone(), detail }
+}
+
+fn of_frozen(found: &AnalysedLoop) -> String {
+    match found.worst_frozen() {
+        None => String::new(),
+        Some((_, worst)) => match &worst.margins {
+            Ok(margins) => format!(
+                " Of all its frozen gains the worst has a disk margin of {}.",
+                fixed(margins.disk_margin, 3)
+            ),
+            Err(reason) => format!(" A frozen gain of its supervisor does not hold: {reason}."),
+        },
+    }
+}
+
+/// A number, or that it has no end.
+fn decimal(value: f64, decimals: usize) -> String {
+    if value.is_finite() { fixed(value, decimals) } else { "without end".to_owned() }
+}
+
+fn margins(analysis: &Analysis) -> Chapter {
+    let head = [
+        "controller",
+        "gains",
+        "gain margin [dB]",
+        "phase margin [deg]",
+        "delay margin [s]",
+        "disk margin",
+        "sensitivity peak",
+        "gain crossover [rad/s]",
+    ];
+    let mut table = DataTable {
+        caption: "Margins of each controller with each plant that lasts; of a self-tuning one at rest.".to_owned(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: Vec::new(),
+        cards: true,
+    };
+    for found in &analysis.loops {
+        for plant in &found.plants {
+            table.rows.push(row(found, plant));
+        }
+    }
+    let items = vec![Item::Table(table)];
+    Chapter { id: "margins".to_owned(), title: "Margins".to_owned(), items }
+}
+
+fn row(found: &AnalysedLoop, plant: &PlantLoop) -> Vec<Datum> {
+    let name = match found.plants.len() {
+        0 | 1 => found.name.clone(),
+        _ => format!("{}, plant from {} s", found.name, crate::metrics::short(plant.from_s)),
+    };
+    let gains = match &found.equilibrium {
+        Equilibrium::Fixed(gains) | Equilibrium::AtRest(gains) => format!(
+            "{} / {} / {}",
+            significant(gains.kp, 4),
+            significant(gains.ki, 4),
+            significant(gains.kd, 4)
+        ),
+        Equilibrium::Drifts { .. } => "none".to_owned(),
+    };
+    let mut row = vec![Datum::Text(name), Datum::Number(gains)];
+    match &plant.margins {
+        Ok(margins) => row.extend(numbers(margins)),
+        Err(reason) => {
+            row.push(Datum::Unmet(reason.to_string()));
+            row.extend((0..5).map(|_| Datum::Absent("unstable".to_owned())));
+        }
+    }
+    row
+}
+
+fn numbers(margins: &Margins) -> [Datum; 6] {
+    let [low, high] = margins.gain_margin_db;
+    let end = |value: f64, none: &str| {
+        if value.is_finite() { format!("{value:+.2}") } else { none.to_owned() }
+    };
+    let number = |value: f64, decimals: usize| match value.is_finite() {
+        true => Datum::Number(fixed(value, decimals)),
+        false => Datum::Absent("without end".to_owned()),
+    };
+    [
+        Datum::Number(format!("{} to {}", end(low, "\u{2212}\u{221e}"), end(high, "\u{221e}"))),
+        number(margins.phase_margin_deg, 2),
+        number(margins.delay_margin_s, 4),
+        number(margins.disk_margin, 4),
+        number(margins.sensitivity_peak, 4),
+        number(margins.gain_crossover_rad_s.unwrap_or(f64::INFINITY), 3),
+    ]
+}
+
+fn picture(name: &str, svg: Svg, caption: &str) -> Item {
+    Item::Figure(Picture { name: name.to_owned(), svg, caption: caption.to_owned() })
+}
+
+fn responses(analysis: &Analysis) -> Option<Chapter> {
+    let figures = LoopFigures::of(analysis);
+    figures.any().then(|| Chapter {
+        id: "responses".to_owned(),
+        title: "Frequency responses".to_owned(),
+        items: vec![
+            picture("bode", figures.bode().render(), "Gain and phase of the open loop up to the Nyquist frequency, with the margins where they are read off."),
+            picture("nyquist", figures.nyquist().render(), "The open loop near the critical point. A loop may not enter the disk of its own disk margin, and touches it."),
+            picture("nichols", figures.nichols().render(), "The open loop over phase, with contours of the closed loop's gain."),
+            picture("sensitivity", figures.sensitivity().render(), "Sensitivity and complementary sensitivity with their peaks."),
+        ],
+    })
+}
+
+fn poles(found: &AnalysedLoop) -> Result<Option<Chapter>, SimError> {
+    let Some(plant) = found.worst() else { return Ok(None) };
+    let locus = root_locus(&found.name, plant)?.render();
+    let map = pole_zero(&found.name, plant)?.render();
+    let id = format!("poles-{}", found.name);
+    Ok(Some(Chapter {
+        id: id.clone(),
+        title: format!("Poles of {}", found.name),
+        items: vec![
+            picture(&format!("{id}-locus"), locus, "Closed-loop poles while the gain of the loop is multiplied; the unit circle is the limit of stability."),
+            picture(&format!("{id}-map"), map, "Poles and zeros of the open loop, and poles of the closed loop."),
+        ],
+    }))
+}
+
+fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
+    let map = found.worst()?.map.as_ref()?;
+    let flown = crate::analysis::flown_inputs(study, &found.name);
+    let id = format!("frozen-{}", found.name);
+    let of = |quantity, what: &str| {
+        let caption = format!("The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move.");
+        let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
+        picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)
+    };
+    Some(Chapter {
+        id: id.clone(),
+        title: format!("Frozen gains of {}", found.name),
+        items: vec![of(MapQuantity::Gain, "gain margin"), of(MapQuantity::Phase, "phase margin")],
+    })
+}
