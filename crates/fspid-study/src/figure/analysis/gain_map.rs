@@ -24,7 +24,7 @@ pub struct GainMap {
     pub x_label: String,
     /// Name and unit along `ys`.
     pub y_label: String,
-    /// Name and unit of the margin, such as "gain margin [dB]".
+    /// Name and unit of the margin, such as "gain margin" in dB.
     pub quantity: String,
     /// Ascending abscissas.
     pub xs: Vec<f64>,
