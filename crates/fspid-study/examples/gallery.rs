@@ -9,6 +9,8 @@ use fspid_study::figure::{
 
 #[path = "gallery/analysis.rs"]
 mod analysis;
+#[path = "gallery/page.rs"]
+mod page;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("the folder to write to is missing")?);
@@ -26,7 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("pitch-loop", diagrams::pitch_loop()),
         ("self-tuning-pid", diagrams::self_tuning_pid()),
     ];
-    for (name, svg) in figures.into_iter().chain(analysis::figures()?) {
+    let loops = analysis::figures()?;
+    std::fs::write(folder.join("analysis.html"), page::page(&loops))?;
+    for (name, svg) in figures.into_iter().chain(loops) {
         std::fs::write(folder.join(format!("{name}.svg")), svg.as_str())?;
     }
     Ok(())

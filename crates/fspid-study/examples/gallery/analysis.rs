@@ -245,7 +245,7 @@ fn responses(curves: &[LoopCurve]) -> Vec<(&'static str, Svg)> {
         curves: curves.to_vec(),
         contours_db: CLOSED_LOOP_DB.to_vec(),
         exclusion: Some(Exclusion::boxed("6 dB and 45\u{b0} of MIL-F-9490D", 6.0, 45.0)),
-        width_px: 720.0,
+        width_px: 570.0,
     };
     let both = [Transfer::Sensitivity, Transfer::Complementary];
     let peaks = curves.iter().enumerate();

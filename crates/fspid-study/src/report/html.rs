@@ -32,6 +32,7 @@ macro_rules! templates {
 /// Every template by name.
 const TEMPLATES: &[(&str, &str)] = templates![
     "macros",
+    "analysis",
     "audit",
     "page",
     "paper",

@@ -5,6 +5,7 @@
 //!
 //! Not here: what is measured and judged (`metrics`, `reproduce`), and how a line is drawn (`figure`).
 
+pub mod analysis;
 mod audit;
 mod html;
 mod loops;

@@ -24,7 +24,7 @@ pub struct GainMap {
     pub x_label: String,
     /// Name and unit along `ys`.
     pub y_label: String,
-    /// Name and unit of the margin, such as "gain margin [dB]".
+    /// Name and unit of the margin, such as "gain margin" in dB.
     pub quantity: String,
     /// Ascending abscissas.
     pub xs: Vec<f64>,
@@ -93,7 +93,7 @@ impl GainMap {
         let y = Axis::linear(extent(edges(&map.ys)), 0.0, 10);
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
         let width = left + SIDE + RIGHT;
-        let notes = Notes::set(map.entries(), width - left - EDGE);
+        let notes = Notes::set(self.entries(), width - left - EDGE);
         let top = page::title_height(&self.title, width) + 4.0;
         let mut canvas = Canvas::new(width, top + SIDE + 54.0 + notes.height());
         page::title(&mut canvas, &self.title);
@@ -174,15 +174,18 @@ struct Drawing<'a> {
 impl Drawing<'_> {
     fn draw(&self, canvas: &mut Canvas) {
         canvas.begin_clip(self.area);
-        gaps::hatch_boldly(canvas, self.area);
+        // Tiles cover the hatching wherever the loop is not unstable.
+        if self.map.all().any(|cell| cell == MapCell::Unstable) {
+            gaps::hatch_boldly(canvas, self.area);
+        }
         let tiles = self.tiles();
         self.faces(canvas, &tiles);
         self.signs(canvas, &tiles);
         self.divide(canvas, &tiles);
         canvas.end();
         self.flown(canvas);
-        let room = tiles.iter().map(|tile| tile.0.width.min(tile.0.height)).fold(60.0, f64::min);
-        self.points(canvas, room);
+        let room = tiles.iter().map(|tile| tile.0.width.min(tile.0.height)).reduce(f64::min);
+        self.points(canvas, room.unwrap_or(0.0).min(60.0));
         map_axes(canvas, self.area, &self.axes[0], &self.axes[1]);
         self.labels(canvas);
         let a = self.area;

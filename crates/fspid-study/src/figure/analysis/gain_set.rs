@@ -145,13 +145,9 @@ impl GainSet {
         };
         let (proved, open, refuted) =
             (count(CellState::Proved), count(CellState::Open), count(CellState::Refuted));
-        add(proved > 0, format!("{proved} boxes proved"), Swatch::Area(SeriesStyle::Numbered(0)));
-        add(open > 0, format!("{open} boxes open"), Swatch::Band);
-        add(
-            refuted > 0,
-            format!("{refuted} boxes REFUTED"),
-            Swatch::Area(SeriesStyle::Numbered(1)),
-        );
+        add(proved > 0, boxes(proved, "proved"), Swatch::Area(SeriesStyle::Numbered(0)));
+        add(open > 0, boxes(open, "open"), Swatch::Band);
+        add(refuted > 0, boxes(refuted, "REFUTED"), Swatch::Area(SeriesStyle::Numbered(1)));
         add(self.hull.len() > 1, "hull of what the proof covers".to_owned(), Swatch::Outline);
         let flown = Swatch::Line { style: FLOWN, marked: false };
         add(self.flown.len() > 1, "gains of a flight".to_owned(), flown);
@@ -175,6 +171,10 @@ impl GainSet {
 
 const FLOWN: SeriesStyle = SeriesStyle::Numbered(2);
 const UNSTABLE: Role = Role::Series(1);
+
+fn boxes(count: usize, state: &str) -> String {
+    format!("{count} {} {state}", if count == 1 { "box" } else { "boxes" })
+}
 
 /// What boxes look like, the worst drawn last.
 fn looks() -> [(CellState, Paint); 3] {

@@ -14,7 +14,7 @@ use crate::figure::svg::{Canvas, Paint, Svg};
 pub struct RadiusFigure {
     /// Printed above the figure and read out by screen readers.
     pub title: String,
-    /// Name and unit of the abscissa, such as "time [s]".
+    /// Name and unit of the abscissa, such as "time" in s.
     pub x_label: String,
     /// One line a linearisation: gains frozen, gains with their derivatives.
     pub radii: Vec<Series>,

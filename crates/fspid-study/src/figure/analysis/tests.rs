@@ -432,6 +432,12 @@ fn a_map_counts_what_is_unstable_and_what_meets_the_requirement() {
     assert!(text.contains(">6 dB required: met at 60 of 81 nodes<"));
     assert!(text.contains(">UNSTABLE with the gains frozen there<"));
     assert!(text.contains(">\u{221e}<"));
+    // A map that is too fine to be drawn as it is counts all of its nodes nevertheless.
+    let dense = map(200);
+    let unstable = dense.all().filter(|cell| *cell == MapCell::Unstable).count();
+    let words = format!("unstable at {unstable} of 40000 nodes");
+    assert!(dense.render().as_str().contains(&words), "{words}");
+    assert!(dense.render().as_str().contains(" of 40000 nodes<"));
     let mut fine = map(9);
     fine.cells[8].truncate(6);
     fine.cells[7].truncate(8);
