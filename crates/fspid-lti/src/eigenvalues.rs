@@ -104,7 +104,7 @@ impl Reflector {
 }
 
 /// Similar matrix with zeros below the first subdiagonal, by Householder reflections.
-pub(crate) fn to_hessenberg(matrix: &mut Matrix) {
+fn to_hessenberg(matrix: &mut Matrix) {
     let size = matrix.rows();
     for column in 0..size.saturating_sub(2) {
         let below: Vec<f64> = (column + 1..size).map(|row| matrix.at(row, column)).collect();

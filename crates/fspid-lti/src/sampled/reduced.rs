@@ -1,8 +1,8 @@
 //! A sampled loop in the coordinates in which its response costs least and loses least.
 
+use super::quick::hessenberg;
 use crate::balance::balance;
 use crate::complex::Complex;
-use crate::eigenvalues::to_hessenberg;
 use crate::matrix::Matrix;
 
 /// Rows up to this length are kept without an allocation.
@@ -51,9 +51,7 @@ impl Reduced {
             }
         });
         balance(&mut system);
-        let mut flipped = flip(&system);
-        to_hessenberg(&mut flipped);
-        let system = flip(&flipped);
+        let system = flip(&hessenberg(&flip(&system)));
         Self {
             h: Matrix::from_function(order, order, |row, column| system.at(row, column)),
             b: (0..order).map(|row| system.at(row, order)).collect(),

@@ -20,10 +20,14 @@ type Outcome = Result<(), LtiError>;
 
 /// Loops of each kind.
 const LOOPS: usize = 400;
-/// A loop may be refused from a radius of 1 − 10⁻⁹ on; both radii are known to far less than the same again.
+/// A loop may be refused from a radius of 1 − 10⁻⁹ on; this near to the circle both radii are known to as much again.
 const SURELY_STABLE: f64 = 1.0 - 2e-9;
-/// Largest relative difference from the grid: rounding of the realisation, up to 10⁻⁹ beside narrow resonances.
-const ALLOWED: f64 = 1e-8;
+/// Largest relative difference from the values of the factored form: rounding of 10⁻¹² and less, with room.
+const ALLOWED: f64 = 1e-10;
+/// Of two peaks that differ by less than 10⁻⁹ either may be taken for the highest.
+const ALLOWED_PEAK: f64 = 2e-9;
+/// Two poles that meet are known to half of the digits.
+const ALLOWED_RADIUS: f64 = 1e-7;
 /// How far beside a limit the powers of the matrix are asked, and how near to it the next test goes.
 const BESIDE: f64 = 1e-5;
 
@@ -75,7 +79,6 @@ fn battery(kind: usize, seed: u64, [stable_least, unstable_least]: [usize; 2]) -
             }
         }
     }
-    println!("kind {kind}: {stable} stable, {unstable} not");
     assert!(stable >= stable_least && unstable >= unstable_least, "{stable} and {unstable}");
     Ok(())
 }
@@ -83,7 +86,7 @@ fn battery(kind: usize, seed: u64, [stable_least, unstable_least]: [usize; 2]) -
 /// The margins of a loop, if it is stable, after a check of that by powers of its matrix.
 fn verdict(open: &Factored) -> Result<Option<Box<SampledMargins>>, LtiError> {
     let radius = growth(&closed_matrix(open, 1.0));
-    let near = |found: f64| (found - radius).abs() < 1e-9 * radius;
+    let near = |found: f64| (found - radius).abs() < ALLOWED_RADIUS * radius;
     match open.realised().margins()? {
         Stability::Stable(found) => {
             assert!(radius < 1.0, "called stable with a radius of {radius}: {open:?}");
@@ -106,7 +109,7 @@ fn assert_peaks(index: usize, open: &Factored, dense: &Dense<'_>, found: &Sample
         let there = distance(open.at_angle(peak.omega_rad_s * open.dt_s), centre);
         assert!((there / peak.value - 1.0).abs() < ALLOWED, "{index}: {peak:?} is {there}");
         let lower = dense.peak(centre);
-        assert!(peak.value > lower * (1.0 - ALLOWED), "{index}: {peak:?} below {lower}");
+        assert!(peak.value > lower * (1.0 - ALLOWED_PEAK), "{index}: {peak:?} below {lower}");
     }
 }
 
@@ -146,7 +149,7 @@ fn assert_limits(index: usize, open: &Factored, dense: &Dense<'_>, found: &Sampl
     assert!(high <= up * (1.0 + ALLOWED), "{index}: {high} beyond {up}");
     assert!(low >= down * (1.0 - ALLOWED), "{index}: {low} beyond {down}");
     let [disk_low, disk_high] = found.disk.gain;
-    assert!(disk_low >= low * (1.0 - ALLOWED) && disk_high <= high * (1.0 + ALLOWED), "{index}");
+    assert!(disk_low >= low * (1.0 - 1e-7) && disk_high <= high * (1.0 + 1e-7), "{index}");
     for (limit, outward) in [(found.gain_low, -BESIDE), (found.gain_high, BESIDE)] {
         let Some(limit) = limit else { continue };
         let [before, after] = [-outward, outward]
