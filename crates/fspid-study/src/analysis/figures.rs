@@ -15,9 +15,11 @@ use crate::figure::{
 /// Points of a frequency response, over so many decades below the Nyquist frequency.
 const POINTS: usize = 600;
 const DECADES: f64 = 5.0;
-/// Factors on the gain of a root locus, over so many decades to both sides of 1.
-const FACTORS: usize = 241;
-const FACTOR_DECADES: f64 = 1.5;
+/// Factors on the gain of a root locus, over so many decades to both sides of 1, and so far beyond the
+/// limits of the gain.
+const FACTORS: usize = 301;
+const FACTOR_DECADES: f64 = 1.0;
+const BEYOND_LIMIT: f64 = 1.5;
 const WIDTH_PX: f64 = 720.0;
 
 /// A loop with the name that figures show.
@@ -154,9 +156,11 @@ fn pairs(values: &[Complex]) -> Vec<(f64, f64)> {
 /// Eigenvalues that are not found.
 pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, SimError> {
     let open = &plant.open;
+    let crossings = crossings(open, &plant.stability);
+    let [low, high] = decades(&crossings);
     let sample = |index: usize| {
-        let share = 2.0 * index as f64 / (FACTORS - 1) as f64 - 1.0;
-        let factor = libm::pow(10.0, FACTOR_DECADES * share);
+        let share = index as f64 / (FACTORS - 1) as f64;
+        let factor = libm::pow(10.0, low + share * (high - low));
         Ok::<_, SimError>(LocusSample { factor, poles: pairs(&open.closed_poles_at(factor)?) })
     };
     Ok(RootLocus {
@@ -166,7 +170,16 @@ pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, Sim
         poles_at_one: pairs(&plant.closed_poles),
         open_poles: pairs(&open.open_poles()?),
         open_zeros: pairs(&open.zeros()?),
-        crossings: crossings(open, &plant.stability),
+        crossings,
+    })
+}
+
+/// Decades of the factors that are shown.
+fn decades(crossings: &[Crossing]) -> [f64; 2] {
+    let beyond = libm::log10(BEYOND_LIMIT);
+    crossings.iter().fold([-FACTOR_DECADES, FACTOR_DECADES], |[low, high], crossing| {
+        let decade = libm::log10(crossing.factor);
+        [low.min(decade - beyond), high.max(decade + beyond)]
     })
 }
 

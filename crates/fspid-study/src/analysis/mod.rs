@@ -16,6 +16,7 @@ mod frozen;
 mod json;
 mod loops;
 mod nonlinear_parts;
+mod step;
 mod text;
 
 use fspid_sim::{Scenario, SimError};
@@ -24,12 +25,13 @@ use crate::file::Study;
 
 pub use answer::{Margins, decibels};
 pub use equilibrium::{Equilibrium, equilibrium};
+pub(crate) use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
-pub(crate) use flown::flown_inputs;
 pub(crate) use loops::lasting_plants;
 pub use loops::{AnalysedLoop, PlantLoop};
 pub use nonlinear_parts::not_in_the_linear_loop;
+pub(crate) use step::step_responses;
 
 /// What to analyse.
 #[derive(Clone, Copy, Debug, PartialEq)]

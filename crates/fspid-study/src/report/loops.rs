@@ -8,8 +8,11 @@ use super::analysis::{
 use super::number::{fixed, significant};
 use crate::analysis::figures::{LoopFigures, MapQuantity, gain_map, pole_zero, root_locus};
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
+use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::file::Study;
-use crate::figure::Svg;
+
+/// Beyond this a step response has run away.
+const RUN_AWAY: f64 = 10.0;
 
 /// The page.
 ///
@@ -19,6 +22,7 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
     let point = analysis.question.point.name();
     let mut chapters = vec![margins(analysis)];
     chapters.extend(responses(analysis));
+    chapters.push(step(study)?);
     for found in &analysis.loops {
         chapters.extend(poles(found)?);
         chapters.extend(frozen(study, found));
@@ -93,7 +97,9 @@ fn margins(analysis: &Analysis) -> Chapter {
         "gain crossover [rad/s]",
     ];
     let mut table = DataTable {
-        caption: "Margins of each controller with each plant that lasts; of a self-tuning one at rest.".to_owned(),
+        caption:
+            "Margins of each controller with each plant that lasts; of a self-tuning one at rest."
+                .to_owned(),
         head: head.map(str::to_owned).to_vec(),
         rows: Vec::new(),
         cards: true,
@@ -169,6 +175,30 @@ fn responses(analysis: &Analysis) -> Option<Chapter> {
     })
 }
 
+fn step(study: &Study) -> Result<Chapter, SimError> {
+    let responses = crate::analysis::step_responses(&study.scenario)?;
+    let series = responses.into_iter().enumerate().map(|(number, (name, x, y))| Series {
+        name,
+        style: SeriesStyle::Numbered(number),
+        // Of a loop that runs away only the beginning can be shown.
+        y: y.into_iter().map(|value| value.clamp(-RUN_AWAY, RUN_AWAY)).collect(),
+        x,
+        stairs: false,
+    });
+    let panel = LinePanel {
+        y_label: "pitch per command [deg/deg]".to_owned(),
+        x_label: "time [s]".to_owned(),
+        series: series.collect(),
+        ..LinePanel::default()
+    };
+    let title = "Step response of the linear loop".to_owned();
+    let figure = LineFigure { title, panels: vec![panel], width_px: 720.0 };
+    let caption =
+        "Pitch after a step of the command, with the gains at rest, without limits and noise.";
+    let items = vec![picture("step-figure", figure.render(), caption)];
+    Ok(Chapter { id: "step".to_owned(), title: "Step response".to_owned(), items })
+}
+
 fn poles(found: &AnalysedLoop) -> Result<Option<Chapter>, SimError> {
     let Some(plant) = found.worst() else { return Ok(None) };
     let locus = root_locus(&found.name, plant)?.render();
@@ -178,8 +208,16 @@ fn poles(found: &AnalysedLoop) -> Result<Option<Chapter>, SimError> {
         id: id.clone(),
         title: format!("Poles of {}", found.name),
         items: vec![
-            picture(&format!("{id}-locus"), locus, "Closed-loop poles while the gain of the loop is multiplied; the unit circle is the limit of stability."),
-            picture(&format!("{id}-map"), map, "Poles and zeros of the open loop, and poles of the closed loop."),
+            picture(
+                &format!("{id}-locus"),
+                locus,
+                "Closed-loop poles while the gain of the loop is multiplied; the unit circle is the limit of stability.",
+            ),
+            picture(
+                &format!("{id}-map"),
+                map,
+                "Poles and zeros of the open loop, and poles of the closed loop.",
+            ),
         ],
     }))
 }
@@ -189,7 +227,9 @@ fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
     let flown = crate::analysis::flown_inputs(study, &found.name);
     let id = format!("frozen-{}", found.name);
     let of = |quantity, what: &str| {
-        let caption = format!("The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move.");
+        let caption = format!(
+            "The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move."
+        );
         let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
         picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)
     };

@@ -1,0 +1,80 @@
+//! The answer of the linear loop to a step of the command: no limit, no noise, gains at rest.
+
+use fspid_core::{AntiWindup, Pid, Shell};
+use fspid_sim::actuator::Actuator;
+use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel};
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{
+    Controller, NamedController, Plant, Scenario, SimError, Surroundings, Trace, simulate,
+};
+
+use super::equilibrium::equilibrium;
+use super::loops::lasting_plants;
+
+/// Height of the step, rad: the loop is linear, so that any will do.
+const STEP_RAD: f64 = 1.0;
+
+/// The answer of every controller that has gains at rest, with the first plant: name, time in s, pitch
+/// per command.
+///
+/// # Errors
+/// A plant that cannot be sampled.
+pub(crate) fn step_responses(
+    scenario: &Scenario,
+) -> Result<Vec<(String, Vec<f64>, Vec<f64>)>, SimError> {
+    let plants = lasting_plants(scenario)?;
+    let Some((_, plant)) = plants.into_iter().next() else { return Ok(Vec::new()) };
+    let mut linear = Scenario {
+        plant: Plant::from(plant),
+        plant_changes: Vec::new(),
+        setpoint: Profile::new(STEP_RAD, Shape::Step { at_s: 0.0 })?,
+        disturbances: Vec::new(),
+        controllers: Vec::new(),
+        surroundings: surroundings(scenario)?,
+        ..scenario.clone()
+    };
+    for named in &scenario.controllers {
+        linear.controllers.extend(at_rest(named));
+    }
+    let flight = simulate(&linear)?;
+    let answer = |(named, trace): (&NamedController, Trace)| {
+        let pitch = trace.theta_rad.iter().map(|theta| theta / STEP_RAD).collect();
+        (named.name.clone(), trace.time_s, pitch)
+    };
+    Ok(linear.controllers.iter().zip(flight.traces).map(answer).collect())
+}
+
+/// The controller with the gains that it has at rest, without limits.
+fn at_rest(named: &NamedController) -> Option<NamedController> {
+    let gains = equilibrium(&named.controller).gains()?;
+    let shell = Shell {
+        limits: None,
+        slew_rad_s: None,
+        anti_windup: AntiWindup::None,
+        ..*named.controller.shell()
+    };
+    let controller = Controller::Fixed(Pid::new(gains, shell).ok()?);
+    Some(NamedController { name: named.name.clone(), controller })
+}
+
+/// The actuator's lag and delay, and what sensors do to a measurement but for noise.
+fn surroundings(scenario: &Scenario) -> Result<Surroundings, SimError> {
+    let actuator = scenario.actuator()?;
+    let actuator = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples())?;
+    let quiet = |sensor: Option<Sensor>, channel| {
+        let model = sensor.as_ref().map(|sensor| *sensor.model());
+        let model = model.map(|model| SensorModel {
+            delay_s: model.delay_s,
+            period_s: model.period_s,
+            scale_error: model.scale_error,
+            ..SensorModel::default()
+        });
+        model.map(|model| Sensor::new(model, 0, channel)).transpose()
+    };
+    Ok(Surroundings {
+        weather: None,
+        actuator: Some(actuator),
+        pitch_sensor: quiet(scenario.surroundings.pitch_sensor, PITCH)?,
+        rate_sensor: quiet(scenario.surroundings.rate_sensor, RATE)?,
+    })
+}
