@@ -41,19 +41,8 @@ pub enum Claim {
         /// τ of each cone, 0 or above.
         multipliers: Vec<f64>,
     },
-    /// For every gain in a box around all that the tuner can produce, as long as no gain moves by more
-    /// than a share of its half width in a sample: $V = z^T P(\kappa) z$ falls, with $P(\kappa)$ affine
-    /// in the gains κ counted in half widths of the box.
-    BoundedRate {
-        /// Lower and upper end of each gain.
-        ends: [[f64; 2]; 3],
-        /// Largest change of each gain in a sample, in half widths.
-        changes: [f64; 3],
-        /// $P_0$, and what each gain adds to it per half width.
-        forms: [Matrix; 4],
-        /// ρ, at most 1.
-        rate: f64,
-    },
+    /// For every gain that the tuner can produce, as long as none moves too fast.
+    BoundedRate(BoundedRate),
     /// Gains that the supervisor produces at an input, standing still, let the loop grow.
     FrozenGrowth {
         /// Error and change, supervisor units.
@@ -80,6 +69,26 @@ pub enum Claim {
     },
 }
 
+/// For every gain that the tuner can produce, as long as no gain moves by more than a share of the half
+/// width of its box in a sample, $V = z^T P(\kappa) z$ falls:
+///
+/// $$ M(\kappa)^T P(\kappa^+) M(\kappa) \prec \rho^2 P(\kappa), \quad
+/// P(\kappa) = P_0 + \sum_j \kappa_j P_j, \quad |\kappa_j^+ - \kappa_j| \le d_j $$
+///
+/// with gains κ counted in half widths of a box around them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundedRate {
+    /// Lower and upper end of each gain in the box.
+    pub ends: [[f64; 2]; 3],
+    /// Largest change d of each gain in a sample, in half widths of the box; 1 or more for a gain that
+    /// jumps. A gain that the form does not move with may move as it likes.
+    pub changes: [f64; 3],
+    /// $P_0$, and what each gain adds to it per half width.
+    pub forms: [Matrix; 4],
+    /// ρ, at most 1.
+    pub rate: f64,
+}
+
 impl Claim {
     /// Name in files.
     #[must_use]
@@ -87,7 +96,7 @@ impl Claim {
         match self {
             Self::AnySpeed { .. } => "stable-at-any-speed",
             Self::Tied { .. } => "stable-as-tied-to-the-error",
-            Self::BoundedRate { .. } => "stable-at-bounded-rate",
+            Self::BoundedRate(_) => "stable-at-bounded-rate",
             Self::FrozenGrowth { .. } => "unstable-with-frozen-gains",
             Self::SequenceGrowth { .. } => "unstable-with-a-sequence-of-gains",
         }
@@ -99,7 +108,7 @@ impl Claim {
         match self {
             Self::AnySpeed { rate, .. }
             | Self::Tied { rate, .. }
-            | Self::BoundedRate { rate, .. } => Some(*rate),
+            | Self::BoundedRate(BoundedRate { rate, .. }) => Some(*rate),
             Self::FrozenGrowth { .. } | Self::SequenceGrowth { .. } => None,
         }
     }
@@ -107,6 +116,6 @@ impl Claim {
     /// True for a claim of stability.
     #[must_use]
     pub const fn is_of_stability(&self) -> bool {
-        matches!(self, Self::AnySpeed { .. } | Self::Tied { .. } | Self::BoundedRate { .. })
+        matches!(self, Self::AnySpeed { .. } | Self::Tied { .. } | Self::BoundedRate(_))
     }
 }

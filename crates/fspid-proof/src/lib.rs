@@ -20,7 +20,7 @@ mod prove;
 mod recheck;
 pub mod solve;
 
-pub use certificate::{Certificate, Claim};
+pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};

@@ -1,7 +1,7 @@
 //! Certificates as files: JSON that is complete in itself, read back bit for bit.
 
 use fspid_lti::Matrix;
-use fspid_proof::{Certificate, Claim, LoopDescription};
+use fspid_proof::{BoundedRate, Certificate, Claim, LoopDescription};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -143,7 +143,7 @@ fn claim_file(claim: &Claim) -> ClaimFile {
             form: rows(form),
             multipliers: multipliers.clone(),
         },
-        Claim::BoundedRate { ends, changes, forms, rate } => ClaimFile::StableAtBoundedRate {
+        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate }) => ClaimFile::StableAtBoundedRate {
             rate: *rate,
             ends: *ends,
             changes: *changes,
@@ -178,7 +178,7 @@ impl ClaimFile {
             Self::StableAtBoundedRate { rate, ends, changes, forms } => {
                 let [constant, kp, ki, kd] = &forms;
                 let forms = [matrix(constant)?, matrix(kp)?, matrix(ki)?, matrix(kd)?];
-                Claim::BoundedRate { ends, changes, forms, rate }
+                Claim::BoundedRate(BoundedRate { ends, changes, forms, rate })
             }
             Self::UnstableWithFrozenGains { input, factor, form, direction } => {
                 Claim::FrozenGrowth { input, factor, form: matrix(&form)?, direction }

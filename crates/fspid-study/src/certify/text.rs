@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{Certificate, Claim, Outcome, Rechecked, Verdict};
+use fspid_proof::{BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 
 use super::{Certification, Certified, CheckedFile};
 use crate::metrics::short;
@@ -59,7 +59,7 @@ fn sentence(claim: &Claim) -> String {
         Claim::Tied { .. } => {
             "stable with gains that the law ties to error and change, as it does in flight".to_owned()
         }
-        Claim::BoundedRate { .. } => {
+        Claim::BoundedRate(_) => {
             "stable for every gain that the controller can have, as long as gains move no faster than stated"
                 .to_owned()
         }
@@ -94,7 +94,7 @@ fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
     match &certificate.claim {
         Claim::AnySpeed { rate, .. }
         | Claim::Tied { rate, .. }
-        | Claim::BoundedRate { rate, .. } => push_rate(out, *rate, dt_s),
+        | Claim::BoundedRate(BoundedRate { rate, .. }) => push_rate(out, *rate, dt_s),
         Claim::FrozenGrowth { factor, .. } => {
             line(
                 out,

@@ -1,5 +1,7 @@
 //! The re-check of a whole certificate: what it says is believed because this function answers `Ok`.
 
+mod moving;
+
 use core::fmt;
 
 use fspid_core::{Change, Fspid, Gains, Law};
@@ -127,7 +129,7 @@ impl<'a> Recheck<'a> {
         let inequalities = match &self.certificate.claim {
             Claim::AnySpeed { form, rate } => self.any_speed(form, *rate)?,
             Claim::Tied { form, rate, multipliers } => self.tied(form, *rate, multipliers)?,
-            Claim::BoundedRate { .. } => todo!(),
+            Claim::BoundedRate(claim) => self.bounded_rate(claim)?,
             Claim::FrozenGrowth { input, factor, form, direction } => {
                 self.growth(&[*input], *factor, (form, direction))?
             }

@@ -1,0 +1,422 @@
+//! Lyapunov functions $V(z) = z^T P(\kappa) z$ that move with the gains of a loop.
+//!
+//! Gains are counted in half widths of a box, $\kappa_j \in [-1, 1]$; loop and form are affine in them,
+//! with $\kappa_0 = 1$:
+//!
+//! $$ M(\kappa) = \sum_a \kappa_a M_a, \quad P(\kappa) = \sum_a \kappa_a P_a $$
+//!
+//! In a cell of the box the fall is a polynomial of degree 3 in each gain, and so a mean, with weights
+//! that are not negative, of $4^g$ symmetric matrices, its Bernstein coefficients. A cell in which not
+//! all of them are positive definite is halved. That P is positive definite is proved at the corners of
+//! each cell; between them it is a mean.
+//!
+//! # Source
+//! J. Garloff, *The Bernstein algorithm*, Interval Computations 2 (1993) 154.
+
+use fspid_fuzzy::scalar::Interval;
+use fspid_lti::{LtiError, Matrix};
+
+use super::definite::{basis, form, symmetric};
+use super::error::NotProved;
+use super::exponential::require_bounded;
+use super::matrix::IntervalMatrix;
+use super::packed::Packed;
+
+/// Most gains that may move.
+const GAINS: usize = 3;
+/// Halvings of each gain before a cell counts as one where the form does not fall. Ends of cells are then
+/// multiples of $2^{-5}$, so that what [`weights`] computes of them is exact but for its last product.
+const HALVINGS: usize = 6;
+/// Cells looked at before giving up.
+const MOST_CELLS: usize = 20_000;
+/// Coefficients along each gain.
+const ALONG: usize = 4;
+const WHAT: &str = "fall of the moving form";
+
+/// A loop and a form that are affine in gains, and how the gains move.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<'a> {
+    /// $M_0$, then $M_j$ for each gain: the loop at the centre of the box, and what each half width adds.
+    pub loops: &'a [IntervalMatrix],
+    /// $P_0$, then $P_j$ for each gain.
+    pub forms: &'a [Matrix],
+    /// Largest change $d_j$ of each gain in a sample, in half widths; 1 or more for a gain that jumps.
+    pub changes: &'a [f64],
+    /// ρ, from 0 to 1.
+    pub rate: f64,
+}
+
+/// Ends of each gain of a cell, in half widths of the box.
+pub type Ends = [[f64; 2]];
+
+/// What a proof took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingProof {
+    /// Cells that together hold all gains that were asked for, with what they are in half widths.
+    pub cells: Vec<Vec<[f64; 2]>>,
+    /// Matrices that were proved to be positive definite.
+    pub inequalities: usize,
+}
+
+/// Gains at which a moving form was not proved to fall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotProvedAt {
+    /// The middle of the cell in question, in half widths; empty where it is not about gains.
+    pub gains: Vec<f64>,
+    /// What was found.
+    pub reason: NotProved,
+}
+
+impl From<NotProved> for NotProvedAt {
+    fn from(reason: NotProved) -> Self {
+        Self { gains: Vec::new(), reason }
+    }
+}
+
+impl From<LtiError> for NotProvedAt {
+    fn from(reason: LtiError) -> Self {
+        NotProved::from(reason).into()
+    }
+}
+
+/// Proves that V falls by the factor `rate`² at least with every sample, for all gains of a set and
+/// every motion within it in which no gain changes by more than is allowed:
+///
+/// $$ \rho^2 P(\kappa) - M(\kappa)^T P(\kappa^+) M(\kappa) \succ 0, \quad P(\kappa) \succ 0, \quad
+/// |\kappa_j^+ - \kappa_j| \le d_j $$
+///
+/// for all matrices inside `loops`. The set is told by `meets`, which answers whether a cell has a point
+/// in common with it: cells of the box without one are left out. Asked is a little more than needed, that
+/// the form falls for $\kappa^+$ up to $d_j$ outside of the set.
+///
+/// # Errors
+/// [`NotProvedAt`] where shapes do not fit, an entry is not finite, a number is not allowed, or the fall
+/// could not be shown.
+pub fn falls_while_moving(
+    moving: &Moving<'_>,
+    meets: impl Fn(&Ends) -> bool,
+) -> Result<MovingProof, NotProvedAt> {
+    let parts = Parts::of(moving)?;
+    let gains = moving.changes.len();
+    let mut open = vec![Cell { ends: vec![[-1.0, 1.0]; gains], halvings: 0 }];
+    let mut proof = MovingProof { cells: Vec::new(), inequalities: 0 };
+    let mut looked = 0;
+    while let Some(cell) = open.pop() {
+        if !meets(&cell.ends) {
+            continue;
+        }
+        looked += 1;
+        match parts.proved_in(&cell) {
+            Ok(inequalities) => {
+                proof.inequalities += inequalities;
+                proof.cells.push(cell.ends);
+            }
+            Err(reason) => {
+                let last = cell.halvings >= HALVINGS * gains || looked >= MOST_CELLS;
+                if last || !parts.may_fall_at(&cell.middle()) {
+                    return Err(NotProvedAt { gains: cell.middle(), reason });
+                }
+                open.extend(cell.halves());
+            }
+        }
+    }
+    Ok(proof)
+}
+
+struct Cell {
+    ends: Vec<[f64; 2]>,
+    halvings: usize,
+}
+
+impl Cell {
+    fn middle(&self) -> Vec<f64> {
+        self.ends.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect()
+    }
+
+    /// Two halves, across the gain whose turn it is.
+    fn halves(&self) -> [Self; 2] {
+        let gain = self.halvings % self.ends.len().max(1);
+        let [lower, upper] = self.ends[gain];
+        let middle = 0.5 * (lower + upper);
+        [[lower, middle], [middle, upper]].map(|side| {
+            let mut half = Self { ends: self.ends.clone(), halvings: self.halvings + 1 };
+            half.ends[gain] = side;
+            half
+        })
+    }
+}
+
+/// A polynomial's coefficient matrix with the power of each gain.
+struct Term {
+    powers: [usize; GAINS],
+    matrix: Packed,
+}
+
+/// The fall in the basis in which the form at the centre is about the identity.
+///
+/// $$ F = \sum_t \kappa^{p_t} C_t - \sum_j o_j \sum_t \kappa^{q_{jt}} D_{jt}, \quad
+/// \kappa_j^+ = f_j \kappa_j + o_j $$
+///
+/// with $f_j = 1$, $o_j = \pm d_j$ for a gain that moves and $f_j = 0$, $o_j = \pm 1$ for one that jumps.
+struct Parts {
+    gains: usize,
+    /// $X^T P_a X$.
+    forms: Vec<Packed>,
+    resting: Vec<Term>,
+    /// Of each gain: $|o_j|$, and the terms of $D_j$.
+    moved: Vec<(f64, Vec<Term>)>,
+}
+
+impl Parts {
+    fn of(moving: &Moving<'_>) -> Result<Self, NotProvedAt> {
+        let gains = moving.changes.len();
+        let forms = symmetric_forms(moving)?;
+        let size = forms[0].rows();
+        let x = basis("form at the centre", &forms[0].middle, size)?;
+        let turned: Vec<IntervalMatrix> = moving
+            .loops
+            .iter()
+            .map(|part| part.product(&x))
+            .collect::<Result<_, _>>()
+            .map_err(NotProved::from)?;
+        let rate = Interval::point(moving.rate);
+        let own: Vec<IntervalMatrix> =
+            forms.iter().map(|own| form(own, &x)).collect::<Result<_, _>>()?;
+        let mut resting = Vec::new();
+        for (part, own) in own.iter().enumerate() {
+            add(&mut resting, &[part], &Packed::of(&own.scaled(rate * rate)));
+        }
+        let mut moved: Vec<(f64, Vec<Term>)> = moving
+            .changes
+            .iter()
+            .map(|&change| (if change < 1.0 { change } else { 1.0 }, Vec::new()))
+            .collect();
+        for (part, next) in forms.iter().enumerate() {
+            for (left, right, triple) in triples(&turned, next)? {
+                let follows = part.checked_sub(1).is_none_or(|gain| moving.changes[gain] < 1.0);
+                if follows {
+                    add(&mut resting, &[left, right, part], &triple.negated());
+                }
+                if let Some(gain) = part.checked_sub(1) {
+                    add(&mut moved[gain].1, &[left, right], &triple);
+                }
+            }
+        }
+        Ok(Self { gains, forms: own.iter().map(Packed::of).collect(), resting, moved })
+    }
+
+    /// Proves a cell; answers how many matrices that took.
+    fn proved_in(&self, cell: &Cell) -> Result<usize, NotProved> {
+        let corners = 1_usize << self.gains;
+        for corner in 0..corners {
+            let at = |gain: usize| cell.ends[gain][corner >> gain & 1];
+            self.form_at(&at).prove_definite("moving form")?;
+        }
+        let weights: Vec<[[f64; ALONG]; ALONG]> = cell.ends.iter().copied().map(weights).collect();
+        let coefficients = ALONG.pow(self.gains as u32);
+        for coefficient in 0..coefficients {
+            let weight = |powers: &[usize; GAINS]| -> f64 {
+                let along = weights.iter().zip(powers).enumerate();
+                along.fold(1.0, |product, (gain, (table, &power))| {
+                    product * table[power][coefficient / ALONG.pow(gain as u32) % ALONG]
+                })
+            };
+            self.definite(&weight)?;
+        }
+        Ok(corners + coefficients * corners)
+    }
+
+    /// Proves that a sum of the terms with these weights is positive definite, for all extreme motions.
+    fn definite(&self, weight: &dyn Fn(&[usize; GAINS]) -> f64) -> Result<(), NotProved> {
+        let sum = |terms: &[Term]| {
+            let weighted = terms.iter().map(|term| (weight(&term.powers), &term.matrix));
+            Packed::sum(weighted)
+        };
+        let resting = sum(&self.resting);
+        let moved: Vec<Packed> = self.moved.iter().map(|(_, terms)| sum(terms)).collect();
+        for corner in 0..1_usize << self.gains {
+            let motions = self.moved.iter().zip(&moved).enumerate();
+            let motions = motions.map(|(gain, ((offset, _), matrix))| {
+                (if corner >> gain & 1 == 1 { -offset } else { *offset }, matrix)
+            });
+            let whole = Packed::sum([(1.0, &resting)].into_iter().chain(motions));
+            whole.prove_definite(WHAT)?;
+        }
+        Ok(())
+    }
+
+    fn form_at(&self, gain: &dyn Fn(usize) -> f64) -> Packed {
+        let factor = |part: usize| part.checked_sub(1).map_or(1.0, gain);
+        let parts = self.forms.iter().enumerate();
+        Packed::sum(parts.map(|(part, form)| (factor(part), form)))
+    }
+
+    /// Whether the fall can be proved at a point, so that it is worth to halve the cell around.
+    fn may_fall_at(&self, at: &[f64]) -> bool {
+        let power = |powers: &[usize; GAINS]| {
+            let along = at.iter().zip(powers);
+            along.fold(1.0, |product, (gain, &power)| (0..power).fold(product, |p, _| p * gain))
+        };
+        self.definite(&power).is_ok()
+    }
+}
+
+/// The forms, if everything is of one shape and all numbers are allowed.
+fn symmetric_forms(moving: &Moving<'_>) -> Result<Vec<IntervalMatrix>, NotProved> {
+    let Moving { loops, forms, changes, rate } = *moving;
+    let gains = changes.len();
+    if gains > GAINS || loops.len() != gains + 1 || forms.len() != gains + 1 {
+        let (found, allowed) = ((loops.len(), forms.len()), (gains + 1, gains + 1));
+        return Err(LtiError::Shape { what: "loops and forms", found, allowed }.into());
+    }
+    if !(0.0..=1.0).contains(&rate) {
+        return Err(NotProved::Number { what: "rate", found: rate, allowed: "0 to 1" });
+    }
+    if let Some(&found) = changes.iter().find(|change| !(**change >= 0.0)) {
+        return Err(NotProved::Number { what: "change in a sample", found, allowed: "0 or above" });
+    }
+    let size = forms[0].rows();
+    for part in loops {
+        part.require_shape("matrix of the loop", size, size)?;
+        require_bounded("matrix of the loop", part)?;
+    }
+    let own = |matrix: &Matrix| {
+        let own = symmetric("moving form", matrix)?;
+        own.require_shape("moving form", size, size)?;
+        Ok(own)
+    };
+    forms.iter().map(own).collect()
+}
+
+/// $B_a^T P B_c$ for all pairs, that of a pair of two parts with its transpose added.
+fn triples(
+    loops: &[IntervalMatrix],
+    next: &IntervalMatrix,
+) -> Result<Vec<(usize, usize, Packed)>, NotProved> {
+    let mut triples = Vec::new();
+    for (right, by) in loops.iter().enumerate() {
+        let after = next.product(by)?;
+        for (left, part) in loops.iter().enumerate().take(right + 1) {
+            let triple = part.transpose().product(&after)?;
+            let whole = if left == right { triple } else { triple.plus(&triple.transpose()) };
+            triples.push((left, right, Packed::of(&whole)));
+        }
+    }
+    Ok(triples)
+}
+
+/// Adds a matrix to the term whose powers are those of a product of parts; part 0 is the constant.
+fn add(terms: &mut Vec<Term>, parts: &[usize], matrix: &Packed) {
+    let mut powers = [0; GAINS];
+    for gain in parts.iter().filter_map(|part| part.checked_sub(1)) {
+        powers[gain] += 1;
+    }
+    match terms.iter_mut().find(|term| term.powers == powers) {
+        Some(term) => term.matrix = Packed::sum([(1.0, &term.matrix), (1.0, matrix)].into_iter()),
+        None => terms.push(Term { powers, matrix: matrix.clone() }),
+    }
+}
+
+/// What each power of a gain contributes to three times each Bernstein coefficient of degree 3 between two
+/// ends: the polar forms of $1, x, x^2, x^3$ at $3 - b$ times the lower end and b times the upper.
+///
+/// That all coefficients are three times too large for each gain does not change whether they are
+/// positive definite. With ends that are multiples of $2^{-5}$ up to 1 all of this is exact.
+///
+/// # Source
+/// L. Ramshaw, *Blossoms are polar forms*, Computer Aided Geometric Design 6 (1989) 323.
+fn weights([lower, upper]: [f64; 2]) -> [[f64; ALONG]; ALONG] {
+    let squares = [lower * lower, lower * upper, upper * upper];
+    [
+        [3.0; ALONG],
+        [3.0 * lower, 2.0 * lower + upper, lower + 2.0 * upper, 3.0 * upper],
+        [
+            3.0 * squares[0],
+            squares[0] + 2.0 * squares[1],
+            2.0 * squares[1] + squares[2],
+            3.0 * squares[2],
+        ],
+        [
+            3.0 * squares[0] * lower,
+            3.0 * squares[0] * upper,
+            3.0 * lower * squares[2],
+            3.0 * upper * squares[2],
+        ],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scalars(values: &[f64]) -> Vec<Matrix> {
+        values.iter().map(|&value| Matrix::identity(1).scaled(value)).collect()
+    }
+
+    /// Cells and matrices of a scalar loop $m_0 + \sum m_j \kappa_j$ with a form of the same shape.
+    fn prove(loops: &[f64], forms: &[f64], changes: &[f64]) -> Result<MovingProof, NotProvedAt> {
+        let loops: Vec<IntervalMatrix> =
+            scalars(loops).iter().map(IntervalMatrix::from).collect();
+        let forms = scalars(forms);
+        let moving = Moving { loops: &loops, forms: &forms, changes, rate: 1.0 };
+        falls_while_moving(&moving, |_| true)
+    }
+
+    #[test]
+    fn weights_are_those_of_the_powers_between_the_ends() {
+        // (x + 2)³ between -0.5 and 0.25: the polar form is the product of (x_i + 2).
+        let table = weights([-0.5, 0.25]);
+        for (b, product) in [1.5 * 1.5 * 1.5, 1.5 * 1.5 * 2.25, 1.5 * 2.25 * 2.25, 2.25_f64.powi(3)]
+            .into_iter()
+            .enumerate()
+        {
+            let found = 8.0 * table[0][b] + 12.0 * table[1][b] + 6.0 * table[2][b] + table[3][b];
+            assert!((found - 3.0 * product).abs() < 1e-14, "{found} {product}");
+        }
+    }
+
+    #[test]
+    fn a_scalar_loop_falls_where_its_modulus_is_below_one() {
+        assert!(prove(&[0.0, 0.999], &[1.0, 0.0], &[1.0]).is_ok());
+        let failed = prove(&[0.0, 1.001], &[1.0, 0.0], &[1.0]).expect_err("grows at the ends");
+        assert!(failed.gains[0].abs() > 0.9, "{failed:?}");
+        assert!(prove(&[0.0, 0.4, 0.3, -0.2], &[1.0; 1], &[0.1]).is_err());
+        assert!(prove(&[0.0, 0.4, 0.3, -0.2], &[1.0, 0.0, 0.0, 0.0], &[0.1; 3]).is_ok());
+    }
+
+    #[test]
+    fn a_form_that_moves_too_much_for_the_motion_does_not_fall() {
+        // 1 + 0.9 κ rises from 0.1 to 0.37 as κ leaves -1 by 0.3, and the loop keeps 0.94 of it.
+        assert!(prove(&[0.97, 0.0], &[1.0, 0.9], &[0.0]).is_ok());
+        assert!(prove(&[0.97, 0.0], &[1.0, 0.9], &[0.003]).is_ok());
+        assert!(prove(&[0.97, 0.0], &[1.0, 0.9], &[0.3]).is_err());
+    }
+
+    #[test]
+    fn a_form_that_is_not_positive_somewhere_is_refused() {
+        assert!(prove(&[0.1, 0.0], &[1.0, 1.01], &[0.0]).is_err());
+        assert!(prove(&[0.1, 0.0], &[1.0, 0.99], &[0.0]).is_ok());
+    }
+
+    #[test]
+    fn gains_outside_of_the_set_are_not_asked_for() {
+        let loops: Vec<IntervalMatrix> =
+            scalars(&[0.5, 0.6]).iter().map(IntervalMatrix::from).collect();
+        let forms = scalars(&[1.0, 0.0]);
+        let moving = Moving { loops: &loops, forms: &forms, changes: &[2.0], rate: 1.0 };
+        assert!(falls_while_moving(&moving, |_| true).is_err());
+        let proof = falls_while_moving(&moving, |ends| ends[0][0] <= 0.7).expect("below 0.92");
+        assert!(proof.cells.iter().all(|cell| cell[0][1] < 0.84), "{proof:?}");
+        assert!(falls_while_moving(&moving, |ends| ends[0][0] <= 0.9).is_err());
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        for changes in [vec![f64::NAN], vec![-0.1], vec![], vec![0.1, 0.1]] {
+            assert!(prove(&[0.5, 0.0], &[1.0, 0.0], &changes).is_err(), "{changes:?}");
+        }
+        assert!(prove(&[f64::NAN, 0.0], &[1.0, 0.0], &[0.1]).is_err());
+        assert!(prove(&[0.5, 0.0], &[1.0, f64::INFINITY], &[0.1]).is_err());
+        assert!(prove(&[0.5, 0.0], &[-1.0, 0.0], &[0.1]).is_err());
+    }
+}
