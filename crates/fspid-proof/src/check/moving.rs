@@ -355,8 +355,7 @@ mod tests {
 
     /// Cells and matrices of a scalar loop $m_0 + \sum m_j \kappa_j$ with a form of the same shape.
     fn prove(loops: &[f64], forms: &[f64], changes: &[f64]) -> Result<MovingProof, NotProvedAt> {
-        let loops: Vec<IntervalMatrix> =
-            scalars(loops).iter().map(IntervalMatrix::from).collect();
+        let loops: Vec<IntervalMatrix> = scalars(loops).iter().map(IntervalMatrix::from).collect();
         let forms = scalars(forms);
         let moving = Moving { loops: &loops, forms: &forms, changes, rate: 1.0 };
         falls_while_moving(&moving, |_| true)

@@ -20,7 +20,8 @@ pub(crate) struct GainBox {
 impl GainBox {
     /// The box of a claim if it holds every gain of a set.
     fn of(claim: &BoundedRate, set: &GainSet) -> Result<Self, Doubt> {
-        let side = |[lower, upper]: [f64; 2]| Interval::new(lower, upper).filter(|s| s.is_bounded());
+        let side =
+            |[lower, upper]: [f64; 2]| Interval::new(lower, upper).filter(|s| s.is_bounded());
         let [Some(kp), Some(ki), Some(kd)] = claim.ends.map(side) else {
             return Err(malformed("the ends of a gain are not two finite numbers in order"));
         };
@@ -54,7 +55,8 @@ impl GainBox {
     fn gains(&self, sides: &[[f64; 2]]) -> [Interval; 3] {
         let mut gains = self.ends;
         for (&gain, &[lower, upper]) in self.moving.iter().zip(sides) {
-            gains[gain] = self.centre(gain) + self.half_width(gain) * Interval::between(lower, upper);
+            gains[gain] =
+                self.centre(gain) + self.half_width(gain) * Interval::between(lower, upper);
         }
         gains
     }
@@ -99,8 +101,8 @@ impl Recheck<'_> {
         let changes: Vec<f64> = gain_box.moving.iter().map(|&gain| claim.changes[gain]).collect();
         let moving = Moving { loops: &loops, forms: &forms, changes: &changes, rate: claim.rate };
         let meets = |sides: &[[f64; 2]]| meets(&self.set, gain_box.gains(sides));
-        let proof = falls_while_moving(&moving, meets)
-            .map_err(|failed| doubt(&gain_box, failed))?;
+        let proof =
+            falls_while_moving(&moving, meets).map_err(|failed| doubt(&gain_box, failed))?;
         Ok(proof.inequalities)
     }
 }

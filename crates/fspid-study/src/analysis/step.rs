@@ -14,14 +14,21 @@ use super::loops::lasting_plants;
 /// Height of the step, rad: the loop is linear, so that any will do.
 const STEP_RAD: f64 = 1.0;
 
-/// The answer of every controller that has gains at rest, with the first plant: name, time in s, pitch
-/// per command.
+/// A controller's answer to a step.
+pub(crate) struct StepResponse {
+    /// Name of the controller.
+    pub(crate) name: String,
+    /// Times, s.
+    pub(crate) time_s: Vec<f64>,
+    /// Pitch per command.
+    pub(crate) pitch: Vec<f64>,
+}
+
+/// The answer of every controller that has gains at rest, with the first plant.
 ///
 /// # Errors
 /// A plant that cannot be sampled.
-pub(crate) fn step_responses(
-    scenario: &Scenario,
-) -> Result<Vec<(String, Vec<f64>, Vec<f64>)>, SimError> {
+pub(crate) fn step_responses(scenario: &Scenario) -> Result<Vec<StepResponse>, SimError> {
     let plants = lasting_plants(scenario)?;
     let Some((_, plant)) = plants.into_iter().next() else { return Ok(Vec::new()) };
     let mut linear = Scenario {
@@ -39,7 +46,7 @@ pub(crate) fn step_responses(
     let flight = simulate(&linear)?;
     let answer = |(named, trace): (&NamedController, Trace)| {
         let pitch = trace.theta_rad.iter().map(|theta| theta / STEP_RAD).collect();
-        (named.name.clone(), trace.time_s, pitch)
+        StepResponse { name: named.name.clone(), time_s: trace.time_s, pitch }
     };
     Ok(linear.controllers.iter().zip(flight.traces).map(answer).collect())
 }

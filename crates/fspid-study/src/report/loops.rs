@@ -177,12 +177,12 @@ fn responses(analysis: &Analysis) -> Option<Chapter> {
 
 fn step(study: &Study) -> Result<Chapter, SimError> {
     let responses = crate::analysis::step_responses(&study.scenario)?;
-    let series = responses.into_iter().enumerate().map(|(number, (name, x, y))| Series {
-        name,
+    let series = responses.into_iter().enumerate().map(|(number, answer)| Series {
+        name: answer.name,
         style: SeriesStyle::Numbered(number),
+        x: answer.time_s,
         // Of a loop that runs away only the beginning can be shown.
-        y: y.into_iter().map(|value| value.clamp(-RUN_AWAY, RUN_AWAY)).collect(),
-        x,
+        y: answer.pitch.into_iter().map(|value| value.clamp(-RUN_AWAY, RUN_AWAY)).collect(),
         stairs: false,
     });
     let panel = LinePanel {
