@@ -143,12 +143,14 @@ fn claim_file(claim: &Claim) -> ClaimFile {
             form: rows(form),
             multipliers: multipliers.clone(),
         },
-        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate }) => ClaimFile::StableAtBoundedRate {
-            rate: *rate,
-            ends: *ends,
-            changes: *changes,
-            forms: forms.each_ref().map(rows),
-        },
+        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate }) => {
+            ClaimFile::StableAtBoundedRate {
+                rate: *rate,
+                ends: *ends,
+                changes: *changes,
+                forms: forms.each_ref().map(rows),
+            }
+        }
         Claim::FrozenGrowth { input, factor, form, direction } => {
             ClaimFile::UnstableWithFrozenGains {
                 input: *input,
