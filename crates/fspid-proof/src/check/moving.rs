@@ -24,9 +24,11 @@ use super::packed::Packed;
 
 /// Most gains that may move.
 const GAINS: usize = 3;
-/// Halvings of each gain before a cell counts as one where the form does not fall. Ends of cells are then
-/// multiples of $2^{-5}$, so that what [`weights`] computes of them is exact but for its last product.
-const HALVINGS: usize = 6;
+/// Ends of cells are multiples of one over this, $2^{12}$, so that what [`weights`] computes of them is
+/// exact.
+const GRID: f64 = 4096.0;
+/// A cell that is no wider, in half widths of the box, is not halved any more: the form does not fall there.
+const NARROWEST: f64 = 1.0 / 64.0;
 /// Cells looked at before giving up.
 const MOST_CELLS: usize = 20_000;
 /// Coefficients along each gain.
@@ -46,14 +48,14 @@ pub struct Moving<'a> {
     pub rate: f64,
 }
 
-/// Ends of each gain of a cell, in half widths of the box.
-pub type Ends = [[f64; 2]];
+/// Lower and upper end of each gain of a cell, in half widths of the box.
+pub type Ends = Vec<[f64; 2]>;
 
 /// What a proof took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingProof {
     /// Cells that together hold all gains that were asked for, with what they are in half widths.
-    pub cells: Vec<Vec<[f64; 2]>>,
+    pub cells: Vec<Ends>,
     /// Matrices that were proved to be positive definite.
     pub inequalities: usize,
 }
@@ -85,65 +87,69 @@ impl From<LtiError> for NotProvedAt {
 /// $$ \rho^2 P(\kappa) - M(\kappa)^T P(\kappa^+) M(\kappa) \succ 0, \quad P(\kappa) \succ 0, \quad
 /// |\kappa_j^+ - \kappa_j| \le d_j $$
 ///
-/// for all matrices inside `loops`. The set is told by `meets`, which answers whether a cell has a point
-/// in common with it: cells of the box without one are left out. Asked is a little more than needed, that
-/// the form falls for $\kappa^+$ up to $d_j$ outside of the set.
+/// for all matrices inside `loops`. The set is told by `part`, which answers for a cell of the box a cell
+/// that holds all of the set that is in it, or nothing where there is none of it. Asked is a little more
+/// than needed, that the form falls for $\kappa^+$ up to $d_j$ outside of the set.
 ///
 /// # Errors
 /// [`NotProvedAt`] where shapes do not fit, an entry is not finite, a number is not allowed, or the fall
 /// could not be shown.
 pub fn falls_while_moving(
     moving: &Moving<'_>,
-    meets: impl Fn(&Ends) -> bool,
+    part: impl Fn(&Ends) -> Option<Ends>,
 ) -> Result<MovingProof, NotProvedAt> {
     let parts = Parts::of(moving)?;
     let gains = moving.changes.len();
-    let mut open = vec![Cell { ends: vec![[-1.0, 1.0]; gains], halvings: 0 }];
+    let mut open: Vec<Ends> = vec![vec![[-1.0, 1.0]; gains]];
     let mut proof = MovingProof { cells: Vec::new(), inequalities: 0 };
     let mut looked = 0;
-    while let Some(cell) = open.pop() {
-        if !meets(&cell.ends) {
-            continue;
-        }
+    while let Some(whole) = open.pop() {
+        let Some(needed) = part(&whole) else { continue };
+        let cell = on_grid(&whole, &needed);
         looked += 1;
         match parts.proved_in(&cell) {
             Ok(inequalities) => {
                 proof.inequalities += inequalities;
-                proof.cells.push(cell.ends);
+                proof.cells.push(cell);
             }
             Err(reason) => {
-                let last = cell.halvings >= HALVINGS * gains || looked >= MOST_CELLS;
-                if last || !parts.may_fall_at(&cell.middle()) {
-                    return Err(NotProvedAt { gains: cell.middle(), reason });
-                }
-                open.extend(cell.halves());
+                let gains = middle(&cell);
+                let asked = part(&gains.iter().map(|&gain| [gain, gain]).collect()).is_some();
+                let lost = asked && parts.prove_at(&gains).is_err();
+                let halves = halves(&cell).filter(|_| looked < MOST_CELLS && !lost);
+                open.extend(halves.ok_or(NotProvedAt { gains, reason })?);
             }
         }
     }
     Ok(proof)
 }
 
-struct Cell {
-    ends: Vec<[f64; 2]>,
-    halvings: usize,
+/// What is needed of a cell, with ends moved outward to the grid: all of the cell where that is not inside.
+fn on_grid(cell: &Ends, needed: &Ends) -> Ends {
+    let side = |(gain, &[lower, upper]): (usize, &[f64; 2])| match needed.get(gain) {
+        Some(&[from, to]) if from >= lower && to <= upper => {
+            [(from * GRID).floor() / GRID, (to * GRID).ceil() / GRID]
+        }
+        _ => [lower, upper],
+    };
+    cell.iter().enumerate().map(side).collect()
 }
 
-impl Cell {
-    fn middle(&self) -> Vec<f64> {
-        self.ends.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect()
-    }
+fn middle(cell: &Ends) -> Vec<f64> {
+    cell.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect()
+}
 
-    /// Two halves, across the gain whose turn it is.
-    fn halves(&self) -> [Self; 2] {
-        let gain = self.halvings % self.ends.len().max(1);
-        let [lower, upper] = self.ends[gain];
-        let middle = 0.5 * (lower + upper);
-        [[lower, middle], [middle, upper]].map(|side| {
-            let mut half = Self { ends: self.ends.clone(), halvings: self.halvings + 1 };
-            half.ends[gain] = side;
-            half
-        })
-    }
+/// Two halves, across the widest side; nothing for a cell that is narrow.
+fn halves(cell: &Ends) -> Option<[Ends; 2]> {
+    let widths = cell.iter().map(|[lower, upper]| upper - lower).enumerate();
+    let (gain, width) = widths.max_by(|one, other| one.1.total_cmp(&other.1))?;
+    let [lower, upper] = *cell.get(gain).filter(|_| width > NARROWEST)?;
+    let middle = (0.5 * (lower + upper) * GRID).floor() / GRID;
+    Some([[lower, middle], [middle, upper]].map(|side| {
+        let mut half = cell.clone();
+        half[gain] = side;
+        half
+    }))
 }
 
 /// A polynomial's coefficient matrix with the power of each gain.
@@ -206,13 +212,13 @@ impl Parts {
     }
 
     /// Proves a cell; answers how many matrices that took.
-    fn proved_in(&self, cell: &Cell) -> Result<usize, NotProved> {
+    fn proved_in(&self, cell: &Ends) -> Result<usize, NotProved> {
         let corners = 1_usize << self.gains;
         for corner in 0..corners {
-            let at = |gain: usize| cell.ends[gain][corner >> gain & 1];
+            let at = |gain: usize| cell[gain][corner >> gain & 1];
             self.form_at(&at).prove_definite("moving form")?;
         }
-        let weights: Vec<[[f64; ALONG]; ALONG]> = cell.ends.iter().copied().map(weights).collect();
+        let weights: Vec<[[f64; ALONG]; ALONG]> = cell.iter().copied().map(weights).collect();
         let coefficients = ALONG.pow(self.gains as u32);
         for coefficient in 0..coefficients {
             let weight = |powers: &[usize; GAINS]| -> f64 {
@@ -251,13 +257,12 @@ impl Parts {
         Packed::sum(parts.map(|(part, form)| (factor(part), form)))
     }
 
-    /// Whether the fall can be proved at a point, so that it is worth to halve the cell around.
-    fn may_fall_at(&self, at: &[f64]) -> bool {
-        let power = |powers: &[usize; GAINS]| {
+    /// Proves the fall at a point; where it does not fall there is no need to halve the cell around.
+    fn prove_at(&self, at: &[f64]) -> Result<(), NotProved> {
+        self.definite(&|powers: &[usize; GAINS]| {
             let along = at.iter().zip(powers);
             along.fold(1.0, |product, (gain, &power)| (0..power).fold(product, |p, _| p * gain))
-        };
-        self.definite(&power).is_ok()
+        })
     }
 }
 
@@ -321,7 +326,7 @@ fn add(terms: &mut Vec<Term>, parts: &[usize], matrix: &Packed) {
 /// ends: the polar forms of $1, x, x^2, x^3$ at $3 - b$ times the lower end and b times the upper.
 ///
 /// That all coefficients are three times too large for each gain does not change whether they are
-/// positive definite. With ends that are multiples of $2^{-5}$ up to 1 all of this is exact.
+/// positive definite. With ends that are multiples of $2^{-12}$ up to 1 all of this is exact.
 ///
 /// # Source
 /// L. Ramshaw, *Blossoms are polar forms*, Computer Aided Geometric Design 6 (1989) 323.
@@ -358,7 +363,7 @@ mod tests {
         let loops: Vec<IntervalMatrix> = scalars(loops).iter().map(IntervalMatrix::from).collect();
         let forms = scalars(forms);
         let moving = Moving { loops: &loops, forms: &forms, changes, rate: 1.0 };
-        falls_while_moving(&moving, |_| true)
+        falls_while_moving(&moving, |cell| Some(cell.clone()))
     }
 
     #[test]
@@ -403,10 +408,16 @@ mod tests {
             scalars(&[0.5, 0.6]).iter().map(IntervalMatrix::from).collect();
         let forms = scalars(&[1.0, 0.0]);
         let moving = Moving { loops: &loops, forms: &forms, changes: &[2.0], rate: 1.0 };
-        assert!(falls_while_moving(&moving, |_| true).is_err());
-        let proof = falls_while_moving(&moving, |ends| ends[0][0] <= 0.7).expect("below 0.92");
-        assert!(proof.cells.iter().all(|cell| cell[0][1] < 0.84), "{proof:?}");
-        assert!(falls_while_moving(&moving, |ends| ends[0][0] <= 0.9).is_err());
+        assert!(falls_while_moving(&moving, |cell| Some(cell.clone())).is_err());
+        let below = |most: f64| {
+            move |cell: &Ends| {
+                (cell[0][0] <= most).then(|| vec![[cell[0][0], cell[0][1].min(most)]])
+            }
+        };
+        let proof = falls_while_moving(&moving, below(0.83)).expect("0.5 + 0.6 * 0.83 = 0.998");
+        let most = proof.cells.iter().map(|cell| cell[0][1]).fold(-1.0, f64::max);
+        assert!((0.83..0.8303).contains(&most), "{most}");
+        assert!(falls_while_moving(&moving, below(0.834)).is_err(), "1.0004");
     }
 
     #[test]

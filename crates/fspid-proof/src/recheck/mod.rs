@@ -16,6 +16,8 @@ use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, IncrementMap, producible};
 use crate::limits;
 
+pub(crate) use moving::part_in;
+
 /// Longest sequence of gains that is multiplied out.
 const MOST_SAMPLES: usize = 20_000;
 

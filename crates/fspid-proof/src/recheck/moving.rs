@@ -6,7 +6,7 @@ use fspid_lti::Matrix;
 
 use super::{Doubt, Recheck, allowed_rate, malformed};
 use crate::certificate::BoundedRate;
-use crate::check::{IntervalMatrix, Moving, NotProved, NotProvedAt, falls_while_moving};
+use crate::check::{Ends, IntervalMatrix, Moving, NotProved, NotProvedAt, falls_while_moving};
 use crate::gain_set::GainSet;
 
 /// The box of gains of a claim, in half widths of which gains are counted there.
@@ -49,6 +49,18 @@ impl GainBox {
     fn centre(&self, gain: usize) -> Interval {
         let [lower, upper] = [self.ends[gain].lower(), self.ends[gain].upper()];
         Interval::point(0.5) * (Interval::point(upper) + Interval::point(lower))
+    }
+
+    /// The cells of a set, in half widths and rounded outward.
+    fn counted(&self, set: &GainSet) -> Vec<Ends> {
+        let side = |gains: &[Interval; 3], gain: usize| {
+            let counted = (gains[gain] - self.centre(gain)) / self.half_width(gain);
+            // All of the set lies in the box, so that beyond it is nothing but rounding.
+            [counted.lower().clamp(-1.0, 1.0), counted.upper().clamp(-1.0, 1.0)]
+        };
+        let cell =
+            |gains: &[Interval; 3]| self.moving.iter().map(|&gain| side(gains, gain)).collect();
+        set.cells.iter().map(|found| cell(&found.gains)).collect()
     }
 
     /// The gains of a cell whose sides are in half widths.
@@ -100,17 +112,29 @@ impl Recheck<'_> {
             .collect();
         let changes: Vec<f64> = gain_box.moving.iter().map(|&gain| claim.changes[gain]).collect();
         let moving = Moving { loops: &loops, forms: &forms, changes: &changes, rate: claim.rate };
-        let meets = |sides: &[[f64; 2]]| meets(&self.set, gain_box.gains(sides));
-        let proof =
-            falls_while_moving(&moving, meets).map_err(|failed| doubt(&gain_box, failed))?;
+        let cells = gain_box.counted(&self.set);
+        let proof = falls_while_moving(&moving, |cell| part_in(&cells, cell))
+            .map_err(|failed| doubt(&gain_box, failed))?;
         Ok(proof.inequalities)
     }
 }
 
-/// Whether a box of gains has a point in common with a set.
-fn meets(set: &GainSet, gains: [Interval; 3]) -> bool {
-    let overlap = |(one, other): (&Interval, &Interval)| one.intersection(*other).is_some();
-    set.cells.iter().any(|cell| cell.gains.iter().zip(&gains).all(overlap))
+/// The smallest cell that holds all that some cells have in common with one.
+pub(crate) fn part_in(cells: &[Ends], cell: &Ends) -> Option<Ends> {
+    let common = |other: &Ends| -> Option<Ends> {
+        let sides = cell.iter().zip(other);
+        sides
+            .map(|(one, other)| {
+                let [lower, upper] = [one[0].max(other[0]), one[1].min(other[1])];
+                (lower <= upper).then_some([lower, upper])
+            })
+            .collect()
+    };
+    let hull = |one: Ends, other: Ends| -> Ends {
+        let sides = one.into_iter().zip(other);
+        sides.map(|(one, other)| [one[0].min(other[0]), one[1].max(other[1])]).collect()
+    };
+    cells.iter().filter_map(common).reduce(hull)
 }
 
 fn doubt(gain_box: &GainBox, failed: NotProvedAt) -> Doubt {

@@ -23,8 +23,8 @@ const FROM_POWERS: [[f64; POWERS]; POWERS] = [
     [1.0, 1.0 / 3.0, -1.0 / 3.0, -1.0],
     [1.0, 1.0, 1.0, 1.0],
 ];
-/// Halvings of each gain before a cell counts as one where the form does not fall.
-const HALVINGS_MAX: usize = 4;
+/// A cell that is no wider, in half widths of the box, counts as one where the form does not fall.
+const NARROWEST: f64 = 1.0 / 16.0;
 /// Cells looked at before giving up.
 const CELLS_MAX: usize = 3000;
 /// Places reported where the form does not fall.
@@ -78,27 +78,33 @@ pub(super) struct Survey {
     pub(super) failures: Vec<(Vec<f64>, Motion)>,
 }
 
-/// Looks at the whole box, halving cells where needed.
+/// Answers for a cell the smallest one that holds all the gains in it that are asked for, if there are any;
+/// cells are told by lower and upper end of each gain.
+pub type Part<'a> = dyn Fn(&Vec<[f64; 2]>) -> Option<Vec<[f64; 2]>> + 'a;
+
+/// Looks at all cells of the box in which there are gains that are asked for, halving where needed.
 pub(super) fn survey(
     family: &GainFamily,
     forms: &[Dense],
     motions: &[Motion],
     level: f64,
+    part: &Part<'_>,
 ) -> Survey {
-    let gains = family.gains();
-    let whole = Cell { centre: vec![0.0; gains], half: vec![1.0; gains], halvings: 0 };
-    let (mut open, mut survey) = (vec![whole], Survey { cells: 0, failures: vec![] });
-    while let Some(cell) = open.pop() {
+    let mut open = vec![vec![[-1.0, 1.0]; family.gains()]];
+    let mut survey = Survey { cells: 0, failures: vec![] };
+    while let Some(ends) = open.pop() {
+        let Some(ends) = part(&ends) else { continue };
+        let cell = Cell::between(&ends);
         let products = Products::of(family, forms, &cell);
         survey.cells += 1;
-        let Some(motion) = motions.iter().find(|motion| !products.falls(motion, level)) else {
-            continue;
-        };
-        let done = cell.halvings >= HALVINGS_MAX * gains || survey.cells >= CELLS_MAX;
-        if done || !products.falls_at_centre(motion, level) {
-            survey.failures.push((cell.centre, motion.clone()));
-        } else {
-            open.extend(cell.halves());
+        let failing = || motions.iter().find(|motion| !products.falls(motion, level));
+        let motion = if products.is_positive() { failing() } else { motions.first() };
+        let Some(motion) = motion else { continue };
+        let point = cell.centre.iter().map(|&gain| [gain, gain]).collect();
+        let lost = part(&point).is_some() && !products.falls_at_centre(motion, level);
+        match halves(&ends).filter(|_| !lost && survey.cells < CELLS_MAX) {
+            Some(halves) => open.extend(halves),
+            None => survey.failures.push((cell.centre, motion.clone())),
         }
         if survey.failures.len() >= FAILURES_MAX || survey.cells >= CELLS_MAX {
             break;
@@ -110,24 +116,28 @@ pub(super) fn survey(
 struct Cell {
     centre: Vec<f64>,
     half: Vec<f64>,
-    halvings: usize,
 }
 
 impl Cell {
-    /// Two halves, across the gain whose turn it is.
-    fn halves(&self) -> [Self; 2] {
-        let gain = self.halvings % self.half.len().max(1);
-        [-0.5, 0.5].map(|side| {
-            let mut part = Self {
-                centre: self.centre.clone(),
-                half: self.half.clone(),
-                halvings: self.halvings + 1,
-            };
-            part.centre[gain] += side * self.half[gain];
-            part.half[gain] *= 0.5;
-            part
-        })
+    fn between(ends: &[[f64; 2]]) -> Self {
+        Self {
+            centre: ends.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect(),
+            half: ends.iter().map(|[lower, upper]| 0.5 * (upper - lower)).collect(),
+        }
     }
+}
+
+/// Two halves, across the widest side; nothing for a cell that is narrow.
+fn halves(ends: &[[f64; 2]]) -> Option<[Vec<[f64; 2]>; 2]> {
+    let widths = ends.iter().map(|[lower, upper]| upper - lower).enumerate();
+    let (gain, width) = widths.max_by(|one, other| one.1.total_cmp(&other.1))?;
+    let [lower, upper] = *ends.get(gain).filter(|_| width > NARROWEST)?;
+    let middle = 0.5 * (lower + upper);
+    Some([[lower, middle], [middle, upper]].map(|side| {
+        let mut half = ends.to_vec();
+        half[gain] = side;
+        half
+    }))
 }
 
 /// The parts of the difference in one cell that all motions share.
@@ -158,6 +168,17 @@ impl<'a> Products<'a> {
 
     fn gains(&self) -> usize {
         self.cell.half.len()
+    }
+
+    /// Whether the form is positive definite at the corners of the cell.
+    fn is_positive(&self) -> bool {
+        let at = |number: usize| -> Vec<f64> {
+            let signs = corner_gains(number, self.gains());
+            let sides = self.cell.centre.iter().zip(&self.cell.half).zip(signs);
+            sides.map(|((centre, half), sign)| centre + sign * half).collect()
+        };
+        (0..1 << self.gains())
+            .all(|number| combination(self.forms, &at(number)).cholesky().is_some())
     }
 
     /// Whether the difference is positive definite at the centre of the cell.
@@ -253,8 +274,13 @@ mod tests {
     fn a_scalar_loop_falls_where_its_modulus_is_below_one() {
         let motions = Motion::extremes(&[2.0]);
         let one = scalars(&[1.0, 0.0]);
-        assert!(survey(&family(-0.9, 0.99), &one, &motions, 1.0).failures.is_empty());
-        let failing = survey(&family(-0.9, 1.01), &one, &motions, 1.0).failures;
+        assert!(
+            survey(&family(-0.9, 0.99), &one, &motions, 1.0, &|cell| Some(cell.clone()))
+                .failures
+                .is_empty()
+        );
+        let failing =
+            survey(&family(-0.9, 1.01), &one, &motions, 1.0, &|cell| Some(cell.clone())).failures;
         assert!(failing.iter().any(|(gains, _)| gains[0] > 0.9), "{failing:?}");
     }
 
@@ -283,7 +309,7 @@ mod tests {
             let after = combination(&forms, &[end]).congruence(&family.at(&[end]));
             assert!(combination(&forms, &[end]).plus(-1.0, &after).cholesky().is_some());
         }
-        let failures = survey(&family, &forms, &still, 1.0).failures;
+        let failures = survey(&family, &forms, &still, 1.0, &|cell| Some(cell.clone())).failures;
         assert!(failures.iter().any(|(gains, _)| gains[0].abs() < 0.1), "{failures:?}");
     }
 
@@ -293,7 +319,9 @@ mod tests {
         let moving = scalars(&[1.0, 0.9]);
         let falls = |change: f64| {
             let motions = Motion::extremes(&[change]);
-            survey(&family(0.97, 0.97), &moving, &motions, 1.0).failures.is_empty()
+            survey(&family(0.97, 0.97), &moving, &motions, 1.0, &|cell| Some(cell.clone()))
+                .failures
+                .is_empty()
         };
         assert!(falls(0.0) && !falls(0.3));
     }

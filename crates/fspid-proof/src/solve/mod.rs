@@ -20,11 +20,14 @@ mod stein;
 mod symmetric;
 mod words;
 
+pub use cells::Part;
 pub use gain_family::GainFamily;
 pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};
 pub use lyapunov::{BestRate, Condition, Problem, Solution, Verdict, best_rate, common_lyapunov};
-pub use parameter_dependent::{MovingForm, MovingVerdict, moving_form};
+pub use parameter_dependent::{
+    MovingForm, MovingProblem, MovingVerdict, moving_form, moving_form_over,
+};
 
 /// How much work a search may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -29,7 +29,7 @@
 use fspid_lti::Matrix;
 
 use super::Effort;
-use super::cells::{Motion, survey};
+use super::cells::{Motion, Part, survey};
 use super::centres::{Chart, Goal, descend};
 use super::dense::Dense;
 use super::gain_family::{GainFamily, combination, corner_gains};
@@ -69,10 +69,24 @@ pub enum MovingVerdict {
     },
 }
 
-/// Looks for a form that moves with the gains and whose root falls by the factor `rate` in every sample.
-///
-/// `changes` are the largest changes $d_j$ of the gains in one sample, in half widths of the box; 1 or more
-/// stands for a gain that jumps at will.
+/// What is asked for: a form that moves with the gains and whose root falls by the factor `rate` in every
+/// sample.
+#[derive(Clone, Copy)]
+pub struct MovingProblem<'a> {
+    /// The loop.
+    pub family: &'a GainFamily,
+    /// Largest changes $d_j$ of the gains in one sample, in half widths of the box; 1 or more stands for a
+    /// gain that jumps at will.
+    pub changes: &'a [f64],
+    /// Largest factor $\rho$ of the root of the form in one sample; 1 for mere stability.
+    pub rate: f64,
+    /// Gains to begin with; those that span all that are asked for.
+    pub points: &'a [Vec<f64>],
+    /// What of a cell is asked for.
+    pub part: &'a Part<'a>,
+}
+
+/// Looks for a form that moves with the gains, for all gains of the box.
 #[must_use]
 pub fn moving_form(
     family: &GainFamily,
@@ -80,9 +94,19 @@ pub fn moving_form(
     rate: f64,
     effort: &Effort,
 ) -> MovingVerdict {
+    let gains = family.gains();
+    let points: Vec<Vec<f64>> = (0..1 << gains).map(|number| corner_gains(number, gains)).collect();
+    let part = |cell: &Vec<[f64; 2]>| Some(cell.clone());
+    let problem = MovingProblem { family, changes, rate, points: &points, part: &part };
+    moving_form_over(&problem, effort)
+}
+
+/// Looks for a form that moves with the gains, for those that are asked for.
+#[must_use]
+pub fn moving_form_over(problem: &MovingProblem<'_>, effort: &Effort) -> MovingVerdict {
     let missing = MovingVerdict::NotFound { best_margin: f64::NEG_INFINITY };
-    let level = rate * rate;
-    let Some(mut search) = Search::start(family, changes, effort) else { return missing };
+    let level = problem.rate * problem.rate;
+    let Some(mut search) = Search::start(problem, effort) else { return missing };
     let mut steps = 0;
     let mut best_margin = f64::NEG_INFINITY;
     for _ in 0..ROUNDS_MAX {
@@ -93,7 +117,8 @@ pub fn moving_form(
         if !(best_margin > MARGIN_MIN) {
             break;
         }
-        let survey = survey(&search.turned(), &search.forms, &search.motions, level);
+        let turned = search.turned();
+        let survey = survey(&turned, &search.forms, &search.motions, level, problem.part);
         if survey.failures.is_empty() {
             let form = search.solution(level, survey.cells, steps);
             return form.map_or(missing, MovingVerdict::Found);
@@ -115,26 +140,28 @@ struct Search {
 }
 
 impl Search {
-    /// Starts from the form at rest that comes nearest, with conditions at the corners and the centre.
-    fn start(family: &GainFamily, changes: &[f64], effort: &Effort) -> Option<Self> {
+    /// Starts from the form at rest that comes nearest, with conditions at the points and their mean.
+    fn start(problem: &MovingProblem<'_>, effort: &Effort) -> Option<Self> {
+        let MovingProblem { family, changes, points, .. } = problem;
         let gains = family.gains();
-        if changes.len() != gains {
+        let fits = |point: &Vec<f64>| point.len() == gains;
+        if changes.len() != gains || points.is_empty() || !points.iter().all(fits) {
             return None;
         }
-        let corners: Vec<Matrix> =
-            family.corners().iter().map(Dense::to_matrix).collect::<Option<_>>()?;
+        let matrices: Vec<Matrix> =
+            points.iter().map(|point| family.at(point).to_matrix()).collect::<Option<_>>()?;
         let size = family.size();
-        let lower = closest_form(&corners, effort)?.cholesky()?;
+        let lower = closest_form(&matrices, effort)?.cholesky()?;
         let mut forms = vec![Dense::zeros(size, size); gains + 1];
         forms[0] = Dense::identity(size);
         let motions = Motion::extremes(changes);
-        let corners = (0..1 << gains).map(|number| corner_gains(number, gains));
-        let places = corners
-            .chain([vec![0.0; gains]])
+        let places = points
+            .iter()
+            .chain([&mean(points)])
             .flat_map(|place| motions.iter().map(move |motion| (place.clone(), motion.clone())))
             .collect();
         Some(Self {
-            family: family.clone(),
+            family: (*family).clone(),
             motions,
             places,
             transform: lower.lower_inverse().transpose(),
@@ -162,6 +189,12 @@ impl Search {
     }
 }
 
+fn mean(points: &[Vec<f64>]) -> Vec<f64> {
+    let share = 1.0 / points.len() as f64;
+    let along = |gain: usize| points.iter().fold(0.0, |sum, point| sum + share * point[gain]);
+    (0..points.first().map_or(0, Vec::len)).map(along).collect()
+}
+
 /// Smallest eigenvalue of the difference relative to the form at these gains.
 fn margin_at(
     family: &GainFamily,
@@ -186,11 +219,13 @@ fn weights(gains: &[f64]) -> Weights {
 impl Chart for Search {
     fn system(&self) -> System {
         let (family, gains, size) = (self.turned(), self.family.gains(), self.family.size());
-        let corners = (0..1 << gains).map(|number| corner_gains(number, gains));
-        let mut inequalities: Vec<Inequality> =
-            corners.map(|corner| Inequality::positive(size, weights(&corner))).collect();
+        let mut inequalities: Vec<Inequality> = Vec::new();
         let mut measures = Vec::new();
+        let mut last = None;
         for (now, motion) in &self.places {
+            if last.replace(now) != Some(now) {
+                inequalities.push(Inequality::positive(size, weights(now)));
+            }
             let next = weights(&motion.next(now));
             inequalities.push(Inequality::fall(&family.at(now), weights(now), &next));
             measures.push(Measure { weights: weights(now), multiplicity: 1.0 });

@@ -1,0 +1,215 @@
+//! From a loop to one of three answers: proved, refuted, open.
+
+mod bounded;
+mod largest;
+mod stable;
+mod unstable;
+
+use fspid_core::{Fspid, Gains};
+use fspid_fuzzy::scalar::Interval;
+use fspid_lti::{Matrix, spectral_radius};
+use fspid_sim::Controller;
+use fspid_sim::loop_model::LoopModel;
+
+use crate::certificate::{Certificate, Claim};
+use crate::description::{LoopDescription, NotProvable};
+use crate::gain_set::{GainSet, IncrementMap};
+use crate::limits;
+use crate::recheck::{Recheck, Rechecked};
+
+/// How hard to try. Nothing depends on a clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Cells along each of the supervisor's inputs.
+    pub divisions: usize,
+    /// Double cones that the plane of the supervisor's inputs is divided into.
+    pub cones: usize,
+    /// Halvings of the interval of the largest output scale.
+    pub halvings: u32,
+    /// Output scales beyond this are not asked for.
+    pub largest_factor: f64,
+    /// Points along each input at which frozen gains are looked at.
+    pub frozen_points: usize,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { divisions: 24, cones: 8, halvings: 6, largest_factor: 64.0, frozen_points: 33 }
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The answer.
+    pub verdict: Verdict,
+    /// Bounds of every gain that the controller can have.
+    pub bounds: [Interval; 3],
+    /// The largest output scale that was proved, as a factor on the loop's own.
+    pub largest: Largest,
+    /// Largest offset of the pitch angle from rest for which no limit acts, rad.
+    pub pitch_within_rad: Option<f64>,
+    /// Why limits are left out of the proof.
+    pub limits_left_out: Option<&'static str>,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Stable, with the certificate that says so and what its re-check did.
+    Proved(Certificate, Rechecked),
+    /// Unstable for frozen gains or for a sequence of gains, with the certificate that says so.
+    Refuted(Certificate, Rechecked),
+    /// Neither.
+    Open,
+}
+
+/// The largest output scale that was proved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Largest {
+    /// Proved for this factor; 0 if for none.
+    pub proved: f64,
+    /// Not proved for this one; none if everything that was asked for was proved.
+    pub not_proved: Option<f64>,
+    /// The certificate at `proved`, where it is not that of the verdict.
+    pub certificate: Option<Certificate>,
+}
+
+/// Proves or refutes a loop.
+///
+/// # Errors
+/// [`NotProvable`] for a loop that a proof cannot speak of.
+pub fn certify(description: &LoopDescription, effort: &Effort) -> Result<Outcome, NotProvable> {
+    let prover = Prover::new(description, effort)?;
+    let set = prover.set(1.0);
+    let verdict = prover.verdict(&set);
+    let largest = prover.largest(&verdict);
+    let (pitch_within_rad, limits_left_out) = prover.limits(&verdict);
+    Ok(Outcome { verdict, bounds: set.bounds(), largest, pitch_within_rad, limits_left_out })
+}
+
+/// Probe.
+pub fn probe(description: &LoopDescription, effort: &Effort, factor: f64, change: f64) -> String {
+    let prover = Prover::new(description, effort).unwrap();
+    let set = prover.set(factor);
+    let out = if change >= 10.0 {
+        prover.any_speed(&set, factor, false)
+    } else if change > 5.0 {
+        prover.tied(&set, factor, false)
+    } else {
+        prover.bounded(&set, factor, change)
+    };
+    match out {
+        Some((_, rechecked)) => format!("{rechecked:?}"),
+        None => "none".into(),
+    }
+}
+
+struct Prover<'a> {
+    description: &'a LoopDescription,
+    effort: &'a Effort,
+    enclosed: LoopModel<Interval>,
+    /// The same in ordinary arithmetic.
+    model: LoopModel<f64>,
+    increments: Option<IncrementMap>,
+}
+
+impl<'a> Prover<'a> {
+    fn new(description: &'a LoopDescription, effort: &'a Effort) -> Result<Self, NotProvable> {
+        let enclosed = description.enclosed()?;
+        let model = enclosed.midpoint();
+        let increments = match &description.controller {
+            Controller::Fixed(_) => None,
+            Controller::SelfTuning(fspid) => {
+                Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
+            }
+        };
+        Ok(Self { description, effort, enclosed, model, increments })
+    }
+
+    fn set(&self, factor: f64) -> GainSet {
+        match &self.increments {
+            Some(increments) => increments.gains(factor),
+            None => GainSet::fixed(self.description.controller.nominal()),
+        }
+    }
+
+    fn tuned(&self) -> Option<&Fspid<f64>> {
+        match &self.description.controller {
+            Controller::Fixed(_) => None,
+            Controller::SelfTuning(fspid) => Some(fspid),
+        }
+    }
+
+    fn verdict(&self, set: &GainSet) -> Verdict {
+        if let Some(found) = self.frozen_growth() {
+            return found;
+        }
+        if let Some((certificate, rechecked)) = self.proved(set, 1.0, true) {
+            return Verdict::Proved(certificate, rechecked);
+        }
+        self.sequence_growth().unwrap_or(Verdict::Open)
+    }
+
+    /// A certificate of stability at an output scale, re-checked; with the best rate if that is asked for.
+    fn proved(
+        &self,
+        set: &GainSet,
+        factor: f64,
+        best_rate: bool,
+    ) -> Option<(Certificate, Rechecked)> {
+        if let Some(found) = self.any_speed(set, factor, best_rate) {
+            return Some(found);
+        }
+        self.tied(set, factor, best_rate)
+    }
+
+    /// Closed loops at some gains, if each of them is stable on its own.
+    fn matrices(&self, gains: &[Gains<f64>]) -> Option<Vec<Matrix>> {
+        let closed = gains.iter().map(|gains| self.model.closed_matrix(*gains).ok());
+        let matrices: Vec<Matrix> = closed.collect::<Option<_>>()?;
+        let holds = |matrix: &Matrix| spectral_radius(matrix).is_ok_and(|radius| radius < 1.0);
+        matrices.iter().all(holds).then_some(matrices)
+    }
+
+    fn covers_limits(&self) -> bool {
+        limits::not_covered(self.description).is_none()
+    }
+
+    fn rechecked(
+        &self,
+        claim: Claim,
+        factor: f64,
+        level: Option<f64>,
+    ) -> Option<(Certificate, Rechecked)> {
+        let certificate = Certificate {
+            description: self.description.clone(),
+            output_factor: factor,
+            divisions: self.effort.divisions,
+            claim,
+            level,
+        };
+        let recheck = Recheck::with(&certificate, self.enclosed.clone(), self.set(factor));
+        let rechecked = recheck.run().ok()?;
+        Some((certificate, rechecked))
+    }
+
+    fn limits(&self, verdict: &Verdict) -> (Option<f64>, Option<&'static str>) {
+        if self.description.limits().is_empty() {
+            return (None, None);
+        }
+        if let Some(reason) = limits::not_covered(self.description) {
+            return (None, Some(reason));
+        }
+        let Verdict::Proved(certificate, _) = verdict else { return (None, None) };
+        let form = match &certificate.claim {
+            Claim::AnySpeed { form, .. } | Claim::Tied { form, .. } => form,
+            _ => return (None, Some("the proof for gains of bounded rate leaves limits out")),
+        };
+        match certificate.level.and_then(|level| limits::pitch_within(&self.enclosed, form, level))
+        {
+            Some(pitch_rad) => (Some(pitch_rad), None),
+            None => (None, Some("rest itself lies at a limit")),
+        }
+    }
+}

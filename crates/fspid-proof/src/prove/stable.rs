@@ -1,0 +1,88 @@
+//! Forms that fall however fast the gains move, and forms that fall as the error ties the gains.
+
+use fspid_core::Law;
+use fspid_lti::Matrix;
+
+use super::Prover;
+use crate::certificate::{Certificate, Claim};
+use crate::gain_set::GainSet;
+use crate::limits;
+use crate::recheck::{Rechecked, cone_form};
+use crate::solve::{self, Condition, Problem};
+
+/// Corners may lie outside of those that are solved for by this share of half the set's extent: the form
+/// found lies inside of the set of forms, and the re-check asks all corners.
+const THINNED: f64 = 0.03;
+
+impl Prover<'_> {
+    pub(super) fn any_speed(
+        &self,
+        set: &GainSet,
+        factor: f64,
+        best_rate: bool,
+    ) -> Option<(Certificate, Rechecked)> {
+        let corners = set.hull_within(THINNED);
+        let matrices = self.matrices(&corners)?;
+        let conditions: Vec<Condition<'_>> =
+            matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
+        let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+        self.settled(&problem, factor, best_rate, |solution, rate| {
+            let form = solution.p;
+            let level = limits::level(self.description, &self.model, &corners, &form);
+            (Claim::AnySpeed { form, rate }, level)
+        })
+    }
+
+    /// As the memoryless law ties the gains to the error; not for gains that remember.
+    pub(super) fn tied(
+        &self,
+        set: &GainSet,
+        factor: f64,
+        best_rate: bool,
+    ) -> Option<(Certificate, Rechecked)> {
+        let fspid = self.tuned().filter(|fspid| fspid.tuner().settings().law == Law::Memoryless)?;
+        let cones = set.cones(self.effort.cones);
+        let forms = cones.iter().map(|cone| cone_form(&self.enclosed, fspid, cone));
+        let forms: Vec<Matrix> = forms.map(|form| form.midpoint()).collect();
+        let mut matrices = Vec::new();
+        let mut corners = Vec::new();
+        for (number, cone) in cones.iter().enumerate() {
+            let gains = set.of_cells(&cone.cells).hull_within(THINNED);
+            matrices.extend(self.matrices(&gains)?.into_iter().map(|matrix| (number, matrix)));
+            corners.extend(gains);
+        }
+        let conditions: Vec<Condition<'_>> =
+            matrices.iter().map(|(cone, matrix)| Condition { matrix, cone: Some(*cone) }).collect();
+        let problem = Problem { conditions: &conditions, cones: &forms, rate: 1.0 };
+        self.settled(&problem, factor, best_rate, |solution, rate| {
+            let solve::Solution { p: form, multipliers, .. } = solution;
+            let level = limits::level(self.description, &self.model, &corners, &form);
+            (Claim::Tied { form, rate, multipliers }, level)
+        })
+    }
+
+    /// Solves, and re-checks what was found: at the best rate first, then for stability alone.
+    pub(super) fn settled(
+        &self,
+        problem: &Problem<'_>,
+        factor: f64,
+        best_rate: bool,
+        claim: impl Fn(solve::Solution, f64) -> (Claim, Option<f64>),
+    ) -> Option<(Certificate, Rechecked)> {
+        let effort = solve::Effort::default();
+        let plain = || match solve::common_lyapunov(problem, &effort) {
+            solve::Verdict::Found(solution) => Some((solution, 1.0)),
+            solve::Verdict::NotFound { .. } => None,
+        };
+        let best = || {
+            let found = solve::best_rate(problem, &effort).filter(|found| found.rate < 1.0)?;
+            Some((found.solution, found.rate))
+        };
+        let rechecked = |(solution, rate): (solve::Solution, f64)| {
+            let (claim, level) = claim(solution, rate);
+            self.rechecked(claim, factor, level.filter(|_| self.covers_limits()))
+        };
+        let at_best = if best_rate { best().and_then(rechecked) } else { None };
+        at_best.or_else(|| plain().and_then(rechecked))
+    }
+}

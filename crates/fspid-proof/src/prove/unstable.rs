@@ -1,0 +1,104 @@
+//! Gains, standing still or in a sequence, under which the loop grows.
+
+use std::collections::BTreeSet;
+
+use fspid_core::{Gains, Law};
+use fspid_lti::{Matrix, spectral_radius};
+
+use super::{Prover, Verdict};
+use crate::certificate::Claim;
+use crate::recheck::produced;
+use crate::solve;
+
+impl Prover<'_> {
+    /// Gains that the loop really has, standing still, under which it grows.
+    pub(super) fn frozen_growth(&self) -> Option<Verdict> {
+        let worst = self.frozen().into_iter().max_by(|one, other| one.1.total_cmp(&other.1))?;
+        let (input, radius, matrix) = worst;
+        if !(radius > 1.0) {
+            return None;
+        }
+        let solve::InstabilityForm { p: form, direction, factor, .. } =
+            solve::instability_form(&matrix)?;
+        let claim = Claim::FrozenGrowth { input, factor, form, direction };
+        let (certificate, rechecked) = self.rechecked(claim, 1.0, None)?;
+        Some(Verdict::Refuted(certificate, rechecked))
+    }
+
+    /// Inputs of the supervisor, the loop with the gains that it produces there, and its spectral radius.
+    pub(super) fn frozen(&self) -> Vec<([f64; 2], f64, Matrix)> {
+        let found = |input: [f64; 2]| {
+            let matrix =
+                self.model.closed_matrix(produced(&self.description.controller, input)).ok()?;
+            let radius = spectral_radius(&matrix).ok()?;
+            Some((input, radius, matrix))
+        };
+        self.inputs().into_iter().filter_map(found).collect()
+    }
+
+    /// A grid over the supervisor's inputs; for fixed gains, and for gains that remember, rest alone.
+    pub(super) fn inputs(&self) -> Vec<[f64; 2]> {
+        let memoryless = self.tuned().filter(|f| f.tuner().settings().law == Law::Memoryless);
+        let Some(fspid) = memoryless else {
+            return vec![[0.0; 2]];
+        };
+        let (range, side) = (fspid.tuner().supervisor().range(), self.effort.frozen_points.max(2));
+        let place = |index: usize| range * (2.0 * index as f64 / (side - 1) as f64 - 1.0);
+        let pairs = (0..side).flat_map(|row| (0..side).map(move |column| (row, column)));
+        pairs.map(|(row, column)| [place(row), place(column)]).collect()
+    }
+
+    /// Gains that the supervisor produces, in an order of our own, under which the loop grows.
+    pub(super) fn sequence_growth(&self) -> Option<Verdict> {
+        let frozen = self.frozen();
+        if frozen.len() < 2 {
+            return None;
+        }
+        let chosen = self.extreme(&frozen);
+        let matrices: Vec<Matrix> =
+            chosen.iter().filter_map(|&index| Some(frozen.get(index)?.2.clone())).collect();
+        let growth = solve::growing_sequence(&matrices, &solve::Effort::default())?;
+        let mut product = Matrix::identity(self.model.size());
+        let mut inputs = Vec::with_capacity(growth.sequence.len());
+        for &place in &growth.sequence {
+            inputs.push(frozen.get(*chosen.get(place)?)?.0);
+            product = matrices.get(place)?.product(&product).ok()?;
+        }
+        let solve::InstabilityForm { p: form, direction, factor, .. } =
+            solve::instability_form(&product)?;
+        let claim = Claim::SequenceGrowth { inputs, factor, form, direction };
+        let (certificate, rechecked) = self.rechecked(claim, 1.0, None)?;
+        Some(Verdict::Refuted(certificate, rechecked))
+    }
+
+    /// Places of the gains that are largest in some direction: few, and at the corners of them all.
+    pub(super) fn extreme(&self, frozen: &[([f64; 2], f64, Matrix)]) -> Vec<usize> {
+        let gains: Vec<[f64; 3]> = frozen
+            .iter()
+            .map(|(input, ..)| {
+                let Gains { kp, ki, kd } = produced(&self.description.controller, *input);
+                [kp, ki, kd]
+            })
+            .collect();
+        let directions = (-1..=1_i32).flat_map(|kp| {
+            (-1..=1_i32).flat_map(move |ki| (-1..=1_i32).map(move |kd| [kp, ki, kd]))
+        });
+        let spread: [f64; 3] = std::array::from_fn(|gain| {
+            let values = gains.iter().map(|triple| triple[gain]);
+            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| {
+                (a.min(value), b.max(value))
+            });
+            if most > least { most - least } else { 1.0 }
+        });
+        let mut chosen = BTreeSet::new();
+        for direction in directions {
+            let along = |triple: &[f64; 3]| -> f64 {
+                (0..3).map(|gain| f64::from(direction[gain]) * triple[gain] / spread[gain]).sum()
+            };
+            let best = gains.iter().enumerate();
+            let best = best.max_by(|one, other| along(one.1).total_cmp(&along(other.1)));
+            chosen.extend(best.map(|(index, _)| index));
+        }
+        chosen.into_iter().collect()
+    }
+}
