@@ -1,7 +1,7 @@
 //! One controller with every plant that it has to hold.
 
 use fspid_core::Gains;
-use fspid_lti::{Complex, SampledLoop, Stability};
+use fspid_lti::{Complex, LtiError, SampledLoop, Stability};
 use fspid_sim::loop_model::{BreakPoint, LoopModel, Memory};
 use fspid_sim::{AircraftPlant, Controller, LinearPlant, NamedController, Scenario, SimError};
 
@@ -117,10 +117,25 @@ impl AnalysedLoop {
 
 impl PlantLoop {
     fn of(from_s: f64, open: SampledLoop) -> Result<Self, SimError> {
-        let stability = open.margins()?;
         let closed_poles = open.closed_poles()?;
-        let margins = Margins::of(&stability);
+        let (stability, margins) = judged(&open)?;
         Ok(Self { from_s, open, stability, closed_poles, margins, map: None })
+    }
+}
+
+/// Stability and margins of a loop. A loop of which rounding hides the answer is not called stable.
+pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, Absent>), SimError> {
+    match open.margins() {
+        Ok(stability) => {
+            let margins = Margins::of(&stability);
+            Ok((stability, margins))
+        }
+        Err(LtiError::Blurred { spectral_radius, .. }) => {
+            let poles = open.closed_poles()?;
+            let stability = Stability::Unstable { poles, spectral_radius };
+            Ok((stability, Err(Absent::Undecided { spectral_radius })))
+        }
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -128,7 +143,9 @@ impl PlantLoop {
 pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
     match margins {
         Ok(margins) => margins.disk_margin,
-        Err(Absent::Unstable { spectral_radius }) => -spectral_radius,
+        Err(Absent::Unstable { spectral_radius } | Absent::Undecided { spectral_radius }) => {
+            -spectral_radius
+        }
         Err(_) => f64::NEG_INFINITY,
     }
 }
