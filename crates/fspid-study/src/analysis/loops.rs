@@ -8,6 +8,7 @@ use fspid_sim::{AircraftPlant, Controller, LinearPlant, NamedController, Scenari
 use super::Question;
 use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
+use super::flights::Flights;
 use super::frozen::{FrozenMap, FrozenPoint};
 use crate::metrics::Absent;
 
@@ -39,6 +40,8 @@ pub struct AnalysedLoop {
     pub plants: Vec<PlantLoop>,
     /// Why there is none.
     pub absent: Option<Absent>,
+    /// What flights say, if they were asked for.
+    pub flights: Option<Flights>,
 }
 
 impl AnalysedLoop {
@@ -50,11 +53,13 @@ impl AnalysedLoop {
         let controller = &named.controller;
         let equilibrium = equilibrium(controller);
         let name = named.name.clone();
+        let flights = question.fly.then(|| Flights::of(scenario, controller)).transpose()?;
         let none = |reason| Self {
             name: named.name.clone(),
             equilibrium,
             plants: Vec::new(),
             absent: Some(reason),
+            flights: flights.clone(),
         };
         if question.point == BreakPoint::Rate && controller.shell().rate_gain_s == 0.0 {
             return Ok(none(Absent::NoRateLoop));
@@ -73,7 +78,7 @@ impl AnalysedLoop {
             };
             plants.push(PlantLoop { map, ..PlantLoop::of(*from_s, open)? });
         }
-        Ok(Self { name, equilibrium, plants, absent: None })
+        Ok(Self { name, equilibrium, plants, absent: None, flights })
     }
 
     /// The plant with the smallest disk margin; an unstable one before all others.
