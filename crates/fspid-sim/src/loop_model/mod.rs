@@ -17,6 +17,7 @@
 mod assembly;
 mod memory;
 mod opening;
+mod parts;
 mod sensing;
 #[cfg(test)]
 mod tests;
@@ -31,6 +32,7 @@ use crate::scenario::Scenario;
 
 pub use memory::Memory;
 pub use opening::BreakPoint;
+pub(crate) use parts::LoopParts;
 pub use sensing::Sensing;
 
 /// Plant and actuator over one sample without limits.
