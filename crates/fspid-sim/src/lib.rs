@@ -43,9 +43,9 @@ mod trace;
 
 pub use aircraft::{AircraftPlant, AircraftSample};
 pub use closed_loop::{Flight, Instant, fly, fly_perturbed, simulate};
-pub use flown::{AllPass, Perturbation};
 pub use controller::Controller;
 pub use error::SimError;
+pub use flown::{AllPass, Perturbation};
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use scenario::{NamedController, Prepared, Scenario};

@@ -79,7 +79,7 @@ impl Scenario {
         })
     }
 
-    fn delay_samples(&self) -> usize {
+    pub(crate) fn delay_samples(&self) -> usize {
         let actuator = self.surroundings.actuator.as_ref();
         actuator.map_or(self.servo.delay_samples(), Actuator::delay_samples)
     }

@@ -75,9 +75,8 @@ fn flown(scenario: &Scenario) -> Trace {
 fn oscillation(trace: &Trace, window_s: f64) -> (f64, f64) {
     let rows = (window_s / DT_S) as usize;
     let tail = &trace.theta_rad[trace.rows() - rows..];
-    let (least, most) = tail
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+    let (least, most) =
+        tail.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
     let mean = 0.5 * (least + most);
     let rises: Vec<f64> = tail
         .windows(2)
@@ -106,10 +105,15 @@ fn a_limit_of_the_position_has_the_textbook_describing_function() {
     };
     let servo = servo().with_position_limit(limit_rad).expect("allowed");
     let by_servo = scenario(servo, 0.1, 1.0, proportional(1.0, plain()));
-    let shell = Shell { limits: Some(Limits::new("u", -limit_rad, limit_rad).expect("allowed")), ..plain() };
+    let shell = Shell {
+        limits: Some(Limits::new("u", -limit_rad, limit_rad).expect("allowed")),
+        ..plain()
+    };
     let paths = [
         LimitedPath::of(&by_servo, &plain()).expect("a path"),
-        with_actuator(Actuator::new(Lag::NONE).with_travel(-limit_rad, limit_rad).expect("allowed")),
+        with_actuator(
+            Actuator::new(Lag::NONE).with_travel(-limit_rad, limit_rad).expect("allowed"),
+        ),
         LimitedPath::of(&scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, shell)), &shell)
             .expect("a path"),
     ];
@@ -260,7 +264,9 @@ fn a_search_that_makes_no_sense_is_refused() {
     let scenario = scenario(limited, 0.1, 1.0, controller);
     let good = Search::sampled_every(DT_S);
     for bad in [(0.0, 1.0), (2.0, 1.0), (1.0, f64::NAN)] {
-        for search in [Search { amplitude_rad: bad, ..good }, Search { frequency_rad_s: bad, ..good }] {
+        for search in
+            [Search { amplitude_rad: bad, ..good }, Search { frequency_rad_s: bad, ..good }]
+        {
             assert!(limit_cycles(&scenario, &controller, &search).is_err(), "{search:?}");
         }
     }

@@ -110,7 +110,12 @@ impl LimitedPath {
         self.relative(amplitude_rad, frequency_rad_s, ROUGH)
     }
 
-    fn relative(&self, amplitude_rad: f64, frequency_rad_s: f64, effort: Effort) -> Option<Complex> {
+    fn relative(
+        &self,
+        amplitude_rad: f64,
+        frequency_rad_s: f64,
+        effort: Effort,
+    ) -> Option<Complex> {
         let good = |value: f64| value.is_finite() && value > 0.0;
         if !(good(amplitude_rad) && good(frequency_rad_s)) {
             return None;
@@ -131,8 +136,7 @@ impl LimitedPath {
 
     fn surface_rad(&self, actuator: &ActuatorState) -> f64 {
         let deflection_rad = self.actuator.deflection_rad(actuator);
-        self.travel_rad
-            .map_or(deflection_rad, |(least, most)| deflection_rad.max(least).min(most))
+        self.travel_rad.map_or(deflection_rad, |(least, most)| deflection_rad.max(least).min(most))
     }
 
     /// Fundamental of the surface, rad.

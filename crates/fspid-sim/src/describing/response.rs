@@ -164,8 +164,7 @@ fn resolvent(matrix: &[Vec<f64>], entry: &[f64], z: Complex) -> Option<Vec<Compl
     let mut state = vec![Complex::default(); size];
     for column in (0..size).rev() {
         let row = &rows[column];
-        let known: Complex =
-            (column + 1..size).map(|other| row[other] * state[other]).sum();
+        let known: Complex = (column + 1..size).map(|other| row[other] * state[other]).sum();
         state[column] = quotient(row[size] - known, row[column]);
     }
     Some(state)

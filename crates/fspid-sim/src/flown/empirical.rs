@@ -13,6 +13,7 @@ use fspid_core::{Gains, Law};
 
 use super::holding::is_quiet;
 use super::ladder::{Ladder, geometric};
+use super::perturbation::MOST_DELAY_SAMPLES;
 use super::{AllPass, Criterion, Envelope, Failure, Margin, Perturbation};
 use crate::controller::Controller;
 use crate::describing::OpenLoop;
@@ -23,7 +24,7 @@ use crate::timing::Timing;
 
 /// Largest factor on the command, and its inverse the smallest: 60 dB.
 pub const MOST_GAIN: f64 = 1000.0;
-/// Largest extra delay, s.
+/// Largest extra delay, s; at most 10 000 samples.
 pub const MOST_DELAY_S: f64 = 5.0;
 /// Rungs of the ladders of gain and delay for each doubling.
 const RUNGS_A_DOUBLING: f64 = 4.0;
@@ -127,9 +128,9 @@ pub fn empirical_margins(
     if nominal.largest_rad <= 0.0 {
         return Ok(EmpiricalAnswer::NothingMoves);
     }
-    let (growth, quiet) = (options.criterion.growth, is_quiet(&flown, &prepared));
-    let floor_rad = options.criterion.floor_rad(&nominal, quiet);
-    if let Some(failure) = nominal.failure(growth, floor_rad) {
+    let (criterion, quiet) = (&options.criterion, is_quiet(&flown, &prepared));
+    let floor_rad = criterion.floor_rad(&nominal, quiet);
+    if let Some(failure) = nominal.failure(criterion, floor_rad) {
         return Ok(EmpiricalAnswer::NominalFails { failure, nominal });
     }
     let crossovers_rad_s = match &options.crossovers_rad_s {
@@ -137,7 +138,7 @@ pub fn empirical_margins(
         None => gain_crossovers_rad_s(scenario, controller)?,
     };
     let prepared = &prepared;
-    let mut trials = Trials { prepared, controller, growth, floor_rad, tolerance, flights: 1 };
+    let mut trials = Trials { prepared, controller, criterion, floor_rad, tolerance, flights: 1 };
     Ok(EmpiricalAnswer::Margins(Box::new(EmpiricalMargins {
         gain_up: trials.gain(|factor| factor)?,
         gain_down: trials.gain(|factor| 1.0 / factor)?,
@@ -187,7 +188,7 @@ fn gain_crossovers_rad_s(
 struct Trials<'a> {
     prepared: &'a Prepared,
     controller: &'a Controller,
-    growth: f64,
+    criterion: &'a Criterion,
     floor_rad: f64,
     tolerance: f64,
     flights: usize,
@@ -197,7 +198,7 @@ impl Trials<'_> {
     fn failure(&mut self, perturbation: &Perturbation) -> Result<Option<Failure>, SimError> {
         self.flights += 1;
         let envelope = Envelope::of(self.prepared, self.controller, perturbation)?;
-        Ok(envelope.failure(self.growth, self.floor_rad))
+        Ok(envelope.failure(self.criterion, self.floor_rad))
     }
 
     /// The margin of a factor from 1 on, of which `gain` makes that on the command.
@@ -212,7 +213,8 @@ impl Trials<'_> {
     fn delay_s(&mut self) -> Result<Margin, SimError> {
         let dt_s = self.prepared.timing.dt_s();
         let rung = libm::exp2(1.0 / RUNGS_A_DOUBLING);
-        let rungs = geometric(FIRST_DELAY_SAMPLES, rung, MOST_DELAY_S / dt_s);
+        let most_samples = MOST_DELAY_SAMPLES.min(MOST_DELAY_S / dt_s);
+        let rungs = geometric(FIRST_DELAY_SAMPLES, rung, most_samples);
         let (tolerance, width) = (self.tolerance, DELAY_WIDTH_SAMPLES);
         let ladder = Ladder { from: 0.0, rungs, tolerance, width };
         let margin = ladder.climb(|samples| self.failure(&Perturbation::of_delay(samples)))?;

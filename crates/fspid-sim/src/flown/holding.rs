@@ -10,21 +10,29 @@ use crate::scenario::{Prepared, Scenario};
 use crate::sensor::Sensor;
 use crate::trace::Outcome;
 
-/// When a flight counts as not held: it diverged, or the swing $\max e - \min e$ of the error $e$
-/// (set-point less true pitch angle) in its last third is above a floor and at least `growth` of that
-/// in its middle third.
+/// When a flight counts as not held. Looked at is the error (set-point less true pitch angle) in the last
+/// third of the flight and in the third before. A flight is not held if
+///
+/// - it diverged, or
+/// - the swing of the error, $\max e - \min e$, is above a floor and at least `growth` of that before, or
+/// - its oscillation, the swing about its straight line of least squares, is above the floor and at
+///   least `persistence` of that before.
 ///
 /// The floor is the largest of `floor_rad`, `floor_share` of the largest error of the unperturbed
 /// flight and, for a flight that is disturbed to its end, twice the swing of its last third unperturbed.
 ///
-/// What is slower than a third of the flight is judged by the part that is seen of it: fly at least
-/// three periods of the slowest motion that matters. An oscillation that stays below the floor is not
-/// seen, and one that has not yet come down to the size at which it lasts counts as held.
+/// Errs on the side of not held: an oscillation that shrinks by less than `persistence` asks counts as
+/// one that lasts, so that a margin comes out smaller by what that little damping takes; it takes less
+/// the longer the flight. What is slower than a third of the flight is judged by the part that is seen
+/// of it: fly at least three periods of the slowest motion that matters. What is not seen: an
+/// oscillation below the floor, and one that is still shrinking towards the size at which it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
-    /// Smallest ratio of the swings that is a failure. Somewhat below 1, so that an oscillation that
-    /// lasts fails in spite of samples that miss its peaks.
+    /// Smallest ratio of swings that is a failure. Somewhat below 1, so that what lasts fails in spite
+    /// of samples that miss its peaks.
     pub growth: f64,
+    /// Smallest ratio of oscillations that is a failure.
+    pub persistence: f64,
     /// Floor as a share of the largest error of the unperturbed flight.
     pub floor_share: f64,
     /// Floor, rad.
@@ -32,9 +40,9 @@ pub struct Criterion {
 }
 
 impl Default for Criterion {
-    /// 0.995, 0.2 % and 0: samples of 30 or more a period miss peaks by at most 0.5 %.
+    /// 0.995, 0.95, 1 % and 0: samples of 30 or more a period miss peaks by at most 0.5 %.
     fn default() -> Self {
-        Self { growth: 0.995, floor_share: 0.002, floor_rad: 0.0 }
+        Self { growth: 0.995, persistence: 0.95, floor_share: 0.01, floor_rad: 0.0 }
     }
 }
 
@@ -43,8 +51,10 @@ impl Default for Criterion {
 pub struct Envelope {
     /// Largest error, rad.
     pub largest_rad: f64,
-    /// Largest less smallest error in each third of the flight, rad.
-    pub swings_rad: [f64; 3],
+    /// Largest less smallest error in the middle and the last third of the flight, rad.
+    pub swings_rad: [f64; 2],
+    /// The same about a straight line, rad.
+    pub oscillations_rad: [f64; 2],
     /// How the flight ended.
     pub outcome: Outcome,
 }
@@ -57,11 +67,18 @@ pub enum Failure {
         /// When, s.
         at_s: f64,
     },
-    /// The error goes on swinging.
+    /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
         middle_rad: f64,
         /// Swing of the last third, rad.
+        last_rad: f64,
+    },
+    /// The error goes on oscillating.
+    Oscillates {
+        /// Oscillation of the middle third, rad.
+        middle_rad: f64,
+        /// Oscillation of the last third, rad.
         last_rad: f64,
     },
 }
@@ -77,38 +94,63 @@ impl Envelope {
         perturbation: &Perturbation,
     ) -> Result<Self, SimError> {
         let rows = prepared.timing().rows();
-        let mut ends_rad = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-        let mut largest_rad = 0.0_f64;
+        let mut errors_rad = Vec::with_capacity(rows);
         let outcome = fly_perturbed(prepared, controller, perturbation, |instant| {
-            let error_rad = instant.setpoint_rad - instant.theta_rad;
-            largest_rad = largest_rad.max(error_rad.abs());
-            if let Some((least, most)) = ends_rad.get_mut(3 * instant.k / rows) {
-                (*least, *most) = (least.min(error_rad), most.max(error_rad));
-            }
+            errors_rad.push(instant.setpoint_rad - instant.theta_rad);
             ControlFlow::Continue(())
         })?;
-        // A third without samples has no swing.
-        let swings_rad = ends_rad.map(|(least, most)| (most - least).max(0.0));
-        Ok(Self { largest_rad, swings_rad, outcome })
+        let third = |number: usize| {
+            errors_rad.get(number * rows / 3..(number + 1) * rows / 3).unwrap_or_default()
+        };
+        Ok(Self {
+            largest_rad: errors_rad.iter().fold(0.0, |most, error| most.max(error.abs())),
+            swings_rad: [1, 2].map(|number| swing(third(number).iter().copied())),
+            oscillations_rad: [1, 2].map(|number| oscillation(third(number))),
+            outcome,
+        })
     }
 
-    /// Why the flight does not count as held with this floor, rad; `None` if it does.
+    /// Why the flight does not count as held above this floor, rad; `None` if it does.
     #[must_use]
-    pub fn failure(&self, growth: f64, floor_rad: f64) -> Option<Failure> {
+    pub fn failure(&self, criterion: &Criterion, floor_rad: f64) -> Option<Failure> {
         if let Outcome::Diverged { at_s } = self.outcome {
             return Some(Failure::Diverged { at_s });
         }
-        let [_, middle_rad, last_rad] = self.swings_rad;
-        // Written so that NaN fails.
-        let held = last_rad <= floor_rad || last_rad < growth * middle_rad;
-        (!held).then_some(Failure::Swings { middle_rad, last_rad })
+        // Written so that NaN is not held.
+        let holds = |[before, last]: [f64; 2], ratio| last <= floor_rad || last < ratio * before;
+        let [middle_rad, last_rad] = self.swings_rad;
+        if !holds(self.swings_rad, criterion.growth) {
+            return Some(Failure::Swings { middle_rad, last_rad });
+        }
+        let [middle_rad, last_rad] = self.oscillations_rad;
+        let lasts = !holds(self.oscillations_rad, criterion.persistence);
+        lasts.then_some(Failure::Oscillates { middle_rad, last_rad })
     }
+}
+
+/// Largest less smallest; 0 of nothing.
+fn swing(values: impl Iterator<Item = f64>) -> f64 {
+    let ends = (f64::INFINITY, f64::NEG_INFINITY);
+    let (least, most) = values.fold(ends, |(least, most), x| (least.min(x), most.max(x)));
+    (most - least).max(0.0)
+}
+
+/// Swing about the straight line of least squares.
+fn oscillation(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let middle = 0.5 * (count - 1.0);
+    let numbered = || (0_u32..).map(f64::from).map(|k| k - middle).zip(values);
+    let mean = values.iter().sum::<f64>() / count;
+    let (products, squares) = numbered()
+        .fold((0.0, 0.0), |(products, squares), (k, x)| (products + k * x, squares + k * k));
+    let slope = if squares > 0.0 { products / squares } else { 0.0 };
+    swing(numbered().map(|(k, x)| x - mean - slope * k))
 }
 
 impl Criterion {
     /// The floor that goes with an unperturbed flight, rad.
     pub(crate) fn floor_rad(&self, nominal: &Envelope, quiet: bool) -> f64 {
-        let [_, _, last_rad] = nominal.swings_rad;
+        let [_, last_rad] = nominal.swings_rad;
         let answered_rad = if quiet { 0.0 } else { 2.0 * last_rad };
         self.floor_rad.max(self.floor_share * nominal.largest_rad).max(answered_rad)
     }
@@ -140,4 +182,34 @@ pub(crate) fn is_quiet(scenario: &Scenario, prepared: &Prepared) -> bool {
 fn is_silent(sensor: &Sensor) -> bool {
     let model = sensor.model();
     !(model.noise_density > 0.0 || model.drift > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_straight_line_does_not_oscillate_and_a_sine_on_it_does() {
+        let line = |k: i32| 3.0 - 0.25 * f64::from(k);
+        let values: Vec<f64> = (0..100).map(line).collect();
+        assert!(oscillation(&values) < 1e-12);
+        let sine = |k: i32| crate::math::sin_cos(0.7 * f64::from(k)).0;
+        let values: Vec<f64> = (0..1000).map(|k| line(k) + sine(k)).collect();
+        assert!((oscillation(&values) - 2.0).abs() < 0.02, "{}", oscillation(&values));
+        assert_eq!(oscillation(&[]), 0.0);
+    }
+
+    #[test]
+    fn what_shrinks_holds_and_what_lasts_or_is_no_number_does_not() {
+        let flown = |swings_rad, oscillations_rad| {
+            let outcome = Outcome::Completed;
+            let envelope = Envelope { largest_rad: 1.0, swings_rad, oscillations_rad, outcome };
+            envelope.failure(&Criterion::default(), 0.01)
+        };
+        assert_eq!(flown([0.5, 0.4], [0.5, 0.4]), None);
+        assert_eq!(flown([0.001, 0.009], [0.001, 0.009]), None);
+        assert!(matches!(flown([0.5, 0.5], [0.1, 0.05]), Some(Failure::Swings { .. })));
+        assert!(matches!(flown([0.5, 0.48], [0.5, 0.48]), Some(Failure::Oscillates { .. })));
+        assert!(flown([f64::NAN; 2], [0.1, 0.0]).is_some());
+    }
 }

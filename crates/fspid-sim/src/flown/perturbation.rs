@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::error::{SimError, finite, not_negative, positive};
 
 /// Longest extra delay; more is a mistake.
-const MOST_DELAY_SAMPLES: f64 = 10_000.0;
+pub(super) const MOST_DELAY_SAMPLES: f64 = 10_000.0;
 
 /// A discrete all-pass of first order: it delays the phase and leaves every amplitude as it is.
 ///
@@ -200,9 +200,8 @@ mod tests {
         let frequency_rad_s = 3.0;
         for lag_rad in [0.1, 1.0, 2.5] {
             let all_pass = AllPass::lagging(lag_rad, frequency_rad_s, DT_S).expect("allowed");
-            let sine = |k: i32, lag_rad: f64| {
-                sin_cos(frequency_rad_s * DT_S * f64::from(k) - lag_rad).0
-            };
+            let sine =
+                |k: i32, lag_rad: f64| sin_cos(frequency_rad_s * DT_S * f64::from(k) - lag_rad).0;
             let commands: Vec<f64> = (0..4000).map(|k| sine(k, 0.0)).collect();
             let late = passed(Perturbation::of_lag(all_pass), &commands);
             // The start has died out: the pole is at most 0.99 for these lags, and 0.99^3000 is 1e-13.
@@ -214,7 +213,8 @@ mod tests {
 
     #[test]
     fn numbers_that_make_no_sense_are_refused() {
-        for (lag_rad, at_rad_s) in [(-0.1, 1.0), (3.2, 1.0), (f64::NAN, 1.0), (0.5, 0.0), (0.5, 158.0)]
+        for (lag_rad, at_rad_s) in
+            [(-0.1, 1.0), (3.2, 1.0), (f64::NAN, 1.0), (0.5, 0.0), (0.5, 158.0)]
         {
             assert!(AllPass::lagging(lag_rad, at_rad_s, DT_S).is_err(), "{lag_rad} {at_rad_s}");
         }
