@@ -19,17 +19,17 @@ struct Effort {
     steady: f64,
     /// Most periods that the start may take for it.
     periods: usize,
+    /// A lag that trails a sine by less, rad, is left out: it takes time to fly, and changes a function
+    /// that is relative to it by no more than this.
+    least_lag: f64,
 }
 
 /// For an answer. A lag of 0.1 s takes 100 periods at 350 rad/s.
-const FINE: Effort = Effort { steps: 512, steady: 1e-7, periods: 100 };
+const FINE: Effort = Effort { steps: 512, steady: 1e-7, periods: 100, least_lag: 0.003 };
 /// To a percent.
-const FAIR: Effort = Effort { steps: 128, steady: 1e-4, periods: 50 };
+const FAIR: Effort = Effort { steps: 128, steady: 1e-4, periods: 50, least_lag: 0.03 };
 /// To some percent, where cycles are only looked for.
-const ROUGH: Effort = Effort { steps: 64, steady: 1e-3, periods: 20 };
-/// Of a turn in rad: by how little a lag may trail a sine to be left out where it is only looked for.
-const COARSE_LAG: f64 = 0.1;
-
+const ROUGH: Effort = Effort { steps: 64, steady: 1e-3, periods: 20, least_lag: 0.1 };
 /// What limits a command between controller and surface: slew and output limits of the controller,
 /// everything of servo or actuator but its delay, and an aircraft's travel of the elevator.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,16 +97,6 @@ impl LimitedPath {
 
     /// As [`describing_function`](Self::describing_function) to some percent, in a fraction of the time.
     pub(super) fn roughly(&self, amplitude_rad: f64, frequency_rad_s: f64) -> Option<Complex> {
-        let [by_deflection, by_rate, by_target] = self.actuator.lag().coefficients();
-        let trailing_s = match self.actuator.lag().order() {
-            0 => 0.0,
-            1 => 1.0 / by_target,
-            _ => by_rate / by_deflection,
-        };
-        if trailing_s * frequency_rad_s < COARSE_LAG {
-            let quick = Self { actuator: self.actuator.with_lag(Lag::NONE), ..self.clone() };
-            return quick.relative(amplitude_rad, frequency_rad_s, ROUGH);
-        }
         self.relative(amplitude_rad, frequency_rad_s, ROUGH)
     }
 
@@ -120,9 +110,14 @@ impl LimitedPath {
         if !(good(amplitude_rad) && good(frequency_rad_s)) {
             return None;
         }
+        let lag = self.actuator.lag();
+        if lag.order() > 0 && trailing_s(lag) * frequency_rad_s < effort.least_lag {
+            let prompt = Self { actuator: self.actuator.with_lag(Lag::NONE), ..self.clone() };
+            return prompt.relative(amplitude_rad, frequency_rad_s, effort);
+        }
         let sine = Sine::new(frequency_rad_s, effort.steps);
         let limited = self.fundamental(&sine, amplitude_rad, effort);
-        let ratio = quotient(limited, sine.through(self.actuator.lag())? * amplitude_rad);
+        let ratio = quotient(limited, sine.through(lag)? * amplitude_rad);
         ratio.is_finite().then_some(ratio)
     }
 
@@ -163,6 +158,16 @@ impl LimitedPath {
             }
         }
         before * (1.0 / effort.steps as f64)
+    }
+}
+
+/// By how much a slow sine trails its command behind a lag, s.
+fn trailing_s(lag: Lag) -> f64 {
+    let [by_deflection, by_rate, by_target] = lag.coefficients();
+    match lag.order() {
+        0 => 0.0,
+        1 => 1.0 / by_target,
+        _ => by_rate / by_deflection,
     }
 }
 

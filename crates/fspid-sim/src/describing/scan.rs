@@ -35,8 +35,10 @@ const STEPS: usize = 20;
 const SOLVED: f64 = 1e-7;
 /// How far a fair solution and an exact one may lie apart in the logarithms.
 const WANDER: f64 = 0.1;
-/// Halvings of a cell after which a zero is taken to be in its middle.
-const SPLITS: u32 = 5;
+/// Halvings of a cell after which a zero is taken to be in its middle …
+const SPLITS: u32 = 14;
+/// … if the function is no larger there.
+const UNSOLVED: f64 = 0.1;
 /// Describing functions this near 1 are those of a path that does not limit.
 const UNLIMITED: f64 = 1e-4;
 
@@ -160,15 +162,21 @@ impl Cell {
         (amplitude + 0.5 * x * (high - low), frequency + 0.5 * y * (to - from))
     }
 
-    fn quarters(&self) -> [Self; 4] {
+    /// Both halves, cut across the amplitudes or across the frequencies.
+    fn halves(&self, across_amplitudes: bool) -> [Self; 2] {
         let ((low, high), (from, to)) = (self.amplitude, self.frequency);
         let (middle, between) = self.middle();
-        [
-            Self { amplitude: (low, middle), frequency: (from, between) },
-            Self { amplitude: (middle, high), frequency: (from, between) },
-            Self { amplitude: (low, middle), frequency: (between, to) },
-            Self { amplitude: (middle, high), frequency: (between, to) },
-        ]
+        if across_amplitudes {
+            [
+                Self { amplitude: (low, middle), ..*self },
+                Self { amplitude: (middle, high), ..*self },
+            ]
+        } else {
+            [
+                Self { frequency: (from, between), ..*self },
+                Self { frequency: (between, to), ..*self },
+            ]
+        }
     }
 }
 
@@ -230,35 +238,30 @@ impl<'a> Zeros<'a> {
             self.solve(&cell, &plane);
             return;
         }
+        let [a, b, c, d] = *corners;
         if left == 0 {
             let sense = turns(corners);
-            if sense != 0 {
+            if sense != 0 && modulus(middle) <= UNSOLVED {
                 self.add(cell.middle(), sense > 0);
             }
             return;
         }
-        let ((low, high), (from, to)) = (cell.amplitude, cell.frequency);
-        let (between_amplitudes, between_frequencies) = cell.middle();
-        let sides = [
-            (between_amplitudes, from),
-            (high, between_frequencies),
-            (between_amplitudes, to),
-            (low, between_frequencies),
-        ];
-        let [Some(before), Some(above), Some(after), Some(below)] =
-            sides.map(|side| self.value(side))
-        else {
+        // Across what changes it more.
+        let by_amplitude = modulus(b - a) + modulus(c - d);
+        let by_frequency = modulus(d - a) + modulus(c - b);
+        let across_amplitudes = by_amplitude >= by_frequency;
+        let halves = cell.halves(across_amplitudes);
+        let [_, p, q, r] = halves[0].corners();
+        let [Some(p), Some(q), Some(r)] = [p, q, r].map(|corner| self.value(corner)) else {
             return;
         };
-        let [a, b, c, d] = *corners;
-        let values = [
-            [a, before, middle, below],
-            [before, b, above, middle],
-            [below, middle, after, d],
-            [middle, above, c, after],
-        ];
-        for (quarter, corners) in cell.quarters().into_iter().zip(&values) {
-            self.split(quarter, corners, left - 1);
+        let values = if across_amplitudes {
+            [[a, p, q, d], [p, b, c, q]]
+        } else {
+            [[a, b, q, r], [r, q, c, d]]
+        };
+        for (half, corners) in halves.into_iter().zip(&values) {
+            self.split(half, corners, left - 1);
         }
     }
 

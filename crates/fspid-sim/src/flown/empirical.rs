@@ -7,7 +7,9 @@
 //! with the margins of the linear loop within what a flight of that length can tell.
 //!
 //! Sizes are tried on a ladder first, and the step to the first that fails is then halved. A loop that
-//! fails and holds again between two rungs looks as if it held.
+//! fails and holds again between two rungs looks as if it held. A flight that fails without diverging
+//! is flown again for longer, and counts as held if that one holds: a slow motion that dies out looks
+//! like one that grows while there is little of it to see.
 
 use fspid_core::{Gains, Law};
 
@@ -46,6 +48,8 @@ pub struct EmpiricalOptions {
     pub criterion: Criterion,
     /// Length of each flight, s; that of the scenario where there is none.
     pub duration_s: Option<f64>,
+    /// How many times as long a flight is flown again before it counts as not held, 1 or more.
+    pub patience: f64,
     /// Largest relative width of an answer; delays are told apart down to a fiftieth of a sample and
     /// lags down to 0.1 deg.
     pub tolerance: f64,
@@ -57,7 +61,8 @@ pub struct EmpiricalOptions {
 impl Default for EmpiricalOptions {
     fn default() -> Self {
         let criterion = Criterion::default();
-        Self { criterion, duration_s: None, tolerance: 0.005, crossovers_rad_s: None }
+        let (duration_s, crossovers_rad_s) = (None, None);
+        Self { criterion, duration_s, patience: 4.0, tolerance: 0.005, crossovers_rad_s }
     }
 }
 
@@ -83,12 +88,12 @@ pub struct EmpiricalMargins {
     pub phase: Vec<PhaseMargin>,
     /// The unperturbed flight.
     pub nominal: Envelope,
-    /// Swing of the error up to which a flight counts as held, rad.
+    /// Swing of the error up to which a flight of the first length counts as held, rad.
     pub floor_rad: f64,
     /// Nothing new happens to the loop after the first third of the flight. Where this is false, a
     /// swing is a failure only if it is also twice that of the unperturbed flight.
     pub quiet: bool,
-    /// Flights that were flown.
+    /// Flights that were flown, the longer ones included.
     pub flights: usize,
 }
 
@@ -119,34 +124,36 @@ pub fn empirical_margins(
     options: &EmpiricalOptions,
 ) -> Result<EmpiricalAnswer, SimError> {
     let tolerance = positive("tolerance", options.tolerance)?;
-    let mut flown = scenario.clone();
-    if let Some(duration_s) = options.duration_s {
-        flown.timing = Timing::new(scenario.timing.dt_s(), duration_s)?;
+    let patience = options.patience;
+    if !(patience >= 1.0 && patience.is_finite()) {
+        let (what, allowed) = ("patience", "a finite number, 1 or above");
+        return Err(SimError::Number { what, found: patience, allowed });
     }
-    let prepared = flown.prepare()?;
-    let nominal = Envelope::of(&prepared, controller, &Perturbation::NONE)?;
-    if nominal.largest_rad <= 0.0 {
+    let duration_s = options.duration_s.unwrap_or_else(|| scenario.timing.end_s());
+    let first = Length::of(scenario, controller, (&options.criterion, duration_s))?;
+    if first.nominal.largest_rad <= 0.0 {
         return Ok(EmpiricalAnswer::NothingMoves);
     }
-    let (criterion, quiet) = (&options.criterion, is_quiet(&flown, &prepared));
-    let floor_rad = criterion.floor_rad(&nominal, quiet);
-    if let Some(failure) = nominal.failure(criterion, floor_rad) {
-        return Ok(EmpiricalAnswer::NominalFails { failure, nominal });
+    let longer = Length::of(scenario, controller, (&options.criterion, patience * duration_s))?;
+    // The longer flight has the last word, and tells of slower growth.
+    if let Some(failure) = longer.nominal.failure(&options.criterion, longer.floor_rad) {
+        return Ok(EmpiricalAnswer::NominalFails { failure, nominal: longer.nominal });
     }
     let crossovers_rad_s = match &options.crossovers_rad_s {
         Some(given) => given.clone(),
         None => gain_crossovers_rad_s(scenario, controller)?,
     };
-    let prepared = &prepared;
-    let mut trials = Trials { prepared, controller, criterion, floor_rad, tolerance, flights: 1 };
+    let lengths = [&first, &longer];
+    let criterion = &options.criterion;
+    let mut trials = Trials { lengths, controller, criterion, tolerance, flights: 2 };
     Ok(EmpiricalAnswer::Margins(Box::new(EmpiricalMargins {
         gain_up: trials.gain(|factor| factor)?,
         gain_down: trials.gain(|factor| 1.0 / factor)?,
         delay_s: trials.delay_s()?,
         phase: trials.phase(&crossovers_rad_s)?,
-        nominal,
-        floor_rad,
-        quiet,
+        nominal: first.nominal,
+        floor_rad: first.floor_rad,
+        quiet: first.quiet,
         flights: trials.flights,
     })))
 }
@@ -184,21 +191,57 @@ fn gain_crossovers_rad_s(
     Ok(OpenLoop::of(scenario, &plant, controller.shell(), gains)?.gain_crossovers_rad_s())
 }
 
+/// The scenario in one length.
+struct Length {
+    prepared: Prepared,
+    nominal: Envelope,
+    floor_rad: f64,
+    quiet: bool,
+}
+
+impl Length {
+    fn of(
+        scenario: &Scenario,
+        controller: &Controller,
+        (criterion, duration_s): (&Criterion, f64),
+    ) -> Result<Self, SimError> {
+        let timing = Timing::new(scenario.timing.dt_s(), duration_s)?;
+        let flown = Scenario { timing, ..scenario.clone() };
+        let prepared = flown.prepare()?;
+        let nominal = Envelope::of(&prepared, controller, &Perturbation::NONE)?;
+        let quiet = is_quiet(&flown, &prepared);
+        let floor_rad = criterion.floor_rad(&nominal, quiet);
+        Ok(Self { prepared, nominal, floor_rad, quiet })
+    }
+}
+
 /// Flights of one controller with perturbations.
 struct Trials<'a> {
-    prepared: &'a Prepared,
+    /// The first length and a longer one.
+    lengths: [&'a Length; 2],
     controller: &'a Controller,
     criterion: &'a Criterion,
-    floor_rad: f64,
     tolerance: f64,
     flights: usize,
 }
 
 impl Trials<'_> {
+    fn dt_s(&self) -> f64 {
+        self.lengths[0].prepared.timing.dt_s()
+    }
+
+    /// Why a perturbed flight does not hold, in either length; divergence is believed at once.
     fn failure(&mut self, perturbation: &Perturbation) -> Result<Option<Failure>, SimError> {
-        self.flights += 1;
-        let envelope = Envelope::of(self.prepared, self.controller, perturbation)?;
-        Ok(envelope.failure(self.criterion, self.floor_rad))
+        let mut failure = None;
+        for length in self.lengths {
+            self.flights += 1;
+            let envelope = Envelope::of(&length.prepared, self.controller, perturbation)?;
+            failure = envelope.failure(self.criterion, length.floor_rad);
+            if matches!(failure, None | Some(Failure::Diverged { .. })) {
+                break;
+            }
+        }
+        Ok(failure)
     }
 
     /// The margin of a factor from 1 on, of which `gain` makes that on the command.
@@ -211,7 +254,7 @@ impl Trials<'_> {
     }
 
     fn delay_s(&mut self) -> Result<Margin, SimError> {
-        let dt_s = self.prepared.timing.dt_s();
+        let dt_s = self.dt_s();
         let rung = libm::exp2(1.0 / RUNGS_A_DOUBLING);
         let most_samples = MOST_DELAY_SAMPLES.min(MOST_DELAY_S / dt_s);
         let rungs = geometric(FIRST_DELAY_SAMPLES, rung, most_samples);
@@ -222,7 +265,7 @@ impl Trials<'_> {
     }
 
     fn phase(&mut self, crossovers_rad_s: &[f64]) -> Result<Vec<PhaseMargin>, SimError> {
-        let dt_s = self.prepared.timing.dt_s();
+        let dt_s = self.dt_s();
         let rungs = (1..=LAG_RUNGS).map(|rung| LAG_STEP_RAD * f64::from(rung)).collect();
         let (tolerance, width) = (self.tolerance, LAG_WIDTH_RAD);
         let ladder = Ladder { from: 0.0, rungs, tolerance, width };
