@@ -85,6 +85,11 @@ impl<R: Real> Guard<R> {
         Ok(Self { limit: positive("sample guard, rad", limit_rad)? })
     }
 
+    /// The largest sample that is believed, rad.
+    pub fn limit_rad(&self) -> R {
+        self.limit
+    }
+
     /// The fault of a sample, if it has one.
     pub(crate) fn fault(&self, sample: Sample<R>) -> Option<Faults> {
         let values = [sample.setpoint_rad, sample.measurement_rad, sample.rate_rad_s];

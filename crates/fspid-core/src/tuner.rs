@@ -189,12 +189,23 @@ impl<R: Real> SelfTuner<R> {
         if !(error.is_finite() && change.is_finite()) {
             return Err(Faults::OVERFLOW);
         }
+        self.inferred(error, change)
+    }
+
+    /// Scaled increments for inputs as the supervisor sees them.
+    fn inferred(&self, error: R, change: R) -> Result<(Gains<R>, Faults), Faults> {
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
         let fault = if inference.underflowed { Faults::UNDERFLOW } else { Faults::NONE };
         let delta = Gains::from(inference.delta);
-        Ok((settings.output_scale.zip(delta, |s, d| s * d), fault))
+        Ok((self.settings.output_scale.zip(delta, |s, d| s * d), fault))
+    }
+
+    /// Scaled increments $s \Delta k$ where the supervisor sees `error` and `change`, in its own units
+    /// and with its sign, outside of any dead zone; `None` for inputs that it refuses.
+    pub fn increments_where_seen(&self, error: R, change: R) -> Option<Gains<R>> {
+        self.inferred(error, change).ok().map(|(increments, _)| increments)
     }
 
     /// The gains of this sample; `previous` are those of the last one, `None` at the first. With

@@ -104,7 +104,7 @@ impl Reflector {
 }
 
 /// Similar matrix with zeros below the first subdiagonal, by Householder reflections.
-fn to_hessenberg(matrix: &mut Matrix) {
+pub(crate) fn to_hessenberg(matrix: &mut Matrix) {
     let size = matrix.rows();
     for column in 0..size.saturating_sub(2) {
         let below: Vec<f64> = (column + 1..size).map(|row| matrix.at(row, column)).collect();
@@ -182,7 +182,7 @@ fn block_eigenvalues(h: &Matrix, start: usize, end: usize) -> Vec<Complex> {
 }
 
 /// Eigenvalues of ((a, b), (c, d)), the larger real one first found and the other from the product.
-fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex; 2] {
+pub(crate) fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex; 2] {
     let half = 0.5 * (a - d);
     let discriminant = half * half + b * c;
     if discriminant < 0.0 {

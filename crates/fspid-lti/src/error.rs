@@ -152,6 +152,30 @@ pub enum LtiError {
         "no feedback makes this system stable at finite cost: a mode is out of reach, or is neutral and costs nothing"
     )]
     NotStabilisable,
+    /// A question about the margins of a sampled loop that has none.
+    #[error(
+        "the closed loop is not stable: its spectral radius is {spectral_radius}; margins and peaks exist below 1 only"
+    )]
+    UnstableLoop {
+        /// Largest modulus of a closed-loop pole in the z plane.
+        spectral_radius: f64,
+    },
+    /// A question about the peaks of a continuous loop that has none.
+    #[error(
+        "the closed loop has {unstable_poles} unstable poles; peaks and disks exist for stable loops only"
+    )]
+    UnstablePoles {
+        /// Closed-loop poles on the right.
+        unstable_poles: usize,
+    },
+    /// A question that only a loop without dead time can answer.
+    #[error(
+        "the loop has a dead time of {delay_s} s; its peaks are only found without one, or sampled with whole samples of it"
+    )]
+    DeadTime {
+        /// The dead time in seconds.
+        delay_s: f64,
+    },
     /// An iteration that used up its limit.
     #[error("the {what} had not converged after {iterations} iterations, the most allowed")]
     NotConverged {

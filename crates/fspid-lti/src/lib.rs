@@ -59,6 +59,8 @@ pub use mode::{Mode, continuous_pole};
 pub use polynomial::{DEGREE_LIMIT, Polynomial};
 pub use regulator::{Regulator, regulator};
 pub use response::step_response;
-pub use sampled::SampledLoop;
+pub use sampled::{
+    DiskMargin, GainLimit, Peak, SampledCrossover, SampledLoop, SampledMargins, Stability,
+};
 pub use state_space::StateSpace;
 pub use transfer_function::TransferFunction;

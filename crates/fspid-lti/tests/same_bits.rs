@@ -6,7 +6,8 @@
 mod support;
 
 use fspid_lti::{
-    Complex, LtiError, Mode, Polynomial, continuous_pole, eigenvalues, zero_order_hold,
+    Complex, LtiError, Mode, Polynomial, SampledLoop, Stability, continuous_pole, eigenvalues,
+    zero_order_hold,
 };
 use support::{matrix, numbers, rows};
 
@@ -68,5 +69,33 @@ fn sampled_systems_have_the_same_bits_everywhere() -> Result<(), LtiError> {
         a.data().iter().chain(b.data()).for_each(|&value| digest.add(value));
     }
     assert_eq!(digest.0, 0x632e_bc02_4719_ff38, "{:#x}", digest.0);
+    Ok(())
+}
+
+#[test]
+fn margins_of_sampled_loops_have_the_same_bits_everywhere() -> Result<(), LtiError> {
+    let mut digest = Digest::new();
+    for row in rows(include_str!("data/margins.csv")) {
+        let b = numbers(row[3]);
+        let a = matrix(b.len(), &numbers(row[2]));
+        let open = SampledLoop::new(a, b, numbers(row[4]), numbers(row[1])[0])?;
+        digest.add_all(&open.zeros()?);
+        open.real_crossings()?.into_iter().for_each(|omega| digest.add(omega));
+        match open.margins()? {
+            Stability::Unstable { poles, .. } => digest.add_all(&poles),
+            Stability::Stable(found) => {
+                let limits = [found.gain_low, found.gain_high].into_iter().flatten();
+                limits.for_each(|limit| digest.add(limit.factor));
+                found.crossovers.iter().for_each(|at| digest.add(at.phase_margin_rad));
+                for peak in [found.sensitivity_peak, found.complementary_peak] {
+                    digest.add(peak.value);
+                    digest.add(peak.omega_rad_s);
+                }
+                digest.add(found.disk.size);
+                digest.add(found.spectral_radius);
+            }
+        }
+    }
+    assert_eq!(digest.0, 0x5cd7_18ee_8955_f1ef, "{:#x}", digest.0);
     Ok(())
 }

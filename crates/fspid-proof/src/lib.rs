@@ -11,6 +11,17 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod certificate;
 pub mod check;
+mod description;
 pub mod gain_set;
+mod limits;
+mod prove;
+mod recheck;
 pub mod solve;
+
+pub use certificate::{Certificate, Claim};
+pub use description::{LoopDescription, NotProvable};
+pub use limits::pitch_within;
+pub use prove::{Effort, Largest, Outcome, Verdict, certify};
+pub use recheck::{Doubt, Rechecked};

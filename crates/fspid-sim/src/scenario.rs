@@ -79,6 +79,14 @@ impl Scenario {
         })
     }
 
+    /// What moves the elevator: the surroundings' actuator, or the servo written as one.
+    ///
+    /// # Errors
+    /// None: what a servo allows, an actuator allows.
+    pub fn actuator(&self) -> Result<Actuator, SimError> {
+        self.surroundings.actuator.map_or_else(|| self.servo.as_actuator(), Ok)
+    }
+
     pub(crate) fn delay_samples(&self) -> usize {
         let actuator = self.surroundings.actuator.as_ref();
         actuator.map_or(self.servo.delay_samples(), Actuator::delay_samples)
@@ -116,9 +124,8 @@ impl Scenario {
         if !self.plant_changes.is_empty() {
             return Err(SimError::AircraftChanges);
         }
-        let Surroundings { weather, actuator, .. } = &self.surroundings;
-        let actuator = actuator.map_or_else(|| self.servo.as_actuator(), Ok)?;
-        let flight = AircraftFlight::new(plant, actuator, weather.as_ref(), self.timing)?;
+        let weather = self.surroundings.weather.as_ref();
+        let flight = AircraftFlight::new(plant, self.actuator()?, weather, self.timing)?;
         Ok(vec![Stage { from: 0, propagation: Propagation::Aircraft(Box::new(flight)) }])
     }
 
@@ -156,7 +163,8 @@ impl Scenario {
     }
 
     /// Every linear plant that lasts: the first, and the one after each change.
-    pub(crate) fn lasting_plants(&self) -> Vec<(f64, &LinearPlant)> {
+    #[must_use]
+    pub fn lasting_plants(&self) -> Vec<(f64, &LinearPlant)> {
         let first = self.plant.linear().into_iter().map(|plant| (0.0, plant));
         let later = self.plant_changes.iter().map(|change| (change.at_s(), change.target()));
         first.chain(later).collect()

@@ -190,7 +190,7 @@ fn the_open_loop_returns_the_command_at_the_border_of_stability() {
     }
     let gains = Gains { kp: stable, ki: 0.0, kd: 0.0 };
     let open = OpenLoop::of(&scenario, &b747(), &plain(), gains).expect("a loop");
-    let crossovers = open.gain_crossovers_rad_s();
+    let crossovers = open.gain_crossovers_rad_s().expect("found");
     let nearest = crossovers
         .iter()
         .map(|at| modulus(open.at(*at).expect("no pole").returned + Complex::from(1.0)))

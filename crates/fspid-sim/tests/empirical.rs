@@ -140,7 +140,7 @@ fn a_linear_loop_bears_the_delay_and_the_lag_of_its_phase_margin() {
     let scenario = scenario(b747(), pid(gains.kp, gains.ki, gains.kd), FLIGHT_S);
     let margins = margins(&scenario);
     let open = OpenLoop::of(&scenario, &b747(), &plain(), gains).expect("a loop");
-    let [at_rad_s] = open.gain_crossovers_rad_s()[..] else {
+    let [at_rad_s] = open.gain_crossovers_rad_s().expect("found")[..] else {
         panic!("{:?}", open.gain_crossovers_rad_s());
     };
     // With one crossover an all-pass is at the border of stability where it takes all of the phase.

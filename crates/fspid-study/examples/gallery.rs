@@ -7,6 +7,9 @@ use fspid_study::figure::{
     SurfaceKind, Svg, diagrams, memberships, page_style,
 };
 
+#[path = "gallery/analysis.rs"]
+mod analysis;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("the folder to write to is missing")?);
     std::fs::create_dir_all(&folder)?;
@@ -23,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("pitch-loop", diagrams::pitch_loop()),
         ("self-tuning-pid", diagrams::self_tuning_pid()),
     ];
-    for (name, svg) in figures {
+    for (name, svg) in figures.into_iter().chain(analysis::figures()?) {
         std::fs::write(folder.join(format!("{name}.svg")), svg.as_str())?;
     }
     Ok(())

@@ -13,6 +13,8 @@
 )]
 
 pub mod aircraft;
+pub mod analysis;
+pub mod certify;
 pub mod figure;
 pub mod file;
 pub mod fly;
@@ -23,7 +25,9 @@ pub mod metrics;
 pub mod output;
 pub mod report;
 pub mod reproduce;
+pub mod requirement;
 pub mod rows;
 pub mod simulation;
 pub mod tune;
 pub mod units;
+pub mod verify;

@@ -1,7 +1,9 @@
 //! The commands, one file each.
 
 pub(crate) mod aircraft;
+pub(crate) mod analyse;
 pub(crate) mod audit;
+pub(crate) mod certify;
 pub(crate) mod check;
 pub(crate) mod convert;
 mod drawings;
@@ -13,6 +15,7 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
 pub(crate) mod surface;
+pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};
 

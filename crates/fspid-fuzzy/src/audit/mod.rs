@@ -19,7 +19,7 @@ pub use rule_base::{
 };
 pub use search::Extreme;
 pub use surface::{
-    AlongInput, Counterexample, Coverage, Monotone, OutputSurface, RuleEffect, SurfaceAudit,
+    AlongInput, Counterexample, Coverage, Monotone, OutputSurface, Reach, RuleEffect, SurfaceAudit,
     SurfaceError, SurfaceOptions, Symmetry, TermReach, surface,
 };
 

@@ -3,6 +3,7 @@
 #![cfg(feature = "alloc")]
 #![allow(clippy::float_cmp, reason = "what is exact is asked for exactly")]
 
+mod reach;
 mod rule_base;
 mod soundness;
 mod surface;

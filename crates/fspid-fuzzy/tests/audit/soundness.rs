@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 /// Rounding in an evaluation and in the difference of two.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Half the distance of the two points of a sampled slope.
 const STEP: f64 = 1e-5;
 
@@ -112,7 +112,7 @@ fn rule(dice: &mut Dice<'_>, cell: &[usize], terms: usize) -> Rule {
     }
 }
 
-fn system(numbers: &[f64], count: usize, defuzzifier: Defuzzifier) -> System {
+pub(super) fn random_system(numbers: &[f64], count: usize, defuzzifier: Defuzzifier) -> System {
     let mut dice = Dice(numbers.iter().cycle());
     let inputs = inputs(&mut dice, count);
     let output = output(&mut dice, count, defuzzifier);
@@ -137,7 +137,7 @@ fn system(numbers: &[f64], count: usize, defuzzifier: Defuzzifier) -> System {
     System::new(parts).expect("a sound system")
 }
 
-fn defuzzifier() -> impl Strategy<Value = Defuzzifier> {
+pub(super) fn defuzzifier() -> impl Strategy<Value = Defuzzifier> {
     prop_oneof![
         4 => Just(Defuzzifier::Centroid(Sampling::Exact)),
         1 => Just(Defuzzifier::Centroid(Sampling::Endpoints(21))),
@@ -197,7 +197,7 @@ proptest! {
         defuzzifier in defuzzifier(),
         points in proptest::collection::vec(proptest::array::uniform3(-1.0_f64..=1.0), 40),
     ) {
-        let system = system(&numbers, count, defuzzifier);
+        let system = random_system(&numbers, count, defuzzifier);
         let options = SurfaceOptions { boxes: 16, ..SurfaceOptions::default() };
         let audit = surface(&system, &options).expect("universes are known");
         let proved = &audit.outputs[0];

@@ -2,11 +2,12 @@
 //!
 //! For margins and flying qualities. Crossings are not read off a grid: between the frequencies at which gain or phase
 //! turn round, which are roots of polynomials, each is monotone, so no crossing is missed and each is found to the
-//! last digits. Not for sampled loops.
+//! last digits. Not for sampled loops: see [`SampledLoop`](crate::SampledLoop).
 
 mod crossing;
 mod margins;
 mod parts;
+mod peak;
 
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;

@@ -1,1 +1,30 @@
 //! The re-check in interval arithmetic: what a certificate is believed for.
+//!
+//! A solver finds matrices in ordinary arithmetic. What they claim is proved here, or refused: every
+//! sum and product is enclosed, the sampled plant with its matrix exponential as well, and nothing is
+//! taken from the solver but numbers.
+//!
+//! # What it rests on
+//! Sums, products, quotients and square roots of `f64` rounded to nearest (IEEE 754), the intervals of
+//! [`fspid_fuzzy::scalar::Interval`], and the error bounds written down beside the code. No other
+//! elementary function is used.
+
+mod balance;
+mod definite;
+mod error;
+mod exponential;
+mod factor;
+mod growth;
+mod lyapunov;
+mod matrix;
+mod plant;
+mod product;
+mod rounding;
+
+pub use definite::prove_positive_definite;
+pub use error::NotProved;
+pub use exponential::{exponential, held};
+pub use growth::{prove_growth, prove_unstable};
+pub use lyapunov::{falls, falls_between, inside_limit, is_positive};
+pub use matrix::IntervalMatrix;
+pub use plant::{ActuatorLag, PrintedPlant, printed};

@@ -1,1 +1,190 @@
 //! Every gain that a self-tuner can produce, as boxes over cells of the supervisor's inputs.
+//!
+//! The plane of the supervisor's inputs, error and change, is cut into cells. Over each the
+//! increments of the three gains are enclosed by interval arithmetic ([`IncrementMap`]); with the
+//! nominal gains, the output factors, the law and the gain limits they become a [`GainSet`]: a box
+//! of gains for each cell, which holds whatever the controller flies with while its inputs are in
+//! the cell, rounding of its own arithmetic included.
+//!
+//! A set is used in two ways: whole, for gains that move in it as they like ([`GainSet::corners`],
+//! [`GainSet::hull`]), and cell by cell, for gains that belong to the inputs ([`GainSet::cones`]).
+//! Beside the boxes there are the gains that are really produced at a point ([`producible`],
+//! [`grid`]).
+//!
+//! Symbols: $k'$ nominal gains, $\Delta k$ increments, $s$ output factors, $\lambda$ leakage, $T$
+//! sample period.
+//!
+//! # What is covered
+//! The gains of every sample that a controller answers. A sample that it does not believe (not
+//! finite, beyond its guard, or overflowing) is answered by its last command, whatever the gains.
+
+mod cones;
+mod hull;
+mod increments;
+mod law;
+mod produced;
+
+use fspid_core::Gains;
+use fspid_fuzzy::scalar::Interval;
+
+pub use cones::Cone;
+pub use increments::{IncrementCell, IncrementMap};
+pub use produced::{grid, producible};
+
+/// Names of the gains in the order of all arrays here.
+const NAMES: [&str; 3] = ["kp", "ki", "kd"];
+/// All inputs.
+const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// Why the gains of a self-tuner have no bounds.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoBound {
+    /// The accumulating law adds to a gain for ever.
+    #[error(
+        "{gain} has no bounds: the accumulating law adds to it for as long as the flight lasts; give \
+         the law a leakage above 0, or {gain} both gain limits"
+    )]
+    Accumulating {
+        /// Which gain.
+        gain: &'static str,
+    },
+}
+
+/// Every gain that a controller can fly with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GainSet {
+    /// The nominal gains $k'$.
+    pub nominal: Gains<f64>,
+    /// The gains at rest, where error and change are zero; under the accumulating law those that it
+    /// then tends to.
+    pub rest: [Interval; 3],
+    /// The gains cell by cell; together the cells fill the plane of the supervisor's inputs.
+    pub cells: Vec<GainCell>,
+}
+
+/// The gains over a cell of the supervisor's inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainCell {
+    /// Errors, in supervisor units, at which a gain of the cell may be in force.
+    pub error: [f64; 2],
+    /// Changes of error, in supervisor units, at which a gain of the cell may be in force.
+    pub change: [f64; 2],
+    /// Bounds of kp, ki and kd.
+    pub gains: [Interval; 3],
+}
+
+impl GainSet {
+    /// The set of a controller with fixed gains: one point, whatever the inputs.
+    #[must_use]
+    pub fn fixed(gains: Gains<f64>) -> Self {
+        let point = array(gains).map(Interval::point);
+        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point };
+        Self { nominal: gains, rest: point, cells: vec![cell] }
+    }
+
+    /// The part of the set over some of its cells.
+    #[must_use]
+    pub fn of_cells(&self, cells: &[usize]) -> Self {
+        let cells = cells.iter().filter_map(|&cell| self.cells.get(cell).copied()).collect();
+        Self { cells, ..self.clone() }
+    }
+
+    /// The smallest box that holds the set.
+    #[must_use]
+    pub fn bounds(&self) -> [Interval; 3] {
+        let hull = |one: [Interval; 3], other: [Interval; 3]| {
+            let [a, b, c] = one;
+            let [d, e, f] = other;
+            [a.hull(d), b.hull(e), c.hull(f)]
+        };
+        let boxes = self.cells.iter().map(|cell| cell.gains);
+        boxes.reduce(hull).unwrap_or(array(self.nominal).map(Interval::point))
+    }
+
+    /// The corners of every box with the number of its cell; of a box that is flat along a gain
+    /// only those that differ.
+    pub fn corners(&self) -> impl Iterator<Item = (usize, Gains<f64>)> {
+        let cells = self.cells.iter().enumerate();
+        cells.flat_map(|(index, cell)| corners(cell.gains).map(move |corner| (index, corner)))
+    }
+
+    /// Those of the [`corners`](Self::corners) that span the convex hull of all.
+    ///
+    /// Every corner lies inside or no further outside than $10^{-9}$, measured in halves of the
+    /// set's extent along each gain. Computed in ordinary arithmetic: good to look for a
+    /// certificate with, while the proof asks all corners.
+    #[must_use]
+    pub fn hull(&self) -> Vec<Gains<f64>> {
+        self.hull_within(0.0)
+    }
+
+    /// As [`hull`](Self::hull), but with fewer points: corners may lie outside by the share
+    /// `tolerance` of half the set's extent along each gain.
+    #[must_use]
+    pub fn hull_within(&self, tolerance: f64) -> Vec<Gains<f64>> {
+        let corners: Vec<[f64; 3]> = self.corners().map(|(_, corner)| array(corner)).collect();
+        hull::spanning(&corners, tolerance).into_iter().map(gains).collect()
+    }
+
+    /// True if the gains lie in one of the boxes.
+    #[must_use]
+    pub fn contains(&self, gains: Gains<f64>) -> bool {
+        let inside = |cell: &GainCell| {
+            cell.gains.iter().zip(array(gains)).all(|(bounds, gain)| bounds.contains(gain))
+        };
+        self.cells.iter().any(inside)
+    }
+}
+
+/// Up to eight corners of a box.
+fn corners(sides: [Interval; 3]) -> impl Iterator<Item = Gains<f64>> {
+    let [kp, ki, kd] = sides.map(|side| {
+        let other = (!side.is_point()).then_some(side.upper());
+        core::iter::once(side.lower()).chain(other)
+    });
+    kp.flat_map(move |kp| {
+        let kd = kd.clone();
+        ki.clone().flat_map(move |ki| kd.clone().map(move |kd| Gains { kp, ki, kd }))
+    })
+}
+
+fn array(gains: Gains<f64>) -> [f64; 3] {
+    [gains.kp, gains.ki, gains.kd]
+}
+
+fn gains([kp, ki, kd]: [f64; 3]) -> Gains<f64> {
+    Gains { kp, ki, kd }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_boxes(boxes: &[[Interval; 3]]) -> GainSet {
+        let cell = |&gains| GainCell { error: EVERYWHERE, change: EVERYWHERE, gains };
+        let nominal = Gains { kp: 1.0, ki: 0.5, kd: 0.25 };
+        let rest = array(nominal).map(Interval::point);
+        GainSet { nominal, rest, cells: boxes.iter().map(cell).collect() }
+    }
+
+    #[test]
+    fn a_box_has_eight_corners_and_a_flat_one_fewer() {
+        let (wide, flat) = (Interval::between(1.0, 2.0), Interval::ONE);
+        let set = of_boxes(&[[wide; 3], [wide, flat, wide], [flat; 3]]);
+        let counts =
+            [0, 1, 2].map(|cell| set.corners().filter(|&(found, _)| found == cell).count());
+        assert_eq!(counts, [8, 4, 1]);
+        assert!(set.corners().all(|(_, corner)| set.contains(corner)));
+    }
+
+    #[test]
+    fn fixed_gains_are_one_point() {
+        let gains = Gains { kp: 2.0, ki: 0.0, kd: -1.0 };
+        let set = GainSet::fixed(gains);
+        assert_eq!(set.corners().collect::<Vec<_>>(), [(0, gains)]);
+        assert_eq!(set.hull(), [gains]);
+        assert_eq!(set.bounds(), set.rest);
+        assert!(set.contains(gains) && !set.contains(Gains { kd: 0.0, ..gains }));
+    }
+}

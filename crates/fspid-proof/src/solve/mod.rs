@@ -1,1 +1,44 @@
 //! Looking for Lyapunov functions and for growing sequences of gains, in ordinary arithmetic.
+//!
+//! Nothing here is believed: what is found is handed to the re-check. So the searches aim for answers
+//! well inside, whose inequalities hold with room for the enclosures of the re-check, and not for the
+//! last digit of the best one.
+//!
+//! Everything is deterministic: no random numbers, no clock, sums in a fixed order.
+
+mod barrier;
+mod cells;
+mod centres;
+mod dense;
+mod gain_family;
+mod growth;
+mod inequality;
+mod instability;
+mod lyapunov;
+mod parameter_dependent;
+mod stein;
+mod symmetric;
+mod words;
+
+pub use gain_family::GainFamily;
+pub use growth::{Growth, growing_sequence};
+pub use instability::{InstabilityForm, instability_form};
+pub use lyapunov::{BestRate, Condition, Problem, Solution, Verdict, best_rate, common_lyapunov};
+pub use parameter_dependent::{MovingForm, MovingVerdict, moving_form};
+
+/// How much work a search may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort {
+    /// Newton steps of a search for a form.
+    pub newton_steps: usize,
+    /// Samples of each flight of a search for growth.
+    pub flight_samples: usize,
+}
+
+impl Default for Effort {
+    /// The loops of the tests need up to 160 steps for a form at rest and 500 for one that moves, and flights
+    /// of some three of their slowest periods.
+    fn default() -> Self {
+        Self { newton_steps: 1000, flight_samples: 4000 }
+    }
+}

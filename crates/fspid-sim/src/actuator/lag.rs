@@ -1,5 +1,7 @@
 //! How an actuator follows its command where no limit holds it.
 
+use fspid_lti::TransferFunction;
+
 use crate::error::{SimError, positive};
 
 /// The linear part of an actuator, from command v to position x.
@@ -42,6 +44,26 @@ impl Lag {
         Ok(Self(Kind::Second { natural_frequency_rad_s, damping }))
     }
 
+    /// Time constant of a lag of first order, s.
+    #[must_use]
+    pub const fn time_constant_s(&self) -> Option<f64> {
+        match self.0 {
+            Kind::First { time_constant_s } => Some(time_constant_s),
+            _ => None,
+        }
+    }
+
+    /// Natural frequency, rad/s, and damping ratio of a lag of second order.
+    #[must_use]
+    pub const fn second_order_parameters(&self) -> Option<(f64, f64)> {
+        match self.0 {
+            Kind::Second { natural_frequency_rad_s, damping } => {
+                Some((natural_frequency_rad_s, damping))
+            }
+            _ => None,
+        }
+    }
+
     /// Order of the lag: 0, 1 or 2.
     #[must_use]
     pub const fn order(&self) -> usize {
@@ -52,9 +74,24 @@ impl Lag {
         }
     }
 
+    /// From command to position; `None` for no lag.
+    ///
+    /// # Errors
+    /// A lag so quick that a coefficient overflows.
+    pub fn transfer_function(&self) -> Result<Option<TransferFunction>, SimError> {
+        let [by_position, by_rate, by_command] = self.coefficients();
+        let whole = [1.0, -by_rate, -by_position];
+        let denominator = match self.order() {
+            0 => return Ok(None),
+            1 => &[1.0, -by_position][..],
+            _ => &whole,
+        };
+        Ok(Some(TransferFunction::new(&[by_command], denominator)?))
+    }
+
     /// By how much time a position that moves at a constant rate trails its command, s: $\tau$ or
     /// $2 \zeta / \omega_n$. At a rate limit R the lag takes over where the gap is R times this.
-    pub(super) fn trailing_s(&self) -> f64 {
+    pub(crate) fn trailing_s(&self) -> f64 {
         match self.0 {
             Kind::None => 0.0,
             Kind::First { time_constant_s } => time_constant_s,

@@ -191,6 +191,30 @@ impl Actuator {
         self.travel_rad
     }
 
+    /// Limits of the command, rad.
+    #[must_use]
+    pub fn command_limits_rad(&self) -> Option<(f64, f64)> {
+        self.command_limits_rad
+    }
+
+    /// Half width of the deadband, rad.
+    #[must_use]
+    pub fn deadband_rad(&self) -> f64 {
+        self.deadband_rad
+    }
+
+    /// Full width of the play, rad.
+    #[must_use]
+    pub fn play_rad(&self) -> f64 {
+        self.play_rad
+    }
+
+    /// How far the surface stands from where the actuator says, rad.
+    #[must_use]
+    pub fn bias_rad(&self) -> f64 {
+        self.bias_rad
+    }
+
     /// True with nothing but lag, bias and delay.
     #[must_use]
     pub fn is_linear(&self) -> bool {

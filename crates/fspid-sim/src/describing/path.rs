@@ -47,8 +47,6 @@ impl LimitedPath {
     /// # Errors
     /// None: what a scenario has, an actuator allows.
     pub fn of(scenario: &Scenario, shell: &Shell<f64>) -> Result<Self, SimError> {
-        let actuator = scenario.surroundings.actuator;
-        let actuator = actuator.map_or_else(|| scenario.servo.as_actuator(), Ok)?;
         let travel_rad = match &scenario.plant {
             Plant::Linear(_) => None,
             Plant::Aircraft(plant) => {
@@ -61,7 +59,7 @@ impl LimitedPath {
         Ok(Self {
             slew_rad_s: shell.slew_rad_s,
             limits: shell.limits,
-            actuator: actuator.with_bias(0.0)?,
+            actuator: scenario.actuator()?.with_bias(0.0)?,
             travel_rad,
         })
     }
@@ -111,7 +109,7 @@ impl LimitedPath {
             return None;
         }
         let lag = self.actuator.lag();
-        if lag.order() > 0 && trailing_s(lag) * frequency_rad_s < effort.least_lag {
+        if lag.order() > 0 && lag.trailing_s() * frequency_rad_s < effort.least_lag {
             let prompt = Self { actuator: self.actuator.with_lag(Lag::NONE), ..self.clone() };
             return prompt.relative(amplitude_rad, frequency_rad_s, effort);
         }
@@ -158,16 +156,6 @@ impl LimitedPath {
             }
         }
         before * (1.0 / effort.steps as f64)
-    }
-}
-
-/// By how much a slow sine trails its command behind a lag, s.
-fn trailing_s(lag: Lag) -> f64 {
-    let [by_deflection, by_rate, by_target] = lag.coefficients();
-    match lag.order() {
-        0 => 0.0,
-        1 => 1.0 / by_target,
-        _ => by_rate / by_deflection,
     }
 }
 

@@ -3,7 +3,7 @@
 use fspid_core::{Gains, IntegralForm};
 use fspid_fuzzy::Scalar;
 
-use super::{BreakPoint, LoopModel, Sensing};
+use super::{BreakPoint, LoopModel, LoopSettings, Sensing};
 
 /// Where the parts of the state stand; a part that is not there has no place.
 #[derive(Clone, Debug)]
@@ -265,6 +265,38 @@ impl<T: Scalar> Assembly<T> {
                 exit: self.rate.clone(),
             },
         }
+    }
+
+    pub(super) fn arriving(&self) -> Vec<T> {
+        match self.layout.queue {
+            0 => self.command(),
+            _ => unit(self.layout.plant, self.layout.size),
+        }
+    }
+
+    pub(super) fn integral_term(&self, ki: T, settings: &LoopSettings) -> Vec<T> {
+        let Some(place) = self.layout.integral else {
+            return vec![T::zero(); self.layout.size];
+        };
+        // What is remembered next, by state, is the term itself (bumpless) or the sum of errors.
+        let factor = match settings.shell.integral {
+            IntegralForm::Bumpless => T::one(),
+            IntegralForm::Literal => ki * T::constant(settings.shell.dt_s),
+        };
+        let by_pitch = self.memory_by_pitch[place];
+        let next = self.free[place].iter().zip(&self.pitch);
+        next.map(|(own, pitch)| factor * (*own + by_pitch * *pitch)).collect()
+    }
+
+    pub(super) fn pitch_off(&self, pitch: T, scale: f64) -> Vec<T> {
+        let layout = &self.layout;
+        let mut state = vec![T::zero(); layout.size];
+        state[0] = pitch;
+        state[layout.pitch_from()..layout.rate_from()].fill(pitch);
+        if let Some(previous) = layout.previous {
+            state[previous] = -(T::constant(scale) * pitch);
+        }
+        state
     }
 
     pub(super) fn error_rows(&self) -> [Vec<T>; 2] {

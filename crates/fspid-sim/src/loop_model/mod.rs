@@ -24,6 +24,7 @@ mod tests;
 
 use fspid_core::{Gains, Shell};
 use fspid_fuzzy::Scalar;
+use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
 
 use crate::error::SimError;
@@ -146,6 +147,25 @@ impl<T: Scalar> LoopModel<T> {
         self.assembly(gains).command()
     }
 
+    /// The row from the state to the command that arrives at the actuator now, rad.
+    #[must_use]
+    pub fn arriving_row(&self, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).arriving()
+    }
+
+    /// The row from the state to the integral's term of the command, rad; zeros without an integral.
+    #[must_use]
+    pub fn integral_row(&self, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).integral_term(gains.ki, &self.settings)
+    }
+
+    /// The state in which the pitch angle is off by `pitch`, as long as the loop remembers, and
+    /// everything else at rest.
+    #[must_use]
+    pub fn pitch_off(&self, pitch: T) -> Vec<T> {
+        self.assembly(zero_gains()).pitch_off(pitch, self.settings.pitch.scale)
+    }
+
     /// Rows from the state to the error, rad, and its change since the last sample, rad, as the
     /// controller sees them; the change is 0 in a loop that does not remember the last sample.
     #[must_use]
@@ -176,6 +196,20 @@ impl LoopModel<f64> {
     /// Gains so large that an entry overflows.
     pub fn closed_matrix(&self, gains: Gains<f64>) -> Result<Matrix, SimError> {
         Ok(Matrix::from_rows(&self.closed(gains))?)
+    }
+}
+
+impl LoopModel<Interval> {
+    /// The loop of the middles of all numbers.
+    #[must_use]
+    pub fn midpoint(&self) -> LoopModel<f64> {
+        let middles = |values: &[Interval]| values.iter().map(|value| value.midpoint()).collect();
+        let plant = SampledPlant {
+            states: self.plant.states,
+            rows: middles(&self.plant.rows),
+            rate: middles(&self.plant.rate),
+        };
+        LoopModel::new(plant, self.settings.clone())
     }
 }
 

@@ -12,8 +12,6 @@ pub(crate) struct LoopParts {
     pub(crate) matrix: Vec<Vec<f64>>,
     /// Next state by command.
     pub(crate) by_command: Vec<f64>,
-    /// Command by state.
-    pub(crate) command: Vec<f64>,
     /// Seen pitch and seen rate by state.
     pub(crate) pitch: Vec<f64>,
     pub(crate) rate: Vec<f64>,
@@ -26,12 +24,11 @@ pub(crate) struct LoopParts {
 impl LoopModel<f64> {
     pub(crate) fn parts(&self, gains: Gains<f64>) -> LoopParts {
         let assembly = self.assembly(gains);
-        let Broken { matrix, entry, exit } = assembly.broken(BreakPoint::Command);
+        let Broken { matrix, entry, .. } = assembly.broken(BreakPoint::Command);
         let layout = &assembly.layout;
         LoopParts {
             matrix,
             by_command: entry,
-            command: exit,
             pitch: assembly.broken(BreakPoint::Pitch).exit,
             rate: assembly.broken(BreakPoint::Rate).exit,
             integral: layout.integral,

@@ -26,7 +26,8 @@ impl Sensing {
     pub const DIRECT: Self = Self { scale: 1.0, samples: 0, part: 0.0, at_largest_age: false };
 
     /// Through a sensor that is read every `dt_s`, if there is one.
-    pub(super) fn through(sensor: Option<&Sensor>, dt_s: f64) -> Self {
+    #[must_use]
+    pub fn through(sensor: Option<&Sensor>, dt_s: f64) -> Self {
         let Some(model) = sensor.map(Sensor::model) else {
             return Self::DIRECT;
         };

@@ -54,6 +54,18 @@ impl Axis {
         })
     }
 
+    /// A linear axis of angles (deg): ticks at even parts of a turn where a few of those fit.
+    pub(super) fn degrees(range: Option<(f64, f64)>, margin: f64, ticks: usize) -> Self {
+        let plain = Self::linear(range, margin, ticks);
+        let raw = (plain.hi - plain.lo) / ticks.max(1) as f64;
+        let steps = [(1.5, 1), (3.0, 1), (4.5, 1), (9.0, 1), (1.8, 2), (3.6, 2)];
+        let fits = |&(mantissa, exponent): &(f64, i32)| mantissa * power_of_ten(exponent) >= raw;
+        match steps.into_iter().find(fits).filter(|_| raw > 7.5) {
+            Some((mantissa, exponent)) => Self { mantissa, exponent, ..plain },
+            None => plain,
+        }
+    }
+
     /// A logarithmic axis over the positive part of `range`.
     pub(super) fn logarithmic(range: Option<(f64, f64)>, margin: f64) -> Self {
         let (lo, hi) = range.filter(|(lo, hi)| *lo > 0.0 && hi >= lo).unwrap_or((0.5, 2.0));
@@ -306,6 +318,26 @@ mod tests {
             labels(&Axis::logarithmic(Some((0.5, 1.1)), 0.0)),
             ["0.5", "0.6", "0.7", "0.8", "0.9", "1"]
         );
+    }
+
+    #[test]
+    fn angles_have_ticks_at_parts_of_a_turn() {
+        assert_eq!(
+            labels(&Axis::degrees(Some((-270.0, 0.0)), 0.0, 6)),
+            [
+                "\u{2212}270",
+                "\u{2212}225",
+                "\u{2212}180",
+                "\u{2212}135",
+                "\u{2212}90",
+                "\u{2212}45",
+                "0"
+            ]
+        );
+        assert_eq!(labels(&Axis::degrees(Some((0.0, 4.0)), 0.0, 4)), ["0", "1", "2", "3", "4"]);
+        let wide = labels(&Axis::degrees(Some((-900.0, 0.0)), 0.0, 5));
+        assert_eq!(wide.last().map(String::as_str), Some("0"));
+        assert!(wide.contains(&"\u{2212}180".to_owned()));
     }
 
     #[test]

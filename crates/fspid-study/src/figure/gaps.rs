@@ -14,11 +14,19 @@ const SWATCH: f64 = 26.0;
 
 /// Hatches an area with slanting lines; the caller clips.
 pub(super) fn hatch(canvas: &mut Canvas, area: Rect) {
+    slant(canvas, area, &Paint::line(Role::Setpoint, 0.7));
+}
+
+/// The same with strong lines, for what must not be overlooked.
+pub(super) fn hatch_boldly(canvas: &mut Canvas, area: Rect) {
+    slant(canvas, area, &Paint::line(Role::Ink, 1.5));
+}
+
+fn slant(canvas: &mut Canvas, area: Rect, paint: &Paint) {
     let (bottom, count) = (area.y + area.height, ((area.width + area.height) / GAP) as usize);
     for n in 0..=count {
         let x = area.x - area.height + n as f64 * GAP;
-        let paint = Paint::line(Role::Setpoint, 0.7);
-        canvas.line((x, bottom), (x + area.height, area.y), &paint);
+        canvas.line((x, bottom), (x + area.height, area.y), paint);
     }
 }
 

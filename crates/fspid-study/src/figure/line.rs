@@ -198,7 +198,7 @@ impl LinePanel {
 }
 
 impl Series {
-    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> + Clone + '_ {
         self.x.iter().copied().zip(self.y.iter().copied())
     }
 }

@@ -8,6 +8,7 @@
 //! This module draws and does not compute: peaks, tolerances and ratios come from its callers. Why `kuva`
 //! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
 
+mod analysis;
 mod axis;
 mod conclusion;
 mod contour;
@@ -19,6 +20,7 @@ mod page;
 mod plot;
 mod ratio;
 mod rules;
+mod sign;
 mod style;
 mod surface;
 mod svg;
@@ -29,6 +31,12 @@ mod thin;
 mod tiles;
 mod view;
 
+pub use analysis::{
+    BodeFigure, CLOSED_LOOP_DB, CellState, Crossing, Exclusion, GainCell, GainMap, GainSet,
+    GainSurface, LocusSample, LoopCurve, LoopPoint, MapCell, MapPoint, Margin, MarginDisk,
+    MarginMark, NicholsFigure, NyquistFigure, PeakMark, PoleZeroMap, RadiusFigure, RootLocus,
+    SensitivityFigure, Transfer,
+};
 pub use conclusion::{ConclusionFigure, Part};
 pub use line::{Band, LineFigure, LinePanel, Series};
 pub use membership::memberships;

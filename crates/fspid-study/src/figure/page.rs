@@ -1,8 +1,10 @@
 //! What the data figures share: title, legend and axis labels around the plot areas.
 
 use super::axis::Axis;
+use super::gaps;
+use super::sign::Sign;
 use super::style::{Role, SeriesStyle};
-use super::svg::{Anchor, Canvas, Font, Paint};
+use super::svg::{Anchor, Canvas, Font, Paint, Rect};
 use super::text::text_width;
 
 /// Font size of figure titles (px).
@@ -53,10 +55,23 @@ pub(super) fn title(canvas: &mut Canvas, title: &str) {
 /// What a legend entry shows before its name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Swatch {
-    Line { style: SeriesStyle, marked: bool },
+    Line {
+        style: SeriesStyle,
+        marked: bool,
+    },
     Band,
     Area(SeriesStyle),
     Reference,
+    /// A sign that marks single points.
+    Sign(Sign, Role),
+    /// A hatched area.
+    Hatched,
+    /// A full line in ink: an outline, a path.
+    Outline,
+    /// A thick line that divides what meets a requirement from what does not.
+    Divide,
+    /// A line of the grid.
+    Grid,
 }
 
 /// A name and the swatch that stands for it.
@@ -132,6 +147,17 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, swatch: Swatch) {
         }
         Swatch::Reference => {
             canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 1.0).dashed("6 3"))
+        }
+        Swatch::Sign(sign, role) => sign.draw(canvas, (x + SWATCH / 2.0, y), role),
+        Swatch::Outline => canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 1.7)),
+        Swatch::Divide => canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 2.8)),
+        Swatch::Grid => canvas.line((x, y), (end, y), &Paint::line(Role::Grid, 1.4)),
+        Swatch::Hatched => {
+            let area = Rect { x: x + 4.0, y: y - 6.0, width: SWATCH - 4.0, height: 12.0 };
+            canvas.begin_clip(area);
+            gaps::hatch_boldly(canvas, area);
+            canvas.end();
+            canvas.rect(area.x, area.y, area.width, area.height, &Paint::line(Role::Ink, 0.6));
         }
     }
 }

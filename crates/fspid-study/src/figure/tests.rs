@@ -1,5 +1,7 @@
 //! What holds for every figure, whatever goes in.
 
+use std::sync::OnceLock;
+
 use super::*;
 
 const ODD: [f64; 12] = [
@@ -18,33 +20,33 @@ const ODD: [f64; 12] = [
 ];
 
 /// Numbers from zero to one that are the same in each run.
-struct Draw(u64);
+pub(super) struct Draw(pub(super) u64);
 
 impl Draw {
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn odd(&mut self) -> f64 {
+    pub(super) fn odd(&mut self) -> f64 {
         ODD[(self.next() * ODD.len() as f64) as usize % ODD.len()]
     }
 
-    fn mixed(&mut self) -> f64 {
+    pub(super) fn mixed(&mut self) -> f64 {
         if self.next() < 0.5 { self.odd() } else { self.next() * 10.0 - 5.0 }
     }
 
-    fn list(&mut self, most: usize) -> Vec<f64> {
+    pub(super) fn list(&mut self, most: usize) -> Vec<f64> {
         let count = (self.next() * (most + 1) as f64) as usize;
         (0..count).map(|_| self.mixed()).collect()
     }
 
-    fn range(&mut self) -> Option<(f64, f64)> {
+    pub(super) fn range(&mut self) -> Option<(f64, f64)> {
         (self.next() < 0.4).then(|| (self.mixed(), self.mixed()))
     }
 
-    fn series(&mut self) -> Series {
+    pub(super) fn series(&mut self) -> Series {
         Series {
             name: ["", "FSPID", "a <b> & \"c\"", "k_{p"][(self.next() * 4.0) as usize % 4]
                 .to_owned(),
@@ -128,8 +130,13 @@ fn sine(n: u32, phase: f64) -> LineFigure {
     LineFigure { title: "sine".to_owned(), panels: vec![panel], width_px: 720.0 }
 }
 
-/// One of each kind, ordinary and odd.
-fn gallery() -> Vec<Svg> {
+/// One of each kind, ordinary and odd; drawn once for all tests.
+fn gallery() -> &'static [Svg] {
+    static GALLERY: OnceLock<Vec<Svg>> = OnceLock::new();
+    GALLERY.get_or_init(draw_gallery)
+}
+
+fn draw_gallery() -> Vec<Svg> {
     let mut draw = Draw(7);
     let mut all =
         vec![diagrams::aircraft_axes(), diagrams::pitch_loop(), diagrams::self_tuning_pid()];
@@ -146,11 +153,15 @@ fn gallery() -> Vec<Svg> {
             vec![("NB".to_owned(), points), ("PB".to_owned(), Vec::new())],
         ));
     }
+    for _ in 0..40 {
+        all.extend(analysis::tests::odd(&mut draw));
+    }
+    all.extend(analysis::tests::ordinary());
     all
 }
 
 /// Checks nesting, quoting and escapes; returns all ids.
-fn ids_of_well_formed(svg: &str) -> Vec<String> {
+pub(super) fn ids_of_well_formed(svg: &str) -> Vec<String> {
     let mut open: Vec<&str> = Vec::new();
     let mut ids = Vec::new();
     for (n, part) in svg.split('<').enumerate() {
@@ -225,7 +236,7 @@ fn every_figure_speaks_to_screen_readers_and_needs_nothing_from_outside() {
 
 #[test]
 fn the_same_input_gives_the_same_bytes_and_other_input_other_ids() {
-    assert_eq!(gallery(), gallery());
+    assert_eq!(gallery(), draw_gallery());
     let (one, two) = (sine(100, 0.0).render(), sine(100, 0.5).render());
     let shared: Vec<String> = ids_of_well_formed(one.as_str());
     assert!(ids_of_well_formed(two.as_str()).iter().all(|id| !shared.contains(id)));

@@ -126,7 +126,7 @@ impl Tiles {
 }
 
 /// Edges of tiles around nodes, half way between them.
-fn edges(nodes: &[f64]) -> Vec<f64> {
+pub(super) fn edges(nodes: &[f64]) -> Vec<f64> {
     let inner = nodes.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
     let half = |pair: Option<&[f64]>| pair.map_or(0.5, |pair| (pair[1] - pair[0]) / 2.0);
     let (first, last) = (nodes.first(), nodes.last());

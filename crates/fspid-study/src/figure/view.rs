@@ -5,10 +5,18 @@ use super::contour::Grid;
 use super::page::LABEL_PX;
 use super::plot::TICK_PX;
 use super::style::{Rgb, Role};
-use super::svg::{Anchor, Canvas, Font, Paint, Rect};
+use super::svg::{Anchor, Canvas, Font, Paint, Rect, polyline_data};
 
 /// Half the height of the room over half its width.
 const RISE: f64 = 0.62;
+
+/// How a face looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Face {
+    pub(super) colour: Rgb,
+    /// True for a face that is crossed out.
+    pub(super) crossed: bool,
+}
 
 /// How a surface is lit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,6 +92,11 @@ impl View {
         self.project(point).0
     }
 
+    /// Place on the canvas of a point in display units.
+    pub(super) fn place(&self, [x, y, z]: [f64; 3]) -> (f64, f64) {
+        self.at([self.inside(0, x), self.inside(1, y), self.inside(2, z)])
+    }
+
     fn inside(&self, axis: usize, value: f64) -> f64 {
         self.axes.get(axis).map_or(0.0, |axis| axis.fraction(value) * 2.0 - 1.0)
     }
@@ -157,6 +170,17 @@ impl View {
         light: Light,
         colour: impl Fn(f64) -> Rgb,
     ) {
+        self.faces_by(canvas, grid, light, |_, mean| Face { colour: colour(mean), crossed: false });
+    }
+
+    /// The same with a look for each face, by its row and column and the mean of its corners.
+    pub(super) fn faces_by(
+        &self,
+        canvas: &mut Canvas,
+        grid: &Grid,
+        light: Light,
+        look: impl Fn((usize, usize), f64) -> Face,
+    ) {
         let (rows, columns) = grid.cells();
         let mut faces = Vec::new();
         for i in 0..rows {
@@ -170,14 +194,20 @@ impl View {
                 // Height does not decide what hides what in a surface over the floor.
                 let depth: f64 =
                     corners.iter().map(|[x, y, _]| self.project([*x, *y, 0.0]).1).sum();
-                let colour = light.on(colour(mean), &corners);
-                faces.push((depth, corners.map(|corner| self.at(corner)), colour));
+                let face = look((i, j), mean);
+                let colour = light.on(face.colour, &corners);
+                faces.push((depth, corners.map(|corner| self.at(corner)), colour, face.crossed));
             }
         }
         faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, corners, colour) in faces {
+        for (_, corners, colour, crossed) in faces {
             let paint = Paint::line(Role::Fixed([70, 70, 70]), 0.35).filled(Role::Fixed(colour));
             canvas.polyline(&corners, true, &paint);
+            if crossed {
+                let [a, b, c, d] = corners;
+                let both = polyline_data(&[a, c], false) + &polyline_data(&[b, d], false);
+                canvas.path(&both, &Paint::line(Role::Fixed([26, 26, 26]), 1.1));
+            }
         }
     }
 }

@@ -19,12 +19,14 @@ mod aircraft;
 mod build;
 pub(crate) mod check;
 pub(crate) mod document;
+mod extra;
 pub(crate) mod files;
 mod overrides;
 mod preset;
 pub(crate) mod problem;
 pub(crate) mod report;
 mod requirement;
+mod rewrite;
 pub(crate) mod schema;
 pub(crate) mod section;
 mod setting;
@@ -36,16 +38,21 @@ use std::path::Path;
 
 use fspid_sim::Scenario;
 
+use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::file::report::Report;
 
+pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
+pub use build::Airframe;
+pub use extra::Extra;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
 pub use problem::{Problem, Problems};
-pub use requirement::Requirement;
+pub(crate) use requirement::requirement_set;
+pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
 
@@ -56,6 +63,8 @@ pub struct Study {
     pub scenario: Scenario,
     /// What the responses must meet.
     pub requirements: Vec<Requirement>,
+    /// What is known of the flight of each plant: the one at the start and one for each change.
+    pub airframes: Vec<Airframe>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -95,18 +104,24 @@ impl std::error::Error for LoadError {}
 /// # Errors
 /// A file that cannot be read, or everything that is wrong with it.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
+    let text = read_text(path)?;
+    let name = path.display().to_string();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse(&text, &name, Some(folder), overrides).map_err(LoadError::Problems)
+}
+
+/// The text of a file, if it is one.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, LoadError> {
     let name = path.display().to_string();
     let bytes = files::read_regular(path)
         .map_err(|reason| LoadError::Unreadable { path: name.clone(), reason })?;
-    let text = match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(error) => {
-            let problems = not_utf8(&name, error.as_bytes(), error.utf8_error().valid_up_to());
-            return Err(LoadError::Problems(problems));
-        }
-    };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    parse(&text, &name, Some(folder), overrides).map_err(LoadError::Problems)
+    String::from_utf8(bytes).map_err(|error| {
+        let problems = not_utf8(&name, error.as_bytes(), error.utf8_error().valid_up_to());
+        LoadError::Problems(problems)
+    })
 }
 
 fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
@@ -137,23 +152,49 @@ pub fn parse(
     folder: Option<&Path>,
     overrides: &[String],
 ) -> Result<Study, Problems> {
+    parse_with(text, name, folder, &Extra { overrides, ..Extra::default() })
+}
+
+/// As [`parse`], with requirements from outside of the file as well.
+///
+/// # Errors
+/// Everything that is wrong with the file and with what comes from outside.
+pub fn parse_with(
+    text: &str,
+    name: &str,
+    folder: Option<&Path>,
+    extra: &Extra<'_>,
+) -> Result<Study, Problems> {
     let mut report = Report::default();
     let mut files = Files::new(folder);
     files.digest(text);
-    let study = read(&mut report, &mut files, text, overrides);
+    let study = read(&mut report, &mut files, text, extra);
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
-    let (scenario, requirements, settings) =
-        study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    Ok(Study { scenario, requirements, settings, digest: files.finish(), warnings })
+    let (built, settings) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
+    let Built { scenario, requirements, airframes } = built;
+    Ok(Study { scenario, requirements, airframes, settings, digest: files.finish(), warnings })
 }
 
 fn read(
     report: &mut Report,
     files: &mut Files<'_>,
     text: &str,
-    overrides: &[String],
-) -> Option<(Scenario, Vec<Requirement>, Vec<Setting>)> {
+    extra: &Extra<'_>,
+) -> Option<(Built, Vec<Setting>)> {
+    let document = changed_document(report, files, text, extra)?;
+    let section = check::table(report, &spec::SCENARIO, &document, "")?;
+    let built = build::scenario(report, files, &section)?;
+    Some((built, setting::settings(files, &section)))
+}
+
+/// The document with what comes from outside.
+fn changed_document(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    text: &str,
+    extra: &Extra<'_>,
+) -> Option<document::Item> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
         let place = report::Place { source, start: 0, end: 0 };
@@ -161,13 +202,12 @@ fn read(
         return None;
     }
     let mut document = document::read(report, None, text)?;
-    for text in overrides {
+    for text in extra.overrides {
         files.digest(text);
         overrides::apply(report, &mut document, text);
     }
-    let section = check::table(report, &spec::SCENARIO, &document, "")?;
-    let (scenario, requirements) = build::scenario(report, files, &section)?;
-    Some((scenario, requirements, setting::settings(files, &section)))
+    extra::apply(report, files, &mut document, extra);
+    Some(document)
 }
 
 /// A commented scenario to begin with.

@@ -7,7 +7,7 @@ mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
-pub use measure::Measure;
+pub use measure::{Family, Measure};
 pub use step::{StepMetrics, StepWindow};
 
 use std::fmt;
@@ -40,6 +40,10 @@ pub enum Absent {
     },
     /// There is no step in the command to measure against.
     NoStep,
+    /// The controller has no rate loop that could be broken.
+    NoRateLoop,
+    /// The gains move at rest, and nothing stops them.
+    GainsDrift,
 }
 
 impl fmt::Display for Absent {
@@ -57,6 +61,10 @@ impl fmt::Display for Absent {
                 write!(f, "not settled within {} s", short(*window_s))
             }
             Self::NoStep => f.write_str("the command has no step"),
+            Self::NoRateLoop => f.write_str("the controller has no rate loop to break"),
+            Self::GainsDrift => f.write_str(
+                "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits, dead_zone or leakage_per_s bound it",
+            ),
         }
     }
 }

@@ -4,7 +4,7 @@ use fspid_sim::Controller;
 use serde::Serialize;
 
 use super::html::{self, context};
-use super::number::{capital, exact, fixed, measured, significant, with_sign};
+use super::number::{capital, fixed, measured, significant, with_sign};
 use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor::{self, Marks};
 use super::traces::{Drawing, fails};
@@ -108,8 +108,7 @@ impl User<'_> {
 
     fn requirements(self) -> Table {
         let head = ["controller", "requirement", "worst value", "verdict"];
-        let mut table =
-            Table::new("Requirements: the worst of all steps counts.", &head).in_cards();
+        let mut table = Table::new("Requirements: the worst case counts.", &head).in_cards();
         for judgement in &self.simulation.judgements {
             let requirement = &judgement.requirement;
             let verdict =
@@ -117,11 +116,14 @@ impl User<'_> {
             table.push(vec![
                 Cell::text(&judgement.controller),
                 Cell::text(format!(
-                    "{} at most {}",
+                    "{} {}",
                     requirement.measure.name(),
-                    exact(requirement.most)
+                    requirement.limits_in_words()
                 )),
-                Cell::measured(judgement.value, 4),
+                Cell {
+                    class: if judgement.found.is_ok() { "number" } else { "absent" },
+                    ..Cell::text(judgement.value_in_words())
+                },
                 Cell { class: verdict.0, ..Cell::text(verdict.1) },
             ]);
         }

@@ -144,11 +144,7 @@ const fn value(
     paper: &'static str,
     reading: Reading,
 ) -> Claim {
-    let unit = match reading.measure {
-        Measure::RiseTime | Measure::SettlingTime => "s",
-        Measure::Overshoot | Measure::FinalError => "%",
-        Measure::RmsError => "deg",
-    };
+    let unit = reading.measure.unit();
     Claim { id, quantity, paper: Printed(paper), unit, source: Quantity::Value(reading) }
 }
 

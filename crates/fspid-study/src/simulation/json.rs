@@ -95,15 +95,26 @@ fn split(measures: &[(&'static str, Measured)]) -> (Map<String, Value>, Map<Stri
 }
 
 fn judgement(judgement: &Judgement) -> Value {
+    let requirement = &judgement.requirement;
     let mut answer = json!({
+        "id": requirement.id,
         "controller": judgement.controller,
-        "measure": judgement.requirement.measure.name(),
-        "most": judgement.requirement.most,
+        "measure": requirement.measure.name(),
         "met": judgement.met,
     });
-    match judgement.value {
-        Ok(value) => answer["value"] = json!(value),
+    for (key, limit) in [("least", requirement.least), ("most", requirement.most)] {
+        if let Some(limit) = limit {
+            answer[key] = json!(limit);
+        }
+    }
+    match &judgement.found {
+        Ok(case) => answer["value"] = finite(case.value),
         Err(reason) => answer["absent"] = json!(reason.to_string()),
     }
     answer
+}
+
+/// A number, or in words which of the numbers that JSON does not have.
+pub(crate) fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { json!(format!("{value}")) }
 }

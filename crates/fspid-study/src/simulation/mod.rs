@@ -4,13 +4,16 @@ mod csv;
 mod json;
 mod text;
 
+pub(crate) use json::finite;
 pub(crate) use text::left_validity;
 
 use fspid_sim::stability::instability;
 use fspid_sim::{SimError, Trace, simulate};
 
-use crate::file::{Requirement, Study};
+use crate::file::Study;
 use crate::metrics::FlightMetrics;
+pub use crate::requirement::Judgement;
+use crate::requirement::judge;
 
 /// One controller's flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,19 +24,6 @@ pub struct ControllerResult {
     pub trace: Trace,
     /// What it amounts to.
     pub metrics: FlightMetrics,
-}
-
-/// A requirement and how a controller stands to it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
-    /// Name of the controller.
-    pub controller: String,
-    /// What is required.
-    pub requirement: Requirement,
-    /// The value, or why there is none (which never meets a requirement).
-    pub value: crate::metrics::Measured,
-    /// Whether it is met.
-    pub met: bool,
 }
 
 /// A study that has been flown.
@@ -65,7 +55,7 @@ impl Simulation {
                 Ok(ControllerResult { name: named.name.clone(), trace, metrics })
             })
             .collect::<Result<Vec<_>, SimError>>()?;
-        let judgements = judge(&study.requirements, &results);
+        let judgements = judge(study, &results);
         Ok(Self { scenario: scenario.name.clone(), results, judgements })
     }
 
@@ -80,23 +70,4 @@ impl Simulation {
     pub fn result(&self, name: &str) -> Option<&ControllerResult> {
         self.results.iter().find(|result| result.name == name)
     }
-}
-
-fn judge(requirements: &[Requirement], results: &[ControllerResult]) -> Vec<Judgement> {
-    let mut judgements = Vec::new();
-    for requirement in requirements {
-        for result in results {
-            if requirement.controller.as_ref().is_some_and(|name| *name != result.name) {
-                continue;
-            }
-            let value = requirement.measure.worst(&result.metrics);
-            judgements.push(Judgement {
-                controller: result.name.clone(),
-                requirement: requirement.clone(),
-                value,
-                met: value.is_ok_and(|value| value.abs() <= requirement.most),
-            });
-        }
-    }
-    judgements
 }

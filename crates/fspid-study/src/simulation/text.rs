@@ -20,6 +20,9 @@ impl Simulation {
             line(&mut out, format_args!("\n{:width$}  {}", result.name, result.metrics.verdict));
             push_measures(&mut out, result);
         }
+        if !self.judgements.is_empty() {
+            out.push('\n');
+        }
         for judgement in &self.judgements {
             push_judgement(&mut out, judgement);
         }
@@ -82,12 +85,14 @@ pub(crate) fn left_validity(exit: &Exit) -> String {
 
 fn push_judgement(out: &mut String, judgement: &Judgement) {
     let met = if judgement.met { "met" } else { "NOT MET" };
-    let value = match judgement.value {
-        Ok(value) => format!("{value:.4}"),
-        Err(reason) => reason.to_string(),
+    let requirement = &judgement.requirement;
+    let (name, limits) = (requirement.measure.name(), requirement.limits_in_words());
+    let (controller, value) = (&judgement.controller, judgement.value_in_words());
+    let id = match requirement.id.as_str() {
+        id if id == name => String::new(),
+        id => format!(" ({id})"),
     };
-    let (name, most) = (judgement.requirement.measure.name(), judgement.requirement.most);
-    line(out, format_args!("\n{met}: {} {name} {value}, at most {most}", judgement.controller));
+    line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}"));
 }
 
 /// Writing to a string cannot fail.

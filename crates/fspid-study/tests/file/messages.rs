@@ -71,6 +71,57 @@ const MISTAKES: [(&str, &str, &str); 31] = [
     ("no TOML", "duration_s = 10.0", "duration_s = 10,0"),
 ];
 
+/// Requirements, each wrong in another way.
+const WRONG_REQUIREMENTS: &str = r#"
+[[requirement]]
+measure = "phase_margin_deg"
+
+[[requirement]]
+measure = "mode_damping"
+least = 0.8
+most = 0.3
+
+[[requirement]]
+measure = "disk_margin"
+least = 0.8
+step_deg = 5.0
+
+[[requirement]]
+measure = "recovery_time_s"
+most = 5.0
+step_deg = 5.0
+from_s = 2.0
+
+[[requirement]]
+measure = "rms_error_deg"
+most = 5.0
+from_s = 4.0
+to_s = 3.0
+
+[[requirement]]
+set = "ctms"
+level = 2
+
+[[requirement]]
+set = "mil-f-9490"
+
+[[requirement]]
+set = "mil-f-8785c"
+measure = "phugoid_damping"
+
+[[requirement]]
+least = 6.0
+
+[[requirement]]
+id = "twice"
+measure = "stable"
+
+[[requirement]]
+id = "twice"
+measure = "frozen_stable"
+confidence = "sure"
+"#;
+
 /// Mistakes that take more than a replacement.
 fn longer() -> Vec<(&'static str, String)> {
     let inline = |grid: &str| {
@@ -103,6 +154,10 @@ fn longer() -> Vec<(&'static str, String)> {
             format!(
                 "{starter}\n[[requirement]]\ncontroller = \"FPID\"\nmeasure = \"overshoot\"\nmost = -1\n\n[[requirement]]\ncontroller = \"FPID\"\nmeasure = \"overshoot_pct\"\nmost = 1"
             ),
+        ),
+        (
+            "requirements that ask nothing that could be answered",
+            format!("{starter}\n{WRONG_REQUIREMENTS}"),
         ),
         (
             "no controller at all",

@@ -183,7 +183,8 @@ fn a_requirement_is_read_with_its_measure_and_controller() {
     let study = file::load(&repository("scenarios/limits.toml"), &[]).expect("no problems");
     let [requirement] = study.requirements.as_slice() else { panic!("one requirement") };
     assert_eq!(requirement.controller.as_deref(), Some("back-calculation"));
-    assert_eq!((requirement.measure, requirement.most), (Measure::Overshoot, 10.0));
+    assert_eq!(requirement.measure, Measure::Overshoot);
+    assert_eq!((requirement.least, requirement.most), (None, Some(10.0)));
 }
 
 #[test]

@@ -76,7 +76,7 @@ impl<'a> Field<'a> {
     }
 
     /// What the rules that were fired say about an output.
-    fn answer(&mut self, index: usize, along: Option<usize>) -> Slope {
+    pub(super) fn answer(&mut self, index: usize, along: Option<usize>) -> Slope {
         let Some(output) = self.firing.system.parts.outputs.get(index) else {
             return unknown_slope(Interval::ENTIRE);
         };

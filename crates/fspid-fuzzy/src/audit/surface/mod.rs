@@ -16,6 +16,7 @@ mod layers;
 mod masses;
 mod objective;
 mod options;
+mod reach;
 mod rules;
 mod symmetry;
 mod ties;
@@ -31,6 +32,7 @@ use field::Field;
 
 pub use coverage::Coverage;
 pub use options::{SurfaceError, SurfaceOptions};
+pub use reach::Reach;
 pub use rules::{RuleEffect, TermReach};
 
 /// What is true of the surfaces of a system over a domain.

@@ -28,6 +28,7 @@ pub(super) struct Flown {
 pub(super) struct Way {
     pub(super) course: Course,
     pub(super) span_m: f64,
+    pub(super) gravity_m_s2: f64,
 }
 
 /// What flies, of the scenario's `plant` or `aircraft`.
@@ -67,7 +68,8 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
         "linear" => Plant::Linear(judged(report, (part, key), plant.linear())?),
         _ => plant.into(),
     };
-    let way = Way { course: course(part, target)?, span_m };
+    let gravity_m_s2 = aircraft.environment().gravity_m_s2;
+    let way = Way { course: course(part, target)?, span_m, gravity_m_s2 };
     Some(Flown { plant, way: Some(way) })
 }
 

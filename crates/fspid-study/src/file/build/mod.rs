@@ -2,6 +2,7 @@
 
 mod actuator;
 mod air;
+mod airframe;
 mod controller;
 pub(crate) mod data;
 mod flight;
@@ -10,14 +11,23 @@ mod signal;
 mod timing;
 
 use actuator::Drive;
+pub use airframe::Airframe;
 use flight::Flown;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 
 use crate::file::files::Files;
 use crate::file::report::Report;
-use crate::file::requirement::{Requirement, requirements};
+use crate::file::requirement::requirements;
 use crate::file::section::Section;
+use crate::requirement::Requirement;
 use crate::units::radians as rad;
+
+/// A scenario with what is asked of it.
+pub(crate) struct Built {
+    pub(crate) scenario: Scenario,
+    pub(crate) requirements: Vec<Requirement>,
+    pub(crate) airframes: Vec<Airframe>,
+}
 
 /// The scenario with its requirements; every part that the check left sound is built even where
 /// another is wrong, so that its own problems are found too.
@@ -25,7 +35,7 @@ pub(crate) fn scenario(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-) -> Option<(Scenario, Vec<Requirement>)> {
+) -> Option<Built> {
     let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
     let flown = flight::flown(report, files, section);
     let drive = match section.section("actuator") {
@@ -56,7 +66,8 @@ pub(crate) fn scenario(
     }
     let names = names(section);
     let asked = section.sections("requirement");
-    let requirements = requirements(report, asked, &names);
+    let requirements = requirements(report, files, asked, &names);
+    let airframes = airframe::airframes(files, section, flown.as_ref());
     let scenario = Scenario {
         name: section.text("name")?.to_owned(),
         plant: flown?.plant,
@@ -71,7 +82,7 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    Some((scenario, requirements))
+    Some(Built { scenario, requirements, airframes })
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.

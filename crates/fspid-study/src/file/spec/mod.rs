@@ -16,6 +16,7 @@ mod aircraft;
 mod controller;
 mod data;
 mod flight;
+mod requirement;
 mod scenario;
 mod sensor;
 mod signal;
@@ -23,8 +24,7 @@ mod tables;
 
 pub(crate) use aircraft::AIRCRAFT_FILE;
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
-#[cfg(test)]
-pub(crate) use scenario::MEASURES;
+pub(crate) use requirement::{REQUIREMENT_FILE, SET_FILE};
 pub(crate) use scenario::SCENARIO;
 
 /// Largest size of an angle, in degrees: where a flight has diverged.

@@ -4,6 +4,7 @@ use super::actuator::ACTUATOR;
 use super::air::{GUST, TURBULENCE, WIND};
 use super::controller::CONTROLLER;
 use super::flight::AIRCRAFT;
+use super::requirement::REQUIREMENT;
 use super::sensor::SENSOR;
 use super::signal::{DISTURBANCE, SETPOINT};
 use super::{
@@ -136,31 +137,6 @@ static LOOP: Table = plain(
             "duration_s",
             positive("s"),
             "Length of the flight; round(duration_s / sample_period_s) + 1 samples.",
-        ),
-    ]],
-);
-
-/// Words for what a requirement measures.
-pub(crate) const MEASURES: [&str; 5] =
-    ["overshoot_pct", "rise_time_s", "settling_time_s", "final_error_pct", "rms_error_deg"];
-
-static REQUIREMENT: Table = plain(
-    "A bound that the response to the first command must meet.",
-    &[&[
-        required(
-            "measure",
-            Kind::Word(&MEASURES),
-            "What is measured: of the worst step (final_error_pct by its size), or rms_error_deg of the whole flight.",
-        ),
-        required(
-            "most",
-            not_negative(""),
-            "Largest value that is met, in the unit of the measure.",
-        ),
-        optional(
-            "controller",
-            Kind::Text,
-            "Name of the controller; all of them if it is left out.",
         ),
     ]],
 );

@@ -1,0 +1,75 @@
+//! `fspid analyse`: margins of the sampled loop.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::analysis::BreakPoint;
+use fspid_study::analysis::{Analysis, Question};
+use fspid_study::file;
+
+/// Analyse the sampled loop of each controller: margins, poles, sensitivity, and every gain that a self-tuning
+/// controller can have.
+///
+/// The loop is that of the flight around rest: exact zero-order hold, actuator, delays, sensors' delays, the controller as it is
+/// implemented. An unstable loop has no margins. Exit code 1 if any loop is unstable.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scenario file.
+    file: PathBuf,
+    /// Set a value first, e.g. `--set controller.PID.kp=2`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Where the loop is broken; the others stay closed.
+    #[arg(long, value_enum, default_value_t = Point::Command)]
+    broken_at: Point,
+    /// Points along each input of the frozen-gain map; 0 for no map.
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u16).range(0..=201))]
+    map: u16,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Where a loop is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Point {
+    /// At the controller's command: every loop passes through here.
+    Command,
+    /// At the pitch angle that the controller sees; a rate loop stays closed.
+    Pitch,
+    /// At the pitch rate that the controller sees; the pitch loop stays closed.
+    Rate,
+}
+
+impl From<Point> for BreakPoint {
+    fn from(point: Point) -> Self {
+        match point {
+            Point::Command => Self::Command,
+            Point::Pitch => Self::Pitch,
+            Point::Rate => Self::Rate,
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let question =
+        Question { point: arguments.broken_at.into(), map_points: usize::from(arguments.map) };
+    let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
+    match arguments.format {
+        Format::Text => print(&analysis.text())?,
+        Format::Json => print(&json_text(&analysis.json()))?,
+    }
+    if analysis.all_stable() {
+        return Ok(());
+    }
+    let unknown = analysis.loops.iter().all(|found| found.absent.is_some() || found.is_stable());
+    let reason = if unknown { "a loop has no margins" } else { "a loop is not stable" };
+    Err(Failure::not_met(reason))
+}

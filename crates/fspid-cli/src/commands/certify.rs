@@ -1,0 +1,102 @@
+//! `fspid certify`: stability while the gains move.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::certify::{self, Certification, Effort};
+use fspid_study::{file, output};
+
+/// Prove or refute that a self-tuning loop is stable while its gains move.
+///
+/// Three answers: proved (for every gain that the supervisor can produce, however fast gains move), refuted (gains that it
+/// really produces let the loop grow), or open. What is proved is re-checked in interval arithmetic and written as a
+/// certificate, which `--check` verifies alone. Exit code 0 if every loop is proved, or the certificate holds; 1 if not.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json"
+)]
+pub(crate) struct Arguments {
+    /// The scenario file.
+    #[arg(required_unless_present = "check")]
+    file: Option<PathBuf>,
+    /// Verify a certificate instead; nothing but this file is read.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "overrides", "controller", "out"])]
+    check: Option<PathBuf>,
+    /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Certify only the controller with this name.
+    #[arg(long, value_name = "NAME")]
+    controller: Option<String>,
+    /// Write the certificates into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match (&arguments.check, &arguments.file) {
+        (Some(path), _) => check(path, arguments.format),
+        (None, Some(path)) => prove(path, arguments),
+        (None, None) => Err(Failure::input("no scenario and no certificate")),
+    }
+}
+
+fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    let study = file::load(path, &arguments.overrides).map_err(Failure::input)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let only = arguments.controller.as_deref();
+    let names: Vec<&str> =
+        study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
+    if let Some(name) = only.filter(|name| !names.contains(name)) {
+        let known = names.join(", ");
+        return Err(Failure::input(format_args!(
+            "no controller is called \"{name}\"; there are {known}"
+        )));
+    }
+    let certification =
+        Certification::of(&study, only, &Effort::default()).map_err(Failure::input)?;
+    if let Some(folder) = &arguments.out {
+        write(&certification, folder)?;
+    }
+    match arguments.format {
+        Format::Text => print(&certification.text())?,
+        Format::Json => print(&json_text(&certification.json()))?,
+    }
+    if certification.all_proved() {
+        return Ok(());
+    }
+    Err(Failure::not_met("a loop is not proved stable"))
+}
+
+fn write(certification: &Certification, folder: &Path) -> Result<(), Failure> {
+    output::make_folder(folder)?;
+    for certified in &certification.results {
+        let Some(certificate) = certified.certificate() else { continue };
+        let path = folder.join(certified.file_name());
+        output::write(&path, certify::to_text(certificate, &certified.origin))?;
+        note(format_args!("wrote {0}; verify it with `fspid certify --check {0}`", path.display()));
+    }
+    Ok(())
+}
+
+fn check(path: &Path, format: Format) -> Result<(), Failure> {
+    let text = file::read_text(path).map_err(Failure::input)?;
+    let checked = certify::check_text(&text)
+        .map_err(|reason| Failure::input(format_args!("{}: {reason}", path.display())))?;
+    match format {
+        Format::Text => print(&checked.text())?,
+        Format::Json => print(&json_text(&checked.json()))?,
+    }
+    if checked.result.is_ok() {
+        return Ok(());
+    }
+    Err(Failure::not_met("the certificate does not hold"))
+}

@@ -1,0 +1,130 @@
+//! `fspid verify`: are the requirements met?
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::output;
+use fspid_study::verify::{Question, Verification, verify};
+
+/// Judge the requirements of a scenario: pass or fail with the number, the worst case, and a file that replays it.
+///
+/// Requirements are `[[requirement]]` entries of the scenario, ready sets, and files that several
+/// scenarios share. A requirement that cannot be evaluated is not met, and says why; a value that
+/// equals its limit meets it.
+#[derive(Debug, Args)]
+#[command(after_long_help = LONG_HELP, after_help = HELP)]
+pub(crate) struct Arguments {
+    /// The scenario file.
+    file: PathBuf,
+    /// Add a ready set, `mil-f-9490d`, `mil-f-8785c` or `ctms`, with its choices after a colon:
+    /// `--set mil-f-8785c:level=2,category=C`; or change a value first, as in `fspid simulate`:
+    /// `--set loop.sample_period_s=0.02`.
+    #[arg(long = "set", value_name = "NAME | PATH=VALUE")]
+    settings: Vec<String>,
+    /// Add the requirements of a file with `[[requirement]]` entries.
+    #[arg(long = "requirements", value_name = "FILE.toml")]
+    requirement_files: Vec<PathBuf>,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Write the answer as JUnit XML too, for continuous integration.
+    #[arg(long, value_name = "OUT.xml")]
+    junit: Option<PathBuf>,
+    /// Write a scenario for each line into this folder that gives its number again.
+    #[arg(long, value_name = "DIR", num_args = 0..=1, default_missing_value = "verify-replay")]
+    replay: Option<PathBuf>,
+}
+
+const HELP: &str = "Examples:
+  fspid verify pitch.toml --set ctms
+  fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
+  fspid verify pitch.toml --replay again; fspid simulate again/01-overshoot_pct-FSPID.toml
+Exit codes: 0 all met; 1 one is not met; 2 the input is wrong; 4 the output could not be written.
+More, with every measure and set: fspid verify --help";
+
+const LONG_HELP: &str = "A requirement:
+  [[requirement]]
+  measure = \"phase_margin_deg\"       # see below
+  least = 45.0                       # or most, or both
+  controller = \"FSPID\"               # all controllers without this
+  id = \"R-17\"                        # its name in answers
+  clause = \"3.1.3.6\"                 # where it is from, as far as you like:
+  source = \"our specification\"       #   source, note and
+  confidence = \"own\"                 #   read, quoted, transcribed, disputed, recalled or own
+
+  [[requirement]]
+  set = \"mil-f-8785c\"                # a ready set in place of a measure
+  level = 2
+
+Measures of steps of the command, the worst step counts (only those of step_deg, if given):
+  overshoot_pct rise_time_s settling_time_s final_error_pct final_error_deg
+  recovery_time_s (needs within_deg; from the step, or from from_s)
+Measures of the flight:
+  rms_error_deg largest_error_deg (from_s, to_s)
+  largest_command_deg command_rate_deg_s elevator_rate_deg_s saturated_pct
+Measures of the loop as sampled, at the gains it has at rest; the worst plant counts:
+  stable gain_margin_db gain_margin_low_db gain_margin_high_db phase_margin_deg (from_hz, to_hz)
+  delay_margin_s disk_margin sensitivity_peak gain_crossover_rad_s mode_damping (from_hz, to_hz)
+The same at the worst gains that the supervisor produces over its range, held still (memoryless law):
+  frozen_stable frozen_gain_margin_db frozen_phase_margin_deg frozen_disk_margin
+Measures of the aircraft without its controller, behind servo and dead time:
+  short_period_damping cap_rad_s2_per_g phugoid_damping phugoid_doubling_s equivalent_delay_s
+
+Ready sets and their choices, the first of each if left out:
+  mil-f-9490d  speed=normal|below|limit|beyond, air=smooth|turbulent, first_aeroelastic_mode_hz=HZ
+  mil-f-8785c  level=1|2|3, category=B|A|C
+  ctms         none
+
+Examples:
+  fspid verify pitch.toml --set ctms
+  fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
+  fspid verify pitch.toml --requirements ours.toml --format json
+  fspid verify pitch.toml --replay again; fspid simulate again/01-overshoot_pct-FSPID.toml
+Exit codes: 0 all met; 1 one is not met; 2 the input is wrong; 4 the output could not be written.";
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let requirement_files: Vec<&Path> =
+        arguments.requirement_files.iter().map(PathBuf::as_path).collect();
+    let question = Question {
+        path: &arguments.file,
+        settings: &arguments.settings,
+        requirement_files: &requirement_files,
+    };
+    let verification = verify(&question).map_err(Failure::input)?;
+    for warning in verification.warnings() {
+        note(format_args!("warning: {warning}"));
+    }
+    let replays = match &arguments.replay {
+        Some(folder) => Some(write_replays(&verification, folder)?),
+        None => None,
+    };
+    let replays = replays.as_deref();
+    if let Some(path) = &arguments.junit {
+        output::write(path, verification.junit(replays))?;
+    }
+    match arguments.format {
+        Format::Text => print(&verification.text(replays))?,
+        Format::Json => print(&json_text(&verification.json(replays)))?,
+    }
+    match (verification.unmet(), verification.judgements.len()) {
+        (0, _) => Ok(()),
+        (unmet, count) => {
+            Err(Failure::not_met(format_args!("{unmet} of {count} requirement(s) not met")))
+        }
+    }
+}
+
+/// Writes the replays; their paths, in the order of the lines.
+fn write_replays(verification: &Verification, folder: &Path) -> Result<Vec<String>, Failure> {
+    output::make_folder(folder)?;
+    let mut paths = Vec::new();
+    for replay in verification.replays(folder) {
+        let path = folder.join(&replay.name);
+        output::write(&path, &replay.text)?;
+        paths.push(path.display().to_string());
+    }
+    Ok(paths)
+}

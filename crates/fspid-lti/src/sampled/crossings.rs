@@ -1,0 +1,78 @@
+//! Where a sampled loop has a given gain, and where its value is real.
+
+use core::f64::consts::PI;
+
+use super::reduced::{Reduced, Response};
+use super::squares::Squares;
+use super::{SampledLoop, scan};
+use crate::complex::modulus;
+use crate::error::LtiError;
+
+/// Values beyond this are those of a pole on the unit circle: rounding splits several at one place, and between the
+/// parts the phase means nothing.
+const POLE: f64 = 1e10;
+/// Angles this near to 0 and π are taken for them: rounding decides the sign of what is real there.
+const END_RAD: f64 = 1e-10;
+
+impl SampledLoop {
+    /// All frequencies in rad/s above 0, up to Nyquist's, at which the gain has a value above 0, rising.
+    ///
+    /// # Errors
+    /// A level that is not above zero and finite; eigenvalues that do not converge; a loop whose hidden modes make both
+    /// maps to the imaginary axis singular.
+    pub fn gain_crossings(&self, level: f64) -> Result<Vec<f64>, LtiError> {
+        if !(level > 0.0 && level.is_finite()) {
+            return Err(LtiError::NotPositive { what: "gain to be crossed", value: level });
+        }
+        let scaled = self.reduced.scaled(1.0 / level);
+        let angles = unit_gain_angles(&scaled, &Squares::new(&scaled)?)?;
+        Ok(self.frequencies(angles))
+    }
+
+    /// All frequencies in rad/s at which the value is real, rising: 0 and Nyquist's always, and those between.
+    ///
+    /// At a pole on the unit circle, where the value jumps from one end of an axis to the other, there is no crossing:
+    /// values beyond 10¹⁰ are left out.
+    ///
+    /// # Errors
+    /// As [`SampledLoop::gain_crossings`].
+    pub fn real_crossings(&self) -> Result<Vec<f64>, LtiError> {
+        Ok(self.frequencies(self.real_angles(&Squares::new(&self.reduced)?)?))
+    }
+
+    /// The same as angles ωT.
+    pub(super) fn real_angles(&self, squares: &Squares<'_>) -> Result<Vec<f64>, LtiError> {
+        let candidates = squares.angles_of_real_values()?;
+        let across = |angle_rad: f64| sine(self.response(angle_rad));
+        let mut inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
+        inside.retain(|&angle_rad| modulus(self.response(angle_rad).open()) < POLE);
+        Ok(core::iter::once(0.0).chain(inside).chain([PI]).collect())
+    }
+
+    pub(super) fn frequencies(&self, angles: Vec<f64>) -> Vec<f64> {
+        angles.into_iter().map(|angle_rad| angle_rad / self.dt_s).collect()
+    }
+}
+
+/// Angles ωT above 0 at which $|L| = 1$.
+pub(super) fn unit_gain_angles(
+    reduced: &Reduced,
+    squares: &Squares<'_>,
+) -> Result<Vec<f64>, LtiError> {
+    let candidates = squares.angles_of_unit_gain()?;
+    let above = |angle_rad: f64| excess(reduced.at(super::zeta(angle_rad)));
+    Ok(scan::sign_changes(above, &candidates, (END_RAD, PI)))
+}
+
+/// $|L|^2 - 1$ over $|L|^2 + 1$.
+fn excess(response: Response) -> f64 {
+    let (over, under) = (response.over.norm_sqr(), response.under.norm_sqr());
+    (over - under) / (over + under)
+}
+
+/// Sine of the phase.
+fn sine(response: Response) -> f64 {
+    let (over, under) = (response.over, response.under);
+    let size = (over.norm_sqr() * under.norm_sqr()).sqrt();
+    if size > 0.0 { (over * under.conj()).im / size } else { 0.0 }
+}

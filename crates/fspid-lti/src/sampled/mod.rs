@@ -1,0 +1,179 @@
+//! Loops that run in samples: response, poles, crossings, margins, peaks.
+//!
+//! For a controller in a computer and whatever lies between its output and its input, as one exact difference
+//! equation. Nothing is read off a grid of frequencies: crossings and peaks are separated by eigenvalues and then
+//! located to the last digits, and a loop that is not stable has no margins. Dead times of whole samples are states
+//! and may make the state matrix singular. Not for loops that pass their input on at once.
+
+mod crossings;
+mod disk;
+mod gain_limits;
+mod level_set;
+mod margins;
+mod peak;
+mod poles;
+mod quick;
+mod reduced;
+mod scan;
+mod squares;
+mod zeros;
+
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use crate::complex::{Complex, modulus};
+use crate::error::LtiError;
+use crate::matrix::Matrix;
+use reduced::{Reduced, Response};
+
+pub use disk::DiskMargin;
+pub use gain_limits::GainLimit;
+pub use margins::{SampledCrossover, SampledMargins, Stability};
+pub use peak::Peak;
+
+/// Halvings of a step between two frequencies while its phase is being followed.
+const HALVINGS_MAX: u32 = 20;
+
+/// A sampled loop of one input and one output, to be closed with negative feedback.
+///
+/// $$ L(z) = c\, (z I - A)^{-1} b, \quad z = e^{j \omega T} $$
+///
+/// # Example
+/// An integrator with a delay of one sample is stable up to a gain of 1 per sample:
+/// ```
+/// use fspid_lti::{LtiError, Matrix, SampledLoop, Stability};
+///
+/// # fn main() -> Result<(), LtiError> {
+/// let a = Matrix::from_rows(&[[1.0, 1.0], [0.0, 0.0]])?;
+/// let open = SampledLoop::new(a, vec![0.0, 1.0], vec![0.25, 0.0], 0.02)?;
+/// let Stability::Stable(margins) = open.margins()? else { unreachable!("a gain of 1/4") };
+/// assert!((margins.gain_high.unwrap().factor - 4.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledLoop {
+    a: Matrix,
+    b: Vec<f64>,
+    c: Vec<f64>,
+    dt_s: f64,
+    reduced: Reduced,
+}
+
+impl SampledLoop {
+    /// Loop of a state matrix, an input vector, an output vector and a sample period.
+    ///
+    /// # Errors
+    /// No states, a matrix that is not square, vectors of another length, an entry that is not finite, a sample
+    /// period that is not above zero and finite.
+    pub fn new(a: Matrix, b: Vec<f64>, c: Vec<f64>, dt_s: f64) -> Result<Self, LtiError> {
+        a.require_square_and_finite("state matrix")?;
+        let order = a.rows();
+        if order == 0 {
+            return Err(LtiError::Empty { what: "state matrix" });
+        }
+        for (what, vector) in [("input vector", &b), ("output vector", &c)] {
+            if vector.len() != order {
+                let found = (vector.len(), 1);
+                return Err(LtiError::Shape { what, found, allowed: (order, 1) });
+            }
+            LtiError::unless_finite(what, vector)?;
+        }
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return Err(LtiError::NotPositive { what: "sample period in seconds", value: dt_s });
+        }
+        let reduced = Reduced::new(&a, &b, &c);
+        Ok(Self { a, b, c, dt_s, reduced })
+    }
+
+    /// Sample period.
+    #[must_use]
+    pub fn dt_s(&self) -> f64 {
+        self.dt_s
+    }
+
+    /// Number of states.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.b.len()
+    }
+
+    /// Half the sampling frequency, $\pi / T$.
+    #[must_use]
+    pub fn nyquist_rad_s(&self) -> f64 {
+        PI / self.dt_s
+    }
+
+    /// State matrix of the loop closed with negative feedback, $A - b c$.
+    #[must_use]
+    pub fn closed_matrix(&self) -> Matrix {
+        Matrix::from_function(self.order(), self.order(), |row, column| {
+            self.a.at(row, column) - self.b[row] * self.c[column]
+        })
+    }
+
+    /// The response at an angle $\omega T$.
+    fn response(&self, angle_rad: f64) -> Response {
+        self.reduced.at(zeta(angle_rad))
+    }
+
+    /// Value at a frequency; infinite or NaN at a pole.
+    #[must_use]
+    pub fn at(&self, omega_rad_s: f64) -> Complex {
+        self.response(omega_rad_s * self.dt_s).open()
+    }
+
+    /// Gain at a frequency.
+    #[must_use]
+    pub fn gain(&self, omega_rad_s: f64) -> f64 {
+        modulus(self.at(omega_rad_s))
+    }
+
+    /// Phase at a frequency, between −3π/2 and π/2: two integrators lag by π.
+    ///
+    /// For a phase without jumps over many frequencies see [`SampledLoop::bode`].
+    #[must_use]
+    pub fn phase_rad(&self, omega_rad_s: f64) -> f64 {
+        let value = self.at(omega_rad_s);
+        let phase = libm::atan2(value.im, value.re);
+        if phase > FRAC_PI_2 { phase - TAU } else { phase }
+    }
+
+    /// Gain and phase at each of some frequencies, the phase without jumps from one to the next.
+    ///
+    /// The first phase is that of [`SampledLoop::phase_rad`]. Between two neighbours the phase is followed in smaller
+    /// steps where it turns far; exactly on an undamped pole or zero it jumps.
+    #[must_use]
+    pub fn bode(&self, omegas_rad_s: &[f64]) -> Vec<(f64, f64)> {
+        let mut last: Option<(f64, f64)> = None;
+        let mut found = Vec::with_capacity(omegas_rad_s.len());
+        for &omega in omegas_rad_s {
+            let phase = match last {
+                Some((from, phase)) => phase + self.turn_rad((from, omega), HALVINGS_MAX),
+                None => self.phase_rad(omega),
+            };
+            last = Some((omega, phase));
+            found.push((self.gain(omega), phase));
+        }
+        found
+    }
+
+    /// Change of the phase between two frequencies.
+    fn turn_rad(&self, (from, to): (f64, f64), halvings: u32) -> f64 {
+        let middle = 0.5 * (from + to);
+        let [first, centre, last] = [from, middle, to].map(|omega| self.phase_rad(omega));
+        let (early, late) =
+            (libm::remainder(centre - first, TAU), libm::remainder(last - centre, TAU));
+        // A half that turns by more than a radian may have turned by a whole circle more.
+        let followed = early.abs() < 1.0 && late.abs() < 1.0;
+        if followed || halvings == 0 || !(early + late).is_finite() {
+            return early + late;
+        }
+        self.turn_rad((from, middle), halvings - 1) + self.turn_rad((middle, to), halvings - 1)
+    }
+}
+
+/// $e^{j \theta} - 1$, with all digits for small angles.
+fn zeta(angle_rad: f64) -> Complex {
+    let (sin, cos) = libm::sincos(0.5 * angle_rad);
+    Complex::new(-2.0 * sin * sin, 2.0 * sin * cos)
+}

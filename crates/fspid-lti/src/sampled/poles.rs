@@ -1,0 +1,58 @@
+//! Poles of a sampled loop, open and closed.
+
+use super::SampledLoop;
+use crate::complex::{Complex, modulus, sort};
+use crate::eigenvalues::eigenvalues;
+use crate::error::LtiError;
+use crate::matrix::Matrix;
+
+impl SampledLoop {
+    /// Poles of the open loop in the z plane, sorted as [`eigenvalues`](crate::eigenvalues()) does.
+    ///
+    /// # Errors
+    /// As [`eigenvalues`](crate::eigenvalues()).
+    pub fn open_poles(&self) -> Result<Vec<Complex>, LtiError> {
+        self.closed_poles_at(0.0)
+    }
+
+    /// Poles of the closed loop in the z plane.
+    ///
+    /// # Errors
+    /// As [`eigenvalues`](crate::eigenvalues()).
+    pub fn closed_poles(&self) -> Result<Vec<Complex>, LtiError> {
+        self.closed_poles_at(1.0)
+    }
+
+    /// Poles of the loop closed with a factor on its gain.
+    ///
+    /// # Errors
+    /// A factor that is not finite; as [`eigenvalues`](crate::eigenvalues()).
+    pub fn closed_poles_at(&self, factor: f64) -> Result<Vec<Complex>, LtiError> {
+        poles(&self.reduced.closed(factor))
+    }
+}
+
+/// A spectral radius from here on counts as unstable: eigenvalues are not known better, and a mode that takes longer
+/// than 10⁹ samples to decay is none that a controller holds.
+pub(super) const STABLE_BELOW: f64 = 1.0 - 1e-9;
+
+/// Angles of the poles from the positive real axis, between 0 and π.
+pub(super) fn angles_rad(poles: &[Complex]) -> Vec<f64> {
+    poles.iter().map(|pole| libm::atan2(pole.im.abs(), pole.re)).collect()
+}
+
+/// Poles of a matrix less the identity.
+fn poles(matrix: &Matrix) -> Result<Vec<Complex>, LtiError> {
+    let mut found = eigenvalues(matrix)?;
+    for pole in &mut found {
+        pole.re += 1.0;
+    }
+    sort(&mut found);
+    Ok(found)
+}
+
+/// Largest modulus.
+pub(super) fn radius(poles: &[Complex]) -> f64 {
+    let sizes = poles.iter().map(|&pole| modulus(pole));
+    sizes.fold(0.0, |largest, size| if size <= largest { largest } else { size })
+}

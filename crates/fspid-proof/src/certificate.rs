@@ -1,0 +1,112 @@
+//! What is claimed of a loop, with everything that a re-check needs.
+
+use fspid_lti::Matrix;
+
+use crate::description::LoopDescription;
+
+/// A claim about a loop and the matrices that carry it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The loop.
+    pub description: LoopDescription,
+    /// Factor on the supervisor's output scale for which the claim is made; 1 for the loop as it is.
+    pub output_factor: f64,
+    /// Cells along each of the supervisor's inputs over which its gains are enclosed.
+    pub divisions: usize,
+    /// What is claimed.
+    pub claim: Claim,
+    /// Level c of the ellipsoid $z^T P z \le c$ in which no limit acts, where one is claimed.
+    pub level: Option<f64>,
+}
+
+/// What is claimed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Claim {
+    /// For every gain that the tuner can produce, however fast gains move,
+    /// $M(k)^T P M(k) \prec \rho^2 P$.
+    AnySpeed {
+        /// P.
+        form: Matrix,
+        /// ρ, at most 1.
+        rate: f64,
+    },
+    /// As the memoryless law ties the gains to error and change: with the plane of the supervisor's
+    /// inputs in double cones $z^T Q_c z \ge 0$,
+    /// $M(k)^T P M(k) + \tau_c Q_c \prec \rho^2 P$ for every gain that the law gives in cone c.
+    Tied {
+        /// P.
+        form: Matrix,
+        /// ρ, at most 1.
+        rate: f64,
+        /// τ of each cone, 0 or above.
+        multipliers: Vec<f64>,
+    },
+    /// For every gain in a box around all that the tuner can produce, as long as no gain moves by more
+    /// than a share of its half width in a sample: $V = z^T P(\kappa) z$ falls, with $P(\kappa)$ affine
+    /// in the gains κ counted in half widths of the box.
+    BoundedRate {
+        /// Lower and upper end of each gain.
+        ends: [[f64; 2]; 3],
+        /// Largest change of each gain in a sample, in half widths.
+        changes: [f64; 3],
+        /// $P_0$, and what each gain adds to it per half width.
+        forms: [Matrix; 4],
+        /// ρ, at most 1.
+        rate: f64,
+    },
+    /// Gains that the supervisor produces at an input, standing still, let the loop grow.
+    FrozenGrowth {
+        /// Error and change, supervisor units.
+        input: [f64; 2],
+        /// Factor σ per sample, at least 1, beyond which the form grows:
+        /// $M^T P M \succ \sigma^2 P$.
+        factor: f64,
+        /// P.
+        form: Matrix,
+        /// A state at which it is positive.
+        direction: Vec<f64>,
+    },
+    /// Gains that the supervisor produces at these inputs, one after the other and again, let the
+    /// loop grow. It refutes arbitrary motion of the gains, not the flown loop.
+    SequenceGrowth {
+        /// Error and change at each sample of the period, supervisor units.
+        inputs: Vec<[f64; 2]>,
+        /// Factor σ per period, at least 1, beyond which the form grows.
+        factor: f64,
+        /// P.
+        form: Matrix,
+        /// A state at which it is positive.
+        direction: Vec<f64>,
+    },
+}
+
+impl Claim {
+    /// Name in files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::AnySpeed { .. } => "stable-at-any-speed",
+            Self::Tied { .. } => "stable-as-tied-to-the-error",
+            Self::BoundedRate { .. } => "stable-at-bounded-rate",
+            Self::FrozenGrowth { .. } => "unstable-with-frozen-gains",
+            Self::SequenceGrowth { .. } => "unstable-with-a-sequence-of-gains",
+        }
+    }
+
+    /// The factor per sample by which the root of the form falls, of a claim of stability.
+    #[must_use]
+    pub const fn rate(&self) -> Option<f64> {
+        match self {
+            Self::AnySpeed { rate, .. }
+            | Self::Tied { rate, .. }
+            | Self::BoundedRate { rate, .. } => Some(*rate),
+            Self::FrozenGrowth { .. } | Self::SequenceGrowth { .. } => None,
+        }
+    }
+
+    /// True for a claim of stability.
+    #[must_use]
+    pub const fn is_of_stability(&self) -> bool {
+        matches!(self, Self::AnySpeed { .. } | Self::Tied { .. } | Self::BoundedRate { .. })
+    }
+}

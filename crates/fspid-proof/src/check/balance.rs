@@ -1,0 +1,78 @@
+//! Units of states by powers of two, after which rows and columns are of similar size.
+
+/// Sweeps after which the matrix is taken as it is; two or three are usual.
+const SWEEPS: usize = 60;
+/// A change of unit must shrink row plus column by this factor to be worth making.
+const WORTHWHILE: f64 = 0.95;
+/// No unit moves further than this, so that nothing leaves the range of floats.
+const FURTHEST: i32 = 300;
+
+/// Exponents e, so that entries times $2^{e_j - e_i}$ make a matrix of small norm.
+///
+/// `magnitudes` are the absolute values of a square matrix, row after row. Whatever is answered, the
+/// change of units is exact; only the width of what follows depends on it.
+///
+/// # Source
+/// B. N. Parlett and C. Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*,
+/// Numer. Math. 13 (1969) 293.
+pub(super) fn balance(mut magnitudes: Vec<f64>, size: usize) -> Vec<i32> {
+    let mut exponents = vec![0; size];
+    for _ in 0..SWEEPS {
+        let mut changed = false;
+        for (i, exponent) in exponents.iter_mut().enumerate() {
+            let change = worthwhile(&magnitudes, size, i);
+            if change != 0 && (*exponent + change).abs() <= FURTHEST {
+                rescale(&mut magnitudes, size, i, change);
+                *exponent += change;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    exponents
+}
+
+/// Exponent of the power of two nearest to the root of row over column, or 0 when it gains little.
+fn worthwhile(magnitudes: &[f64], size: usize, i: usize) -> i32 {
+    let others = || (0..size).filter(|&other| other != i);
+    let column: f64 = others().map(|row| magnitudes[row * size + i]).sum();
+    let row: f64 = others().map(|column| magnitudes[i * size + column]).sum();
+    let ratio = row / column;
+    if !(ratio > 0.0 && ratio.is_finite()) {
+        return 0;
+    }
+    let (_, exponent) = libm::frexp(ratio);
+    let change = exponent / 2;
+    let after = libm::scalbn(column, change) + libm::scalbn(row, -change);
+    if after < WORTHWHILE * (column + row) { change } else { 0 }
+}
+
+fn rescale(magnitudes: &mut [f64], size: usize, i: usize, change: i32) {
+    for other in (0..size).filter(|&other| other != i) {
+        let (down, across) = (other * size + i, i * size + other);
+        magnitudes[down] = libm::scalbn(magnitudes[down], change);
+        magnitudes[across] = libm::scalbn(magnitudes[across], -change);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_in_units_far_apart_are_brought_together() {
+        let exponents = balance(vec![1.0, 1e6, 1e-6, 2.0], 2);
+        let change = exponents[1] - exponents[0];
+        let [above, below] = [libm::scalbn(1e6, change), libm::scalbn(1e-6, -change)];
+        assert!(above < 4.0 && below < 4.0 && above + below > 0.5, "{above} {below}");
+    }
+
+    #[test]
+    fn rows_of_zeros_and_matrices_without_bounds_are_left_alone() {
+        assert_eq!(balance(vec![1.0, 1e9, 0.0, 0.0], 2), [0, 0]);
+        assert_eq!(balance(vec![1.0, f64::INFINITY, 1.0, f64::NAN], 2), [0, 0]);
+        assert!(balance(Vec::new(), 0).is_empty());
+    }
+}

@@ -1,0 +1,136 @@
+//! An ellipsoid in which no limit acts, so that the linear proof is one of the loop with its limits.
+//!
+//! Where $z^T P z$ falls, a state that is inside of $z^T P z \le c$ stays inside. With
+//!
+//! $$ c \le \frac{L^2}{r P^{-1} r^T} $$
+//!
+//! for every row r that some gain gives a limited quantity $r z$, $|r z| \le L$ holds at every sample.
+
+use fspid_core::{AntiWindup, Gains, Limits};
+use fspid_fuzzy::Scalar;
+use fspid_fuzzy::scalar::Interval;
+use fspid_lti::Matrix;
+use fspid_sim::loop_model::LoopModel;
+
+use crate::check::{ActuatorLag, NotProved, inside_limit};
+use crate::description::LoopDescription;
+
+/// Of the largest level that ordinary arithmetic finds, so much is claimed.
+const CLAIMED: f64 = 1.0 - 1e-6;
+
+/// Why no ellipsoid is claimed although something is limited.
+pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str> {
+    let actuator = &description.actuator;
+    let limited = actuator.rate_limit_rad_s().is_some() || actuator.travel_rad().is_some();
+    match ActuatorLag::from(actuator.lag()) {
+        ActuatorLag::Second { .. } if limited => Some(
+            "between samples an actuator of second order may move further than at them, so that its limits are not covered",
+        ),
+        ActuatorLag::None if actuator.rate_limit_rad_s().is_some() => {
+            Some("the rate limit of an actuator without lag is not covered")
+        }
+        _ if actuator.bias_rad() != 0.0 => {
+            Some("with a bias of the actuator, rest is not in the middle of the limits")
+        }
+        _ => None,
+    }
+}
+
+/// Rows from the state to everything that is limited, each with its limit, at some gains.
+pub(crate) fn rows<T: Scalar>(
+    description: &LoopDescription,
+    model: &LoopModel<T>,
+    gains: Gains<T>,
+) -> Vec<(Vec<T>, f64)> {
+    let shell = description.controller.shell();
+    let actuator = &description.actuator;
+    let mut rows = Vec::new();
+    let command = || model.command_row(gains);
+    if let Some(limits) = &shell.limits {
+        rows.push((command(), around_zero(limits)));
+    }
+    if let Some(slew_rad_s) = shell.slew_rad_s {
+        // Two commands that are both within half of it differ by no more.
+        rows.push((command(), 0.5 * slew_rad_s * shell.dt_s));
+    }
+    if let AntiWindup::Clamping(limits) = &shell.anti_windup {
+        rows.push((model.integral_row(gains), around_zero(limits)));
+    }
+    if let Some((least, most)) = actuator.command_limits_rad() {
+        rows.push((command(), (-least).min(most)));
+    }
+    let deflection = || -> Vec<T> {
+        let place = model.plant().states - 1;
+        let unit = |column| if column == place { T::one() } else { T::zero() };
+        (0..model.size()).map(unit).collect()
+    };
+    if let Some((least, most)) = actuator.travel_rad() {
+        // A lag of first order stays between where it is and where it is told to go.
+        let limit = (-least).min(most);
+        rows.push((deflection(), limit));
+        rows.push((command(), limit));
+    }
+    if let (Some(rate_rad_s), Some(time_s)) =
+        (actuator.rate_limit_rad_s(), actuator.lag().time_constant_s())
+    {
+        // The rate is largest right after a new command: gap over time constant.
+        let arriving = model.arriving_row(gains).into_iter().zip(deflection());
+        rows.push((arriving.map(|(v, x)| v - x).collect(), rate_rad_s * time_s));
+    }
+    rows
+}
+
+fn around_zero(limits: &Limits<f64>) -> f64 {
+    (-limits.lower()).min(limits.upper())
+}
+
+/// The largest level for which ordinary arithmetic finds no limit at work; none without limits, or
+/// where rest itself is at a limit.
+pub(crate) fn level(
+    description: &LoopDescription,
+    model: &LoopModel<f64>,
+    corners: &[Gains<f64>],
+    form: &Matrix,
+) -> Option<f64> {
+    let mut level = f64::INFINITY;
+    for gains in corners {
+        for (row, limit) in rows(description, model, *gains) {
+            let column = Matrix::from_rows(&row.iter().map(|value| [*value]).collect::<Vec<_>>());
+            let solved = form.solve(&column.ok()?).ok()?;
+            let size: f64 = row.iter().zip(solved.data()).map(|(r, x)| r * x).sum();
+            if size > 0.0 {
+                level = level.min(CLAIMED * limit * limit / size);
+            }
+        }
+    }
+    (level > 0.0 && level.is_finite()).then_some(level)
+}
+
+/// Proves that no limit acts within a level, at these gains; answers how many inequalities that took.
+pub(crate) fn prove(
+    description: &LoopDescription,
+    model: &LoopModel<Interval>,
+    gains: Gains<Interval>,
+    (form, level): (&Matrix, f64),
+) -> Result<usize, NotProved> {
+    let rows = rows(description, model, gains);
+    for (row, limit) in &rows {
+        inside_limit(form, level, row, *limit)?;
+    }
+    Ok(rows.len())
+}
+
+/// How far the pitch angle may be off, everything else at rest, to lie within a level, rad.
+#[must_use]
+pub fn pitch_within(model: &LoopModel<Interval>, form: &Matrix, level: f64) -> Option<f64> {
+    let state = model.pitch_off(Interval::ONE);
+    let mut size = Interval::ZERO;
+    for (row, left) in state.iter().enumerate() {
+        for (column, right) in state.iter().enumerate() {
+            let entry = Interval::point(form.get(row, column)?);
+            size = size + *left * entry * *right;
+        }
+    }
+    let pitch = (Interval::point(level) / size).sqrt().lower();
+    (pitch > 0.0 && pitch.is_finite()).then_some(pitch)
+}

@@ -1,0 +1,269 @@
+//! The re-check of a whole certificate: what it says is believed because this function answers `Ok`.
+
+use core::fmt;
+
+use fspid_core::{Change, Fspid, Gains, Law};
+use fspid_fuzzy::scalar::Interval;
+use fspid_lti::Matrix;
+use fspid_sim::Controller;
+use fspid_sim::loop_model::LoopModel;
+
+use crate::certificate::{Certificate, Claim};
+use crate::check::{IntervalMatrix, NotProved, falls, is_positive, prove_growth};
+use crate::description::NotProvable;
+use crate::gain_set::{Cone, GainSet, IncrementMap, producible};
+use crate::limits;
+
+/// Longest sequence of gains that is multiplied out.
+const MOST_SAMPLES: usize = 20_000;
+
+/// What was re-checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rechecked {
+    /// Boxes of gains that cover everything the tuner can produce.
+    pub cells: usize,
+    /// Inequalities that were proved.
+    pub inequalities: usize,
+    /// Bounds of each gain.
+    pub bounds: [Interval; 3],
+}
+
+/// Why a certificate is not believed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Doubt {
+    /// The loop is not one that a proof can speak of.
+    NotProvable(NotProvable),
+    /// An inequality does not hold, or not with certainty.
+    Inequality {
+        /// Which gains; none where the inequality is not about gains.
+        gains: Option<Gains<f64>>,
+        /// What was found.
+        reason: NotProved,
+    },
+    /// The certificate does not fit together.
+    Malformed {
+        /// What is wrong.
+        what: &'static str,
+    },
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotProvable(reason) => reason.fmt(f),
+            Self::Inequality { gains: Some(gains), reason } => {
+                write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
+            }
+            Self::Inequality { gains: None, reason } => reason.fmt(f),
+            Self::Malformed { what } => f.write_str(what),
+        }
+    }
+}
+
+impl core::error::Error for Doubt {}
+
+impl From<NotProvable> for Doubt {
+    fn from(reason: NotProvable) -> Self {
+        Self::NotProvable(reason)
+    }
+}
+
+impl From<NotProved> for Doubt {
+    fn from(reason: NotProved) -> Self {
+        Self::Inequality { gains: None, reason }
+    }
+}
+
+impl Certificate {
+    /// Proves the claim anew, from the description alone.
+    ///
+    /// # Errors
+    /// [`Doubt`] with the first inequality that is not proved.
+    pub fn check(&self) -> Result<Rechecked, Doubt> {
+        Recheck::of(self)?.run()
+    }
+}
+
+/// A certificate with what it is checked against.
+pub(crate) struct Recheck<'a> {
+    certificate: &'a Certificate,
+    model: LoopModel<Interval>,
+    set: GainSet,
+}
+
+fn malformed(what: &'static str) -> Doubt {
+    Doubt::Malformed { what }
+}
+
+fn allowed_rate(rate: f64) -> Result<(), Doubt> {
+    let good = rate > 0.0 && rate <= 1.0;
+    good.then_some(()).ok_or(malformed("the rate is not above 0 and at most 1"))
+}
+
+impl<'a> Recheck<'a> {
+    /// Everything enclosed anew from the description.
+    fn of(certificate: &'a Certificate) -> Result<Self, Doubt> {
+        let description = certificate.description.clone().provable()?;
+        let model = description.enclosed()?;
+        let set = match &description.controller {
+            Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
+            Controller::SelfTuning(fspid) => IncrementMap::of(fspid.tuner(), certificate.divisions)
+                .map_err(NotProvable::from)?
+                .gains(certificate.output_factor),
+        };
+        Ok(Self::with(certificate, model, set))
+    }
+
+    /// With enclosures that were made before, of the same description.
+    pub(crate) fn with(
+        certificate: &'a Certificate,
+        model: LoopModel<Interval>,
+        set: GainSet,
+    ) -> Self {
+        Self { certificate, model, set }
+    }
+
+    pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
+        let inequalities = match &self.certificate.claim {
+            Claim::AnySpeed { form, rate } => self.any_speed(form, *rate)?,
+            Claim::Tied { form, rate, multipliers } => self.tied(form, *rate, multipliers)?,
+            Claim::BoundedRate { .. } => todo!(),
+            Claim::FrozenGrowth { input, factor, form, direction } => {
+                self.growth(&[*input], *factor, (form, direction))?
+            }
+            Claim::SequenceGrowth { inputs, factor, form, direction } => {
+                self.growth(inputs, *factor, (form, direction))?
+            }
+        };
+        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds: self.set.bounds() })
+    }
+
+    /// The closed loop at gains.
+    fn closed(&self, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
+        let rows = self.model.closed(gains);
+        IntervalMatrix::from_rows(&rows).map_err(|error| NotProved::from(error).into())
+    }
+
+    fn form(&self, form: &Matrix, rate: f64) -> Result<(), Doubt> {
+        allowed_rate(rate)?;
+        if (form.rows(), form.columns()) != (self.model.size(), self.model.size()) {
+            return Err(malformed("the form has another size than the loop's state"));
+        }
+        Ok(is_positive(form)?)
+    }
+
+    /// Proves at gains that the form falls, and that no limit acts within the level.
+    fn holds(
+        &self,
+        gains: Gains<f64>,
+        (form, rate): (&Matrix, f64),
+        region: Option<(f64, &IntervalMatrix)>,
+    ) -> Result<usize, Doubt> {
+        let doubt = |reason| Doubt::Inequality { gains: Some(gains), reason };
+        let at = points(gains);
+        falls(form, rate, &self.closed(at)?, region).map_err(doubt)?;
+        let Some(level) = self.certificate.level else { return Ok(1) };
+        let description = &self.certificate.description;
+        let limits = limits::prove(description, &self.model, at, (form, level)).map_err(doubt)?;
+        Ok(1 + limits)
+    }
+
+    fn any_speed(&self, form: &Matrix, rate: f64) -> Result<usize, Doubt> {
+        self.form(form, rate)?;
+        let holds = |(_, gains)| self.holds(gains, (form, rate), None);
+        let proved = self.set.corners().map(holds).sum::<Result<usize, Doubt>>()?;
+        Ok(1 + proved)
+    }
+
+    fn tied(&self, form: &Matrix, rate: f64, multipliers: &[f64]) -> Result<usize, Doubt> {
+        self.form(form, rate)?;
+        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
+            return Err(malformed("fixed gains are tied to nothing"));
+        };
+        if fspid.tuner().settings().law != Law::Memoryless {
+            return Err(malformed("gains that remember are not tied to the error of the moment"));
+        }
+        let corners: Vec<(usize, Gains<f64>)> = self.set.corners().collect();
+        let mut proved = 1;
+        for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
+            let region = cone_form(&self.model, fspid, cone);
+            let inside = corners.iter().filter(|(cell, _)| cone.cells.contains(cell));
+            for (_, gains) in inside {
+                proved += self.holds(*gains, (form, rate), Some((*tau, &region)))?;
+            }
+        }
+        Ok(proved)
+    }
+
+    /// Multiplies the loops of a sequence of produced gains and proves that the product grows.
+    fn growth(
+        &self,
+        inputs: &[[f64; 2]],
+        factor: f64,
+        (form, direction): (&Matrix, &[f64]),
+    ) -> Result<usize, Doubt> {
+        if !(1..=MOST_SAMPLES).contains(&inputs.len()) {
+            return Err(malformed("a sequence of no samples, or of more than 20000"));
+        }
+        if !(factor >= 1.0 && factor.is_finite()) {
+            return Err(malformed("the factor of the growth is below 1"));
+        }
+        let mut product = IntervalMatrix::identity(self.model.size());
+        for input in inputs {
+            let gains = produced(&self.certificate.description.controller, *input);
+            let closed = self.closed(points(gains))?;
+            product = closed.product(&product).map_err(NotProved::from)?;
+        }
+        let slowed = product.scaled(Interval::ONE / Interval::point(factor));
+        prove_growth(&slowed, form, direction)?;
+        Ok(2)
+    }
+}
+
+/// The gains that a controller has at an input of its supervisor.
+pub(crate) fn produced(controller: &Controller, [error, change]: [f64; 2]) -> Gains<f64> {
+    match controller {
+        Controller::Fixed(pid) => pid.gains(),
+        Controller::SelfTuning(fspid) => producible(fspid.tuner(), error, change),
+    }
+}
+
+fn points(gains: Gains<f64>) -> Gains<Interval> {
+    let Gains { kp, ki, kd } = gains;
+    Gains { kp: Interval::point(kp), ki: Interval::point(ki), kd: Interval::point(kd) }
+}
+
+/// The quadratic form that is not negative where the supervisor's inputs lie in a double cone:
+///
+/// $$ z^T Q z = (n_1 \cdot x)(n_2 \cdot x), \qquad x = (s_e e, s_c \Delta e) $$
+pub(crate) fn cone_form(
+    model: &LoopModel<Interval>,
+    fspid: &Fspid<f64>,
+    cone: &Cone,
+) -> IntervalMatrix {
+    let settings = fspid.tuner().settings();
+    let point = Interval::point;
+    let time_s = match settings.change {
+        Change::Rate => point(model.settings().shell.dt_s),
+        Change::Delta => Interval::ONE,
+    };
+    let by_error = point(settings.input_scale.error_per_rad);
+    let by_change = point(settings.input_scale.change_per_rad) / time_s;
+    let [error, change] = model.error_rows();
+    // The sign of both inputs together does not matter to a double cone.
+    let side = |normal: [f64; 2]| -> Vec<Interval> {
+        let inputs = error.iter().zip(&change);
+        inputs
+            .map(|(e, c)| point(normal[0]) * by_error * *e + point(normal[1]) * by_change * *c)
+            .collect()
+    };
+    let [first, second] = cone.normals.map(side);
+    let half = point(0.5);
+    let entry = |row: usize, column: usize| {
+        half * (first[row] * second[column] + first[column] * second[row])
+    };
+    let size = model.size();
+    let rows: Vec<Vec<Interval>> =
+        (0..size).map(|row| (0..size).map(|column| entry(row, column)).collect()).collect();
+    IntervalMatrix::from_rows(&rows).unwrap_or_else(|_| IntervalMatrix::zeros(size, size))
+}

@@ -1,0 +1,172 @@
+//! The enclosed plant against the one that simulations fly.
+
+use fspid_core::{Gains, Pid, Shell};
+use fspid_fuzzy::scalar::Interval;
+use fspid_proof::check::{ActuatorLag, IntervalMatrix, NotProved, PrintedPlant, printed};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{
+    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+};
+
+const GAINS: Gains<f64> = Gains { kp: 0.8, ki: 0.4, kd: 0.2 };
+/// The paper's two plants, one whose elevator moves the pitch rate at once, one of first order.
+const PLANTS: [(&[f64], &[f64], ElevatorSign); 4] = [
+    (
+        &[-1.69144, -0.84341, -0.0099096],
+        &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
+        ElevatorSign::NoseDownPositive,
+    ),
+    (&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0], ElevatorSign::NoseUpPositive),
+    (&[0.3, 1.1, 2.0], &[2.0, 3.1, 0.0, 0.7], ElevatorSign::NoseDownPositive),
+    (&[1.3], &[3.0, 0.7], ElevatorSign::NoseUpPositive),
+];
+const LAGS: [ActuatorLag; 3] = [
+    ActuatorLag::None,
+    ActuatorLag::First { time_constant_s: 0.1 },
+    ActuatorLag::Second { natural_frequency_rad_s: 30.0, damping: 0.7 },
+];
+
+/// The same loop as the simulation builds it, by its servo or by an actuator.
+fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, by_servo: bool) -> SampledPlant<f64> {
+    let (numerator, denominator, sign) = PLANTS[plant];
+    let plant = LinearPlant::new(numerator, denominator, sign).expect("allowed");
+    let (servo, lag) = match lag {
+        ActuatorLag::None => (Ok(Servo::ideal()), Ok(Lag::NONE)),
+        ActuatorLag::First { time_constant_s } => {
+            (Servo::first_order(time_constant_s), Lag::first_order(time_constant_s))
+        }
+        ActuatorLag::Second { natural_frequency_rad_s, damping } => {
+            (Ok(Servo::ideal()), Lag::second_order(natural_frequency_rad_s, damping))
+        }
+    };
+    let actuator = Actuator::new(lag.expect("allowed"));
+    let shell = Shell::sampled_every(dt_s);
+    let pid = Pid::new(GAINS, shell).expect("allowed");
+    let scenario = Scenario {
+        name: "plant".into(),
+        plant: plant.clone().into(),
+        plant_changes: Vec::new(),
+        servo: servo.expect("allowed"),
+        timing: Timing::new(dt_s, 1.0).expect("allowed"),
+        setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
+        disturbances: Vec::new(),
+        controllers: vec![NamedController { name: "C".into(), controller: Controller::Fixed(pid) }],
+        surroundings: Surroundings {
+            actuator: if by_servo { None } else { Some(actuator) },
+            ..Surroundings::default()
+        },
+    };
+    let memory = Memory::of_gains(GAINS, &shell);
+    LoopModel::of(&scenario, &plant, &shell, memory).expect("a loop").plant().clone()
+}
+
+fn enclosed(plant: usize, lag: ActuatorLag, dt_s: f64) -> SampledPlant<Interval> {
+    let (numerator, denominator, elevator_sign) = PLANTS[plant];
+    let printed = PrintedPlant { numerator, denominator, elevator_sign, lag, dt_s };
+    printed.sampled().expect("a plant")
+}
+
+/// Largest distance of a number from its enclosure, and largest radius, as parts of the largest entry.
+fn distances(enclosed: &[Interval], found: &[f64]) -> (f64, f64) {
+    assert_eq!(enclosed.len(), found.len());
+    let largest = found.iter().fold(1e-300, |most: f64, value| most.max(value.abs()));
+    let outside = enclosed.iter().zip(found).fold(0.0, |most: f64, (entry, value)| {
+        most.max(entry.lower() - value).max(value - entry.upper())
+    });
+    let radius = enclosed.iter().fold(0.0, |most: f64, entry| most.max(entry.radius()));
+    (outside / largest, radius / largest)
+}
+
+#[test]
+fn the_plant_of_the_simulation_lies_inside_but_for_its_own_rounding() {
+    for plant in 0..PLANTS.len() {
+        for lag in LAGS {
+            for dt_s in [0.01, 0.02, 0.05] {
+                let second = matches!(lag, ActuatorLag::Second { .. });
+                for by_servo in [false, true].into_iter().filter(|servo| !(*servo && second)) {
+                    let flown = flown(plant, lag, dt_s, by_servo);
+                    let enclosed = enclosed(plant, lag, dt_s);
+                    assert_eq!(enclosed.states, flown.states);
+                    let (outside, radius) = distances(&enclosed.rows, &flown.rows);
+                    assert!(outside < 1e-15, "{plant} {lag:?} {dt_s}: {outside:e}");
+                    assert!(radius < 1e-14, "{plant} {lag:?} {dt_s}: {radius:e}");
+                    let (outside, radius) = distances(&enclosed.rate, &flown.rate);
+                    assert!(outside <= 0.0 && radius < 1e-15, "{plant} {lag:?}: {outside:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_enclosed_loop_holds_the_loop_in_floats() {
+    let shell = Shell::sampled_every(0.02);
+    let settings = LoopSettings {
+        shell,
+        memory: Memory::of_gains(GAINS, &shell),
+        delay_samples: 1,
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+    };
+    let lag = LAGS[1];
+    let enclosed = LoopModel::new(enclosed(0, lag, 0.02), settings.clone());
+    let point = Interval::point;
+    let gains = Gains { kp: point(GAINS.kp), ki: point(GAINS.ki), kd: point(GAINS.kd) };
+    let matrix = IntervalMatrix::from_rows(&enclosed.closed(gains)).expect("square");
+    let flown = LoopModel::new(flown(0, lag, 0.02, true), settings);
+    let flown = flown.closed_matrix(GAINS).expect("finite");
+    let entries: Vec<Interval> = matrix.entries().collect();
+    let (outside, radius) = distances(&entries, flown.data());
+    assert!(outside < 1e-15 && radius < 1e-14, "{outside:e} {radius:e}");
+}
+
+#[test]
+fn a_printed_number_stands_for_its_decimal_and_zero_for_itself() {
+    // 0.1 is not a float: it lies between the one that it reads as and the next below.
+    let tenth = printed(0.1);
+    assert!(tenth.lower() < 0.1 && tenth.upper() > 0.1);
+    assert_eq!(printed(0.0), Interval::ZERO);
+    assert_eq!(printed(-0.0), Interval::ZERO);
+    assert_eq!(printed(f64::NAN), Interval::ENTIRE);
+}
+
+#[test]
+fn the_zeros_of_the_printed_plant_stay_exact() {
+    let navion = enclosed(1, LAGS[1], 0.01);
+    // No pole at rest: pitch keeps its value, and the servo feels nothing of the plant.
+    let entry = |row: usize, column: usize| navion.rows[row * (navion.states + 1) + column];
+    assert_eq!([entry(0, 0), entry(1, 0), entry(2, 0)], [1.0, 0.0, 0.0].map(Interval::point));
+    assert_eq!([entry(3, 0), entry(3, 1), entry(3, 2)], [Interval::ZERO; 3]);
+    let ideal = enclosed(1, LAGS[0], 0.01);
+    let last = &ideal.rows[ideal.rows.len() - ideal.states - 1..];
+    assert_eq!(last, [0.0, 0.0, 0.0, 0.0, 1.0].map(Interval::point));
+}
+
+#[test]
+fn a_plant_that_cannot_be_is_refused() {
+    let (numerator, denominator, elevator_sign) = PLANTS[1];
+    let lag = ActuatorLag::None;
+    let good = PrintedPlant { numerator, denominator, elevator_sign, lag, dt_s: 0.01 };
+    assert!(good.sampled().is_ok());
+    for dt_s in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+        let found = PrintedPlant { dt_s, ..good }.sampled();
+        assert!(matches!(found, Err(NotProved::Number { .. })), "{dt_s}");
+    }
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let first = ActuatorLag::First { time_constant_s: bad };
+        let second = ActuatorLag::Second { natural_frequency_rad_s: bad, damping: 0.7 };
+        let undamped = ActuatorLag::Second { natural_frequency_rad_s: 30.0, damping: bad };
+        for lag in [first, second, undamped] {
+            assert!(PrintedPlant { lag, ..good }.sampled().is_err(), "{lag:?}");
+        }
+    }
+    let jump: &[f64] = &[1.0, 2.0, 3.0, 4.0];
+    for numerator in [jump, &[], &[f64::NAN], &[0.0]] {
+        let found = PrintedPlant { numerator, ..good }.sampled();
+        assert!(matches!(found, Err(NotProved::Plant(_))), "{numerator:?}");
+    }
+    let bolting = PrintedPlant { denominator: &[1.0, -1e6, 0.0], numerator: &[1.0], ..good };
+    assert!(matches!(bolting.sampled(), Err(NotProved::Unbounded { .. })));
+}

@@ -1,0 +1,97 @@
+//! Margins as they are answered: in dB, degrees and seconds.
+
+use fspid_lti::{SampledMargins, Stability};
+
+use crate::metrics::Absent;
+use crate::units::degrees;
+
+/// Margins of a loop that is stable. A margin without an end is infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margins {
+    /// How far the gain may fall (negative) and rise (positive), dB.
+    pub gain_margin_db: [f64; 2],
+    /// Frequencies at which the loop is undamped there, rad/s; none at an infinite end.
+    pub phase_crossover_rad_s: [Option<f64>; 2],
+    /// Smallest distance of the phase from ± 180° over all crossovers, deg.
+    pub phase_margin_deg: f64,
+    /// Frequency of that crossover, rad/s.
+    pub gain_crossover_rad_s: Option<f64>,
+    /// Smallest dead time that makes the loop unstable, s.
+    pub delay_margin_s: f64,
+    /// Size of the largest disk of gains and phases without skew that the loop bears.
+    pub disk_margin: f64,
+    /// Gain factors within that disk, dB.
+    pub disk_gain_db: [f64; 2],
+    /// Phase within that disk, deg.
+    pub disk_phase_deg: f64,
+    /// Where the disk margin is reached, rad/s.
+    pub disk_rad_s: f64,
+    /// Largest gain from disturbances of the output to the output.
+    pub sensitivity_peak: f64,
+    /// Where, rad/s.
+    pub sensitivity_peak_rad_s: f64,
+    /// Largest gain from the command to the output of the broken loop.
+    pub complementary_peak: f64,
+    /// Largest modulus of a pole of the closed loop.
+    pub spectral_radius: f64,
+}
+
+/// A gain factor in dB.
+#[must_use]
+pub fn decibels(factor: f64) -> f64 {
+    20.0 * libm::log10(factor)
+}
+
+impl Margins {
+    /// The margins of a stable loop.
+    ///
+    /// # Errors
+    /// [`Absent::Unstable`].
+    pub fn of(stability: &Stability) -> Result<Self, Absent> {
+        match stability {
+            Stability::Unstable { spectral_radius, .. } => {
+                Err(Absent::Unstable { spectral_radius: *spectral_radius })
+            }
+            Stability::Stable(found) => Ok(Self::of_stable(found)),
+        }
+    }
+
+    fn of_stable(found: &SampledMargins) -> Self {
+        let low = found.gain_low.as_ref();
+        let high = found.gain_high.as_ref();
+        let phase = found.phase_margin.as_ref();
+        Self {
+            gain_margin_db: [
+                low.map_or(f64::NEG_INFINITY, |limit| decibels(limit.factor)),
+                high.map_or(f64::INFINITY, |limit| decibels(limit.factor)),
+            ],
+            phase_crossover_rad_s: [low, high].map(|limit| limit.map(|limit| limit.omega_rad_s)),
+            phase_margin_deg: phase
+                .map_or(f64::INFINITY, |crossover| degrees(crossover.phase_margin_rad.abs())),
+            gain_crossover_rad_s: phase.map(|crossover| crossover.omega_rad_s),
+            delay_margin_s: found.delay_margin_s.unwrap_or(f64::INFINITY),
+            disk_margin: found.disk.size,
+            disk_gain_db: found.disk.gain.map(decibels),
+            disk_phase_deg: degrees(found.disk.phase_rad),
+            disk_rad_s: found.disk.omega_rad_s,
+            sensitivity_peak: found.sensitivity_peak.value,
+            sensitivity_peak_rad_s: found.sensitivity_peak.omega_rad_s,
+            complementary_peak: found.complementary_peak.value,
+            spectral_radius: found.spectral_radius,
+        }
+    }
+
+    /// The smaller distance of the two ends of the gain margin from 0 dB, dB.
+    #[must_use]
+    pub fn smaller_gain_margin_db(&self) -> f64 {
+        let [low, high] = self.gain_margin_db;
+        (-low).min(high)
+    }
+}
+
+/// Why an end of the gain margin is infinite, in words.
+pub(super) const NO_LOWER_LIMIT: &str = "no smaller gain makes the loop unstable";
+/// As [`NO_LOWER_LIMIT`].
+pub(super) const NO_UPPER_LIMIT: &str = "no larger gain makes the loop unstable";
+/// Why there is no phase margin.
+pub(super) const NO_CROSSOVER: &str = "the gain of the loop is 1 at no frequency";

@@ -1,0 +1,259 @@
+//! The figures of an analysis: frequency responses, root locus, poles, frozen gains.
+
+use fspid_lti::{Complex, SampledLoop, Stability};
+use fspid_sim::SimError;
+
+use super::answer::{Margins, decibels};
+use super::frozen::{FrozenMap, FrozenPoint};
+use super::{AnalysedLoop, Analysis, PlantLoop};
+use crate::figure::{
+    BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, LocusSample, LoopCurve, LoopPoint,
+    MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure, PeakMark,
+    PoleZeroMap, RootLocus, SensitivityFigure, SeriesStyle, Transfer,
+};
+
+/// Points of a frequency response, over so many decades below the Nyquist frequency.
+const POINTS: usize = 600;
+const DECADES: f64 = 5.0;
+/// Factors on the gain of a root locus, over so many decades to both sides of 1.
+const FACTORS: usize = 241;
+const FACTOR_DECADES: f64 = 1.5;
+const WIDTH_PX: f64 = 720.0;
+
+/// A loop with the name that figures show.
+struct Shown<'a> {
+    name: String,
+    plant: &'a PlantLoop,
+}
+
+/// All loops of an analysis, ready to be drawn.
+pub(crate) struct LoopFigures<'a> {
+    shown: Vec<Shown<'a>>,
+    curves: Vec<LoopCurve>,
+}
+
+impl<'a> LoopFigures<'a> {
+    /// The worst plant of every controller.
+    pub(crate) fn of(analysis: &'a Analysis) -> Self {
+        let worst = |found: &'a AnalysedLoop| {
+            Some(Shown { name: found.name.clone(), plant: found.worst()? })
+        };
+        let shown: Vec<Shown<'a>> = analysis.loops.iter().filter_map(worst).collect();
+        let curves = shown.iter().enumerate().map(|(number, shown)| curve(number, shown)).collect();
+        Self { shown, curves }
+    }
+
+    /// False if there is no loop to draw.
+    pub(crate) fn any(&self) -> bool {
+        !self.shown.is_empty()
+    }
+
+    fn nyquist_rad_s(&self) -> Option<f64> {
+        self.shown.first().map(|shown| shown.plant.open.nyquist_rad_s())
+    }
+
+    /// Margins of the loops that have some, with the number of their curves.
+    fn margins(&self) -> impl Iterator<Item = (usize, &Margins)> {
+        let numbered = self.shown.iter().enumerate();
+        numbered.filter_map(|(number, shown)| Some((number, shown.plant.margins.as_ref().ok()?)))
+    }
+
+    pub(crate) fn bode(&self) -> BodeFigure {
+        let marks = self.margins().flat_map(|(curve, margins)| {
+            let gains = margins.gain_margin_db.into_iter().zip(margins.phase_crossover_rad_s);
+            let gains = gains.filter_map(move |(db, at)| {
+                Some(MarginMark { curve, frequency_rad_s: at?, margin: Margin::GainDb(db) })
+            });
+            let phase = margins.gain_crossover_rad_s.map(|at| MarginMark {
+                curve,
+                frequency_rad_s: at,
+                margin: Margin::PhaseDeg(margins.phase_margin_deg),
+            });
+            gains.chain(phase)
+        });
+        BodeFigure {
+            title: "Open loop: gain and phase".to_owned(),
+            curves: self.curves.clone(),
+            margins: marks.collect(),
+            nyquist_rad_s: self.nyquist_rad_s(),
+            width_px: WIDTH_PX,
+        }
+    }
+
+    pub(crate) fn nyquist(&self) -> NyquistFigure {
+        let disks = self.margins().map(|(curve, margins)| MarginDisk {
+            name: format!("disk margin of {}", self.shown[curve].name),
+            curve,
+            gain_min: factor(margins.disk_gain_db[0]),
+            gain_max: factor(margins.disk_gain_db[1]),
+        });
+        NyquistFigure {
+            title: "Open loop in the complex plane".to_owned(),
+            curves: self.curves.clone(),
+            disks: disks.collect(),
+            reach: 3.0,
+        }
+    }
+
+    pub(crate) fn nichols(&self) -> NicholsFigure {
+        NicholsFigure {
+            title: "Open loop: gain over phase".to_owned(),
+            curves: self.curves.clone(),
+            contours_db: CLOSED_LOOP_DB.to_vec(),
+            exclusion: Some(Exclusion::diamond("6 dB and 45 deg, MIL-F-9490D", 6.0, 45.0)),
+            width_px: WIDTH_PX,
+        }
+    }
+
+    pub(crate) fn sensitivity(&self) -> SensitivityFigure {
+        let peaks = self.margins().map(|(curve, margins)| PeakMark {
+            curve,
+            transfer: Transfer::Sensitivity,
+            frequency_rad_s: margins.sensitivity_peak_rad_s,
+            peak_db: decibels(margins.sensitivity_peak),
+        });
+        SensitivityFigure {
+            title: "Sensitivity and complementary sensitivity".to_owned(),
+            curves: self.curves.clone(),
+            peaks: peaks.collect(),
+            disk_margins: self.margins().map(|(curve, m)| (curve, m.disk_margin)).collect(),
+            nyquist_rad_s: self.nyquist_rad_s(),
+            width_px: WIDTH_PX,
+        }
+    }
+}
+
+fn factor(db: f64) -> f64 {
+    libm::pow(10.0, db / 20.0)
+}
+
+fn curve(number: usize, shown: &Shown<'_>) -> LoopCurve {
+    let open = &shown.plant.open;
+    let last = open.nyquist_rad_s();
+    let place =
+        |index: usize| last * libm::pow(10.0, DECADES * (index as f64 / (POINTS - 1) as f64 - 1.0));
+    let point = |index| {
+        let frequency_rad_s = place(index);
+        let Complex { re, im } = open.at(frequency_rad_s);
+        LoopPoint { frequency_rad_s, real: re, imaginary: im }
+    };
+    LoopCurve {
+        name: shown.name.clone(),
+        style: SeriesStyle::Numbered(number),
+        points: (0..POINTS).map(point).collect(),
+    }
+}
+
+fn pairs(values: &[Complex]) -> Vec<(f64, f64)> {
+    values.iter().map(|value| (value.re, value.im)).collect()
+}
+
+/// Poles over the loop's gain.
+///
+/// # Errors
+/// Eigenvalues that are not found.
+pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, SimError> {
+    let open = &plant.open;
+    let sample = |index: usize| {
+        let share = 2.0 * index as f64 / (FACTORS - 1) as f64 - 1.0;
+        let factor = libm::pow(10.0, FACTOR_DECADES * share);
+        Ok::<_, SimError>(LocusSample { factor, poles: pairs(&open.closed_poles_at(factor)?) })
+    };
+    Ok(RootLocus {
+        title: format!("{name}: closed-loop poles while the loop gain grows"),
+        dt_s: open.dt_s(),
+        samples: (0..FACTORS).map(sample).collect::<Result<_, _>>()?,
+        poles_at_one: pairs(&plant.closed_poles),
+        open_poles: pairs(&open.open_poles()?),
+        open_zeros: pairs(&open.zeros()?),
+        crossings: crossings(open, &plant.stability),
+    })
+}
+
+fn crossings(open: &SampledLoop, stability: &Stability) -> Vec<Crossing> {
+    let Stability::Stable(margins) = stability else {
+        return Vec::new();
+    };
+    let limits = [&margins.gain_low, &margins.gain_high].into_iter().flatten();
+    limits
+        .map(|limit| {
+            let (sine, cosine) = libm::sincos(limit.omega_rad_s * open.dt_s());
+            Crossing { factor: limit.factor, at: (cosine, sine) }
+        })
+        .collect()
+}
+
+/// Poles and zeros of a loop.
+///
+/// # Errors
+/// Eigenvalues that are not found.
+pub(crate) fn pole_zero(name: &str, plant: &PlantLoop) -> Result<PoleZeroMap, SimError> {
+    Ok(PoleZeroMap {
+        title: format!("{name}: poles and zeros of the sampled loop"),
+        dt_s: plant.open.dt_s(),
+        open_poles: pairs(&plant.open.open_poles()?),
+        open_zeros: pairs(&plant.open.zeros()?),
+        closed_poles: pairs(&plant.closed_poles),
+    })
+}
+
+/// Which margin a map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MapQuantity {
+    /// Smaller end of the gain margin, dB.
+    Gain,
+    /// Phase margin, deg.
+    Phase,
+}
+
+/// Margins of the frozen gains over the supervisor's inputs, and the flown way.
+pub(crate) fn gain_map(
+    name: &str,
+    map: &FrozenMap,
+    quantity: MapQuantity,
+    flown: Vec<(f64, f64)>,
+) -> GainMap {
+    let (label, required) = match quantity {
+        MapQuantity::Gain => ("gain margin, smaller end [dB]", (6.0, "6 dB, MIL-F-9490D")),
+        MapQuantity::Phase => ("phase margin [deg]", (45.0, "45 deg, MIL-F-9490D")),
+    };
+    let inputs = |index: usize| -> Vec<f64> {
+        let points = map.points.iter().map(|point| point.input[index]);
+        let mut values: Vec<f64> = points.collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    };
+    let rows = (0..map.side).map(|change| {
+        let column = (0..map.side).filter_map(|error| map.points.get(error * map.side + change));
+        column.map(|point| cell(point, quantity)).collect()
+    });
+    GainMap {
+        title: format!("{name}: {label} of every frozen gain"),
+        x_label: "error [supervisor units]".to_owned(),
+        y_label: "change of error [supervisor units]".to_owned(),
+        quantity: label.to_owned(),
+        xs: inputs(0),
+        ys: inputs(1),
+        cells: rows.collect(),
+        scale: None,
+        required: Some((required.0, required.1.to_owned())),
+        worst: Some(MapPoint {
+            at: (map.worst.input[0], map.worst.input[1]),
+            name: format!("worst: {}", super::text::triple(map.worst.gains)),
+        }),
+        equilibrium: Some(MapPoint { at: (0.0, 0.0), name: "at rest".to_owned() }),
+        flown,
+    }
+}
+
+fn cell(point: &FrozenPoint, quantity: MapQuantity) -> MapCell {
+    let Ok(margins) = &point.margins else {
+        return MapCell::Unstable;
+    };
+    let value = match quantity {
+        MapQuantity::Gain => margins.smaller_gain_margin_db(),
+        MapQuantity::Phase => margins.phase_margin_deg,
+    };
+    if value.is_finite() { MapCell::Value(value) } else { MapCell::Unbounded }
+}

@@ -1,0 +1,121 @@
+//! Margins at every gain that a supervisor can produce, the gains standing still.
+
+use fspid_core::{Fspid, Gains, Law};
+use fspid_proof::gain_set::producible;
+use fspid_sim::loop_model::{LoopModel, Memory};
+use fspid_sim::{LinearPlant, Scenario, SimError};
+
+use super::Question;
+use super::answer::Margins;
+use super::loops::rank;
+use crate::metrics::Absent;
+
+/// A gain triple and its margins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrozenPoint {
+    /// Error and change that it belongs to, in the supervisor's units.
+    pub input: [f64; 2],
+    /// The gains.
+    pub gains: Gains<f64>,
+    /// Their margins.
+    pub margins: Result<Margins, Absent>,
+}
+
+/// Margins over the supervisor's inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrozenMap {
+    /// Points along each input.
+    pub side: usize,
+    /// Row after row: the error rises from row to row, the change within one.
+    pub points: Vec<FrozenPoint>,
+    /// The worst gain found, on the grid or between its points.
+    pub worst: FrozenPoint,
+}
+
+/// Halvings of the distance of points around the worst one.
+const REFINEMENTS: u32 = 4;
+
+impl FrozenMap {
+    /// The map of a self-tuning controller with a plant; none for gains that remember.
+    pub(super) fn of(
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        fspid: &Fspid<f64>,
+        question: Question,
+    ) -> Result<Option<Self>, SimError> {
+        if fspid.tuner().settings().law != Law::Memoryless {
+            return Ok(None);
+        }
+        Mapper { scenario, plant, fspid, question }.map()
+    }
+
+    /// True if every gain on the map holds the plant.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.worst.margins.is_ok() && self.points.iter().all(|point| point.margins.is_ok())
+    }
+
+    /// Gains of the map that do not hold the plant.
+    #[must_use]
+    pub fn unstable(&self) -> usize {
+        self.points.iter().filter(|point| point.margins.is_err()).count()
+    }
+}
+
+struct Mapper<'a> {
+    scenario: &'a Scenario,
+    plant: &'a LinearPlant,
+    fspid: &'a Fspid<f64>,
+    question: Question,
+}
+
+impl Mapper<'_> {
+    fn map(&self) -> Result<Option<FrozenMap>, SimError> {
+        let side = self.question.map_points;
+        let range = self.fspid.tuner().supervisor().range();
+        let place = |index: usize| match side {
+            1 => 0.0,
+            _ => range * (2.0 * index as f64 / (side - 1) as f64 - 1.0),
+        };
+        let inputs = (0..side).flat_map(|row| (0..side).map(move |column| (row, column)));
+        let points = inputs
+            .map(|(row, column)| self.point([place(row), place(column)]))
+            .collect::<Result<Vec<_>, _>>()?;
+        let Some(worst) = worst_of(&points) else { return Ok(None) };
+        let worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
+        Ok(Some(FrozenMap { side, points, worst }))
+    }
+
+    /// Looks around a point, nearer and nearer, for a worse one.
+    fn refined(
+        &self,
+        mut worst: FrozenPoint,
+        range: f64,
+        mut distance: f64,
+    ) -> Result<FrozenPoint, SimError> {
+        for _ in 0..REFINEMENTS {
+            distance *= 0.5;
+            let [error, change] = worst.input;
+            for (by_error, by_change) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+                let near = |value: f64, by: f64| (value + by * distance).clamp(-range, range);
+                let point = self.point([near(error, by_error), near(change, by_change)])?;
+                if rank(&point.margins) < rank(&worst.margins) {
+                    worst = point;
+                }
+            }
+        }
+        Ok(worst)
+    }
+
+    fn point(&self, input: [f64; 2]) -> Result<FrozenPoint, SimError> {
+        let gains = producible(self.fspid.tuner(), input[0], input[1]);
+        let memory = Memory::of_gains(gains, self.fspid.shell());
+        let model = LoopModel::of(self.scenario, self.plant, self.fspid.shell(), memory)?;
+        let stability = model.open(gains, self.question.point)?.margins()?;
+        Ok(FrozenPoint { input, gains, margins: Margins::of(&stability) })
+    }
+}
+
+fn worst_of(points: &[FrozenPoint]) -> Option<&FrozenPoint> {
+    points.iter().min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
+}

@@ -1,0 +1,147 @@
+//! The answer of `analyse --format json`.
+
+use fspid_core::Gains;
+use fspid_lti::{Complex, modulus};
+use serde_json::{Map, Value, json};
+
+use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
+use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop};
+
+/// Version of the answer's shape.
+const SCHEMA: u32 = 1;
+
+impl Analysis {
+    /// The answer for programs: an infinite margin is `null`, with its reason under `reasons`; a loop
+    /// that is unstable has no margins.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        json!({
+            "schema": SCHEMA,
+            "scenario": self.scenario,
+            "broken_at": self.question.point.name(),
+            "controllers": self.loops.iter().map(controller).collect::<Vec<_>>(),
+            "not_in_the_linear_loop": self.left_out,
+        })
+    }
+}
+
+fn controller(found: &AnalysedLoop) -> Value {
+    let mut answer = Map::new();
+    answer.insert("name".into(), json!(found.name));
+    match found.worst() {
+        Some(plant) => plant_into(&mut answer, plant),
+        None => {
+            answer.insert("stable".into(), Value::Null);
+            let reason = found.absent.map(|reason| reason.to_string()).unwrap_or_default();
+            answer.insert("absent".into(), json!(reason));
+        }
+    }
+    let (kind, gains) = match &found.equilibrium {
+        Equilibrium::Fixed(gains) => ("fixed", Some(*gains)),
+        Equilibrium::AtRest(gains) => ("at rest", Some(*gains)),
+        Equilibrium::Drifts { .. } => ("none: they drift", None),
+    };
+    answer.insert("gains_are".into(), json!(kind));
+    answer.insert("gains".into(), gains.map_or(Value::Null, triple));
+    if found.plants.len() > 1 {
+        let plants = found.plants.iter().map(|plant| {
+            let mut part = Map::new();
+            part.insert("from_s".into(), json!(plant.from_s));
+            plant_into(&mut part, plant);
+            Value::Object(part)
+        });
+        answer.insert("plants".into(), plants.collect());
+    }
+    Value::Object(answer)
+}
+
+fn plant_into(answer: &mut Map<String, Value>, plant: &PlantLoop) {
+    let unstable = plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
+    answer.insert("stable".into(), json!(plant.margins.is_ok()));
+    let shown = |pole: &Complex| pole_of(*pole, plant.open.dt_s());
+    answer.insert(
+        "unstable_poles".into(),
+        if plant.margins.is_ok() { json!([]) } else { unstable.map(shown).collect() },
+    );
+    if let Ok(margins) = &plant.margins {
+        margins_into(answer, margins);
+    }
+    if let Some(map) = &plant.map {
+        answer.insert("frozen_gains".into(), frozen(map));
+    }
+}
+
+/// A pole in the z-plane and as a mode.
+fn pole_of(pole: Complex, dt_s: f64) -> Value {
+    let mode = super::text::mode(pole, dt_s);
+    json!({
+        "re": pole.re,
+        "im": pole.im,
+        "modulus": modulus(pole),
+        "natural_frequency_rad_s": mode.natural_frequency_rad_s,
+        "damping": mode.damping_ratio,
+    })
+}
+
+fn margins_into(answer: &mut Map<String, Value>, margins: &Margins) {
+    let mut reasons = Map::new();
+    let mut number = |name: &str, value: f64, reason: &str| {
+        if value.is_finite() {
+            return json!(value);
+        }
+        reasons.insert(name.to_owned(), json!(reason));
+        Value::Null
+    };
+    let [low, high] = margins.gain_margin_db;
+    let low = number("gain_margin_db[0]", low, NO_LOWER_LIMIT);
+    let high = number("gain_margin_db[1]", high, NO_UPPER_LIMIT);
+    let phase = number("phase_margin_deg", margins.phase_margin_deg, NO_CROSSOVER);
+    let delay = number("delay_margin_s", margins.delay_margin_s, NO_CROSSOVER);
+    let crossover = margins.gain_crossover_rad_s.unwrap_or(f64::INFINITY);
+    let crossover = number("gain_crossover_rad_s", crossover, NO_CROSSOVER);
+    let values = [
+        ("gain_margin_db", json!([low, high])),
+        ("phase_margin_deg", phase),
+        ("delay_margin_s", delay),
+        ("disk_margin", json!(margins.disk_margin)),
+        ("sensitivity_peak", json!(margins.sensitivity_peak)),
+        ("gain_crossover_rad_s", crossover),
+        ("phase_crossover_rad_s", json!(margins.phase_crossover_rad_s)),
+        ("disk_gain_db", json!(margins.disk_gain_db)),
+        ("disk_phase_deg", json!(margins.disk_phase_deg)),
+        ("complementary_peak", json!(margins.complementary_peak)),
+        ("spectral_radius", json!(margins.spectral_radius)),
+    ];
+    answer.extend(values.map(|(name, value)| (name.to_owned(), value)));
+    if !reasons.is_empty() {
+        answer.insert("reasons".into(), Value::Object(reasons));
+    }
+}
+
+fn triple(gains: Gains<f64>) -> Value {
+    json!({ "kp": gains.kp, "ki": gains.ki, "kd": gains.kd })
+}
+
+fn frozen(map: &FrozenMap) -> Value {
+    json!({
+        "points": map.points.len(),
+        "unstable": map.unstable(),
+        "worst": frozen_point(&map.worst),
+        "map": map.points.iter().map(frozen_point).collect::<Vec<_>>(),
+    })
+}
+
+fn frozen_point(point: &FrozenPoint) -> Value {
+    let mut answer = Map::new();
+    answer.insert("error".into(), json!(point.input[0]));
+    answer.insert("change".into(), json!(point.input[1]));
+    answer.insert("gains".into(), triple(point.gains));
+    answer.insert("stable".into(), json!(point.margins.is_ok()));
+    match &point.margins {
+        Ok(margins) => margins_into(&mut answer, margins),
+        Err(reason) => {
+            answer.insert("absent".into(), json!(reason.to_string()));
+        }
+    }
+    Value::Object(answer)
+}

@@ -1,0 +1,154 @@
+//! One controller with every plant that it has to hold.
+
+use fspid_core::Gains;
+use fspid_lti::{Complex, SampledLoop, Stability};
+use fspid_sim::loop_model::{BreakPoint, LoopModel, Memory};
+use fspid_sim::{AircraftPlant, Controller, LinearPlant, NamedController, Scenario, SimError};
+
+use super::Question;
+use super::answer::Margins;
+use super::equilibrium::{Equilibrium, equilibrium};
+use super::frozen::{FrozenMap, FrozenPoint};
+use crate::metrics::Absent;
+
+/// A controller's loop with one plant.
+#[derive(Clone, Debug)]
+pub struct PlantLoop {
+    /// From when the plant is that one, s.
+    pub from_s: f64,
+    /// The open loop.
+    pub open: SampledLoop,
+    /// Stable with margins, or unstable with poles.
+    pub stability: Stability,
+    /// Poles of the closed loop in the z-plane.
+    pub closed_poles: Vec<Complex>,
+    /// Margins in the units of answers.
+    pub margins: Result<Margins, Absent>,
+    /// Every gain of a self-tuning controller, standing still.
+    pub map: Option<FrozenMap>,
+}
+
+/// A controller's loop, at the gains that it has at rest.
+#[derive(Clone, Debug)]
+pub struct AnalysedLoop {
+    /// Name of the controller.
+    pub name: String,
+    /// The gains at rest.
+    pub equilibrium: Equilibrium,
+    /// One for each plant that lasts; none where gains drift without end or there is no loop to break.
+    pub plants: Vec<PlantLoop>,
+    /// Why there is none.
+    pub absent: Option<Absent>,
+}
+
+impl AnalysedLoop {
+    pub(super) fn of(
+        scenario: &Scenario,
+        named: &NamedController,
+        question: Question,
+    ) -> Result<Self, SimError> {
+        let controller = &named.controller;
+        let equilibrium = equilibrium(controller);
+        let name = named.name.clone();
+        let none = |reason| Self {
+            name: named.name.clone(),
+            equilibrium,
+            plants: Vec::new(),
+            absent: Some(reason),
+        };
+        if question.point == BreakPoint::Rate && controller.shell().rate_gain_s == 0.0 {
+            return Ok(none(Absent::NoRateLoop));
+        }
+        let Some(gains) = equilibrium.gains() else {
+            return Ok(none(Absent::GainsDrift));
+        };
+        let mut plants = Vec::new();
+        for (from_s, plant) in &lasting_plants(scenario)? {
+            let open = open_loop(scenario, plant, (controller, gains), question.point)?;
+            let map = match controller {
+                Controller::SelfTuning(fspid) if question.map_points > 0 => {
+                    FrozenMap::of(scenario, plant, fspid, question)?
+                }
+                _ => None,
+            };
+            plants.push(PlantLoop { map, ..PlantLoop::of(*from_s, open)? });
+        }
+        Ok(Self { name, equilibrium, plants, absent: None })
+    }
+
+    /// The plant with the smallest disk margin; an unstable one before all others.
+    #[must_use]
+    pub fn worst(&self) -> Option<&PlantLoop> {
+        let rank = |plant: &PlantLoop| rank(&plant.margins);
+        self.plants.iter().min_by(|one, other| rank(one).total_cmp(&rank(other)))
+    }
+
+    /// The worst of all frozen gains over all plants, with the time from which the plant is that one.
+    #[must_use]
+    pub fn worst_frozen(&self) -> Option<(f64, &FrozenPoint)> {
+        let worst = self.plants.iter().filter_map(|plant| {
+            let map = plant.map.as_ref()?;
+            Some((plant.from_s, &map.worst))
+        });
+        worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
+    }
+
+    /// Margins with the worst plant.
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub fn margins(&self) -> Result<Margins, Absent> {
+        match (self.worst(), self.absent) {
+            (Some(plant), _) => plant.margins,
+            (None, Some(reason)) => Err(reason),
+            (None, None) => Err(Absent::NotFinite),
+        }
+    }
+
+    /// True if every plant is held, at rest and at every gain of the map.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        let held = |plant: &PlantLoop| {
+            plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_stable)
+        };
+        !self.plants.is_empty() && self.plants.iter().all(held)
+    }
+}
+
+impl PlantLoop {
+    fn of(from_s: f64, open: SampledLoop) -> Result<Self, SimError> {
+        let stability = open.margins()?;
+        let closed_poles = open.closed_poles()?;
+        let margins = Margins::of(&stability);
+        Ok(Self { from_s, open, stability, closed_poles, margins, map: None })
+    }
+}
+
+/// How bad margins are: the smaller, the worse; unstable before all others.
+pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
+    match margins {
+        Ok(margins) => margins.disk_margin,
+        Err(Absent::Unstable { spectral_radius }) => -spectral_radius,
+        Err(_) => f64::NEG_INFINITY,
+    }
+}
+
+/// The plants that last, an aircraft's linear model at its trim in its place.
+pub(crate) fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlant)>, SimError> {
+    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
+    let around_trim = trimmed.into_iter().map(|plant| (0.0, plant));
+    let linear = scenario.lasting_plants();
+    Ok(around_trim.chain(linear.into_iter().map(|(at, plant)| (at, plant.clone()))).collect())
+}
+
+/// The open loop of one plant with fixed gains.
+pub(crate) fn open_loop(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    (controller, gains): (&Controller, Gains<f64>),
+    point: BreakPoint,
+) -> Result<SampledLoop, SimError> {
+    let shell = controller.shell();
+    let memory = Memory::of_gains(gains, shell);
+    LoopModel::of(scenario, plant, shell, memory)?.open(gains, point)
+}

@@ -1,0 +1,88 @@
+//! Linear analysis of a study's loops: margins as sampled, and the frozen gains of a self-tuning
+//! controller.
+//!
+//! What is analysed is the loop around rest: exact zero-order hold of plant and actuator, delays,
+//! scale and delay of sensors, the controller as it is implemented; no limit at work. The loop is
+//! broken at a named point, the others stay closed. A loop that is unstable has no margins.
+//!
+//! A self-tuning controller is analysed at the gains that it has at rest. That its gains move is not
+//! in these numbers: see the frozen-gain map for every gain it can have while they stand still.
+
+mod answer;
+mod equilibrium;
+pub(crate) mod figures;
+mod frozen;
+mod json;
+mod loops;
+mod nonlinear_parts;
+mod text;
+
+use fspid_sim::{Scenario, SimError};
+
+use crate::file::Study;
+
+pub use answer::{Margins, decibels};
+pub use equilibrium::{Equilibrium, equilibrium};
+pub use frozen::{FrozenMap, FrozenPoint};
+pub use fspid_sim::loop_model::BreakPoint;
+pub(crate) use loops::lasting_plants;
+pub use loops::{AnalysedLoop, PlantLoop};
+pub use nonlinear_parts::not_in_the_linear_loop;
+
+/// What to analyse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Question {
+    /// Where the loop is broken.
+    pub point: BreakPoint,
+    /// Points along each input of the frozen-gain map; none for 0.
+    pub map_points: usize,
+}
+
+impl Default for Question {
+    fn default() -> Self {
+        Self { point: BreakPoint::Command, map_points: 9 }
+    }
+}
+
+/// The loops of a study, analysed.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// What was asked.
+    pub question: Question,
+    /// One for each controller, in the file's order.
+    pub loops: Vec<AnalysedLoop>,
+    /// What acts in flight and is not in the linear loop.
+    pub left_out: Vec<String>,
+}
+
+impl Analysis {
+    /// Analyses every controller of a study.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model or cannot be sampled.
+    pub fn of(study: &Study, question: Question) -> Result<Self, SimError> {
+        Self::of_scenario(&study.scenario, question)
+    }
+
+    /// Analyses every controller of a scenario.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn of_scenario(scenario: &Scenario, question: Question) -> Result<Self, SimError> {
+        let loops = scenario
+            .controllers
+            .iter()
+            .map(|named| AnalysedLoop::of(scenario, named, question))
+            .collect::<Result<Vec<_>, _>>()?;
+        let left_out = not_in_the_linear_loop(scenario);
+        Ok(Self { scenario: scenario.name.clone(), question, loops, left_out })
+    }
+
+    /// True if every loop is stable, at every gain of its map too.
+    #[must_use]
+    pub fn all_stable(&self) -> bool {
+        self.loops.iter().all(AnalysedLoop::is_stable)
+    }
+}

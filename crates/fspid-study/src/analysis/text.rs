@@ -1,0 +1,187 @@
+//! The answer of `analyse` for people.
+
+use std::fmt::Write as _;
+
+use fspid_core::Gains;
+use fspid_lti::{Complex, Mode, modulus};
+
+use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
+use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, PlantLoop};
+
+impl Analysis {
+    /// The answer of `analyse --format text`: verdict first, then the margins with their frequencies.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let point = self.question.point.name();
+        let mut out = format!("{}: sampled loop, broken at the {point}\n", self.scenario);
+        let names = self.loops.iter().map(|found| found.name.chars().count());
+        let width = names.max().unwrap_or(0).max(10);
+        for found in &self.loops {
+            line(&mut out, format_args!("\n{:width$}  {}", found.name, verdict(found)));
+            push_loop(&mut out, found);
+        }
+        if !self.left_out.is_empty() {
+            out.push_str("\nNot in these numbers:\n");
+            for sentence in &self.left_out {
+                line(&mut out, format_args!("  {sentence}"));
+            }
+        }
+        out
+    }
+}
+
+fn verdict(found: &AnalysedLoop) -> String {
+    let gains = match &found.equilibrium {
+        Equilibrium::Fixed(gains) => format!("with {}", triple(*gains)),
+        Equilibrium::AtRest(gains) => format!("at rest, with {}", triple(*gains)),
+        Equilibrium::Drifts { .. } => String::new(),
+    };
+    if let Some(reason) = found.absent {
+        return format!("no margins: {reason}");
+    }
+    let unstable = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
+    match (unstable, found.plants.len()) {
+        (0, _) => format!("stable {gains}"),
+        (_, 1) => format!("UNSTABLE {gains}"),
+        (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}"),
+    }
+}
+
+fn push_loop(out: &mut String, found: &AnalysedLoop) {
+    for plant in &found.plants {
+        if found.plants.len() > 1 {
+            line(out, format_args!("  plant from {} s on", crate::metrics::short(plant.from_s)));
+        }
+        push_plant(out, plant);
+        if let Some(map) = &plant.map {
+            push_map(out, map);
+        }
+    }
+}
+
+fn push_plant(out: &mut String, plant: &PlantLoop) {
+    match &plant.margins {
+        Ok(margins) => push_margins(out, margins),
+        Err(_) => push_unstable(out, plant),
+    }
+    let oscillating = plant.closed_poles.iter().filter(|pole| pole.im > 0.0);
+    let modes = oscillating.map(|pole| mode(*pole, plant.open.dt_s()));
+    let least = modes.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
+    if let Some(mode) = least {
+        line(
+            out,
+            format_args!(
+                "  least damped mode  damping {:.3} at {:.3} rad/s",
+                mode.damping_ratio, mode.natural_frequency_rad_s
+            ),
+        );
+    }
+}
+
+/// A pole of the sampled loop as the mode that it samples.
+pub(super) fn mode(pole: Complex, dt_s: f64) -> Mode {
+    // A pole at the origin is gone after one sample, faster than any frequency.
+    let gone = Mode { natural_frequency_rad_s: f64::INFINITY, damping_ratio: 1.0 };
+    Mode::of_sampled_pole(pole, dt_s).unwrap_or(gone)
+}
+
+fn push_unstable(out: &mut String, plant: &PlantLoop) {
+    for pole in plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0 && pole.im >= 0.0) {
+        let sign = if pole.im > 0.0 { format!(" ± {:.6}j", pole.im) } else { String::new() };
+        let mode = mode(*pole, plant.open.dt_s());
+        line(
+            out,
+            format_args!(
+                "  unstable pole      z = {:.6}{sign}, modulus {:.6}: {:.3} rad/s, damping {:.3}",
+                pole.re,
+                modulus(*pole),
+                mode.natural_frequency_rad_s,
+                mode.damping_ratio
+            ),
+        );
+    }
+    out.push_str("  no margins         an unstable loop has none\n");
+}
+
+fn push_margins(out: &mut String, margins: &Margins) {
+    let [low, high] = margins.gain_margin_db;
+    let [low_at, high_at] = margins.phase_crossover_rad_s;
+    line(
+        out,
+        format_args!(
+            "  gain margin        {}; {}",
+            end(low, low_at, NO_LOWER_LIMIT),
+            end(high, high_at, NO_UPPER_LIMIT)
+        ),
+    );
+    match margins.gain_crossover_rad_s {
+        Some(omega) => line(
+            out,
+            format_args!(
+                "  phase margin       {:.2} deg at {omega:.3} rad/s; delay margin {:.4} s",
+                margins.phase_margin_deg, margins.delay_margin_s
+            ),
+        ),
+        None => line(out, format_args!("  phase margin       without end: {NO_CROSSOVER}")),
+    }
+    let [disk_low, disk_high] = margins.disk_gain_db;
+    line(
+        out,
+        format_args!(
+            "  disk margin        {:.4} at {:.3} rad/s: gain {disk_low:+.2} to {disk_high:+.2} dB, phase {:.2} deg",
+            margins.disk_margin, margins.disk_rad_s, margins.disk_phase_deg
+        ),
+    );
+    line(
+        out,
+        format_args!(
+            "  sensitivity        peak {:.4} at {:.3} rad/s; complementary peak {:.4}",
+            margins.sensitivity_peak, margins.sensitivity_peak_rad_s, margins.complementary_peak
+        ),
+    );
+}
+
+fn end(db: f64, omega_rad_s: Option<f64>, reason: &str) -> String {
+    match omega_rad_s {
+        Some(omega) => format!("{db:+.2} dB at {omega:.3} rad/s"),
+        None => reason.to_owned(),
+    }
+}
+
+fn push_map(out: &mut String, map: &FrozenMap) {
+    let (all, bad) = (map.points.len(), map.unstable());
+    let worst = &map.worst;
+    let at = format!(
+        "error {:+.3}, change {:+.3} (supervisor units): {}",
+        worst.input[0],
+        worst.input[1],
+        triple(worst.gains)
+    );
+    match &worst.margins {
+        Ok(margins) => line(
+            out,
+            format_args!(
+                "  frozen gains       all {all} on the map hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}",
+                margins.disk_margin,
+                margins.smaller_gain_margin_db(),
+                margins.phase_margin_deg
+            ),
+        ),
+        Err(reason) => line(
+            out,
+            format_args!(
+                "  frozen gains       {bad} of {all} on the map DO NOT HOLD; the worst: {reason}\n                     at {at}"
+            ),
+        ),
+    }
+}
+
+/// Gains for people.
+pub(super) fn triple(gains: Gains<f64>) -> String {
+    format!("kp {:.4}, ki {:.4}, kd {:.4}", gains.kp, gains.ki, gains.kd)
+}
+
+/// Writing to a string cannot fail.
+fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
+    let _ = writeln!(out, "{text}");
+}

@@ -1,0 +1,291 @@
+//! The controller of a certificate's loop: radians and supervisor units, nothing left to defaults.
+
+use fspid_core::{
+    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
+    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+};
+use fspid_fuzzy::{Defuzzifier, Label, OutOfRange, Output, RuleTable, Supervisor};
+use fspid_sim::Controller;
+use serde::{Deserialize, Serialize};
+
+/// A controller as written.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ControllerFile {
+    gains: GainsFile,
+    rate_gain_s: f64,
+    setpoint_weights: [f64; 2],
+    derivative_filter_s: f64,
+    integral: IntegralFile,
+    anti_windup: AntiWindupFile,
+    output_limits_rad: Option<Ends>,
+    slew_limit_rad_s: Option<f64>,
+    sample_guard_rad: f64,
+    /// None for fixed gains.
+    tuner: Option<TunerFile>,
+}
+
+/// Lower and upper end; `null` for an open one.
+type Ends = [Option<f64>; 2];
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GainsFile {
+    kp: f64,
+    ki: f64,
+    kd: f64,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum IntegralFile {
+    Bumpless,
+    Literal,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+enum AntiWindupFile {
+    None,
+    Clamping { limits_rad: Ends },
+    Conditional,
+    BackCalculation { tracking_s: f64 },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TunerFile {
+    error_sign: SignFile,
+    change: ChangeFile,
+    error_per_rad: f64,
+    change_per_rad: f64,
+    output_scale: GainsFile,
+    law: LawFile,
+    gain_limits: Option<[Ends; 3]>,
+    dead_zone: Option<[f64; 2]>,
+    range: f64,
+    defuzzifier: String,
+    out_of_range: String,
+    rules: RulesFile,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum SignFile {
+    SetpointMinusMeasurement,
+    MeasurementMinusSetpoint,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ChangeFile {
+    Rate,
+    Delta,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+enum LawFile {
+    Memoryless,
+    Accumulating { leakage_per_s: f64 },
+}
+
+/// Seven rows of seven labels for each gain, as in the files of rule tables.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RulesFile {
+    delta_kp: Vec<String>,
+    delta_ki: Vec<String>,
+    delta_kd: Vec<String>,
+}
+
+fn said<E: std::fmt::Display>(what: &'static str) -> impl Fn(E) -> String {
+    move |error| format!("{what}: {error}")
+}
+
+fn ends(limits: &Limits<f64>) -> Ends {
+    [limits.lower(), limits.upper()].map(|end| end.is_finite().then_some(end))
+}
+
+fn limits(what: &'static str, [lower, upper]: Ends) -> Result<Limits<f64>, String> {
+    let lower = lower.unwrap_or(f64::NEG_INFINITY);
+    let upper = upper.unwrap_or(f64::INFINITY);
+    Limits::new(what, lower, upper).map_err(said("controller"))
+}
+
+impl GainsFile {
+    pub(super) fn of(gains: Gains<f64>) -> Self {
+        Self { kp: gains.kp, ki: gains.ki, kd: gains.kd }
+    }
+
+    pub(super) fn build(self) -> Gains<f64> {
+        Gains { kp: self.kp, ki: self.ki, kd: self.kd }
+    }
+}
+
+impl ControllerFile {
+    pub(super) fn of(controller: &Controller) -> Self {
+        let shell = controller.shell();
+        let weights = shell.setpoint_weights;
+        Self {
+            gains: GainsFile::of(controller.nominal()),
+            rate_gain_s: shell.rate_gain_s,
+            setpoint_weights: [weights.proportional, weights.derivative],
+            derivative_filter_s: shell.derivative.filter_s,
+            integral: match shell.integral {
+                IntegralForm::Bumpless => IntegralFile::Bumpless,
+                IntegralForm::Literal => IntegralFile::Literal,
+            },
+            anti_windup: match &shell.anti_windup {
+                AntiWindup::None => AntiWindupFile::None,
+                AntiWindup::Clamping(limits) => {
+                    AntiWindupFile::Clamping { limits_rad: ends(limits) }
+                }
+                AntiWindup::Conditional => AntiWindupFile::Conditional,
+                AntiWindup::BackCalculation { tracking_s } => {
+                    AntiWindupFile::BackCalculation { tracking_s: *tracking_s }
+                }
+            },
+            output_limits_rad: shell.limits.as_ref().map(ends),
+            slew_limit_rad_s: shell.slew_rad_s,
+            sample_guard_rad: shell.guard.limit_rad(),
+            tuner: match controller {
+                Controller::Fixed(_) => None,
+                Controller::SelfTuning(fspid) => Some(TunerFile::of(fspid.tuner())),
+            },
+        }
+    }
+
+    pub(super) fn build(&self, dt_s: f64) -> Result<Controller, String> {
+        let [proportional, derivative] = self.setpoint_weights;
+        let shell = Shell {
+            rate_gain_s: self.rate_gain_s,
+            setpoint_weights: SetpointWeights { proportional, derivative },
+            derivative: Derivative { filter_s: self.derivative_filter_s },
+            integral: match self.integral {
+                IntegralFile::Bumpless => IntegralForm::Bumpless,
+                IntegralFile::Literal => IntegralForm::Literal,
+            },
+            anti_windup: self.anti_windup.build()?,
+            limits: self.output_limits_rad.map(|ends| limits("output limits", ends)).transpose()?,
+            slew_rad_s: self.slew_limit_rad_s,
+            guard: Guard::new(self.sample_guard_rad).map_err(said("controller"))?,
+            ..Shell::sampled_every(dt_s)
+        };
+        let gains = self.gains.build();
+        match &self.tuner {
+            None => Pid::new(gains, shell).map(Controller::Fixed).map_err(said("controller")),
+            Some(tuner) => Fspid::new(tuner.build(gains)?, shell)
+                .map(Controller::SelfTuning)
+                .map_err(said("controller")),
+        }
+    }
+}
+
+impl AntiWindupFile {
+    fn build(&self) -> Result<AntiWindup<f64>, String> {
+        Ok(match *self {
+            Self::None => AntiWindup::None,
+            Self::Clamping { limits_rad } => {
+                AntiWindup::Clamping(limits("anti-windup limits", limits_rad)?)
+            }
+            Self::Conditional => AntiWindup::Conditional,
+            Self::BackCalculation { tracking_s } => AntiWindup::BackCalculation { tracking_s },
+        })
+    }
+}
+
+impl TunerFile {
+    fn of(tuner: &SelfTuner<f64>) -> Self {
+        let (settings, supervisor) = (tuner.settings(), tuner.supervisor());
+        Self {
+            error_sign: match settings.error_sign {
+                ErrorSign::SetpointMinusMeasurement => SignFile::SetpointMinusMeasurement,
+                ErrorSign::MeasurementMinusSetpoint => SignFile::MeasurementMinusSetpoint,
+            },
+            change: match settings.change {
+                Change::Rate => ChangeFile::Rate,
+                Change::Delta => ChangeFile::Delta,
+            },
+            error_per_rad: settings.input_scale.error_per_rad,
+            change_per_rad: settings.input_scale.change_per_rad,
+            output_scale: GainsFile::of(settings.output_scale),
+            law: match settings.law {
+                Law::Memoryless => LawFile::Memoryless,
+                Law::Accumulating { leakage_per_s } => LawFile::Accumulating { leakage_per_s },
+            },
+            gain_limits: settings
+                .gain_limits
+                .as_ref()
+                .map(|limits| [&limits.kp, &limits.ki, &limits.kd].map(ends)),
+            dead_zone: settings.dead_zone.map(|zone| [zone.error_rad, zone.change_rad]),
+            range: supervisor.range(),
+            defuzzifier: supervisor.defuzzifier().to_string(),
+            out_of_range: supervisor.out_of_range().name().to_owned(),
+            rules: RulesFile::of(&supervisor.table()),
+        }
+    }
+
+    fn build(&self, nominal: Gains<f64>) -> Result<SelfTuner<f64>, String> {
+        let settings = TunerSettings {
+            error_sign: match self.error_sign {
+                SignFile::SetpointMinusMeasurement => ErrorSign::SetpointMinusMeasurement,
+                SignFile::MeasurementMinusSetpoint => ErrorSign::MeasurementMinusSetpoint,
+            },
+            change: match self.change {
+                ChangeFile::Rate => Change::Rate,
+                ChangeFile::Delta => Change::Delta,
+            },
+            input_scale: InputScale {
+                error_per_rad: self.error_per_rad,
+                change_per_rad: self.change_per_rad,
+            },
+            output_scale: self.output_scale.build(),
+            law: match self.law {
+                LawFile::Memoryless => Law::Memoryless,
+                LawFile::Accumulating { leakage_per_s } => Law::Accumulating { leakage_per_s },
+            },
+            gain_limits: self.gain_limits.map(gain_limits).transpose()?,
+            dead_zone: self
+                .dead_zone
+                .map(|[error_rad, change_rad]| DeadZone { error_rad, change_rad }),
+        };
+        SelfTuner::new(nominal, self.supervisor()?, settings).map_err(said("tuner"))
+    }
+
+    fn supervisor(&self) -> Result<Supervisor<f64>, String> {
+        let policies = OutOfRange::ALL.into_iter();
+        let policy = policies.clone().find(|policy| policy.name() == self.out_of_range);
+        let policy = policy.ok_or_else(|| {
+            let known: Vec<&str> = policies.map(OutOfRange::name).collect();
+            format!("out_of_range: \"{}\"; allowed are {}", self.out_of_range, known.join(", "))
+        })?;
+        let defuzzifier: Defuzzifier = self.defuzzifier.parse().map_err(said("defuzzifier"))?;
+        let table = self.rules.build()?;
+        Supervisor::new(&table, self.range, defuzzifier, policy).map_err(said("supervisor"))
+    }
+}
+
+fn gain_limits([kp, ki, kd]: [Ends; 3]) -> Result<GainLimits<f64>, String> {
+    let limits = |ends| limits("gain limits", ends);
+    Ok(GainLimits { kp: limits(kp)?, ki: limits(ki)?, kd: limits(kd)? })
+}
+
+impl RulesFile {
+    fn of(table: &RuleTable) -> Self {
+        let rows = |output: Output| -> Vec<String> {
+            let row = |error: Label| {
+                let labels = Label::ALL.map(|change| table.grid(output).at(error, change).name());
+                labels.join(" ")
+            };
+            Label::ALL.map(row).to_vec()
+        };
+        let [delta_kp, delta_ki, delta_kd] = Output::ALL.map(rows);
+        Self { delta_kp, delta_ki, delta_kd }
+    }
+
+    fn build(&self) -> Result<RuleTable, String> {
+        let texts = [&self.delta_kp, &self.delta_ki, &self.delta_kd].map(|rows| rows.join("\n"));
+        RuleTable::parse(texts.each_ref().map(String::as_str)).map_err(said("rules"))
+    }
+}

@@ -1,0 +1,88 @@
+//! Certificates for programs.
+
+use fspid_fuzzy::scalar::Interval;
+use fspid_proof::{Outcome, Verdict};
+use serde_json::{Value, json};
+
+use super::{Certification, Certified, CheckedFile};
+use crate::units::degrees;
+
+/// Version of the answer's shape.
+const SCHEMA: u32 = 1;
+
+impl Certification {
+    /// The answer of `certify --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        json!({
+            "schema": SCHEMA,
+            "scenario": self.scenario,
+            "controllers": self.results.iter().map(result).collect::<Vec<_>>(),
+            "not_in_these_proofs": self.left_out,
+        })
+    }
+}
+
+fn result(certified: &Certified) -> Value {
+    let mut answer = json!({ "name": certified.controller, "plant_from_s": certified.from_s });
+    match &certified.outcome {
+        Err(reason) => {
+            answer["verdict"] = json!("not provable");
+            answer["reason"] = json!(reason.to_string());
+        }
+        Ok(outcome) => outcome_into(&mut answer, certified, outcome),
+    }
+    answer
+}
+
+fn outcome_into(answer: &mut Value, certified: &Certified, outcome: &Outcome) {
+    answer["verdict"] = json!(match &outcome.verdict {
+        Verdict::Proved(..) => "proved",
+        Verdict::Refuted(..) => "refuted",
+        Verdict::Open => "open",
+    });
+    if let Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) =
+        &outcome.verdict
+    {
+        answer["claim"] = json!(certificate.claim.name());
+        answer["decay_per_sample"] = json!(certificate.claim.rate());
+        answer["inequalities"] = json!(rechecked.inequalities);
+        answer["boxes_of_gains"] = json!(rechecked.cells);
+    }
+    let [kp, ki, kd] = outcome.bounds.map(ends);
+    answer["gains"] = json!({ "kp": kp, "ki": ki, "kd": kd });
+    answer["largest_output_factor"] = json!({
+        "proved": outcome.largest.proved,
+        "not_proved": outcome.largest.not_proved,
+    });
+    answer["limits"] = json!(certified.limits);
+    answer["pitch_within_deg"] = json!(outcome.pitch_within_rad.map(degrees));
+    answer["limits_left_out"] = json!(outcome.limits_left_out);
+}
+
+fn ends(bounds: Interval) -> [f64; 2] {
+    [bounds.lower(), bounds.upper()]
+}
+
+impl CheckedFile {
+    /// The answer of `certify --check --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut answer = json!({
+            "schema": SCHEMA,
+            "holds": self.result.is_ok(),
+            "claim": self.certificate.claim.name(),
+            "decay_per_sample": self.certificate.claim.rate(),
+            "output_factor": self.certificate.output_factor,
+            "origin": self.origin,
+        });
+        match &self.result {
+            Ok(rechecked) => {
+                answer["inequalities"] = json!(rechecked.inequalities);
+                answer["boxes_of_gains"] = json!(rechecked.cells);
+            }
+            Err(doubt) => answer["reason"] = json!(doubt.to_string()),
+        }
+        answer
+    }
+}

@@ -1,0 +1,43 @@
+//! What is known of the flight of each plant: flying qualities depend on it.
+
+use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
+
+use super::flight::Flown;
+use crate::file::files::Files;
+use crate::file::section::Section;
+
+/// Airspeed and gravity of a plant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Airframe {
+    /// True airspeed, m/s, if anybody said it.
+    pub airspeed_m_s: Option<f64>,
+    /// Gravity, m/s².
+    pub gravity_m_s2: f64,
+}
+
+/// One for the plant at the start and one for each change, in the file's order.
+pub(super) fn airframes(
+    files: &Files<'_>,
+    section: &Section,
+    flown: Option<&Flown>,
+) -> Vec<Airframe> {
+    let of_file = |part: &Section| Airframe {
+        airspeed_m_s: speed_of_file(files, part),
+        gravity_m_s2: STANDARD_GRAVITY_M_S2,
+    };
+    let first = match flown.and_then(|flown| flown.way) {
+        Some(way) => Some(Airframe {
+            airspeed_m_s: Some(way.course.airspeed_m_s),
+            gravity_m_s2: way.gravity_m_s2,
+        }),
+        None => section.section("plant").map(of_file),
+    };
+    first.into_iter().chain(section.sections("plant_change").iter().map(of_file)).collect()
+}
+
+/// The speed in the condition of the plant file that a table names.
+fn speed_of_file(files: &Files<'_>, part: &Section) -> Option<f64> {
+    let named = ["preset", "file"].into_iter().find(|key| part.given(key))?;
+    let (_, file) = files.referred(&part.path(named))?;
+    file.section("condition")?.number("speed_m_s")
+}

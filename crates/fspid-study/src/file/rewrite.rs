@@ -1,0 +1,327 @@
+//! A scenario written anew: with one controller, one requirement, one plant or frozen gains.
+//!
+//! Every number is written with the shortest digits that read back as the same bits.
+
+use fspid_core::{Gains, Shell};
+use fspid_sim::ElevatorSign;
+
+use crate::file::document::{Item, Member, Value};
+use crate::file::extra::Extra;
+use crate::file::files::Files;
+use crate::file::preset::rule_table_names;
+use crate::file::report::{Place, Report};
+use crate::file::spec::{Kind, SCENARIO, Table};
+use crate::requirement::Requirement;
+
+/// What is left of a scenario in a replay.
+pub(crate) struct Replay<'a> {
+    /// The one requirement.
+    pub(crate) requirement: &'a Requirement,
+    /// Name of the one controller; all of them for the aircraft alone.
+    pub(crate) controller: Option<&'a str>,
+    /// Gains that it is frozen at, and everything of it but its gains.
+    pub(crate) frozen: Option<(Gains<f64>, Shell<f64>)>,
+    /// The one plant: 0 for the first, otherwise the number of its change.
+    pub(crate) plant: Option<usize>,
+    /// Sign of the first plant's elevator, which changes have where they say none.
+    pub(crate) sign: ElevatorSign,
+}
+
+/// The text of a scenario with what comes from outside, cut down to a replay. Paths of files are written as `moved`
+/// says. `None` for a text that is no scenario.
+pub(crate) fn replay(
+    text: &str,
+    extra: &Extra<'_>,
+    replay: &Replay<'_>,
+    moved: &dyn Fn(&str) -> String,
+) -> Option<String> {
+    let (mut report, mut files) = (Report::default(), Files::new(None));
+    // The requirement is written out; those of sets and files are not needed.
+    let extra = Extra { overrides: extra.overrides, ..Extra::default() };
+    let document = super::changed_document(&mut report, &mut files, text, &extra)?;
+    let Value::Table(mut members) = document.value else {
+        return None;
+    };
+    if let Some(plant) = replay.plant {
+        keep_plant(&mut members, plant, replay.sign);
+    }
+    keep_controller(&mut members, replay);
+    put(&mut members, "requirement", Value::Array(vec![requirement(replay)]));
+    move_paths(&SCENARIO, &mut members, moved);
+    let mut out = String::new();
+    write_document(&mut out, &members);
+    Some(out)
+}
+
+const NOWHERE: Place = Place { source: 0, start: 0, end: 0 };
+
+fn item(value: Value) -> Item {
+    Item { place: NOWHERE, value }
+}
+
+fn text(text: &str) -> Value {
+    Value::Text(text.to_owned())
+}
+
+/// Sets a member, or adds it.
+fn put(members: &mut Vec<Member>, name: &str, value: Value) {
+    members.retain(|member| member.name != name);
+    members.push(Member { name: name.to_owned(), place: NOWHERE, item: item(value) });
+}
+
+fn tables_of<'a>(members: &'a [Member], name: &str) -> &'a [Item] {
+    let found = members.iter().find(|member| member.name == name);
+    match found.map(|member| &member.item.value) {
+        Some(Value::Array(items)) => items,
+        _ => &[],
+    }
+}
+
+/// Leaves one of the plants, and no change.
+fn keep_plant(members: &mut Vec<Member>, plant: usize, sign: ElevatorSign) {
+    let change =
+        plant.checked_sub(1).and_then(|index| tables_of(members, "plant_change").get(index));
+    if let Some(Value::Table(change)) = change.map(|change| change.value.clone()) {
+        let mut plant = change;
+        plant.retain(|member| !["at_s", "ramp_s"].contains(&member.name.as_str()));
+        let has = |name: &str| plant.iter().any(|member| member.name == name);
+        if has("numerator") && !has("elevator_sign") {
+            let word = match sign {
+                ElevatorSign::NoseUpPositive => "nose-up-positive",
+                ElevatorSign::NoseDownPositive => "nose-down-positive",
+            };
+            put(&mut plant, "elevator_sign", text(word));
+        }
+        put(members, "plant", Value::Table(plant));
+    }
+    members.retain(|member| member.name != "plant_change");
+}
+
+/// Leaves one controller, frozen where that is asked for.
+fn keep_controller(members: &mut Vec<Member>, replay: &Replay<'_>) {
+    let Some(meant) = replay.controller else {
+        return;
+    };
+    let is_name = |member: &Member| {
+        member.name == "name" && matches!(&member.item.value, Value::Text(name) if name == meant)
+    };
+    let is_meant = |item: &&Item| match &item.value {
+        Value::Table(members) => members.iter().any(is_name),
+        _ => false,
+    };
+    let found = tables_of(members, "controller").iter().find(is_meant).cloned();
+    let Some(mut controller) = found else {
+        return;
+    };
+    if let (Some((gains, shell)), Value::Table(keys)) = (replay.frozen, &mut controller.value) {
+        freeze(keys, gains, &shell);
+    }
+    put(members, "controller", Value::Array(vec![controller]));
+}
+
+/// A self-tuning controller with its gains held: a PID of the same shell.
+fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, shell: &Shell<f64>) {
+    let of_pid: Vec<&str> = controller_table().keys_of("pid").map(|key| key.name).collect();
+    keys.retain(|member| of_pid.contains(&member.name.as_str()));
+    put(keys, "kind", text("pid"));
+    // The filter may have been given with gains in ISA form.
+    put(keys, "derivative_filter_s", Value::Float(shell.derivative.filter_s));
+    for (name, gain) in [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)] {
+        put(keys, name, Value::Float(gain));
+    }
+}
+
+fn controller_table() -> &'static Table {
+    let mut tables = SCENARIO.keys().filter_map(|key| match key.kind {
+        Kind::Tables { table, .. } if key.name == "controller" => Some(table),
+        _ => None,
+    });
+    // The specification has a list of controllers; without one nothing would be kept.
+    tables.next().unwrap_or(&SCENARIO)
+}
+
+/// The requirement as a file has it.
+fn requirement(replay: &Replay<'_>) -> Item {
+    let asked = replay.requirement;
+    let mut members = Vec::new();
+    put(&mut members, "id", text(&asked.id));
+    put(&mut members, "measure", text(asked.measure.name()));
+    let limits = [("least", asked.least), ("most", asked.most)];
+    for (name, number) in limits.into_iter().chain(asked.conditions.numbers()) {
+        if let Some(number) = number {
+            put(&mut members, name, Value::Float(number));
+        }
+    }
+    let origin = &asked.origin;
+    let words = [
+        ("air", asked.conditions.air.map(|air| air.name())),
+        ("clause", origin.clause.as_deref()),
+        ("source", origin.source.as_deref()),
+        ("confidence", origin.confidence.map(|confidence| confidence.name())),
+        ("note", origin.note.as_deref()),
+        ("controller", replay.controller),
+    ];
+    for (name, word) in words {
+        if let Some(word) = word {
+            put(&mut members, name, text(word));
+        }
+    }
+    item(Value::Table(members))
+}
+
+/// Writes every path of a file as it is from the new place.
+fn move_paths(spec: &'static Table, members: &mut [Member], moved: &dyn Fn(&str) -> String) {
+    let kind = kind_of(members).to_owned();
+    for member in members {
+        let Some(key) = spec.keys_of(&kind).find(|key| key.name == member.name) else {
+            continue;
+        };
+        match (&key.kind, &mut member.item.value) {
+            (Kind::Path, Value::Text(path)) => *path = moved(path),
+            (Kind::Rules(_), Value::Text(path)) if !rule_table_names().contains(&path.as_str()) => {
+                *path = moved(path);
+            }
+            (Kind::Table(table), Value::Table(members)) => move_paths(table, members, moved),
+            (Kind::Tables { table, .. }, Value::Array(items)) => {
+                for item in items {
+                    if let Value::Table(members) = &mut item.value {
+                        move_paths(table, members, moved);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn kind_of(members: &[Member]) -> &str {
+    let kind = members.iter().find(|member| member.name == "kind");
+    match kind.map(|member| &member.item.value) {
+        Some(Value::Text(kind)) => kind,
+        _ => "",
+    }
+}
+
+/// Members in the order of their specification, the kind first.
+fn in_order(spec: &'static Table, members: &[Member]) -> Vec<Member> {
+    let place = |name: &str| match name {
+        "kind" => Some(0),
+        name => spec.keys_of(kind_of(members)).position(|key| key.name == name).map(|at| at + 1),
+    };
+    let mut ordered = members.to_vec();
+    ordered.sort_by_key(|member| place(&member.name).unwrap_or(usize::MAX));
+    ordered
+}
+
+fn write_document(out: &mut String, members: &[Member]) {
+    let members = in_order(&SCENARIO, members);
+    let is_table = |member: &&Member| match &member.item.value {
+        Value::Table(_) => true,
+        Value::Array(items) => items.iter().any(|item| matches!(item.value, Value::Table(_))),
+        _ => false,
+    };
+    for member in members.iter().filter(|member| !is_table(member)) {
+        write_line(out, member);
+    }
+    for member in members.iter().filter(is_table) {
+        let spec = SCENARIO.keys().find(|key| key.name == member.name).map(|key| &key.kind);
+        match (&member.item.value, spec) {
+            (Value::Table(table), Some(Kind::Table(spec))) => {
+                out.push_str(&format!("\n[{}]\n", key(&member.name)));
+                in_order(spec, table).iter().for_each(|member| write_line(out, member));
+            }
+            (Value::Array(items), Some(Kind::Tables { table: spec, .. })) => {
+                for item in items {
+                    out.push_str(&format!("\n[[{}]]\n", key(&member.name)));
+                    if let Value::Table(table) = &item.value {
+                        in_order(spec, table).iter().for_each(|member| write_line(out, member));
+                    }
+                }
+            }
+            _ => write_line(out, member),
+        }
+    }
+}
+
+fn write_line(out: &mut String, member: &Member) {
+    out.push_str(&format!("{} = {}\n", key(&member.name), written(&member.item.value)));
+}
+
+/// A key, in quotes where it needs them.
+fn key(name: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
+}
+
+/// A value in one line.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Text(text) => quoted(text),
+        Value::Integer(_, Some(exact)) => exact.to_string(),
+        Value::Integer(number, None) | Value::Float(number) => format!("{number:?}"),
+        Value::Boolean(boolean) => boolean.to_string(),
+        // No key of a scenario holds a date, so that the check has refused it.
+        Value::Date => quoted(""),
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(|item| written(&item.value)).collect();
+            format!("[{}]", items.join(", "))
+        }
+        Value::Table(members) => {
+            let member = |member: &Member| {
+                format!("{} = {}", key(&member.name), written(&member.item.value))
+            };
+            let members: Vec<String> = members.iter().map(member).collect();
+            format!("{{ {} }}", members.join(", "))
+        }
+    }
+}
+
+/// A text in quotes; control characters are escaped.
+fn quoted(text: &str) -> String {
+    let escaped = |c: char| match c {
+        '"' | '\\' => format!("\\{c}"),
+        '\n' => "\\n".to_owned(),
+        '\t' => "\\t".to_owned(),
+        '\r' => "\\r".to_owned(),
+        c if c.is_control() => format!("\\u{:04X}", u32::from(c)),
+        c => c.to_string(),
+    };
+    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_written_so_that_toml_reads_it_back() {
+        let hostile = "a\"b\\c\nd\te\r\u{1b}\u{7f}\u{85}ä=[{,";
+        for value in [
+            text(hostile),
+            Value::Float(0.1 + 0.2),
+            Value::Float(-1e-300),
+            Value::Float(5.0),
+            Value::Integer(7.0, Some(7)),
+            Value::Boolean(true),
+            Value::Array(vec![item(Value::Float(1.0)), item(Value::Float(-2.5))]),
+        ] {
+            let line = format!("x = {}", written(&value));
+            let read: toml::Table = line.parse().unwrap_or_else(|error| panic!("{line}: {error}"));
+            match value {
+                Value::Text(text) => assert_eq!(read["x"].as_str(), Some(text.as_str())),
+                Value::Float(number) => assert_eq!(read["x"].as_float(), Some(number)),
+                Value::Integer(_, exact) => assert_eq!(read["x"].as_integer(), exact),
+                Value::Boolean(boolean) => assert_eq!(read["x"].as_bool(), Some(boolean)),
+                _ => assert_eq!(read["x"].as_array().map(Vec::len), Some(2)),
+            }
+        }
+    }
+
+    #[test]
+    fn a_nested_table_is_written_in_one_line() {
+        let inner = vec![Member { name: "a b".to_owned(), place: NOWHERE, item: item(text("c")) }];
+        let read: toml::Table =
+            format!("x = {}", written(&Value::Table(inner))).parse().expect("TOML");
+        assert_eq!(read["x"]["a b"].as_str(), Some("c"));
+    }
+}

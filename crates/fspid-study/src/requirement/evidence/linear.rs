@@ -1,0 +1,204 @@
+//! The linear loops of a controller: one for each plant that lasts.
+
+use fspid_lti::{Mode, Stability};
+use fspid_sim::{NamedController, Scenario, SimError};
+
+use crate::analysis::{Analysis, Margins, PlantLoop, Question, decibels};
+use crate::metrics::{Absent, Measure};
+use crate::requirement::{Case, NotEvaluated, Place, PlantAt, Requirement};
+use crate::simulation::ControllerResult;
+use crate::units::degrees;
+
+/// A controller's loop with a plant that lasts.
+#[derive(Debug)]
+pub(super) struct PlantEvidence {
+    /// Which plant, where there are several.
+    pub(super) at: Option<PlantAt>,
+    /// The loop at the gains at rest.
+    pub(super) at_rest: PlantLoop,
+}
+
+impl PlantEvidence {
+    /// Margins of the loop at rest.
+    pub(super) fn require_stability(&self) -> Result<Margins, NotEvaluated> {
+        self.at_rest.margins.map_err(|reason| with_place(reason, self.place()))
+    }
+
+    pub(super) fn place(&self) -> Place {
+        Place { plant: self.at, ..Place::default() }
+    }
+}
+
+/// Why there are no margins, and where.
+pub(super) fn with_place(reason: Absent, place: Place) -> NotEvaluated {
+    match reason {
+        Absent::Unstable { spectral_radius } => {
+            NotEvaluated::Unstable { place: Box::new(place), spectral_radius }
+        }
+        reason => NotEvaluated::Absent(reason),
+    }
+}
+
+/// The loops of a controller with every plant of its scenario; with maps of frozen gains where they have points.
+pub(super) fn loops(
+    scenario: &Scenario,
+    named: &NamedController,
+    map_points: usize,
+) -> Result<Vec<PlantEvidence>, NotEvaluated> {
+    let question = Question { map_points, ..Question::default() };
+    let alone = Scenario { controllers: vec![named.clone()], ..scenario.clone() };
+    let analysed = Analysis::of_scenario(&alone, question)?.loops.pop();
+    let analysed = analysed.ok_or(NotEvaluated::Linear(SimError::NotLinear))?;
+    if let Some(reason) = analysed.absent {
+        return Err(NotEvaluated::Absent(reason));
+    }
+    let several = analysed.plants.len() > 1;
+    let evidence = |(index, at_rest): (usize, PlantLoop)| {
+        let at = PlantAt { index, from_s: at_rest.from_s };
+        PlantEvidence { at: several.then_some(at), at_rest }
+    };
+    Ok((0..).zip(analysed.plants).map(evidence).collect())
+}
+
+/// A measure of the loops at rest: a case for each plant.
+pub(super) fn cases(
+    loops: &[PlantEvidence],
+    result: &ControllerResult,
+    requirement: &Requirement,
+) -> Result<Vec<Case>, NotEvaluated> {
+    let of_flight = diverged(result).filter(|_| requirement.measure == Measure::Stable);
+    let of_plants = loops.iter().map(|plant| of_plant(plant, requirement));
+    of_flight.map(Ok).into_iter().chain(of_plants).collect()
+}
+
+/// A flight that diverged is no flight of a stable loop.
+fn diverged(result: &ControllerResult) -> Option<Case> {
+    match result.trace.outcome {
+        fspid_sim::Outcome::Diverged { at_s } => {
+            Some(Case { value: 0.0, place: Place { at_s: Some(at_s), ..Place::default() } })
+        }
+        fspid_sim::Outcome::Completed => None,
+    }
+}
+
+fn of_plant(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, NotEvaluated> {
+    if requirement.measure == Measure::Stable {
+        return stable(plant);
+    }
+    let margins = plant.require_stability()?;
+    match requirement.measure {
+        Measure::ModeDamping => mode_damping(plant, requirement),
+        Measure::PhaseMargin if requirement.conditions.has_band() => {
+            Ok(phase_margin_in_band(plant, requirement))
+        }
+        Measure::GainMargin | Measure::GainMarginLow | Measure::GainMarginHigh
+            if requirement.conditions.has_band() =>
+        {
+            gain_margin_in_band(plant, &margins, requirement)
+        }
+        Measure::GainCrossover => {
+            let value = margins.gain_crossover_rad_s.ok_or(NotEvaluated::NoCrossover)?;
+            Ok(Case { value, place: plant.place() })
+        }
+        measure => {
+            let (value, frequency_rad_s) = of_margins(measure, &margins);
+            Ok(Case { value, place: Place { frequency_rad_s, ..plant.place() } })
+        }
+    }
+}
+
+fn stable(plant: &PlantEvidence) -> Result<Case, NotEvaluated> {
+    match plant.at_rest.margins {
+        Ok(_) => Ok(Case { value: 1.0, place: plant.place() }),
+        Err(Absent::Unstable { spectral_radius }) => {
+            let place = Place { spectral_radius: Some(spectral_radius), ..plant.place() };
+            Ok(Case { value: 0.0, place })
+        }
+        Err(reason) => Err(NotEvaluated::Absent(reason)),
+    }
+}
+
+/// A measure of margins, and the frequency that it belongs to.
+pub(super) fn of_margins(measure: Measure, margins: &Margins) -> (f64, Option<f64>) {
+    let [low_db, high_db] = margins.gain_margin_db;
+    let [low_rad_s, high_rad_s] = margins.phase_crossover_rad_s;
+    match measure {
+        Measure::GainMarginLow => (-low_db, low_rad_s),
+        Measure::GainMarginHigh => (high_db, high_rad_s),
+        Measure::GainMargin | Measure::FrozenGainMargin if -low_db < high_db => {
+            (-low_db, low_rad_s)
+        }
+        Measure::GainMargin | Measure::FrozenGainMargin => (high_db, high_rad_s),
+        Measure::DelayMargin => (margins.delay_margin_s, None),
+        Measure::DiskMargin | Measure::FrozenDiskMargin => {
+            (margins.disk_margin, Some(margins.disk_rad_s))
+        }
+        Measure::SensitivityPeak => {
+            (margins.sensitivity_peak, Some(margins.sensitivity_peak_rad_s))
+        }
+        // The phase margin, and nothing else comes here.
+        _ => (margins.phase_margin_deg, margins.gain_crossover_rad_s),
+    }
+}
+
+/// The least phase margin of the crossovers whose frequency counts; infinite where there is none.
+fn phase_margin_in_band(plant: &PlantEvidence, requirement: &Requirement) -> Case {
+    let without_end = Case { value: f64::INFINITY, place: plant.place() };
+    let Stability::Stable(found) = &plant.at_rest.stability else {
+        return without_end;
+    };
+    let counted =
+        found.crossovers.iter().filter(|at| requirement.conditions.in_band(at.omega_rad_s));
+    let cases = counted.map(|at| {
+        let place = Place { frequency_rad_s: Some(at.omega_rad_s), ..plant.place() };
+        Case { value: degrees(at.phase_margin_rad.abs()), place }
+    });
+    cases.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(without_end)
+}
+
+/// Of a factor: how much nearer to 1 than the limit it may be and still be the limit itself.
+const SAME_FACTOR: f64 = 1e-9;
+
+/// How far the gain may change at the frequencies that count and at which the loop is real and negative, the least of
+/// them, dB; infinite where there is none.
+///
+/// Between the two ends of the gain margin poles may touch the limit of stability and turn back; these are no limits.
+fn gain_margin_in_band(
+    plant: &PlantEvidence,
+    margins: &Margins,
+    requirement: &Requirement,
+) -> Result<Case, NotEvaluated> {
+    let [low_db, high_db] = margins.gain_margin_db;
+    let open = &plant.at_rest.open;
+    let crossings = open.real_crossings().map_err(|error| NotEvaluated::Linear(error.into()))?;
+    let mut least = Case { value: f64::INFINITY, place: plant.place() };
+    for omega_rad_s in crossings {
+        let factor_db = decibels(-1.0 / open.at(omega_rad_s).re);
+        // NaN for a positive value of the loop, where no factor above 0 makes an oscillation.
+        let falls = factor_db <= low_db * (1.0 - SAME_FACTOR) && factor_db > f64::NEG_INFINITY;
+        let rises = factor_db >= high_db * (1.0 - SAME_FACTOR) && factor_db < f64::INFINITY;
+        let counts = match requirement.measure {
+            Measure::GainMarginLow => falls,
+            Measure::GainMarginHigh => rises,
+            _ => falls || rises,
+        };
+        let is_less = factor_db.abs() < least.value;
+        if counts && is_less && requirement.conditions.in_band(omega_rad_s) {
+            let place = Place { frequency_rad_s: Some(omega_rad_s), ..plant.place() };
+            least = Case { value: factor_db.abs(), place };
+        }
+    }
+    Ok(least)
+}
+
+/// Damping of the least damped mode whose frequency counts; poles at 0 die at once and are none.
+fn mode_damping(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, NotEvaluated> {
+    let dt_s = plant.at_rest.open.dt_s();
+    let poles = plant.at_rest.closed_poles.iter();
+    let modes = poles.filter_map(|&pole| Mode::of_sampled_pole(pole, dt_s).ok());
+    let counted = modes.filter(|mode| requirement.conditions.in_band(mode.natural_frequency_rad_s));
+    let least = counted.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
+    let mode = least.ok_or(NotEvaluated::NoMode)?;
+    let frequency_rad_s = Some(mode.natural_frequency_rad_s);
+    Ok(Case { value: mode.damping_ratio, place: Place { frequency_rad_s, ..plant.place() } })
+}

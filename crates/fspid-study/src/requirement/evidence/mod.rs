@@ -1,0 +1,92 @@
+//! What answers requirements: one controller's flight, its linear loops, and the aircraft alone.
+
+mod airframe;
+mod flown;
+mod frozen;
+mod linear;
+
+use std::cell::OnceCell;
+
+use fspid_sim::NamedController;
+
+use super::{Case, NotEvaluated, Requirement};
+use crate::file::Study;
+use crate::metrics::Family;
+use crate::simulation::ControllerResult;
+use linear::PlantEvidence;
+
+/// Everything that is known of one controller of a study. What a flight does not show is computed when it is first
+/// asked for.
+#[derive(Debug)]
+pub struct Evidence<'a> {
+    study: &'a Study,
+    named: &'a NamedController,
+    result: &'a ControllerResult,
+    loops: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+    /// The same with maps of frozen gains, which take a hundred times as long.
+    mapped: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+}
+
+/// Points along each input of a map of frozen gains.
+const MAP_POINTS: usize = 9;
+
+impl<'a> Evidence<'a> {
+    /// Evidence of a flight of one of a study's controllers.
+    #[must_use]
+    pub fn new(study: &'a Study, named: &'a NamedController, result: &'a ControllerResult) -> Self {
+        Self { study, named, result, loops: OnceCell::new(), mapped: OnceCell::new() }
+    }
+
+    /// Name of the controller.
+    #[must_use]
+    pub fn controller(&self) -> &str {
+        &self.named.name
+    }
+
+    /// Every case of a requirement's measure: the steps of a flight, the plants, the frozen gains.
+    ///
+    /// # Errors
+    /// [`NotEvaluated`] where one case has no value; the others do not count then.
+    pub fn cases(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
+        match requirement.measure.family() {
+            Family::Step | Family::Flight => {
+                flown::require_measures(self.result)?;
+                self.require_stability()?;
+                flown::cases(self.study, self.result, requirement)
+            }
+            Family::Loop => linear::cases(self.loops()?, self.result, requirement),
+            Family::Frozen => {
+                frozen::require_whole_map(&self.named.controller)?;
+                frozen::cases(self.mapped()?, requirement)
+            }
+            Family::Airframe => airframe::cases(self.study, requirement),
+        }
+    }
+
+    /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.
+    fn require_stability(&self) -> Result<(), NotEvaluated> {
+        // Where there is no linear loop, there is nothing but the flight.
+        let Ok(loops) = self.loops() else {
+            return Ok(());
+        };
+        loops.iter().try_for_each(|plant| plant.require_stability().map(|_| ()))
+    }
+
+    fn loops(&self) -> Result<&[PlantEvidence], NotEvaluated> {
+        self.computed(&self.loops, 0)
+    }
+
+    fn mapped(&self) -> Result<&[PlantEvidence], NotEvaluated> {
+        self.computed(&self.mapped, MAP_POINTS)
+    }
+
+    fn computed<'b>(
+        &self,
+        cell: &'b OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+        map_points: usize,
+    ) -> Result<&'b [PlantEvidence], NotEvaluated> {
+        let scenario = &self.study.scenario;
+        let loops = cell.get_or_init(|| linear::loops(scenario, self.named, map_points));
+        loops.as_deref().map_err(NotEvaluated::clone)
+    }
+}

@@ -1,0 +1,104 @@
+//! Requirements: what a loop must meet, where that is from, and whether it is met.
+//!
+//! A [`Requirement`] asks for a [`Measure`] within limits. [`Evidence`] answers it from the flight, the linear loop or
+//! the aircraft itself, case by case: each step of the command, each plant of a change in flight, each gain the
+//! supervisor can produce. A [`Judgement`] holds the worst case. What cannot be evaluated is not met, and says why.
+//!
+//! Ready sets are data files of the program, see [`SET_NAMES`] and [`set`].
+
+mod case;
+mod condition;
+mod confidence;
+mod evidence;
+mod judgement;
+mod reason;
+mod set;
+
+pub use case::{Case, FrozenAt, Place, PlantAt, StepAt};
+pub use condition::{Air, Conditions};
+pub use confidence::Confidence;
+pub use evidence::Evidence;
+pub(crate) use judgement::is_of_aircraft;
+pub use judgement::{AIRCRAFT, Judgement, judge};
+pub use reason::NotEvaluated;
+pub(crate) use set::{Choices, SetLine, set_names, set_text};
+pub use set::{RequirementSet, SET_NAMES, set};
+
+use crate::metrics::Measure;
+
+/// Limits of a measure; what is equal to a limit is within it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirement {
+    /// What it is called; unique in its study.
+    pub id: String,
+    /// Name of the controller it is asked of; all of them if there is none.
+    pub controller: Option<String>,
+    /// What is measured.
+    pub measure: Measure,
+    /// Smallest value that meets it, in the unit of the measure.
+    pub least: Option<f64>,
+    /// Largest value that meets it, in the unit of the measure.
+    pub most: Option<f64>,
+    /// What counts, and under which conditions.
+    pub conditions: Conditions,
+    /// Where it is from.
+    pub origin: Origin,
+}
+
+/// Where a requirement is from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origin {
+    /// Name of the ready set.
+    pub set: Option<String>,
+    /// Clause of its source.
+    pub clause: Option<String>,
+    /// The source.
+    pub source: Option<String>,
+    /// How sure its numbers are.
+    pub confidence: Option<Confidence>,
+    /// What else should be known.
+    pub note: Option<String>,
+}
+
+impl Requirement {
+    /// True for a value within the limits; false for NaN.
+    #[must_use]
+    pub fn is_met_by(&self, value: f64) -> bool {
+        let value = self.compared(value);
+        let above = self.least.is_none_or(|least| value >= least);
+        let below = self.most.is_none_or(|most| value <= most);
+        above && below && !value.is_nan()
+    }
+
+    /// How far within the limits a value is; negative outside.
+    pub(crate) fn slack(&self, value: f64) -> f64 {
+        let value = self.compared(value);
+        let above = self.least.map(|least| value - least);
+        let below = self.most.map(|most| most - value);
+        above
+            .into_iter()
+            .chain(below)
+            .fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+    }
+
+    /// The error that is left counts by its size; everything else as it is.
+    fn compared(&self, value: f64) -> f64 {
+        if self.measure == Measure::FinalError { value.abs() } else { value }
+    }
+
+    /// The limits in words, with the unit: "at least 45 deg", "0.3 to 2".
+    #[must_use]
+    pub fn limits_in_words(&self) -> String {
+        let unit = match self.measure.unit() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        match (self.least, self.most) {
+            _ if self.measure.is_yes_or_no() => "stable".to_owned(),
+            (Some(least), Some(most)) => format!("{least} to {most}{unit}"),
+            (Some(least), None) => format!("at least {least}{unit}"),
+            (None, Some(most)) => format!("at most {most}{unit}"),
+            (None, None) => "no limit".to_owned(),
+        }
+    }
+}

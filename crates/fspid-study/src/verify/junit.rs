@@ -1,0 +1,103 @@
+//! The answer as JUnit XML, which continuous integration reads: a suite for the scenario, a case for each line.
+
+use super::Verification;
+use crate::requirement::Judgement;
+
+impl Verification {
+    /// JUnit XML. A line that is not met is a failure of type `not met`, one that could not be evaluated a failure of
+    /// type `not evaluated`; there are no errors, because input that cannot be used ends the program before.
+    #[must_use]
+    pub fn junit(&self, replays: Option<&[String]>) -> String {
+        let (tests, failures) = (self.judgements.len(), self.unmet());
+        let name = escaped(&self.study.scenario.name);
+        // No clock is read: times are 0, so that two runs write the same bytes.
+        let counts = format!(
+            "tests=\"{tests}\" failures=\"{failures}\" errors=\"0\" skipped=\"0\" time=\"0\""
+        );
+        let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+        out.push_str(&format!("<testsuites name=\"fspid verify\" {counts}>\n"));
+        out.push_str(&format!("  <testsuite name=\"{name}\" {counts}>\n    <properties>\n"));
+        for (key, value) in [("file", &self.path), ("digest", &self.study.digest)] {
+            out.push_str(&format!(
+                "      <property name=\"{key}\" value=\"{}\"/>\n",
+                escaped(value)
+            ));
+        }
+        out.push_str("    </properties>\n");
+        for (index, judgement) in self.judgements.iter().enumerate() {
+            let replay = replays.and_then(|replays| replays.get(index));
+            out.push_str(&self.case(judgement, replay.map(String::as_str)));
+        }
+        out.push_str("  </testsuite>\n</testsuites>\n");
+        out
+    }
+
+    fn case(&self, judgement: &Judgement, replay: Option<&str>) -> String {
+        let class = format!("{}.{}", self.study.scenario.name, judgement.controller);
+        let head = format!(
+            "    <testcase name=\"{}\" classname=\"{}\" time=\"0\"",
+            escaped(&judgement.requirement.id),
+            escaped(&class)
+        );
+        if judgement.met {
+            return format!("{head}/>\n");
+        }
+        let kind = if judgement.found.is_ok() { "not met" } else { "not evaluated" };
+        let requirement = &judgement.requirement;
+        let message = format!(
+            "{} of {}: {}, {}",
+            requirement.measure.name(),
+            judgement.controller,
+            judgement.value_in_words(),
+            requirement.limits_in_words()
+        );
+        let mut details = vec![message.clone()];
+        let origin = &requirement.origin;
+        details.extend(origin.source.as_ref().map(|source| {
+            let confidence = origin.confidence.map(|confidence| format!(" ({confidence})"));
+            format!("source: {source}{}", confidence.unwrap_or_default())
+        }));
+        let place = judgement.place();
+        details.extend((!place.is_empty()).then(|| format!("worst case: {place}")));
+        details.extend(replay.map(|replay| format!("replay: fspid verify {replay}")));
+        format!(
+            "{head}>\n      <failure type=\"{kind}\" message=\"{}\">{}</failure>\n    </testcase>\n",
+            escaped(&message),
+            escaped(&details.join("\n"))
+        )
+    }
+}
+
+/// A text as XML has it, in attributes and between tags; characters that no XML may hold become U+FFFD.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&apos;"),
+            // As references, for attributes would turn them into blanks.
+            '\n' => out.push_str("&#10;"),
+            '\r' => out.push_str("&#13;"),
+            '\t' => out.push_str("&#9;"),
+            c if c < ' ' || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_character_that_means_something_to_xml_is_escaped() {
+        assert_eq!(
+            escaped("<a b=\"c\">&'\n\u{1}"),
+            "&lt;a b=&quot;c&quot;&gt;&amp;&apos;&#10;\u{fffd}"
+        );
+    }
+}

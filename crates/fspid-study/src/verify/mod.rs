@@ -1,0 +1,154 @@
+//! Requirements judged: which are met, by which number, in which worst case, and what replays it.
+//!
+//! One judging code with [`simulate`](crate::simulation): the same study, the same evidence, the same numbers.
+
+mod json;
+mod junit;
+mod replay;
+mod text;
+
+use std::fmt;
+use std::path::Path;
+
+use fspid_sim::SimError;
+
+use crate::file::{self, Extra, LoadError, Problems, Study};
+use crate::requirement::Judgement;
+use crate::simulation::Simulation;
+
+pub use replay::ReplayFile;
+
+/// What to verify, as it is written on a command line.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The scenario file.
+    pub path: &'a Path,
+    /// Changes `path=value`, and ready sets `NAME` or `NAME:key=value,…`.
+    pub settings: &'a [String],
+    /// Files of requirements.
+    pub requirement_files: &'a [&'a Path],
+}
+
+/// A study whose requirements are judged.
+#[derive(Clone, Debug)]
+pub struct Verification {
+    /// Path of the scenario as it was given.
+    path: String,
+    /// The scenario's text.
+    scenario_text: String,
+    /// Changes, as they were given.
+    overrides: Vec<String>,
+    /// The study.
+    study: Study,
+    /// Every requirement for every controller that it concerns.
+    pub judgements: Vec<Judgement>,
+}
+
+/// Why nothing was verified.
+#[derive(Debug)]
+pub enum VerifyError {
+    /// The scenario could not be read, or it or what is asked of it is wrong.
+    Load(LoadError),
+    /// Nothing is required.
+    NothingRequired {
+        /// Path of the scenario.
+        path: String,
+    },
+    /// The scenario cannot be flown.
+    Simulation(SimError),
+}
+
+impl fmt::Display for VerifyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Load(error) => error.fmt(f),
+            Self::Simulation(error) => error.fmt(f),
+            Self::NothingRequired { path } => write!(
+                f,
+                "{path}: nothing is required of it\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for VerifyError {}
+
+impl From<SimError> for VerifyError {
+    fn from(error: SimError) -> Self {
+        Self::Simulation(error)
+    }
+}
+
+/// Judges every requirement of a scenario.
+///
+/// # Errors
+/// [`VerifyError`]: input that cannot be used; a requirement that is not met is an answer and no error.
+pub fn verify(question: &Question<'_>) -> Result<Verification, VerifyError> {
+    let scenario_text = file::read_text(question.path).map_err(VerifyError::Load)?;
+    let path = question.path.display().to_string();
+    let mut requirement_files = Vec::new();
+    for file in question.requirement_files {
+        let text = file::read_text(file).map_err(VerifyError::Load)?;
+        requirement_files.push((file.display().to_string(), text));
+    }
+    let (sets, overrides): (Vec<String>, Vec<String>) =
+        question.settings.iter().cloned().partition(|text| names_a_set(text));
+    let extra = Extra { overrides: &overrides, sets: &sets, requirement_files: &requirement_files };
+    let folder = question.path.parent().unwrap_or(Path::new(""));
+    let study = file::parse_with(&scenario_text, &path, Some(folder), &extra)
+        .map_err(|problems: Problems| VerifyError::Load(LoadError::Problems(problems)))?;
+    if study.requirements.is_empty() {
+        return Err(VerifyError::NothingRequired { path });
+    }
+    let judgements = Simulation::of(&study)?.judgements;
+    Ok(Verification { path, scenario_text, overrides, study, judgements })
+}
+
+/// True for `NAME` and `NAME:key=value`, false for `path=value`; names in quotes do not count.
+fn names_a_set(text: &str) -> bool {
+    let mut in_quotes = false;
+    for c in text.chars() {
+        match c {
+            '"' => in_quotes = !in_quotes,
+            ':' if !in_quotes => return true,
+            '=' if !in_quotes => return false,
+            _ => {}
+        }
+    }
+    true
+}
+
+impl Verification {
+    /// True if every requirement is met.
+    #[must_use]
+    pub fn all_met(&self) -> bool {
+        self.unmet() == 0
+    }
+
+    /// How many requirements are not met, those that could not be evaluated among them.
+    #[must_use]
+    pub fn unmet(&self) -> usize {
+        self.judgements.iter().filter(|judgement| !judgement.met).count()
+    }
+
+    /// What is allowed in the files and probably not meant.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.study.warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_with_an_equals_sign_is_a_change_and_one_without_is_a_set() {
+        for set in ["ctms", "mil-f-8785c:level=2,category=C", "cmts", ""] {
+            assert!(names_a_set(set), "{set}");
+        }
+        for change in ["loop.sample_period_s=0.02", "controller.\"a:b\".kp=2", "name=a:b"] {
+            assert!(!names_a_set(change), "{change}");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The answers for people and programs, and what is told beside the numbers.
+
+use super::{LOOP, analysed, margins};
+
+#[test]
+fn an_end_without_limit_is_null_with_its_reason() {
+    let answer = analysed(LOOP, &[]).json();
+    let controller = &answer["controllers"][0];
+    assert_eq!(controller["name"], "C");
+    assert_eq!(controller["stable"], true);
+    assert!(controller["gain_margin_db"][0].is_null());
+    assert!(controller["gain_margin_db"][1].is_f64());
+    let reason = controller["reasons"]["gain_margin_db[0]"].as_str().expect("a reason");
+    assert!(reason.contains("no smaller gain"), "{reason}");
+    for number in ["phase_margin_deg", "delay_margin_s", "disk_margin", "sensitivity_peak"] {
+        assert!(controller[number].is_f64(), "{number}");
+    }
+    assert!(controller["gain_crossover_rad_s"].is_f64());
+    assert_eq!(controller["unstable_poles"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn a_loop_whose_gain_is_nowhere_1_has_no_phase_margin_and_says_why() {
+    let controller = &analysed(LOOP, &["controller.C.kp=0.001"]).json()["controllers"][0];
+    assert_eq!(controller["stable"], true);
+    assert!(controller["phase_margin_deg"].is_null() && controller["delay_margin_s"].is_null());
+    assert!(controller["reasons"]["phase_margin_deg"].is_string());
+}
+
+#[test]
+fn the_delay_of_a_sensor_takes_from_the_margins() {
+    let plain = margins(LOOP, &["loop.sample_period_s=0.01"]).expect("stable");
+    let sensor = ["sensor.preset=\"ideal\"", "sensor.pitch.delay_s=0.03"];
+    let set = ["loop.sample_period_s=0.01", sensor[0], sensor[1]];
+    let late = margins(LOOP, &set).expect("stable");
+    let lost_deg = (plain.gain_crossover_rad_s.expect("a crossover") * 0.03).to_degrees();
+    let found_deg = plain.phase_margin_deg - late.phase_margin_deg;
+    assert!((found_deg - lost_deg).abs() < 1e-6, "{found_deg} for {lost_deg}");
+}
+
+#[test]
+fn what_the_linear_loop_leaves_out_is_told() {
+    let text = analysed(LOOP, &["actuator.rate_limit_deg_s=40.0"]).text();
+    assert!(text.contains("Limits of the actuator are left out"), "{text}");
+    assert!(!analysed(LOOP, &[]).text().contains("left out"));
+}

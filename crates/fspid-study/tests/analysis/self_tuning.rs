@@ -1,0 +1,70 @@
+//! Gains that move: their equilibrium and every place where they can stand.
+
+use fspid_study::analysis::Equilibrium;
+use fspid_study::metrics::Absent;
+
+use super::analysed;
+
+/// The paper's 747 with the paper's rules.
+const TUNED: &str = r#"
+schema = 1
+name = "self-tuning"
+[plant]
+preset = "b747-paper"
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 5.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "C"
+kind = "fspid"
+nominal = { kp = 2.0, ki = 0.5, kd = 1.0 }
+law = "memoryless"
+supervisor = { table = "printed", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = { kp = 0.2, ki = 0.05, kd = 0.1 } }
+"#;
+
+#[test]
+fn the_memoryless_law_rests_at_what_the_rules_add_to_the_nominal_gains() {
+    let analysis = analysed(TUNED, &[]);
+    let Equilibrium::AtRest(gains) = analysis.loops[0].equilibrium else { panic!("gains at rest") };
+    // The printed rules add 0.2165 and -1.6666 at rest, times the output scale.
+    assert!((gains.kp - 2.0 - 0.2 * 0.2165).abs() < 1e-5, "{gains:?}");
+    assert!((gains.kd - 1.0 + 0.1 * 1.6666).abs() < 1e-5, "{gains:?}");
+}
+
+#[test]
+fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
+    let accumulating = "controller.C.law=\"accumulating\"";
+    let drifting = analysed(TUNED, &[accumulating]);
+    assert!(matches!(drifting.loops[0].equilibrium, Equilibrium::Drifts { .. }));
+    assert_eq!(drifting.loops[0].margins(), Err(Absent::GainsDrift));
+    assert!(!drifting.all_stable());
+    let leaking = analysed(TUNED, &[accumulating, "controller.C.leakage_per_s=0.5"]);
+    let Equilibrium::AtRest(gains) = leaking.loops[0].equilibrium else { panic!("gains at rest") };
+    assert!((gains.kp - 2.0 - 0.2 * 0.2165 / 0.5).abs() < 1e-4, "{gains:?}");
+}
+
+#[test]
+fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
+    let analysis = analysed(TUNED, &[]);
+    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    assert_eq!(map.points.len(), 81);
+    assert!(map.is_stable());
+    let worst = map.worst.margins.expect("stable").disk_margin;
+    let least =
+        map.points.iter().filter_map(|point| Some(point.margins.as_ref().ok()?.disk_margin));
+    assert!(least.fold(f64::INFINITY, f64::min) >= worst);
+}
+
+#[test]
+fn a_gain_that_does_not_hold_makes_the_map_say_so() {
+    let analysis = analysed(TUNED, &["controller.C.supervisor.output_scale.kp=3.0"]);
+    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    assert!(analysis.loops[0].plants[0].margins.is_ok(), "the equilibrium holds");
+    assert!(!map.is_stable() && map.unstable() > 0 && !analysis.all_stable());
+    assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
+}

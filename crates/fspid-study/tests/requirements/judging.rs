@@ -1,0 +1,492 @@
+//! How requirements are judged: the worst case, the limit itself, and what cannot be evaluated.
+
+use fspid_study::analysis::{Analysis, Question};
+use fspid_study::metrics::{Absent, Family, Measure};
+use fspid_study::requirement::{Judgement, NotEvaluated};
+use fspid_study::simulation::Simulation;
+
+use crate::{JUMBO, judged, study, values};
+
+/// The only judgement.
+fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
+    let mut judgements = judged(text, &format!("[[requirement]]\n{requirement}"), set);
+    assert_eq!(judgements.len(), 1, "{judgements:?}");
+    judgements.remove(0)
+}
+
+/// The same for one controller of the jumbo.
+fn of(controller: &str, requirement: &str, set: &[&str]) -> Judgement {
+    one(JUMBO, &format!("{requirement}\ncontroller = \"{controller}\"\n"), set)
+}
+
+#[test]
+fn margins_are_those_of_the_analysis_bit_for_bit() {
+    let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("it is analysed");
+    let margins: Vec<_> =
+        analysis.loops.iter().map(|one| one.margins().expect("a stable loop")).collect();
+    let theirs = |of: fn(&fspid_study::analysis::Margins) -> f64| -> Vec<f64> {
+        margins.iter().map(of).collect()
+    };
+    let ours = |measure| values(JUMBO, measure, "", &[]);
+    assert_eq!(ours(Measure::PhaseMargin), theirs(|m| m.phase_margin_deg));
+    assert_eq!(ours(Measure::GainMarginHigh), theirs(|m| m.gain_margin_db[1]));
+    assert_eq!(ours(Measure::GainMarginLow), theirs(|m| -m.gain_margin_db[0]));
+    assert_eq!(
+        ours(Measure::GainMargin),
+        theirs(|m| (-m.gain_margin_db[0]).min(m.gain_margin_db[1]))
+    );
+    assert_eq!(ours(Measure::DelayMargin), theirs(|m| m.delay_margin_s));
+    assert_eq!(ours(Measure::DiskMargin), theirs(|m| m.disk_margin));
+    assert_eq!(ours(Measure::SensitivityPeak), theirs(|m| m.sensitivity_peak));
+    assert_eq!(
+        ours(Measure::GainCrossover),
+        theirs(|m| m.gain_crossover_rad_s.expect("the gain is 1 somewhere"))
+    );
+}
+
+/// Continuous values of the handbook (flight.md 1.6 and 7): a gain of 4.750, 45.01 deg at 1.445 rad/s, sensitivity
+/// 1.9829. The hold costs half a sample, an error of first order in the period: two periods take it away.
+#[test]
+fn a_quickly_sampled_loop_tends_to_the_margins_of_the_book() {
+    let at = |measure, period: &str| {
+        let period = format!("loop.sample_period_s={period}");
+        let set = [period.as_str(), "loop.duration_s=1.0"];
+        values(JUMBO, measure, "controller = \"P\"", &set)[0]
+    };
+    let limit = |measure| 2.0 * at(measure, "0.0005") - at(measure, "0.001");
+    let near = |measure, book: f64, digits: f64| {
+        let found = limit(measure);
+        assert!((found - book).abs() <= digits, "{}: {found} {book}", measure.name());
+    };
+    near(Measure::GainMargin, 20.0 * 4.750_f64.log10(), 1e-3);
+    near(Measure::PhaseMargin, 45.01, 5e-3);
+    near(Measure::GainCrossover, 1.445, 5e-4);
+    near(Measure::SensitivityPeak, 1.9829, 1e-4);
+}
+
+#[test]
+fn the_frozen_margins_are_the_least_of_the_map() {
+    let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("it is analysed");
+    let map = analysis.loops[1].plants[0].map.as_ref().expect("it tunes itself");
+    let least = |of: fn(&fspid_study::analysis::Margins) -> f64| {
+        let points = map.points.iter().chain([&map.worst]);
+        points.map(|p| of(&p.margins.expect("stable"))).fold(f64::INFINITY, f64::min)
+    };
+    let ours = |measure| values(JUMBO, measure, "controller = \"FSPID\"", &[])[0];
+    assert_eq!(ours(Measure::FrozenPhaseMargin), least(|m| m.phase_margin_deg));
+    assert_eq!(ours(Measure::FrozenDiskMargin), least(|m| m.disk_margin));
+    assert_eq!(
+        ours(Measure::FrozenGainMargin),
+        least(fspid_study::analysis::Margins::smaller_gain_margin_db)
+    );
+    assert!(ours(Measure::FrozenPhaseMargin) <= values(JUMBO, Measure::PhaseMargin, "", &[])[1]);
+    // Fixed gains are frozen as they are.
+    let fixed = |measure| values(JUMBO, measure, "controller = \"P\"", &[])[0];
+    assert_eq!(fixed(Measure::FrozenPhaseMargin), fixed(Measure::PhaseMargin));
+}
+
+#[test]
+fn a_value_that_equals_its_limit_meets_it_and_the_next_number_does_not() {
+    for measure in Measure::ALL.into_iter().filter(|measure| !measure.is_yes_or_no()) {
+        let conditions = match measure {
+            Measure::RecoveryTime => "within_deg = 0.5",
+            _ => "",
+        };
+        let value =
+            values(JUMBO, measure, &format!("controller = \"FSPID\"\n{conditions}"), &[])[0];
+        if !(value > 0.0 && value.is_finite()) {
+            continue;
+        }
+        let met = |word: &str, limit: f64| {
+            let requirement =
+                format!("measure = \"{}\"\n{word} = {limit:?}\n{conditions}", measure.name());
+            of("FSPID", &requirement, &[]).met
+        };
+        assert!(met("least", value) && met("most", value), "{}", measure.name());
+        assert!(!met("least", value.next_up()), "{}", measure.name());
+        assert!(!met("most", value.next_down()), "{}", measure.name());
+    }
+}
+
+/// Below a gain of 0.3 the phugoid still reaches over a loop gain of 1: it has crossovers of its own.
+#[test]
+fn every_crossing_is_judged_in_the_band_of_its_frequency() {
+    let weak = ["controller.P.kp=0.3", "loop.duration_s=1.0"];
+    let phase = |conditions: &str| {
+        values(JUMBO, Measure::PhaseMargin, &format!("controller = \"P\"\n{conditions}"), &weak)[0]
+    };
+    let (all, low, high) = (phase(""), phase("to_hz = 0.06"), phase("from_hz = 0.06"));
+    assert!(low.is_finite(), "the phugoid crosses at some 0.011 Hz");
+    assert_eq!(all, low.min(high));
+    let analysis = Analysis::of(&study(JUMBO, &weak), Question::default()).expect("analysed");
+    let fspid_lti_stability = &analysis.loops[0].plants[0].stability;
+    let margins: Vec<(f64, f64)> = match fspid_lti_stability {
+        fspid_lti::Stability::Stable(found) => found
+            .crossovers
+            .iter()
+            .map(|at| {
+                (at.omega_rad_s / std::f64::consts::TAU, at.phase_margin_rad.abs().to_degrees())
+            })
+            .collect(),
+        fspid_lti::Stability::Unstable { .. } => panic!("it is stable"),
+    };
+    assert!(margins.len() >= 2, "{margins:?}");
+    let least = |low_hz: f64, high_hz: f64| {
+        let inside = margins.iter().filter(|(hz, _)| (low_hz..high_hz).contains(hz));
+        inside.map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min)
+    };
+    assert!((low - least(0.0, 0.06)).abs() < 1e-9);
+    assert!(high == least(0.06, 1e9) || (high - least(0.06, 1e9)).abs() < 1e-9);
+}
+
+#[test]
+fn the_bands_of_the_gain_margin_together_have_the_whole_one() {
+    let gain = |conditions: &str| values(JUMBO, Measure::GainMargin, conditions, &[]);
+    let (all, low, high) = (gain(""), gain("to_hz = 0.3"), gain("from_hz = 0.3"));
+    for ((all, low), high) in all.iter().zip(low).zip(high) {
+        assert!((all - low.min(high)).abs() < 1e-9, "{all} {low} {high}");
+    }
+    // At 2.93 rad/s the proportional loop would oscillate: 0.466 Hz.
+    let nothing = values(JUMBO, Measure::GainMargin, "controller = \"P\"\nto_hz = 0.4", &[]);
+    let something = values(JUMBO, Measure::GainMargin, "controller = \"P\"\nto_hz = 0.5", &[]);
+    assert_eq!(nothing, [f64::INFINITY]);
+    assert!(something[0].is_finite());
+}
+
+/// From the poles of the sampled loop, by the definition of a damping ratio.
+#[test]
+fn the_damping_is_that_of_the_least_damped_closed_loop_pole() {
+    let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("analysed");
+    let ours = values(JUMBO, Measure::ModeDamping, "", &[]);
+    for (analysed, ours) in analysis.loops.iter().zip(ours) {
+        let poles = &analysed.plants[0].closed_poles;
+        let damping = poles.iter().map(|pole| (pole.re.hypot(pole.im), pole.im.atan2(pole.re)));
+        let damping = damping.filter(|(size, _)| *size > 0.0).map(|(size, angle)| {
+            let decay = -size.ln();
+            decay / decay.hypot(angle)
+        });
+        let least = damping.fold(f64::INFINITY, f64::min);
+        assert!((ours - least).abs() < 1e-9, "{ours} {least}");
+    }
+}
+
+#[test]
+fn the_modes_of_the_aircraft_are_those_of_the_book() {
+    let jumbo = |measure| values(JUMBO, measure, "", &[]);
+    // Printed polynomial: short period 0.46937233, phugoid 0.03320908; the aircraft is judged once.
+    assert_eq!(jumbo(Measure::ShortPeriodDamping).len(), 1);
+    assert!((jumbo(Measure::ShortPeriodDamping)[0] - 0.469_372_33).abs() < 1e-8);
+    assert!((jumbo(Measure::PhugoidDamping)[0] - 0.033_209_08).abs() < 1e-8);
+    assert_eq!(jumbo(Measure::PhugoidDoubling), [f64::INFINITY]);
+    let navion = JUMBO.replace("b747-paper", "navion-paper").replace("kp = 1.0", "kp = 0.5");
+    // wn² over n/alpha, from the printed coefficients, the plant's 176 ft/s and standard gravity.
+    let cap = 12.941 * 9.80665 / (53.6448 * 22.578 / 11.7304);
+    assert!((values(&navion, Measure::ControlAnticipation, "", &[])[0] - cap).abs() < 1e-12);
+    let short_period = values(&navion, Measure::ShortPeriodDamping, "", &[])[0];
+    assert!((short_period - 4.9676 / 2.0 / 12.941_f64.sqrt()).abs() < 1e-12);
+}
+
+/// A servo of 0.1 s at the short period's 1.2426 rad/s, a delay of two samples and half a sample of the hold.
+#[test]
+fn the_equivalent_delay_has_servo_samples_and_hold() {
+    let set = ["actuator.delay_samples=2"];
+    let found = values(JUMBO, Measure::EquivalentDelay, "", &set)[0];
+    let omega: f64 = 1.242_585_25;
+    let expected = (0.1 * omega).atan() / omega + 2.5 * 0.01;
+    assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+}
+
+#[test]
+fn a_phugoid_that_the_model_does_not_have_is_not_met() {
+    let navion = JUMBO.replace("b747-paper", "navion-paper");
+    let judgement = one(&navion, "measure = \"phugoid_damping\"\nleast = 0.0", &[]);
+    assert!(!judgement.met);
+    assert!(matches!(judgement.found, Err(NotEvaluated::Quality(_))), "{:?}", judgement.found);
+}
+
+#[test]
+fn an_aircraft_of_unknown_speed_has_no_control_anticipation_but_has_its_modes() {
+    let plant = "numerator = [11.7304, 22.578]\ndenominator = [1.0, 4.9676, 12.941, 0.0]\nelevator_sign = \"nose-up-positive\"";
+    let text = JUMBO.replace("preset = \"b747-paper\"", plant);
+    let cap = one(&text, "measure = \"cap_rad_s2_per_g\"\nleast = 0.0", &[]);
+    assert_eq!((cap.met, &cap.found), (false, &Err(NotEvaluated::SpeedUnknown)));
+    assert!(values(&text, Measure::ShortPeriodDamping, "", &[])[0] > 0.69);
+}
+
+#[test]
+fn a_step_of_another_size_is_not_what_was_asked_for() {
+    let judgement = of("P", "measure = \"overshoot_pct\"\nmost = 99.0\nstep_deg = 2.0", &[]);
+    assert!(!judgement.met);
+    let told = judgement.value_in_words();
+    assert_eq!(told, "the command has no step of 2 deg; its steps are of 5 deg");
+    // A square wave has steps of 5 and of 10 degrees: only the second kind counts.
+    let square =
+        JUMBO.replace("kind = \"step\"", "kind = \"square\"\nhalf_period_s = 5.0\nbipolar = true");
+    let one_size = one(
+        &square,
+        "measure = \"overshoot_pct\"\nmost = 99.0\nstep_deg = 10.0\ncontroller = \"P\"",
+        &[],
+    );
+    let step = one_size.place().step.expect("it is of a step");
+    assert!(step.number >= 2 && (step.to_deg - step.from_deg).abs() > 9.9, "{step:?}");
+}
+
+#[test]
+fn a_command_that_never_moves_has_no_step_but_is_held() {
+    let held = ["setpoint.amplitude_deg=0.0"];
+    let overshoot = of("P", "measure = \"overshoot_pct\"\nmost = 99.0", &held);
+    assert_eq!(overshoot.found, Err(NotEvaluated::Absent(Absent::NoStep)));
+    let left = of("P", "measure = \"final_error_deg\"\nmost = 0.5", &held);
+    assert!(left.met && left.found.expect("held").value == 0.0);
+}
+
+/// Looked up in the trace by the definition, to a sample.
+#[test]
+fn the_recovery_lasts_until_the_error_stays_within_its_band() {
+    let study = study(JUMBO, &[]);
+    let simulation = Simulation::of(&study).expect("it flies");
+    // The proportional controller leaves more of its error than the self-tuning one.
+    for (result, band) in simulation.results.iter().zip([4.0, 0.5]) {
+        let conditions = format!("within_deg = {band:?}\ncontroller = \"{}\"", result.name);
+        let found = values(JUMBO, Measure::RecoveryTime, &conditions, &[])[0];
+        let errors = result.trace.theta_rad.iter().map(|theta| (5.0 - theta.to_degrees()).abs());
+        let last = errors.enumerate().rfind(|(_, error)| *error > band).expect("at first").0;
+        let last_s = last as f64 * 0.01;
+        assert!(last_s <= found && found <= last_s + 0.01, "{} {last_s} {found}", result.name);
+    }
+}
+
+#[test]
+fn an_error_that_leaves_its_band_again_is_no_recovery() {
+    let judgement = of("P", "measure = \"recovery_time_s\"\nmost = 99.0\nwithin_deg = 0.001", &[]);
+    assert!(!judgement.met);
+    assert!(matches!(judgement.found, Err(NotEvaluated::NotRecovered { .. })), "{judgement:?}");
+}
+
+#[test]
+fn only_the_time_that_is_asked_for_counts() {
+    let error = |measure, time: &str| {
+        values(JUMBO, measure, &format!("controller = \"FSPID\"\n{time}"), &[])[0]
+    };
+    let whole = error(Measure::LargestError, "");
+    assert!((whole - 5.0).abs() < 1e-9, "the step itself: {whole}");
+    let late = error(Measure::LargestError, "from_s = 10.0\nto_s = 20.0");
+    assert!(late < 0.1 * whole, "{late}");
+    assert!(error(Measure::RmsError, "from_s = 10.0") <= late);
+    // One sample alone: the error at its time.
+    let trace = &Simulation::of(&study(JUMBO, &[])).expect("it flies").results[1].trace;
+    let expected = ((trace.setpoint_rad[1000] - trace.theta_rad[1000]).abs()).to_degrees();
+    let at_ten = error(Measure::LargestError, "from_s = 10.0\nto_s = 10.001");
+    assert!((at_ten - expected).abs() < 1e-15 * expected.max(1.0) * 10.0, "{at_ten} {expected}");
+}
+
+#[test]
+fn a_time_after_the_end_of_the_flight_was_not_flown() {
+    let judgement = of("P", "measure = \"rms_error_deg\"\nmost = 99.0\nto_s = 20.5", &[]);
+    assert!(!judgement.met);
+    assert_eq!(
+        judgement.value_in_words(),
+        "nothing was flown from 0 s to 20.5 s: the flight ends at 20 s"
+    );
+}
+
+#[test]
+fn a_line_for_turbulence_is_not_met_in_calm_air_and_the_other_way_round() {
+    let judgement = of("P", "measure = \"rms_error_deg\"\nmost = 99.0\nair = \"turbulent\"", &[]);
+    assert_eq!(
+        judgement.value_in_words(),
+        "asked for turbulent air, but the flight has no turbulence"
+    );
+    let windy = r#"
+schema = 1
+name = "windy"
+[aircraft]
+name = "navion"
+airspeed_ft_s = 176.0
+altitude_ft = 1000.0
+[loop]
+sample_period_s = 0.01
+duration_s = 2.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[turbulence]
+intensity = "light"
+seed = 1
+[[controller]]
+name = "P"
+kind = "p"
+kp = 0.8
+"#;
+    let requirement =
+        |air: &str| format!("measure = \"rms_error_deg\"\nmost = 99.0\nair = \"{air}\"");
+    assert!(one(windy, &requirement("turbulent"), &[]).met);
+    let smooth = one(windy, &requirement("smooth"), &[]);
+    assert_eq!(smooth.value_in_words(), "asked for smooth air, but the flight has turbulence");
+    let steady = windy.replace(
+        "[turbulence]\nintensity = \"light\"\nseed = 1",
+        "[wind]\nkind = \"steady\"\nspeed_m_s = 5.0\nfrom_deg = 0.0",
+    );
+    assert!(one(&steady, &requirement("smooth"), &[]).met, "steady wind is smooth air");
+}
+
+/// A flight of 20 s at a gain of 5 looks wild, one of half a second does not: the loop is unstable in both.
+#[test]
+fn an_unstable_loop_meets_nothing_however_short_its_window() {
+    for window in ["loop.duration_s=20.0", "loop.duration_s=0.5"] {
+        let set = ["controller.P.kp=5.0", window];
+        for measure in Measure::ALL {
+            // The aircraft alone is what it is: its phugoid never doubles.
+            let limit = match (measure.is_yes_or_no(), measure.family()) {
+                (true, _) => "",
+                (false, Family::Airframe) => "least = 0.0",
+                (false, _) => "least = 0.0\nmost = 1e300",
+            };
+            let conditions = if measure == Measure::RecoveryTime { "within_deg = 1e6" } else { "" };
+            let requirement = format!("measure = \"{}\"\n{limit}\n{conditions}", measure.name());
+            let judgement = of("P", &requirement, &set);
+            let is_of_aircraft = measure.family() == Family::Airframe;
+            assert_eq!(judgement.met, is_of_aircraft, "{} {window}", measure.name());
+        }
+        let stable = of("P", "measure = \"stable\"", &set);
+        assert_eq!(stable.value_in_words(), "unstable");
+        assert!(stable.place().spectral_radius.expect("it is told") > 1.0);
+    }
+}
+
+/// The supervisor's gains at rest hold the plant only at the wrong sign: the window is too short to show it.
+#[test]
+fn a_self_tuning_loop_that_is_unstable_at_rest_is_not_believed() {
+    let set = [
+        "controller.FSPID.nominal.kp=-0.02",
+        "controller.FSPID.nominal.ki=0.0",
+        "controller.FSPID.nominal.kd=0.0",
+        "controller.FSPID.supervisor.output_scale.kp=0.0",
+        "controller.FSPID.supervisor.output_scale.ki=0.0",
+        "controller.FSPID.supervisor.output_scale.kd=0.0",
+        "setpoint.amplitude_deg=0.1",
+        "loop.duration_s=5.0",
+    ];
+    let judgement = of("FSPID", "measure = \"largest_error_deg\"\nmost = 99.0", &set);
+    assert!(!judgement.met);
+    assert!(matches!(judgement.found, Err(NotEvaluated::Unstable { .. })), "{judgement:?}");
+}
+
+#[test]
+fn gains_that_drift_at_rest_have_no_margins_but_a_flight() {
+    let text = JUMBO
+        .replace("law = \"memoryless\"", "law = \"accumulating\"")
+        .replace("table = \"mirrored\"", "table = \"printed\"");
+    let of = |requirement: &str| one(&text, &format!("{requirement}\ncontroller = \"FSPID\""), &[]);
+    let margin = of("measure = \"phase_margin_deg\"\nleast = 0.0");
+    assert_eq!(margin.found, Err(NotEvaluated::Absent(Absent::GainsDrift)));
+    let frozen = of("measure = \"frozen_disk_margin\"\nleast = 0.0");
+    assert!(matches!(frozen.found, Err(NotEvaluated::BeyondMap { .. })), "{frozen:?}");
+    assert!(of("measure = \"largest_error_deg\"\nmost = 99.0").met);
+}
+
+#[test]
+fn frozen_gains_that_do_not_hold_the_plant_are_told_with_the_inputs_that_give_them() {
+    let wild = [
+        "controller.FSPID.supervisor.output_scale.kp=2.0",
+        "controller.FSPID.supervisor.output_scale.ki=1.0",
+        "controller.FSPID.supervisor.output_scale.kd=1.0",
+    ];
+    let stable = of("FSPID", "measure = \"frozen_stable\"", &wild);
+    assert!(!stable.met && stable.value_in_words() == "unstable");
+    let place = stable.place();
+    assert!(place.spectral_radius.expect("told") >= 1.0 && place.frozen.is_some(), "{place}");
+    let margin = of("FSPID", "measure = \"frozen_disk_margin\"\nleast = 0.0", &wild);
+    assert!(!margin.met);
+    let Err(NotEvaluated::Unstable { place, .. }) = margin.found else { panic!("{margin:?}") };
+    assert_eq!(place.frozen, stable.place().frozen);
+}
+
+#[test]
+fn the_worst_of_all_steps_and_all_plants_counts() {
+    let changing = format!(
+        "{}\n[[plant_change]]\nat_s = 10.0\nnumerator = [-3.38, -1.69, -0.02]\ndenominator = [1.0, 1.17103, 1.55405, 0.012538, 0.0072771]\n",
+        JUMBO
+    );
+    let judgement =
+        one(&changing, "measure = \"phase_margin_deg\"\nleast = 0.0\ncontroller = \"P\"", &[]);
+    let plant = judgement.place().plant.expect("there are two");
+    assert_eq!((plant.index, plant.from_s), (1, 10.0), "twice the elevator's effect, less margin");
+    let alone =
+        values(JUMBO, Measure::PhaseMargin, "controller = \"P\"", &["controller.P.kp=2.0"])[0];
+    let found = judgement.found.expect("stable").value;
+    // Twice the printed coefficients, rounded to three digits.
+    assert!((found - alone).abs() < 0.2, "{found} {alone}");
+}
+
+#[test]
+fn efforts_are_those_of_the_trace() {
+    let simulation = Simulation::of(&study(JUMBO, &[])).expect("it flies");
+    let largest = |values: &[f64], dt_s: f64| {
+        let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs() / dt_s);
+        steps.fold(0.0, f64::max).to_degrees()
+    };
+    let rates = values(JUMBO, Measure::ElevatorRate, "", &[]);
+    let commands = values(JUMBO, Measure::CommandRate, "", &[]);
+    let sizes = values(JUMBO, Measure::LargestCommand, "", &[]);
+    for (index, result) in simulation.results.iter().enumerate() {
+        let trace = &result.trace;
+        assert!((rates[index] - largest(&trace.elevator_rad, 0.01)).abs() < 1e-9);
+        assert!((commands[index] - largest(&trace.command_rad, 0.01)).abs() < 1e-9);
+        let size = trace.command_rad.iter().fold(0.0, |a: f64, u| a.max(u.abs())).to_degrees();
+        assert!((sizes[index] - size).abs() < 1e-12);
+    }
+    assert_eq!(values(JUMBO, Measure::Saturated, "", &[]), [0.0, 0.0]);
+    let limited = JUMBO.replace("kp = 1.0", "kp = 1.0\noutput_limits_deg = [-1.0, 1.0]");
+    let cut = values(&limited, Measure::Saturated, "controller = \"P\"", &[])[0];
+    let samples =
+        Simulation::of(&study(&limited, &[])).expect("it flies").results[0].trace.saturated_samples;
+    assert!(samples > 0);
+    assert_eq!(cut, 100.0 * samples as f64 / 2001.0);
+}
+
+#[test]
+fn an_old_file_of_requirements_means_what_it_meant() {
+    let old = "[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 20.0\n[[requirement]]\ncontroller = \"P\"\nmeasure = \"final_error_pct\"\nmost = 50.0\n";
+    let judgements = judged(JUMBO, old, &[]);
+    let told: Vec<(&str, &str)> =
+        judgements.iter().map(|j| (j.requirement.id.as_str(), j.controller.as_str())).collect();
+    assert_eq!(
+        told,
+        [("overshoot_pct", "P"), ("overshoot_pct", "FSPID"), ("final_error_pct", "P")]
+    );
+}
+
+#[test]
+fn a_loop_whose_gain_is_nowhere_one_has_no_crossover() {
+    let weak = ["controller.P.kp=0.001"];
+    let crossover = of("P", "measure = \"gain_crossover_rad_s\"\nmost = 99.0", &weak);
+    assert_eq!((crossover.met, crossover.found), (false, Err(NotEvaluated::NoCrossover)));
+    let phase = of("P", "measure = \"phase_margin_deg\"\nleast = 45.0", &weak);
+    assert!(phase.met && phase.value_in_words() == "without end");
+}
+
+/// Under the accumulating law the gains add up beyond every point of the map, and an input that is evaluated beyond
+/// the range lies beyond it: no margin of the map is then one of all gains.
+#[test]
+fn gains_beyond_the_map_have_no_frozen_margins() {
+    for [from, to] in [
+        ["law = \"memoryless\"", "law = \"accumulating\"\nleakage_per_s = 0.5"],
+        ["range = 5.0", "range = 5.0\nout_of_range = \"evaluate\""],
+    ] {
+        let text = JUMBO.replace(from, to);
+        for measure in ["frozen_stable", "frozen_disk_margin"] {
+            let limit = if measure == "frozen_stable" { "" } else { "least = 0.0" };
+            let requirement = format!("measure = \"{measure}\"\n{limit}\ncontroller = \"FSPID\"");
+            let judgement = one(&text, &requirement, &[]);
+            assert!(!judgement.met);
+            assert!(
+                matches!(judgement.found, Err(NotEvaluated::BeyondMap { .. })),
+                "{judgement:?}"
+            );
+        }
+        let at_rest =
+            one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"", &[]);
+        assert!(at_rest.met, "{at_rest:?}");
+    }
+}

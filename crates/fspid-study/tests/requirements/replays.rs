@@ -1,0 +1,196 @@
+//! A replay gives the number of its line again, bit for bit.
+
+use std::path::Path;
+
+use fspid_study::file;
+use fspid_study::metrics::Measure;
+use fspid_study::requirement::{Judgement, NotEvaluated};
+use fspid_study::simulation::Simulation;
+use fspid_study::verify::Verification;
+
+use crate::{JUMBO, repository, verified, written};
+
+/// Every measure without a limit that anything could miss.
+fn every_measure() -> String {
+    let requirement = |measure: Measure| {
+        let conditions = if measure == Measure::RecoveryTime { "within_deg = 2.0\n" } else { "" };
+        let limit = if measure.is_yes_or_no() { "" } else { "least = 0.0\n" };
+        format!("[[requirement]]\nmeasure = \"{}\"\n{limit}{conditions}\n", measure.name())
+    };
+    Measure::ALL.into_iter().map(requirement).collect()
+}
+
+fn bits(judgement: &Judgement) -> Result<u64, String> {
+    match &judgement.found {
+        Ok(case) => Ok(case.value.to_bits()),
+        // Where it was found is another place in a scenario of one controller.
+        Err(NotEvaluated::Unstable { spectral_radius, .. }) => {
+            Err(format!("{}", spectral_radius.to_bits()))
+        }
+        Err(reason) => Err(reason.to_string()),
+    }
+}
+
+/// Writes the replays of a verification into a folder and judges each of them alone, by `verify` and by `simulate`.
+fn replay_all(verification: &Verification, folder: &Path) -> usize {
+    std::fs::create_dir_all(folder).expect("made");
+    let replays = verification.replays(folder);
+    assert_eq!(replays.len(), verification.judgements.len());
+    for (replay, judgement) in replays.iter().zip(&verification.judgements) {
+        let path = folder.join(&replay.name);
+        std::fs::write(&path, &replay.text).expect("written");
+        let again = verified(&path, &[], &[]);
+        let [alone] = again.judgements.as_slice() else { panic!("{}: one line", replay.name) };
+        assert_eq!(bits(alone), bits(judgement), "{}\n{}", replay.name, replay.text);
+        assert_eq!(alone.met, judgement.met, "{}", replay.name);
+        assert_eq!(alone.requirement.id, judgement.requirement.id);
+        let simulated = Simulation::of(&file::load(&path, &[]).expect("read")).expect("it flies");
+        assert_eq!(simulated.judgements, again.judgements, "one judging code for both");
+    }
+    replays.len()
+}
+
+#[test]
+fn every_measure_of_every_controller_is_replayed_bit_for_bit() {
+    let (folder, path) = written(&format!("{JUMBO}\n{}", every_measure()));
+    let replayed = replay_all(&verified(&path, &[], &[]), &folder.path().join("replay"));
+    assert!(replayed > 50, "{replayed}");
+}
+
+#[test]
+fn frozen_gains_are_fixed_in_their_replay() {
+    let (folder, path) = written(&format!(
+        "{JUMBO}\n[[requirement]]\nmeasure = \"frozen_phase_margin_deg\"\nleast = 80.0\ncontroller = \"FSPID\"\n"
+    ));
+    let verification = verified(&path, &[], &[]);
+    let replay = &verification.replays(folder.path())[0];
+    let study = file::parse(&replay.text, "replay", None, &[]).expect("a scenario");
+    let [named] = study.scenario.controllers.as_slice() else { panic!("one controller") };
+    let fspid_sim::Controller::Fixed(pid) = named.controller else { panic!("fixed gains") };
+    let frozen = verification.judgements[0].place().frozen.expect("frozen gains");
+    assert_eq!(pid.gains(), frozen.gains);
+    assert_eq!(pid.shell().derivative.filter_s, 0.05);
+    assert!(replay.text.starts_with("# Replays line 1 of `fspid verify "), "{}", replay.text);
+    assert!(replay.text.contains("# FAIL: found "), "{}", replay.text);
+}
+
+/// The gains in ISA form bring a filter of their own with them.
+#[test]
+fn a_filter_that_came_with_the_gains_stays_when_they_are_frozen() {
+    let isa = JUMBO
+        .replace(
+            "nominal = { kp = 1.33, ki = 1.0, kd = 1.22 }",
+            "nominal_isa = { gain = 1.33, ti_s = 1.4, td_s = 0.9, n = 13.0 }",
+        )
+        .replace("derivative_filter_s = 0.05\n", "");
+    let (folder, path) = written(&format!("{isa}\n{}", every_measure()));
+    replay_all(&verified(&path, &[], &[]), &folder.path().join("replay"));
+}
+
+#[test]
+fn gains_that_do_not_hold_the_plant_are_replayed_as_such() {
+    let wild = [
+        "controller.FSPID.supervisor.output_scale.kp=2.0",
+        "controller.FSPID.supervisor.output_scale.ki=1.0",
+        "controller.FSPID.supervisor.output_scale.kd=1.0",
+    ];
+    let (folder, path) = written(&format!(
+        "{JUMBO}\n[[requirement]]\nmeasure = \"frozen_stable\"\n[[requirement]]\nmeasure = \"frozen_disk_margin\"\nleast = 0.1\n"
+    ));
+    let verification = verified(&path, &wild, &[]);
+    assert_eq!(verification.unmet(), 2);
+    replay_all(&verification, &folder.path().join("replay"));
+}
+
+#[test]
+fn a_plant_of_a_change_in_flight_is_alone_in_its_replay() {
+    let text = std::fs::read_to_string(repository("scenarios/plant-change.toml")).expect("shipped");
+    let (folder, path) = written(&format!("{text}\n{}", every_measure()));
+    let verification = verified(&path, &[], &[]);
+    replay_all(&verification, &folder.path().join("replay"));
+    let later = verification.judgements.iter().filter_map(|judgement| judgement.place().plant);
+    assert!(later.filter(|plant| plant.index > 0).count() > 5);
+}
+
+/// Presets keep their speed: without it a replay would have no control anticipation.
+#[test]
+fn a_plant_of_a_change_keeps_the_speed_of_its_preset() {
+    let text = JUMBO.replace("kp = 1.0", "kp = 0.5").replace("b747-paper", "navion-full");
+    let change = "[[plant_change]]\nat_s = 10.0\npreset = \"b747-paper\"\n";
+    let (folder, path) = written(&format!("{text}\n{change}\n{}", every_measure()));
+    let verification = verified(&path, &[], &[]);
+    replay_all(&verification, &folder.path().join("replay"));
+    let cap = |j: &&Judgement| j.requirement.measure == Measure::ControlAnticipation;
+    let cap = verification.judgements.iter().find(cap).expect("asked");
+    assert_eq!(cap.place().plant.map(|plant| plant.index), Some(1), "{cap:?}");
+}
+
+#[test]
+fn nonlinear_aircraft_are_replayed_too() {
+    for name in ["navion-step", "b747-turbulence", "sensor-own"] {
+        let path = repository(&format!("scenarios/gallery/{name}.toml"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let short = ["loop.duration_s=1.5"];
+        let requirements = folder.path().join("all.toml");
+        std::fs::write(&requirements, every_measure()).expect("written");
+        replay_all(&verified(&path, &short, &[&requirements]), folder.path());
+    }
+}
+
+#[test]
+fn files_that_a_scenario_refers_to_are_found_from_the_replays() {
+    let (folder, path) = written(
+        &JUMBO
+            .replace("preset = \"b747-paper\"", "file = \"data/plant.toml\"")
+            .replace("table = \"mirrored\"", "table = \"data/rules.toml\""),
+    );
+    let data = folder.path().join("data");
+    std::fs::create_dir(&data).expect("made");
+    for (from, to) in [("plants/b747-paper", "plant"), ("rule-tables/mirrored", "rules")] {
+        let from = repository(&format!("data/{from}.toml"));
+        std::fs::copy(from, data.join(format!("{to}.toml"))).expect("copied");
+    }
+    let requirements = folder.path().join("all.toml");
+    std::fs::write(&requirements, every_measure()).expect("written");
+    let verification = verified(&path, &[], &[&requirements]);
+    for place in ["replay", "far/down/below", "."] {
+        replay_all(&verification, &folder.path().join(place));
+    }
+    let replay = &verification.replays(&folder.path().join("replay"))[0];
+    assert!(replay.text.contains("file = \"../data/plant.toml\""), "{}", replay.text);
+    let tuning = &verification.replays(&folder.path().join("far/down/below"))[1];
+    assert!(tuning.text.contains("table = \"../../../data/rules.toml\""), "{}", tuning.text);
+}
+
+#[test]
+fn what_was_set_from_outside_is_in_the_replays() {
+    let (folder, path) = written(JUMBO);
+    let settings = ["mil-f-9490d", "mil-f-8785c:level=2,category=C", "setpoint.amplitude_deg=4.0"];
+    let verification = verified(&path, &settings, &[]);
+    replay_all(&verification, &folder.path().join("replay"));
+    let replay = &verification.replays(folder.path())[0];
+    assert!(replay.text.contains("amplitude_deg = 4.0"), "{}", replay.text);
+    assert!(replay.text.contains("confidence = \"recalled\""), "{}", replay.text);
+}
+
+#[test]
+fn names_that_a_file_system_would_mind_make_sound_files() {
+    let hostile = JUMBO
+        .replace("name = \"jumbo\"", "name = \"a\\\"b\\\\c\\n<d>\\u0001\"")
+        .replace("name = \"P\"", "name = \"../ä b\\\"c\\n\"");
+    let requirement = "[[requirement]]\nid = \"R/1 <&>\\n\"\nmeasure = \"phase_margin_deg\"\nleast = 1.0\nsource = \"line one\\nline \\\"two\\\"\"\n";
+    let (folder, path) = written(&format!("{hostile}\n{requirement}"));
+    let verification = verified(&path, &[], &[]);
+    replay_all(&verification, &folder.path().join("replay"));
+    for replay in verification.replays(folder.path()) {
+        let safe = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        assert!(replay.name.chars().all(safe), "{}", replay.name);
+    }
+}
+
+#[test]
+fn two_runs_write_the_same_replays() {
+    let (folder, path) = written(&format!("{JUMBO}\n{}", every_measure()));
+    let replays = || verified(&path, &[], &[]).replays(folder.path());
+    assert!(replays() == replays());
+}
