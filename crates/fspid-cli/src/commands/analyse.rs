@@ -66,8 +66,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    let question =
-        Question { point: arguments.broken_at.into(), map_points: usize::from(arguments.map), fly: arguments.fly };
+    let question = Question {
+        point: arguments.broken_at.into(),
+        map_points: usize::from(arguments.map),
+        fly: arguments.fly,
+    };
     let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_analysis(&study, &analysis).map_err(Failure::input)?)?;

@@ -1,5 +1,6 @@
 //! Whether a flight held: what its error did from one third of the flight to the next.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use super::Perturbation;
@@ -82,6 +83,20 @@ pub enum Failure {
         /// Oscillation of the last third, rad.
         last_rad: f64,
     },
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Diverged { at_s } => write!(f, "diverged at t = {at_s:.2} s"),
+            Self::Swings { .. } => {
+                f.write_str("in its last third the error swings as far as in its middle one")
+            }
+            Self::Oscillates { .. } => {
+                f.write_str("in its last third the error goes on oscillating as in its middle one")
+            }
+        }
+    }
 }
 
 impl Envelope {

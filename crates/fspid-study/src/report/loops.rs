@@ -234,7 +234,9 @@ fn flights(found: &AnalysedLoop) -> Option<Chapter> {
         label => format!("{label}: {sentence}"),
     });
     let mut items = vec![
-        Item::Text("With every limit at work and gains that move; none of this is a proof.".to_owned()),
+        Item::Text(
+            "With every limit at work and gains that move; none of this is a proof.".to_owned(),
+        ),
         Item::List(said.collect()),
     ];
     items.extend(flights.along.as_ref().map(|along| {

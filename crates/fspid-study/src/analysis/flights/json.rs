@@ -37,6 +37,7 @@ fn empirical(answer: &EmpiricalAnswer) -> Value {
                 "gain_up_db": between(&margins.gain_up, decibels),
                 "delay_s": between(&margins.delay_s, |seconds| seconds),
                 "phase": phase.collect::<Vec<_>>(),
+                "lenient": !margins.quiet,
                 "flights": margins.flights,
             })
         }

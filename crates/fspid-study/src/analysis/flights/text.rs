@@ -42,10 +42,7 @@ fn flown_margins(margins: &EmpiricalMargins) -> Vec<(&'static str, String)> {
         format!("lag at {:.3} rad/s {size}", phase.at_rad_s)
     });
     let rest: Vec<String> = std::iter::once(delay).chain(lag).collect();
-    vec![
-        ("flown margins", format!("{gain} ({} flights)", margins.flights)),
-        ("", rest.join("; ")),
-    ]
+    vec![("flown margins", format!("{gain} ({} flights)", margins.flights)), ("", rest.join("; "))]
 }
 
 /// Where a flight ceases to hold, in words.
