@@ -9,7 +9,9 @@
 //! Sizes are tried on a ladder first, and the step to the first that fails is then halved. A loop that
 //! fails and holds again between two rungs looks as if it held. A flight that fails without diverging
 //! is flown again for longer, and counts as held if that one holds: a slow motion that dies out looks
-//! like one that grows while there is little of it to see.
+//! like one that grows while there is little of it to see. So is a flight that holds while it still
+//! oscillates: it may be on its way to a size at which it lasts. One that oscillates above the floor at
+//! the end of the longest flight, and not much less than before, does not hold.
 
 use fspid_core::{Gains, Law};
 
@@ -24,6 +26,8 @@ use crate::plant::{LinearPlant, Plant};
 use crate::scenario::{Prepared, Scenario};
 use crate::timing::Timing;
 
+/// An oscillation that is down to this share of what it was a third of the flight before is dying out.
+const DYING: f64 = 0.5;
 /// Largest factor on the command, and its inverse the smallest: 60 dB.
 pub const MOST_GAIN: f64 = 1000.0;
 /// Largest extra delay, s; at most 10 000 samples.
@@ -48,7 +52,8 @@ pub struct EmpiricalOptions {
     pub criterion: Criterion,
     /// Length of each flight, s; that of the scenario where there is none.
     pub duration_s: Option<f64>,
-    /// How many times as long a flight is flown again before it counts as not held, 1 or more.
+    /// How many times as long a flight is flown again, up to twice, before it counts as not held, 1 or
+    /// more.
     pub patience: f64,
     /// Largest relative width of an answer; delays are told apart down to a fiftieth of a sample and
     /// lags down to 0.1 deg.
@@ -143,7 +148,9 @@ pub fn empirical_margins(
         Some(given) => given.clone(),
         None => gain_crossovers_rad_s(scenario, controller)?,
     };
-    let lengths = [&first, &longer];
+    let longest = patience * patience * duration_s;
+    let longest = Length::of(scenario, controller, (&options.criterion, longest))?;
+    let lengths = [&first, &longer, &longest];
     let criterion = &options.criterion;
     let mut trials = Trials { lengths, controller, criterion, tolerance, flights: 2 };
     Ok(EmpiricalAnswer::Margins(Box::new(EmpiricalMargins {
@@ -217,8 +224,8 @@ impl Length {
 
 /// Flights of one controller with perturbations.
 struct Trials<'a> {
-    /// The first length and a longer one.
-    lengths: [&'a Length; 2],
+    /// The first length and two longer ones.
+    lengths: [&'a Length; 3],
     controller: &'a Controller,
     criterion: &'a Criterion,
     tolerance: f64,
@@ -230,15 +237,22 @@ impl Trials<'_> {
         self.lengths[0].prepared.timing.dt_s()
     }
 
-    /// Why a perturbed flight does not hold, in either length; divergence is believed at once.
+    /// Why a perturbed flight does not hold. Divergence is believed at once, and that a flight holds once
+    /// its oscillation is gone; everything else is flown for longer.
     fn failure(&mut self, perturbation: &Perturbation) -> Result<Option<Failure>, SimError> {
         let mut failure = None;
         for length in self.lengths {
             self.flights += 1;
             let envelope = Envelope::of(&length.prepared, self.controller, perturbation)?;
             failure = envelope.failure(self.criterion, length.floor_rad);
-            if matches!(failure, None | Some(Failure::Diverged { .. })) {
-                break;
+            let [middle_rad, last_rad] = envelope.oscillations_rad;
+            match failure {
+                Some(Failure::Diverged { .. }) => break,
+                None if last_rad <= length.floor_rad => break,
+                None if last_rad > DYING * middle_rad => {
+                    failure = Some(Failure::Oscillates { middle_rad, last_rad });
+                }
+                _ => {}
             }
         }
         Ok(failure)
