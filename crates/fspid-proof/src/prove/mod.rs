@@ -88,23 +88,6 @@ pub fn certify(description: &LoopDescription, effort: &Effort) -> Result<Outcome
     Ok(Outcome { verdict, bounds: set.bounds(), largest, pitch_within_rad, limits_left_out })
 }
 
-/// Probe.
-pub fn probe(description: &LoopDescription, effort: &Effort, factor: f64, change: f64) -> String {
-    let prover = Prover::new(description, effort).unwrap();
-    let set = prover.set(factor);
-    let out = if change >= 10.0 {
-        prover.any_speed(&set, factor, false)
-    } else if change > 5.0 {
-        prover.tied(&set, factor, false)
-    } else {
-        prover.bounded(&set, factor, change)
-    };
-    match out {
-        Some((_, rechecked)) => format!("{rechecked:?}"),
-        None => "none".into(),
-    }
-}
-
 struct Prover<'a> {
     description: &'a LoopDescription,
     effort: &'a Effort,
