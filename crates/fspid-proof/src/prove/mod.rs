@@ -2,6 +2,7 @@
 
 mod bounded;
 mod largest;
+mod region;
 mod stable;
 mod unstable;
 
@@ -22,7 +23,7 @@ use crate::recheck::{Recheck, Rechecked};
 pub struct Effort {
     /// Cells along each of the supervisor's inputs.
     pub divisions: usize,
-    /// Double cones that the plane of the supervisor's inputs is divided into.
+    /// Double cones that the plane of the supervisor's inputs is divided into; 0 for no proof with cones.
     pub cones: usize,
     /// Halvings of the interval of the largest output scale.
     pub halvings: u32,
@@ -30,11 +31,21 @@ pub struct Effort {
     pub largest_factor: f64,
     /// Points along each input at which frozen gains are looked at.
     pub frozen_points: usize,
+    /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
+    /// gains of bounded rate is tried with.
+    pub changes: [f64; 6],
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { divisions: 24, cones: 8, halvings: 6, largest_factor: 64.0, frozen_points: 33 }
+        Self {
+            divisions: 24,
+            cones: 8,
+            halvings: 6,
+            largest_factor: 64.0,
+            frozen_points: 33,
+            changes: [0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
+        }
     }
 }
 
@@ -129,6 +140,9 @@ impl<'a> Prover<'a> {
             return found;
         }
         if let Some((certificate, rechecked)) = self.proved(set, 1.0, true) {
+            return Verdict::Proved(certificate, rechecked);
+        }
+        if let Some((certificate, rechecked)) = self.bounded(set, 1.0) {
             return Verdict::Proved(certificate, rechecked);
         }
         self.sequence_growth().unwrap_or(Verdict::Open)
