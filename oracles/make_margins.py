@@ -145,15 +145,13 @@ class Loop:
         """Without poles on the circle that rounding of the stored matrices has split: beyond a gain of 10^10."""
         found = sorted(mp.acos(v) for v in real_roots_inside(imaginary_part(self.n, self.d)))
         finite = lambda z: abs(value(self.n, z)) < mpf(10) ** 10 * abs(value(self.d, z))
-        return [mpf(0)] + [angle for angle in found if finite(circle(angle))] + [mp.pi]
+        return [angle for angle in [mpf(0)] + found + [mp.pi] if finite(circle(angle))]
 
     def gain_limits(self):
         """Nearest factors below and above 1 with other counts of unstable poles on their far sides."""
         found = []
         for angle in self.real_angles():
             z = circle(angle)
-            if abs(value(self.d, z)) < mpf(10) ** -25:
-                continue  # a pole on the circle
             factor = mpc(-value(self.d, z) / value(self.n, z)).real
             if factor > mpf(10) ** -7:
                 found.append((factor, angle))

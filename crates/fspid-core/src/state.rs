@@ -67,6 +67,16 @@ impl<R: Real> State<R> {
         self.faults.take()
     }
 
+    /// What the integral remembers: its term in rad (bumpless) or the sum of errors in rad (literal).
+    pub fn integral(&self) -> R {
+        self.integral
+    }
+
+    /// The derivative of the last good sample, rad/s.
+    pub fn derivative_rad_s(&self) -> R {
+        self.derivative_rad_s
+    }
+
     /// Gains of the last good sample, `None` before the first.
     pub(crate) fn gains(&self) -> Option<Gains<R>> {
         self.previous.map(|previous| previous.gains)

@@ -19,30 +19,18 @@ const ROUNDS: usize = 15;
 const DT_S: f64 = 0.02;
 
 fn main() -> Result<(), LtiError> {
-    for (delay_samples, repeats) in [(1, 2000)] {
+    for (delay_samples, repeats) in [(0, 200), (1, 200), (4, 100), (20, 10)] {
         let open = b747(delay_samples)?;
         let order = open.order();
         report(&format!("order {order}, margins"), repeats, || margins(&open));
-        report(&format!("order {order}, peak S"), repeats, || {
-            open.peak_sensitivity().map_or(f64::NAN, |p| p.value)
-        });
-        report(&format!("order {order}, peak T"), repeats, || {
-            open.peak_complementary().map_or(f64::NAN, |p| p.value)
-        });
-        report(&format!("order {order}, disk"), repeats, || {
-            open.disk_margin(0.0).map_or(f64::NAN, |p| p.size)
-        });
-        report(&format!("order {order}, unit"), repeats, || {
-            open.gain_crossings(1.0).map_or(f64::NAN, |p| p[0])
-        });
-        report(&format!("order {order}, real"), repeats, || {
-            open.real_crossings().map_or(f64::NAN, |p| p[1])
-        });
-        report(&format!("order {order}, one frequency"), 1000 * repeats, || {
-            open.at(black_box(1.5)).re
+        report(&format!("order {order}, disk margin"), repeats, || {
+            open.disk_margin(0.0).map_or(f64::NAN, |disk| disk.size)
         });
         report(&format!("order {order}, closed poles"), repeats, || {
             open.closed_poles().map_or(f64::NAN, |poles| poles[0].re)
+        });
+        report(&format!("order {order}, one frequency"), 1000 * repeats, || {
+            open.at(black_box(1.5)).re
         });
     }
     Ok(())
@@ -56,7 +44,7 @@ fn b747(delay_samples: usize) -> Result<SampledLoop, LtiError> {
     )?;
     let servo = TransferFunction::new(&[10.0], &[1.0, 10.0])?;
     let pid = TransferFunction::new(&[0.0665 + 1.22, 1.33 + 0.0715, 1.43], &[0.05, 1.0, 0.0])?;
-    let gain = TransferFunction::new(&[0.2], &[1.0])?;
+    let gain = TransferFunction::new(&[0.02], &[1.0])?;
     let model = plant.series(&servo)?.series(&pid)?.series(&gain)?.to_state_space();
     let (held, input) = zero_order_hold(model.a(), model.b(), DT_S)?;
     let (states, order) = (model.states(), model.states() + delay_samples);

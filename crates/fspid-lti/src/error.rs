@@ -160,6 +160,18 @@ pub enum LtiError {
         /// Largest modulus of a closed-loop pole in the z plane.
         spectral_radius: f64,
     },
+    /// A sampled loop of which rounding hides whether it is stable.
+    #[error(
+        "the closed loop's spectral radius {spectral_radius} is not known well enough: rounding may move its outermost poles by {share} of their distance from the unit circle, at most {allowed} is accepted; choose other states"
+    )]
+    Blurred {
+        /// Largest modulus of a closed-loop pole in the z plane, as computed.
+        spectral_radius: f64,
+        /// How far rounding may move the outermost poles, over their distance from the unit circle.
+        share: f64,
+        /// The largest share accepted.
+        allowed: f64,
+    },
     /// A question about the peaks of a continuous loop that has none.
     #[error(
         "the closed loop has {unstable_poles} unstable poles; peaks and disks exist for stable loops only"

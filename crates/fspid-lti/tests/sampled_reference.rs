@@ -97,6 +97,13 @@ fn limits_crossovers_and_dead_times_are_those_of_the_reference() -> Outcome {
                 libm::remainder(crossover.phase_margin_rad - expected.im, core::f64::consts::TAU);
             assert!(off.abs() < ALLOWED, "{} {crossover:?} {expected}", reference.name);
             assert!((crossover.omega_rad_s / expected.re - 1.0).abs() < ALLOWED, "{expected}");
+            let lag = crossover.delay_s * crossover.omega_rad_s;
+            let off = libm::remainder(lag - expected.im, core::f64::consts::TAU);
+            assert!(
+                lag > 0.0 && off.abs() < ALLOWED,
+                "{} {crossover:?} {expected}",
+                reference.name
+            );
         }
         reference.assert_near(found.delay_margin_s.as_slice(), 10);
     }

@@ -165,6 +165,28 @@ impl Actuated {
         }
     }
 
+    /// True where a limit makes of the coming sample another than the linear one.
+    pub(crate) fn is_limited(&self, state: &ActuatedState, command_rad: f64) -> bool {
+        self.actuator.is_limited(&state.actuator, command_rad, self.dt_s)
+    }
+
+    /// States of the plant, deflection and, for a lag of second order, its rate: those of
+    /// [`linear_step`](Self::linear_step).
+    pub(crate) fn values(&self, state: &ActuatedState) -> Vec<f64> {
+        let mut values = state.vector.values[..self.order].to_vec();
+        values.push(self.actuator.deflection_rad(&state.actuator));
+        values.extend((self.actuator.lag().order() == 2).then(|| state.actuator.rate_rad_s()));
+        values
+    }
+
+    /// Moves one of [`values`](Self::values).
+    pub(crate) fn nudge(&self, state: &mut ActuatedState, place: usize, by: f64) {
+        match place.checked_sub(self.order) {
+            None => state.vector.values[place] += by,
+            Some(part) => state.actuator.nudge(part, by),
+        }
+    }
+
     /// The linear part of a sample: what a loop around rest obeys. The rate of a lag below second
     /// order is no state of it.
     pub(crate) fn linear_step(&self) -> LinearStep {
@@ -175,7 +197,6 @@ impl Actuated {
             states,
             rows: rows.flat_map(entries).collect(),
             rate_row: self.rate_row.iter().take(states).copied().collect(),
-            delay_samples: self.actuator.delay_samples(),
         }
     }
 }

@@ -5,9 +5,12 @@ use std::ops::ControlFlow;
 
 use fspid_core::{Sample, State, Step};
 
+use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::flown::Perturbation;
+use crate::propagation::{Motion, Propagation};
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
@@ -72,8 +75,41 @@ fn record(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimErro
 pub fn fly(
     prepared: &Prepared,
     controller: &Controller,
+    observer: impl FnMut(Instant) -> ControlFlow<()>,
+) -> Result<Outcome, SimError> {
+    fly_perturbed(prepared, controller, &Perturbation::NONE, observer)
+}
+
+/// As [`fly`], with something put between controller and servo.
+///
+/// # Errors
+/// As [`fly`]; [`SimError::Number`] for a perturbation that makes no sense.
+pub fn fly_perturbed(
+    prepared: &Prepared,
+    controller: &Controller,
+    perturbation: &Perturbation,
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
+    watch(prepared, controller, perturbation, |instant, _| observer(instant))
+}
+
+/// What is about to happen between a sample and the next.
+pub(crate) struct Coming<'a> {
+    pub(crate) propagation: &'a Propagation,
+    pub(crate) motion: &'a Motion,
+    /// The command that has arrived.
+    pub(crate) command_rad: f64,
+    pub(crate) held: &'a Held,
+}
+
+/// The flight itself; the observer sees each sample and what is about to happen.
+pub(crate) fn watch(
+    prepared: &Prepared,
+    controller: &Controller,
+    perturbation: &Perturbation,
+    mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, SimError> {
+    let mut path = perturbation.start()?;
     let mut memory = State::new();
     let mut delayed: VecDeque<f64> = VecDeque::from(vec![0.0; prepared.delay_samples]);
     let mut stages = prepared.stages.iter().peekable();
@@ -102,17 +138,19 @@ pub fn fly(
         let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
         let step = controller.step(&mut memory, sample);
-        delayed.push_back(step.command_rad);
+        delayed.push_back(path.pass(step.command_rad));
         let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
         stage.propagation.settle(&mut plant, command_rad);
         let elevator_rad = stage.propagation.elevator_rad(&plant, disturbance_rad);
         let measured = [measurement_rad, rate_rad_s];
         let instant =
             Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
-        if observer(instant).is_break() {
+        let held = held(disturbance_rad, prepared.gusts(), k);
+        let propagation = &stage.propagation;
+        let coming = Coming { propagation, motion: &plant, command_rad, held: &held };
+        if observer(instant, &coming).is_break() {
             return Ok(Outcome::Completed);
         }
-        let held = held(disturbance_rad, prepared.gusts(), k);
         stage.propagation.advance(&mut plant, command_rad, &held)?;
     }
     Ok(Outcome::Completed)

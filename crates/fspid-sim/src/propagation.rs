@@ -4,10 +4,15 @@
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::error::SimError;
+use crate::loop_model::SampledPlant;
 use crate::propagator::{LinearStep, PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
 const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
+
+/// Half the width of differences, relative to values above 1: limits let go and take hold at corners,
+/// so that it has to be small, and what is straight between them leaves nothing but rounding, 10⁻⁹.
+const DIFFERENCE: f64 = 1e-7;
 
 /// A plant and what moves its elevator, discretised.
 #[derive(Clone, Debug)]
@@ -117,6 +122,71 @@ impl Propagation {
             _ => {}
         }
         Ok(())
+    }
+
+    /// True where a limit makes of the coming sample another than one without limits.
+    pub(crate) fn is_limited(&self, motion: &Motion, command_rad: f64) -> bool {
+        match (self, motion) {
+            (Self::Servo(it), Motion::Servo(state)) => it.is_limited(state, command_rad),
+            (Self::Actuated(it), Motion::Actuated(state)) => it.is_limited(state, command_rad),
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.is_limited(state, command_rad),
+            _ => false,
+        }
+    }
+
+    /// The states that a linear model of the coming sample has: those of
+    /// [`linear_step`](Self::linear_step), or pitch, u, w, q and actuator of an aircraft.
+    fn values(&self, motion: &Motion) -> Vec<f64> {
+        match (self, motion) {
+            (Self::Servo(_), Motion::Servo(state)) => state.values().to_vec(),
+            (Self::Actuated(it), Motion::Actuated(state)) => it.values(state),
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.values(state),
+            _ => Vec::new(),
+        }
+    }
+
+    fn nudge(&self, motion: &mut Motion, place: usize, by: f64) {
+        match (self, motion) {
+            (Self::Servo(_), Motion::Servo(state)) => state.nudge(place, by),
+            (Self::Actuated(it), Motion::Actuated(state)) => it.nudge(state, place, by),
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.nudge(state, place, by),
+            _ => {}
+        }
+    }
+
+    /// The coming sample as a linear model around where the motion is, limits as they act there, by
+    /// central differences.
+    pub(crate) fn slopes(
+        &self,
+        motion: &Motion,
+        command_rad: f64,
+        held: &Held,
+    ) -> Result<SampledPlant<f64>, SimError> {
+        let from = self.values(motion);
+        let states = from.len();
+        let mut rows = vec![0.0; states * (states + 1)];
+        for column in 0..=states {
+            let half = DIFFERENCE * from.get(column).copied().unwrap_or(command_rad).abs().max(1.0);
+            let arrive = |by: f64| {
+                let (mut nudged, mut command_rad) = (motion.clone(), command_rad);
+                if column < states {
+                    self.nudge(&mut nudged, column, by);
+                } else {
+                    command_rad += by;
+                }
+                self.advance(&mut nudged, command_rad, held)?;
+                Ok::<_, SimError>(self.values(&nudged))
+            };
+            let (more, less) = (arrive(half)?, arrive(-half)?);
+            for (row, (more, less)) in more.iter().zip(&less).enumerate() {
+                rows[row * (states + 1) + column] = (more - less) / (2.0 * half);
+            }
+        }
+        let rate = match self.linear_step() {
+            Some(step) => step.rate_row,
+            None => (0..states).map(|place| if place == 3 { 1.0 } else { 0.0 }).collect(),
+        };
+        Ok(SampledPlant { states, rows, rate })
     }
 
     pub(crate) fn linear_step(&self) -> Option<LinearStep> {

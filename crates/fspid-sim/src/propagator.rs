@@ -55,6 +55,13 @@ impl PlantState {
         self.values.first().copied().unwrap_or(0.0)
     }
 
+    /// Moves one of the values.
+    pub(crate) fn nudge(&mut self, place: usize, by: f64) {
+        if let Some(value) = self.values.get_mut(place) {
+            *value += by;
+        }
+    }
+
     /// Servo deflection, nose up positive, rad.
     pub(crate) fn deflection_rad(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0)
@@ -157,16 +164,19 @@ impl Propagator {
         Ok(())
     }
 
+    /// True where a limit makes of the coming sample another than the linear one.
+    pub(crate) fn is_limited(&self, state: &PlantState, command_rad: f64) -> bool {
+        let limited_rad = self.servo.limited(command_rad);
+        let gap_rad = limited_rad - state.deflection_rad();
+        let rate = self.servo.rate_limited_phase(gap_rad, self.dt_s).is_some();
+        rate || (limited_rad - command_rad).abs() > 0.0
+    }
+
     /// The linear part of a sample: what a loop around rest obeys.
     pub(crate) fn linear_step(&self) -> LinearStep {
         let mut rate_row = self.rate_output.clone();
         rate_row.push(self.rate_feedthrough * self.elevator_per_command);
-        LinearStep {
-            states: self.order + 1,
-            rows: self.free_step.clone(),
-            rate_row,
-            delay_samples: self.servo.delay_samples(),
-        }
+        LinearStep { states: self.order + 1, rows: self.free_step.clone(), rate_row }
     }
 }
 
@@ -179,8 +189,6 @@ pub(crate) struct LinearStep {
     pub(crate) rows: Vec<f64>,
     /// Row from states to pitch rate.
     pub(crate) rate_row: Vec<f64>,
-    /// Delay of the command.
-    pub(crate) delay_samples: usize,
 }
 
 enum ServoMotion {

@@ -87,7 +87,7 @@ impl Scenario {
         self.surroundings.actuator.map_or_else(|| self.servo.as_actuator(), Ok)
     }
 
-    fn delay_samples(&self) -> usize {
+    pub(crate) fn delay_samples(&self) -> usize {
         let actuator = self.surroundings.actuator.as_ref();
         actuator.map_or(self.servo.delay_samples(), Actuator::delay_samples)
     }

@@ -28,6 +28,10 @@ pub(crate) struct Arguments {
     /// Points along each input of the frozen-gain map; 0 for no map.
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u16).range(0..=201))]
     map: u16,
+    /// Fly as well: how much gain, delay and lag the flight bears with all its limits, limit cycles, and what small
+    /// disturbances do along the way. Takes seconds, and proves nothing.
+    #[arg(long)]
+    fly: bool,
     /// Write a report that opens offline in a browser.
     #[arg(long, value_name = "OUT.html")]
     report: Option<PathBuf>,
@@ -62,8 +66,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    let question =
-        Question { point: arguments.broken_at.into(), map_points: usize::from(arguments.map) };
+    let question = Question {
+        point: arguments.broken_at.into(),
+        map_points: usize::from(arguments.map),
+        fly: arguments.fly,
+    };
     let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_analysis(&study, &analysis).map_err(Failure::input)?)?;

@@ -18,8 +18,8 @@ impl SampledLoop {
     /// All frequencies in rad/s above 0, up to Nyquist's, at which the gain has a value above 0, rising.
     ///
     /// # Errors
-    /// A level that is not above zero and finite; eigenvalues that do not converge; a loop whose hidden modes make both
-    /// maps to the imaginary axis singular.
+    /// A level that is not above zero and finite; eigenvalues that do not converge; real poles so dense that no place on
+    /// the real axis keeps clear of them to working precision.
     pub fn gain_crossings(&self, level: f64) -> Result<Vec<f64>, LtiError> {
         if !(level > 0.0 && level.is_finite()) {
             return Err(LtiError::NotPositive { what: "gain to be crossed", value: level });
@@ -29,10 +29,9 @@ impl SampledLoop {
         Ok(self.frequencies(angles))
     }
 
-    /// All frequencies in rad/s at which the value is real, rising: 0 and Nyquist's always, and those between.
+    /// All frequencies in rad/s at which the value is real, rising; with 0 and Nyquist's, where it always is.
     ///
-    /// At a pole on the unit circle, where the value jumps from one end of an axis to the other, there is no crossing:
-    /// values beyond 10¹⁰ are left out.
+    /// At a pole on the unit circle, such as an integrator's, there is no crossing: values beyond 10¹⁰ are left out.
     ///
     /// # Errors
     /// As [`SampledLoop::gain_crossings`].
@@ -44,9 +43,9 @@ impl SampledLoop {
     pub(super) fn real_angles(&self, squares: &Squares<'_>) -> Result<Vec<f64>, LtiError> {
         let candidates = squares.angles_of_real_values()?;
         let across = |angle_rad: f64| sine(self.response(angle_rad));
-        let mut inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
-        inside.retain(|&angle_rad| modulus(self.response(angle_rad).open()) < POLE);
-        Ok(core::iter::once(0.0).chain(inside).chain([PI]).collect())
+        let inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
+        let finite = |angle_rad: &f64| modulus(self.response(*angle_rad).open()) < POLE;
+        Ok(core::iter::once(0.0).chain(inside).chain([PI]).filter(finite).collect())
     }
 
     pub(super) fn frequencies(&self, angles: Vec<f64>) -> Vec<f64> {

@@ -72,11 +72,11 @@ impl SampledLoop {
     /// beside it, so that poles which touch the unit circle and turn back make no limit.
     ///
     /// # Errors
-    /// Eigenvalues that do not converge.
+    /// Poles that rounding may carry across the unit circle, as in states that are nearly dependent; eigenvalues that
+    /// do not converge.
     pub fn margins(&self) -> Result<Stability, LtiError> {
-        let poles = self.closed_poles()?;
-        let spectral_radius = poles::radius(&poles);
-        if !(spectral_radius < poles::STABLE_BELOW) {
+        let (poles, spectral_radius, stable) = self.verdict()?;
+        if !stable {
             let outside = |pole: &Complex| !(modulus(*pole) < poles::STABLE_BELOW);
             let poles = poles.into_iter().filter(outside).collect();
             return Ok(Stability::Unstable { poles, spectral_radius });
@@ -116,8 +116,8 @@ impl SampledLoop {
     /// 3 dB is the factor $10^{-3/20}$, 0.70795.
     #[must_use]
     pub fn bandwidth_rad_s(&self) -> Option<f64> {
-        let poles = self.closed_poles().ok()?;
-        if !(poles::radius(&poles) < poles::STABLE_BELOW) {
+        let (_, _, stable) = self.verdict().ok()?;
+        if !stable {
             return None;
         }
         let at_rest = modulus(self.response(0.0).closed());

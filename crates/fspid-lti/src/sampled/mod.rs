@@ -14,6 +14,7 @@ mod peak;
 mod poles;
 mod quick;
 mod reduced;
+mod rounding;
 mod scan;
 mod squares;
 mod zeros;

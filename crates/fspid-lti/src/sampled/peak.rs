@@ -35,7 +35,7 @@ impl SampledLoop {
     /// transfer function matrix, Systems & Control Letters 14 (1990) 287.
     ///
     /// # Errors
-    /// A closed loop that is not stable; eigenvalues that do not converge.
+    /// A closed loop that is not stable, or of which rounding hides whether it is; eigenvalues that do not converge.
     pub fn peak_sensitivity(&self) -> Result<Peak, LtiError> {
         self.peak_of(1.0, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
     }
@@ -69,12 +69,9 @@ impl SampledLoop {
     }
 
     fn stable_poles(&self) -> Result<Vec<Complex>, LtiError> {
-        let poles = self.closed_poles()?;
-        let spectral_radius = poles::radius(&poles);
-        if spectral_radius < poles::STABLE_BELOW {
-            Ok(poles)
-        } else {
-            Err(LtiError::UnstableLoop { spectral_radius })
+        match self.verdict()? {
+            (poles, _, true) => Ok(poles),
+            (_, spectral_radius, false) => Err(LtiError::UnstableLoop { spectral_radius }),
         }
     }
 

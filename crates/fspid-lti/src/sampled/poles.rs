@@ -36,9 +36,30 @@ impl SampledLoop {
 /// than 10⁹ samples to decay is none that a controller holds.
 pub(super) const STABLE_BELOW: f64 = 1.0 - 1e-9;
 
+/// How far rounding may move the outermost poles of a loop that is called stable, over their distance from the unit
+/// circle. Loops in natural states reach 10⁻⁴ within 10⁻⁹ of their limit; from 1 on the verdict would be a guess.
+const SHARE_ALLOWED: f64 = 0.1;
+
 /// Angles of the poles from the positive real axis, between 0 and π.
 pub(super) fn angles_rad(poles: &[Complex]) -> Vec<f64> {
     poles.iter().map(|pole| libm::atan2(pole.im.abs(), pole.re)).collect()
+}
+
+impl SampledLoop {
+    /// Poles of the closed loop and whether it is stable, which it only is if rounding cannot tell otherwise.
+    pub(super) fn verdict(&self) -> Result<(Vec<Complex>, f64, bool), LtiError> {
+        let poles = self.closed_poles()?;
+        let spectral_radius = radius(&poles);
+        let stable = spectral_radius < STABLE_BELOW;
+        if stable {
+            let share = self.reduced.rounding_share(&poles);
+            if !(share < SHARE_ALLOWED) {
+                let allowed = SHARE_ALLOWED;
+                return Err(LtiError::Blurred { spectral_radius, share, allowed });
+            }
+        }
+        Ok((poles, spectral_radius, stable))
+    }
 }
 
 /// Poles of a matrix less the identity.

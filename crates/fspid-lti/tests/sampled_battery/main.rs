@@ -127,9 +127,9 @@ fn assert_crossovers(index: usize, open: &Factored, dense: &Dense<'_>, found: &S
         });
         assert!(near, "{index}: {angle} {margin} is missing in {:?}", found.crossovers);
     }
-    let least = known.iter().map(|known| known.1.abs()).fold(f64::INFINITY, f64::min);
+    let nearest = known.iter().map(|known| known.1.abs()).fold(f64::INFINITY, f64::min);
     let phase = found.phase_margin.map_or(f64::INFINITY, |at| at.phase_margin_rad.abs());
-    assert!(phase <= least + 1e-6, "{index}: {phase} beyond {least}");
+    assert!(phase <= nearest + 1e-6, "{index}: {phase} beyond {nearest}");
     let turn = core::f64::consts::TAU;
     let lag = |&(angle, margin): &(f64, f64)| {
         (if margin < 0.0 { margin + turn } else { margin }) / angle * open.dt_s
@@ -137,6 +137,10 @@ fn assert_crossovers(index: usize, open: &Factored, dense: &Dense<'_>, found: &S
     let least = known.iter().map(lag).fold(f64::INFINITY, f64::min);
     let delay = found.delay_margin_s.unwrap_or(f64::INFINITY);
     assert!(delay <= least * (1.0 + 1e-6), "{index}: {delay} s beyond {least}");
+    if known.len() == found.crossovers.len() && !known.is_empty() {
+        assert!((delay / least - 1.0).abs() < 1e-6, "{index}: {delay} s instead of {least}");
+        assert!((phase - nearest).abs() < 1e-6, "{index}: {phase} instead of {nearest}");
+    }
 }
 
 /// No crossing of the real axis on the grid is nearer to −1 than a limit, and the limits are what they are called.

@@ -93,7 +93,8 @@ fn prove_fall(
     prove_named(WHAT, &fall)
 }
 
-/// $\tau Q$ with τ ≥ 0; of the matrices inside Q the symmetric ones are meant.
+/// $\tau Q$ with τ ≥ 0 and a Q whose bounds are symmetric; of the matrices inside it the symmetric ones
+/// are meant.
 fn weighed(tau: f64, q: &IntervalMatrix, size: usize) -> Result<IntervalMatrix, NotProved> {
     if !(tau >= 0.0 && tau.is_finite()) {
         let allowed = "a finite number, 0 or above";
@@ -101,6 +102,13 @@ fn weighed(tau: f64, q: &IntervalMatrix, size: usize) -> Result<IntervalMatrix, 
     }
     require_bounded("matrix of the relaxation", q)?;
     q.require_shape("matrix of the relaxation", size, size)?;
+    let places = (0..size).flat_map(|row| (0..row).map(move |column| (row, column)));
+    for (row, column) in places {
+        if q.get(row, column) != q.get(column, row) {
+            let what = "matrix of the relaxation";
+            return Err(NotProved::NotSymmetric { what, row, column });
+        }
+    }
     Ok(q.scaled(Interval::point(tau)))
 }
 

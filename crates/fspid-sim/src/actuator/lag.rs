@@ -91,7 +91,7 @@ impl Lag {
 
     /// By how much time a position that moves at a constant rate trails its command, s: $\tau$ or
     /// $2 \zeta / \omega_n$. At a rate limit R the lag takes over where the gap is R times this.
-    pub(super) fn trailing_s(&self) -> f64 {
+    pub(crate) fn trailing_s(&self) -> f64 {
         match self.0 {
             Kind::None => 0.0,
             Kind::First { time_constant_s } => time_constant_s,

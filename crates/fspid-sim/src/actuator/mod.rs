@@ -56,6 +56,25 @@ pub struct ActuatorState {
     contact: f64,
 }
 
+impl ActuatorState {
+    /// Rate, rad/s; kept for lags of second order only.
+    pub(crate) fn rate_rad_s(&self) -> f64 {
+        self.rate_rad_s
+    }
+
+    /// Moves the position, and the surface with it (part 0), or the rate (part 1).
+    pub(crate) fn nudge(&mut self, part: usize, by: f64) {
+        if part == 0 {
+            self.position_rad += by;
+            self.surface_rad += by;
+        } else {
+            self.rate_rad_s += by;
+        }
+    }
+}
+
+/// Deflections so near are the same, rad: many times the rounding of a sample, far below any motion.
+const SAME: f64 = 1e-12;
 /// Longest delay; more is a mistake in the file.
 pub(crate) const MAX_DELAY_SAMPLES: usize = 10_000;
 
@@ -220,6 +239,22 @@ impl Actuator {
     /// Follows a held command for `dt_s`.
     pub fn advance(&self, state: &mut ActuatorState, command_rad: f64, dt_s: f64) {
         self.legs(state, command_rad, dt_s, |_| {});
+    }
+
+    /// True where following a held command for `dt_s` leads elsewhere than the lag alone would.
+    pub(crate) fn is_limited(&self, state: &ActuatorState, command_rad: f64, dt_s: f64) -> bool {
+        if self.is_linear() {
+            return false;
+        }
+        let free = Self::new(self.lag);
+        let (mut limited, mut follows) = (*state, *state);
+        follows.position_rad = state.surface_rad;
+        self.advance(&mut limited, command_rad, dt_s);
+        free.advance(&mut follows, command_rad, dt_s);
+        let apart_rad = (limited.surface_rad - follows.surface_rad).abs();
+        let rates_apart = (limited.rate_rad_s - follows.rate_rad_s).abs();
+        // Written so that NaN is limited.
+        !(apart_rad <= SAME && rates_apart * dt_s <= SAME)
     }
 
     /// True where a sine of this amplitude and frequency asks for more than the rate limit:

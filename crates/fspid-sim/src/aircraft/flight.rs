@@ -191,6 +191,46 @@ impl AircraftFlight {
         })
     }
 
+    /// True where a limit of the actuator or the travel of the elevator acts on the coming sample.
+    pub(crate) fn is_limited(&self, motion: &AircraftMotion, command_rad: f64) -> bool {
+        let dt_s = self.steps.step_s * f64::from(self.steps.count);
+        let free_rad =
+            self.plant.trim().point.elevator_rad - self.actuator.deflection_rad(&motion.actuator);
+        let cut = (self.elevator_rad(motion, 0.0) - free_rad).abs() > 0.0;
+        cut || self.actuator.is_limited(&motion.actuator, command_rad, dt_s)
+    }
+
+    /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
+    pub(crate) fn values(&self, motion: &AircraftMotion) -> Vec<f64> {
+        let velocity = motion.state.velocity_body_m_s;
+        let deflection_rad = self.actuator.deflection_rad(&motion.actuator);
+        let mut values = vec![
+            motion.theta_rad,
+            velocity.x,
+            velocity.z,
+            motion.state.rates_rad_s.y,
+            deflection_rad,
+        ];
+        values.extend((self.actuator.lag().order() == 2).then(|| motion.actuator.rate_rad_s()));
+        values
+    }
+
+    /// Moves one of [`values`](Self::values).
+    pub(crate) fn nudge(&self, motion: &mut AircraftMotion, place: usize, by: f64) {
+        match place {
+            0 => {
+                let euler = motion.state.euler();
+                let turned = EulerAngles { theta_rad: euler.theta_rad + by, ..euler };
+                motion.state.attitude = Quaternion::from_euler(turned);
+                motion.theta_rad += by;
+            }
+            1 => motion.state.velocity_body_m_s.x += by,
+            2 => motion.state.velocity_body_m_s.z += by,
+            3 => motion.state.rates_rad_s.y += by,
+            _ => motion.actuator.nudge(place - 4, by),
+        }
+    }
+
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
         let (state, air) = (&motion.state, self.air(motion));

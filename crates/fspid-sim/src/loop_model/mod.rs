@@ -17,6 +17,7 @@
 mod assembly;
 mod memory;
 mod opening;
+mod parts;
 mod sensing;
 #[cfg(test)]
 mod tests;
@@ -28,10 +29,12 @@ use fspid_lti::Matrix;
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
+use crate::propagator::LinearStep;
 use crate::scenario::Scenario;
 
 pub use memory::Memory;
 pub use opening::BreakPoint;
+pub(crate) use parts::LoopParts;
 pub use sensing::Sensing;
 
 /// Plant and actuator over one sample without limits.
@@ -58,6 +61,29 @@ pub struct LoopSettings {
     pub pitch: Sensing,
     /// How the pitch rate is seen.
     pub rate: Sensing,
+}
+
+impl LoopSettings {
+    /// Those of a scenario with a controller's shell.
+    pub(crate) fn of(scenario: &Scenario, shell: &Shell<f64>, memory: Memory) -> Self {
+        let surroundings = &scenario.surroundings;
+        Self {
+            shell: *shell,
+            memory,
+            delay_samples: scenario.delay_samples(),
+            pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), shell.dt_s),
+            rate: Sensing::through(surroundings.rate_sensor.as_ref(), shell.dt_s),
+        }
+    }
+}
+
+impl From<LinearStep> for SampledPlant<f64> {
+    /// Without the disturbance at the elevator.
+    fn from(step: LinearStep) -> Self {
+        let by_state_and_command = step.rows.chunks_exact(step.states + 2);
+        let rows = by_state_and_command.flat_map(|row| &row[..=step.states]).copied().collect();
+        Self { states: step.states, rows, rate: step.rate_row }
+    }
 }
 
 /// A sampled loop around rest.
@@ -159,20 +185,9 @@ impl LoopModel<f64> {
         shell: &Shell<f64>,
         memory: Memory,
     ) -> Result<Self, SimError> {
-        let dt_s = shell.dt_s;
-        let step = scenario.propagation(plant, dt_s)?.linear_step().ok_or(SimError::NotLinear)?;
-        let by_state_and_command = step.rows.chunks_exact(step.states + 2);
-        let rows = by_state_and_command.flat_map(|row| &row[..=step.states]).copied().collect();
-        let surroundings = &scenario.surroundings;
-        let settings = LoopSettings {
-            shell: *shell,
-            memory,
-            delay_samples: step.delay_samples,
-            pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), dt_s),
-            rate: Sensing::through(surroundings.rate_sensor.as_ref(), dt_s),
-        };
-        let plant = SampledPlant { states: step.states, rows, rate: step.rate_row };
-        Ok(Self::new(plant, settings))
+        let step = scenario.propagation(plant, shell.dt_s)?.linear_step();
+        let step = step.ok_or(SimError::NotLinear)?;
+        Ok(Self::new(step.into(), LoopSettings::of(scenario, shell, memory)))
     }
 
     /// The one-sample matrix of the closed loop.

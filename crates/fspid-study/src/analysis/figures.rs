@@ -2,6 +2,7 @@
 
 use fspid_lti::{Complex, SampledLoop, Stability};
 use fspid_sim::SimError;
+use fspid_sim::flown::trajectory::{TrajectoryLinearisation, TrajectoryPoint};
 
 use super::answer::{Margins, decibels};
 use super::frozen::{FrozenMap, FrozenPoint};
@@ -9,7 +10,7 @@ use super::{AnalysedLoop, Analysis, PlantLoop};
 use crate::figure::{
     BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, LocusSample, LoopCurve, LoopPoint,
     MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure, PeakMark,
-    PoleZeroMap, RootLocus, SensitivityFigure, SeriesStyle, Transfer,
+    PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle, Transfer,
 };
 
 /// Points of a frequency response, over so many decades below the Nyquist frequency.
@@ -269,4 +270,31 @@ fn cell(point: &FrozenPoint, quantity: MapQuantity) -> MapCell {
         MapQuantity::Phase => margins.phase_margin_deg,
     };
     if value.is_finite() { MapCell::Value(value) } else { MapCell::Unbounded }
+}
+
+/// Spectral radii along a flight, over its gains.
+pub(crate) fn radius_figure(name: &str, along: &TrajectoryLinearisation) -> RadiusFigure {
+    let points = &along.points;
+    let series = |name: &str, number: usize, value: &dyn Fn(&TrajectoryPoint) -> f64| Series {
+        name: name.to_owned(),
+        style: SeriesStyle::Numbered(number),
+        x: points.iter().map(|point| point.time_s).collect(),
+        y: points.iter().map(value).collect(),
+        stairs: false,
+    };
+    RadiusFigure {
+        title: format!("{name}: the loop linearised along its flight"),
+        x_label: "time [s]".to_owned(),
+        radii: vec![
+            series("gains frozen", 0, &|point| point.frozen_radius),
+            series("with the derivatives of the gains", 1, &|point| point.radius),
+        ],
+        below: vec![
+            series("kp", 0, &|point| point.gains.kp),
+            series("ki [1/s]", 1, &|point| point.gains.ki),
+            series("kd [s]", 2, &|point| point.gains.kd),
+        ],
+        below_label: "gains".to_owned(),
+        width_px: WIDTH_PX,
+    }
 }

@@ -7,7 +7,7 @@ use fspid_sim::{LinearPlant, Scenario, SimError};
 
 use super::Question;
 use super::answer::Margins;
-use super::loops::rank;
+use super::loops::{judged, rank};
 use crate::metrics::Absent;
 
 /// A gain triple and its margins.
@@ -111,8 +111,8 @@ impl Mapper<'_> {
         let gains = producible(self.fspid.tuner(), input[0], input[1]);
         let memory = Memory::of_gains(gains, self.fspid.shell());
         let model = LoopModel::of(self.scenario, self.plant, self.fspid.shell(), memory)?;
-        let stability = model.open(gains, self.question.point)?.margins()?;
-        Ok(FrozenPoint { input, gains, margins: Margins::of(&stability) })
+        let (_, margins) = judged(&model.open(gains, self.question.point)?)?;
+        Ok(FrozenPoint { input, gains, margins })
     }
 }
 

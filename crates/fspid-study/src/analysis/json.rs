@@ -52,6 +52,9 @@ fn controller(found: &AnalysedLoop) -> Value {
         });
         answer.insert("plants".into(), plants.collect());
     }
+    if let Some(flights) = &found.flights {
+        answer.insert("flights".into(), flights.json());
+    }
     Value::Object(answer)
 }
 

@@ -1,13 +1,14 @@
 //! One controller with every plant that it has to hold.
 
 use fspid_core::Gains;
-use fspid_lti::{Complex, SampledLoop, Stability};
+use fspid_lti::{Complex, LtiError, SampledLoop, Stability};
 use fspid_sim::loop_model::{BreakPoint, LoopModel, Memory};
 use fspid_sim::{AircraftPlant, Controller, LinearPlant, NamedController, Scenario, SimError};
 
 use super::Question;
 use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
+use super::flights::Flights;
 use super::frozen::{FrozenMap, FrozenPoint};
 use crate::metrics::Absent;
 
@@ -39,6 +40,8 @@ pub struct AnalysedLoop {
     pub plants: Vec<PlantLoop>,
     /// Why there is none.
     pub absent: Option<Absent>,
+    /// What flights say, if they were asked for.
+    pub flights: Option<Flights>,
 }
 
 impl AnalysedLoop {
@@ -50,11 +53,13 @@ impl AnalysedLoop {
         let controller = &named.controller;
         let equilibrium = equilibrium(controller);
         let name = named.name.clone();
+        let flights = question.fly.then(|| Flights::of(scenario, controller)).transpose()?;
         let none = |reason| Self {
             name: named.name.clone(),
             equilibrium,
             plants: Vec::new(),
             absent: Some(reason),
+            flights: flights.clone(),
         };
         if question.point == BreakPoint::Rate && controller.shell().rate_gain_s == 0.0 {
             return Ok(none(Absent::NoRateLoop));
@@ -73,7 +78,7 @@ impl AnalysedLoop {
             };
             plants.push(PlantLoop { map, ..PlantLoop::of(*from_s, open)? });
         }
-        Ok(Self { name, equilibrium, plants, absent: None })
+        Ok(Self { name, equilibrium, plants, absent: None, flights })
     }
 
     /// The plant with the smallest disk margin; an unstable one before all others.
@@ -117,10 +122,25 @@ impl AnalysedLoop {
 
 impl PlantLoop {
     fn of(from_s: f64, open: SampledLoop) -> Result<Self, SimError> {
-        let stability = open.margins()?;
         let closed_poles = open.closed_poles()?;
-        let margins = Margins::of(&stability);
+        let (stability, margins) = judged(&open)?;
         Ok(Self { from_s, open, stability, closed_poles, margins, map: None })
+    }
+}
+
+/// Stability and margins of a loop. A loop of which rounding hides the answer is not called stable.
+pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, Absent>), SimError> {
+    match open.margins() {
+        Ok(stability) => {
+            let margins = Margins::of(&stability);
+            Ok((stability, margins))
+        }
+        Err(LtiError::Blurred { spectral_radius, .. }) => {
+            let poles = open.closed_poles()?;
+            let stability = Stability::Unstable { poles, spectral_radius };
+            Ok((stability, Err(Absent::Undecided { spectral_radius })))
+        }
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -128,7 +148,9 @@ impl PlantLoop {
 pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
     match margins {
         Ok(margins) => margins.disk_margin,
-        Err(Absent::Unstable { spectral_radius }) => -spectral_radius,
+        Err(Absent::Unstable { spectral_radius } | Absent::Undecided { spectral_radius }) => {
+            -spectral_radius
+        }
         Err(_) => f64::NEG_INFINITY,
     }
 }

@@ -11,6 +11,7 @@
 mod answer;
 mod equilibrium;
 pub(crate) mod figures;
+mod flights;
 mod flown;
 mod frozen;
 mod json;
@@ -25,6 +26,7 @@ use crate::file::Study;
 
 pub use answer::{Margins, decibels};
 pub use equilibrium::{Equilibrium, equilibrium};
+pub use flights::Flights;
 pub(crate) use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
@@ -40,11 +42,13 @@ pub struct Question {
     pub point: BreakPoint,
     /// Points along each input of the frozen-gain map; none for 0.
     pub map_points: usize,
+    /// Fly as well: margins by flying, limit cycles, small signals along the way.
+    pub fly: bool,
 }
 
 impl Default for Question {
     fn default() -> Self {
-        Self { point: BreakPoint::Command, map_points: 9 }
+        Self { point: BreakPoint::Command, map_points: 9, fly: false }
     }
 }
 

@@ -6,7 +6,7 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
-use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, PlantLoop};
+use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop};
 
 impl Analysis {
     /// The answer of `analyse --format text`: verdict first, then the margins with their frequencies.
@@ -56,6 +56,9 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
         if let Some(map) = &plant.map {
             push_map(out, map);
         }
+    }
+    for (label, sentence) in found.flights.iter().flat_map(Flights::lines) {
+        line(out, format_args!("  {label:17}  {sentence}"));
     }
 }
 

@@ -40,6 +40,11 @@ pub enum Absent {
     },
     /// There is no step in the command to measure against.
     NoStep,
+    /// Rounding may carry poles of the loop across the unit circle, so that nobody can tell.
+    Undecided {
+        /// Spectral radius of the sampled closed loop as computed.
+        spectral_radius: f64,
+    },
     /// The controller has no rate loop that could be broken.
     NoRateLoop,
     /// The gains move at rest, and nothing stops them.
@@ -61,6 +66,10 @@ impl fmt::Display for Absent {
                 write!(f, "not settled within {} s", short(*window_s))
             }
             Self::NoStep => f.write_str("the command has no step"),
+            Self::Undecided { spectral_radius } => write!(
+                f,
+                "undecided: rounding may carry poles across the unit circle (spectral radius {spectral_radius:.9} as computed)"
+            ),
             Self::NoRateLoop => f.write_str("the controller has no rate loop to break"),
             Self::GainsDrift => f.write_str(
                 "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits, dead_zone or leakage_per_s bound it",

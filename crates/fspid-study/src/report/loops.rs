@@ -6,7 +6,9 @@ use super::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
 };
 use super::number::{fixed, significant};
-use crate::analysis::figures::{LoopFigures, MapQuantity, gain_map, pole_zero, root_locus};
+use crate::analysis::figures::{
+    LoopFigures, MapQuantity, gain_map, pole_zero, radius_figure, root_locus,
+};
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::file::Study;
@@ -26,6 +28,7 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
     for found in &analysis.loops {
         chapters.extend(poles(found)?);
         chapters.extend(frozen(study, found));
+        chapters.extend(flights(found));
     }
     let page = AnalysisPage {
         title: format!("{}: loop analysis", analysis.scenario),
@@ -220,6 +223,28 @@ fn poles(found: &AnalysedLoop) -> Result<Option<Chapter>, SimError> {
             ),
         ],
     }))
+}
+
+/// What flights say, and the radii along the way.
+fn flights(found: &AnalysedLoop) -> Option<Chapter> {
+    let flights = found.flights.as_ref()?;
+    let id = format!("flights-{}", found.name);
+    let said = flights.lines().into_iter().map(|(label, sentence)| match label {
+        "" => sentence,
+        label => format!("{label}: {sentence}"),
+    });
+    let mut items = vec![
+        Item::Text(
+            "With every limit at work and gains that move; none of this is a proof.".to_owned(),
+        ),
+        Item::List(said.collect()),
+    ];
+    items.extend(flights.along.as_ref().map(|along| {
+        let svg = radius_figure(&found.name, along).render();
+        let caption = "Spectral radius of the loop linearised at every sample, with the gains frozen and with their derivatives. Values above 1 for a moment need not let the flight grow.";
+        picture(&format!("{id}-radius"), svg, caption)
+    }));
+    Some(Chapter { id, title: format!("Flights of {}", found.name), items })
 }
 
 fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {

@@ -1,0 +1,44 @@
+//! What flights say of a loop: how much gain, delay and lag they bear, limit cycles under limits, and the
+//! small signals along the way. None of it is a proof.
+
+mod json;
+mod text;
+
+use fspid_sim::describing::{LimitCycles, Search, limit_cycles};
+use fspid_sim::flown::empirical::{EmpiricalAnswer, EmpiricalOptions, empirical_margins};
+use fspid_sim::flown::trajectory::{TrajectoryLinearisation, linearise_along};
+use fspid_sim::{Controller, Scenario, SimError};
+
+/// Points at which a trajectory is looked at, at most.
+const POINTS: usize = 400;
+
+/// What flights say of one controller.
+#[derive(Clone, Debug)]
+pub struct Flights {
+    /// How much gain, delay and lag the scenario's flight bears.
+    pub empirical: EmpiricalAnswer,
+    /// Limit cycles that describing functions predict at the gains at rest.
+    pub limit_cycles: LimitCycles,
+    /// The loop linearised along its flight; of self-tuning controllers only.
+    pub along: Option<TrajectoryLinearisation>,
+}
+
+impl Flights {
+    /// Flies a controller.
+    ///
+    /// # Errors
+    /// [`SimError`] where the scenario cannot be flown.
+    pub(super) fn of(scenario: &Scenario, controller: &Controller) -> Result<Self, SimError> {
+        let dt_s = scenario.timing.dt_s();
+        let every = scenario.timing.rows().div_ceil(POINTS);
+        let along = match controller {
+            Controller::Fixed(_) => None,
+            Controller::SelfTuning(_) => Some(linearise_along(scenario, controller, every)?),
+        };
+        Ok(Self {
+            empirical: empirical_margins(scenario, controller, &EmpiricalOptions::default())?,
+            limit_cycles: limit_cycles(scenario, controller, &Search::sampled_every(dt_s))?,
+            along,
+        })
+    }
+}
