@@ -15,7 +15,9 @@ pub struct Certificate {
     pub divisions: usize,
     /// What is claimed.
     pub claim: Claim,
-    /// Level c of the ellipsoid $z^T P z \le c$ in which no limit acts, where one is claimed.
+    /// Level c of the ellipsoid $z^T P z \le c$, where one is claimed. In it no limit acts; of a claim about
+    /// a bounded rate, in it the law keeps to the rate as well, and limits are left out that an ellipsoid does
+    /// not cover.
     pub level: Option<f64>,
 }
 
@@ -87,6 +89,9 @@ pub struct BoundedRate {
     pub forms: [Matrix; 4],
     /// ρ, at most 1.
     pub rate: f64,
+    /// Bounds of error and change in magnitude, supervisor units, within the level of the certificate, for a
+    /// law that ties the gains to them: there it keeps to the rate.
+    pub inputs: Option<[f64; 2]>,
 }
 
 impl Claim {

@@ -23,5 +23,5 @@ pub mod solve;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
-pub use prove::{Effort, Largest, Outcome, Verdict, certify, probe};
-pub use recheck::{Doubt, Rechecked};
+pub use prove::{Effort, Largest, Outcome, Verdict, certify};
+pub use recheck::{Doubt, Kept, Rechecked};

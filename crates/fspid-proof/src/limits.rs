@@ -12,7 +12,7 @@ use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
 use fspid_sim::loop_model::LoopModel;
 
-use crate::check::{ActuatorLag, NotProved, inside_limit};
+use crate::check::{ActuatorLag, IntervalMatrix, NotProved, inside_limit};
 use crate::description::LoopDescription;
 
 /// Of the largest level that ordinary arithmetic finds, so much is claimed.
@@ -123,14 +123,24 @@ pub(crate) fn prove(
 /// How far the pitch angle may be off, everything else at rest, to lie within a level, rad.
 #[must_use]
 pub fn pitch_within(model: &LoopModel<Interval>, form: &Matrix, level: f64) -> Option<f64> {
+    pitch_within_all(model, core::iter::once(&IntervalMatrix::from(form)), level)
+}
+
+/// As [`pitch_within`] for all of some forms.
+pub(crate) fn pitch_within_all<'a>(
+    model: &LoopModel<Interval>,
+    forms: impl Iterator<Item = &'a IntervalMatrix>,
+    level: f64,
+) -> Option<f64> {
     let state = model.pitch_off(Interval::ONE);
-    let mut size = Interval::ZERO;
-    for (row, left) in state.iter().enumerate() {
-        for (column, right) in state.iter().enumerate() {
-            let entry = Interval::point(form.get(row, column)?);
-            size = size + *left * entry * *right;
-        }
-    }
-    let pitch = (Interval::point(level) / size).sqrt().lower();
+    let size = |form: &IntervalMatrix| -> Interval {
+        let rows = form.entries().enumerate();
+        rows.fold(Interval::ZERO, |sum, (place, entry)| {
+            let (row, column) = (place / state.len(), place % state.len());
+            sum + state[row] * entry * state[column]
+        })
+    };
+    let largest = forms.map(|form| size(form).upper()).fold(f64::NAN, f64::max);
+    let pitch = (Interval::point(level) / Interval::point(largest)).sqrt().lower();
     (pitch > 0.0 && pitch.is_finite()).then_some(pitch)
 }

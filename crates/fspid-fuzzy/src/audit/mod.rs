@@ -20,7 +20,7 @@ pub use rule_base::{
 pub use search::Extreme;
 pub use surface::{
     AlongInput, Counterexample, Coverage, Monotone, OutputSurface, Reach, RuleEffect, SurfaceAudit,
-    SurfaceError, SurfaceOptions, Symmetry, TermReach, surface,
+    SurfaceError, SurfaceOptions, Symmetry, TermReach, slopes, surface,
 };
 
 /// What became of a statement.

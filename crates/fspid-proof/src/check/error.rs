@@ -61,6 +61,16 @@ pub enum NotProved {
         /// Lower bound of the form.
         found: f64,
     },
+    /// A quantity that may be beyond its limit.
+    #[error("limit {row} on the ellipsoid: up to {found:e} is reached, allowed is {limit:e}")]
+    BeyondLimit {
+        /// Number of the limit, counted from 0.
+        row: usize,
+        /// Largest value that could not be excluded.
+        found: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// A number that is not allowed.
     #[error("{what} is {found:?}; allowed is {allowed}")]
     Number {

@@ -1,5 +1,6 @@
 //! Conditions on Lyapunov functions $V(z) = z^T P z$ of a sampled loop $z_{k+1} = M z_k$.
 
+use fspid_fuzzy::Scalar;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{LtiError, Matrix};
 
@@ -7,6 +8,7 @@ use super::definite::{basis, dominant, form, prove_named, symmetric};
 use super::error::{NotProved, positive};
 use super::exponential::require_bounded;
 use super::matrix::IntervalMatrix;
+use super::rounding::sum_up;
 
 /// Proves that P is positive definite.
 ///
@@ -134,6 +136,53 @@ pub fn inside_limit(p: &Matrix, level: f64, row: &[Interval], limit: f64) -> Res
     let corner = limit * limit / Interval::point(level);
     let bordered = bordered(&form(&own, &basis)?, &row.product(&basis)?, corner);
     prove_named("limit on the ellipsoid", &bordered)
+}
+
+/// As [`inside_limit`] for many rows, each with its limit, and for every symmetric P inside a matrix.
+///
+/// In the basis X in which the middle of P is about the identity, with $\lambda$ below all eigenvalues of
+/// $X^T P X$ (Gershgorin), $r P^{-1} r^T \le |r X|^2 / \lambda$.
+///
+/// # Errors
+/// As [`inside_limit`]; the first limit that could not be shown is named.
+pub fn inside_limits(
+    p: &IntervalMatrix,
+    level: f64,
+    rows: &[(Vec<Interval>, f64)],
+) -> Result<(), NotProved> {
+    let level = Interval::point(positive("level", level)?);
+    let size = p.rows();
+    p.require_shape("Lyapunov matrix", size, size)?;
+    require_bounded("Lyapunov matrix", p)?;
+    let basis = basis("Lyapunov matrix", &p.middle, size)?;
+    let own = form(p, &basis)?;
+    dominant("Lyapunov matrix", &own)?;
+    let least = Interval::point(least_eigenvalue(&own));
+    for (number, (row, limit)) in rows.iter().enumerate() {
+        if row.len() != size {
+            let (found, allowed) = ((1, row.len()), (1, size));
+            return Err(LtiError::Shape { what: "row", found, allowed }.into());
+        }
+        let turned = IntervalMatrix::from_rows(&[row])?.product(&basis)?;
+        let squares = turned.entries().fold(Interval::ZERO, |sum, entry| sum + entry * entry);
+        let found = (squares * level / least).sqrt().upper();
+        if !(found <= positive("limit", *limit)?) {
+            return Err(NotProved::BeyondLimit { row: number, found, limit: *limit });
+        }
+    }
+    Ok(())
+}
+
+/// A number that no eigenvalue of a dominant symmetric matrix is below.
+fn least_eigenvalue(matrix: &IntervalMatrix) -> f64 {
+    let size = matrix.columns.max(1);
+    let magnitudes = matrix.magnitudes();
+    let rows = magnitudes.chunks(size).enumerate().map(|(row, sizes)| {
+        let diagonal = matrix.get(row, row).unwrap_or(Interval::ENTIRE);
+        let beside = sizes.iter().enumerate().filter(|&(column, _)| column != row);
+        (diagonal - Interval::point(beside.fold(0.0, |sum, (_, &size)| sum_up(sum, size)))).lower()
+    });
+    rows.fold(f64::INFINITY, f64::min)
 }
 
 /// A symmetric matrix with a row below, the same as a column beside, and a corner.

@@ -258,7 +258,7 @@ fn samples(rule: Defuzzifier) -> u32 {
 }
 
 /// True if the error of the computed centroid is known.
-fn is_dense(rule: Defuzzifier) -> bool {
+pub(super) fn is_dense(rule: Defuzzifier) -> bool {
     let cells = match rule {
         Defuzzifier::Exact => return true,
         Defuzzifier::Endpoints(samples) | Defuzzifier::Trapezoid(samples) => {

@@ -62,6 +62,12 @@ impl One {
         self.limited(free)
     }
 
+    /// Largest magnitude of the slope $s \Delta k - \lambda x$ of the accumulating law.
+    fn rate_per_s(&self, delta: Interval) -> f64 {
+        let beyond = self.accumulated(delta) - Interval::point(self.nominal);
+        (self.factor * delta - Interval::point(self.leakage_per_s) * beyond).magnitude()
+    }
+
     /// Where the accumulating law tends to if the increments stay between bounds.
     fn settled(&self, delta: Interval) -> Interval {
         let (nominal, increment) = (Interval::point(self.nominal), self.factor * delta);
@@ -146,7 +152,10 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
         let gains = of_each(&each, hull(map), One::accumulated);
         let rest = of_each(&each, map.rest, One::settled);
         let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains };
-        return GainSet { nominal, rest, cells: vec![cell] };
+        let [kp, ki, kd] = &each;
+        let [of_kp, of_ki, of_kd] = hull(map);
+        let rates = [kp.rate_per_s(of_kp), ki.rate_per_s(of_ki), kd.rate_per_s(of_kd)];
+        return GainSet { nominal, rest, cells: vec![cell], rate_per_s: Some(rates) };
     }
     let rest = of_each(&each, map.rest, One::memoryless);
     let cells = map.cells.iter().map(|cell| GainCell {
@@ -158,7 +167,7 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
     if map.tuner.supervisor().out_of_range() == OutOfRange::Error {
         hold(&mut cells, array(nominal).map(Interval::point));
     }
-    GainSet { nominal, rest, cells }
+    GainSet { nominal, rest, cells, rate_per_s: None }
 }
 
 /// A supervisor that refuses inputs leaves the gains as they were, at the first sample the nominal

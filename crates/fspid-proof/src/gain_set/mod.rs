@@ -23,6 +23,7 @@ mod hull;
 mod increments;
 mod law;
 mod produced;
+mod slopes;
 
 use fspid_core::Gains;
 use fspid_fuzzy::scalar::Interval;
@@ -30,6 +31,7 @@ use fspid_fuzzy::scalar::Interval;
 pub use cones::Cone;
 pub use increments::{IncrementCell, IncrementMap};
 pub use produced::{grid, producible};
+pub use slopes::{IncrementSlopes, NoSlopes};
 
 /// Names of the gains in the order of all arrays here.
 const NAMES: [&str; 3] = ["kp", "ki", "kd"];
@@ -61,6 +63,9 @@ pub struct GainSet {
     pub rest: [Interval; 3],
     /// The gains cell by cell; together the cells fill the plane of the supervisor's inputs.
     pub cells: Vec<GainCell>,
+    /// Most that each gain changes by in a second, where that is bounded: not under the memoryless law,
+    /// under which gains jump as the inputs do.
+    pub rate_per_s: Option<[f64; 3]>,
 }
 
 /// The gains over a cell of the supervisor's inputs.
@@ -80,7 +85,7 @@ impl GainSet {
     pub fn fixed(gains: Gains<f64>) -> Self {
         let point = array(gains).map(Interval::point);
         let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point };
-        Self { nominal: gains, rest: point, cells: vec![cell] }
+        Self { nominal: gains, rest: point, cells: vec![cell], rate_per_s: Some([0.0; 3]) }
     }
 
     /// The part of the set over some of its cells.
@@ -165,7 +170,7 @@ mod tests {
         let cell = |&gains| GainCell { error: EVERYWHERE, change: EVERYWHERE, gains };
         let nominal = Gains { kp: 1.0, ki: 0.5, kd: 0.25 };
         let rest = array(nominal).map(Interval::point);
-        GainSet { nominal, rest, cells: boxes.iter().map(cell).collect() }
+        GainSet { nominal, rest, cells: boxes.iter().map(cell).collect(), rate_per_s: None }
     }
 
     #[test]

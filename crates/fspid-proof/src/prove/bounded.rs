@@ -1,20 +1,22 @@
 //! Forms that move with the gains, for gains of bounded rate.
 
-use fspid_core::Gains;
+use fspid_core::{Gains, Law};
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
 
-use super::Prover;
+use super::{Prover, region::Region};
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::check::Ends;
 use crate::gain_set::GainSet;
-use crate::recheck::{Rechecked, part_in};
+use crate::recheck::{Kept, Rechecked, part_in};
 use crate::solve::{self, GainFamily, MovingProblem, MovingVerdict};
 
 /// Corners of the set may lie outside of those that are begun with by this share of half its extent.
 const THINNED: f64 = 0.1;
 /// A gain whose range is a smaller share of it stands still.
 const STILL: f64 = 1e-9;
+/// A law whose rate is known is granted so much more, for rounding.
+const GRANTED: f64 = 1.0 + 1e-9;
 
 /// The box around a set, as the solver sees it.
 struct Sides {
@@ -67,13 +69,64 @@ impl Sides {
 }
 
 impl Prover<'_> {
-    /// A certificate for gains none of which changes by more than `change` half widths in a sample.
-    pub(super) fn bounded(
+    /// A certificate for gains of the largest rate that can be proved, with where the law keeps to it.
+    pub(super) fn bounded(&self, set: &GainSet, factor: f64) -> Option<(Certificate, Rechecked)> {
+        let of_law = self.changes_of_law(set);
+        let changes: Vec<[f64; 3]> = match of_law {
+            Some(changes) => vec![changes],
+            None => self.effort.changes.iter().map(|&change| [change; 3]).collect(),
+        };
+        changes.iter().find_map(|changes| self.bounded_by(set, factor, *changes))
+    }
+
+    /// What a law that remembers can change each gain by in a sample, in half widths.
+    fn changes_of_law(&self, set: &GainSet) -> Option<[f64; 3]> {
+        let rates = set.rate_per_s?;
+        let sides = Sides::of(set);
+        let dt_s = self.description.controller.shell().dt_s;
+        Some([0, 1, 2].map(|gain: usize| {
+            let (_, half) = sides.centre_and_half(gain);
+            if sides.moving.contains(&gain) { GRANTED * dt_s * rates[gain] / half } else { 0.0 }
+        }))
+    }
+
+    /// A certificate for gains that change by no more than so many half widths in a sample.
+    pub(super) fn bounded_by(
         &self,
         set: &GainSet,
         factor: f64,
-        change: f64,
+        changes: [f64; 3],
     ) -> Option<(Certificate, Rechecked)> {
+        let claim = self.moving_form(set, changes)?;
+        let found = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
+        let regional = self.regional(set, factor, (claim, found.1.kept));
+        Some(regional.unwrap_or(found))
+    }
+
+    /// The claim with a level within which the law keeps to the rate and no limit acts.
+    fn regional(
+        &self,
+        set: &GainSet,
+        factor: f64,
+        (claim, kept): (BoundedRate, Option<Kept>),
+    ) -> Option<(Certificate, Rechecked)> {
+        let covers_limits = self.covers_limits() && !self.description.limits().is_empty();
+        let region = Region::of(self, set, factor, &claim)?;
+        let memoryless = self.tuned()?.tuner().settings().law == Law::Memoryless;
+        let (level, inputs) = match kept {
+            None if memoryless => {
+                let (level, inputs) = region.keeping_to_the_rate(covers_limits)?;
+                (level, Some(inputs))
+            }
+            _ if covers_limits => (region.within_limits()?, None),
+            _ => return None,
+        };
+        let claim = BoundedRate { inputs, ..claim };
+        self.rechecked(Claim::BoundedRate(claim), factor, Some(level))
+    }
+
+    /// A form that moves with the gains, not proved.
+    fn moving_form(&self, set: &GainSet, changes: [f64; 3]) -> Option<BoundedRate> {
         let sides = Sides::of(set);
         let gains = sides.moving.len();
         let corners = (0..1_usize << gains).map(|corner| {
@@ -81,31 +134,26 @@ impl Prover<'_> {
             self.model.closed_matrix(sides.gains(&signs.collect::<Vec<f64>>())).ok()
         });
         let family = GainFamily::from_corners(&corners.collect::<Option<Vec<Matrix>>>()?)?;
-        let points: Vec<Vec<f64>> = set
-            .hull_within(THINNED)
-            .into_iter()
-            .map(|Gains { kp, ki, kd }| sides.counted([kp, ki, kd]))
-            .collect();
+        let points = set.hull_within(THINNED).into_iter();
+        let points: Vec<Vec<f64>> =
+            points.map(|Gains { kp, ki, kd }| sides.counted([kp, ki, kd])).collect();
         let cells: Vec<Ends> = set.cells.iter().map(|cell| sides.cell(cell.gains)).collect();
-        let changes = vec![change; gains];
+        let moved: Vec<f64> = sides.moving.iter().map(|&gain| changes[gain]).collect();
         let problem = MovingProblem {
             family: &family,
-            changes: &changes,
+            changes: &moved,
             rate: 1.0,
             points: &points,
             part: &|cell| part_in(&cells, cell),
         };
-        let effort = solve::Effort::default();
-        let MovingVerdict::Found(found) = solve::moving_form_over(&problem, &effort) else {
-            return None;
-        };
+        let verdict = solve::moving_form_over(&problem, &solve::Effort::default());
+        let MovingVerdict::Found(found) = verdict else { return None };
         let size = self.model.size();
         let mut forms = [0; 4].map(|_| Matrix::zeros(size, size));
         let places = core::iter::once(0).chain(sides.moving.iter().map(|gain| gain + 1));
         for (place, form) in places.zip(found.forms) {
             forms[place] = form;
         }
-        let claim = BoundedRate { ends: sides.ends, changes: [change; 3], forms, rate: 1.0 };
-        self.rechecked(Claim::BoundedRate(claim), factor, None)
+        Some(BoundedRate { ends: sides.ends, changes, forms, rate: 1.0, inputs: None })
     }
 }

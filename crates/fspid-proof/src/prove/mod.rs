@@ -2,6 +2,7 @@
 
 mod bounded;
 mod largest;
+mod region;
 mod stable;
 mod unstable;
 
@@ -22,7 +23,7 @@ use crate::recheck::{Recheck, Rechecked};
 pub struct Effort {
     /// Cells along each of the supervisor's inputs.
     pub divisions: usize,
-    /// Double cones that the plane of the supervisor's inputs is divided into.
+    /// Double cones that the plane of the supervisor's inputs is divided into; 0 for no proof with cones.
     pub cones: usize,
     /// Halvings of the interval of the largest output scale.
     pub halvings: u32,
@@ -30,11 +31,21 @@ pub struct Effort {
     pub largest_factor: f64,
     /// Points along each input at which frozen gains are looked at.
     pub frozen_points: usize,
+    /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
+    /// gains of bounded rate is tried with.
+    pub changes: [f64; 6],
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { divisions: 24, cones: 8, halvings: 6, largest_factor: 64.0, frozen_points: 33 }
+        Self {
+            divisions: 24,
+            cones: 8,
+            halvings: 6,
+            largest_factor: 64.0,
+            frozen_points: 33,
+            changes: [0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
+        }
     }
 }
 
@@ -88,23 +99,6 @@ pub fn certify(description: &LoopDescription, effort: &Effort) -> Result<Outcome
     Ok(Outcome { verdict, bounds: set.bounds(), largest, pitch_within_rad, limits_left_out })
 }
 
-/// Probe.
-pub fn probe(description: &LoopDescription, effort: &Effort, factor: f64, change: f64) -> String {
-    let prover = Prover::new(description, effort).unwrap();
-    let set = prover.set(factor);
-    let out = if change >= 10.0 {
-        prover.any_speed(&set, factor, false)
-    } else if change > 5.0 {
-        prover.tied(&set, factor, false)
-    } else {
-        prover.bounded(&set, factor, change)
-    };
-    match out {
-        Some((_, rechecked)) => format!("{rechecked:?}"),
-        None => "none".into(),
-    }
-}
-
 struct Prover<'a> {
     description: &'a LoopDescription,
     effort: &'a Effort,
@@ -146,6 +140,9 @@ impl<'a> Prover<'a> {
             return found;
         }
         if let Some((certificate, rechecked)) = self.proved(set, 1.0, true) {
+            return Verdict::Proved(certificate, rechecked);
+        }
+        if let Some((certificate, rechecked)) = self.bounded(set, 1.0) {
             return Verdict::Proved(certificate, rechecked);
         }
         self.sequence_growth().unwrap_or(Verdict::Open)

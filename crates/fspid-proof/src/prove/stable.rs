@@ -1,6 +1,6 @@
 //! Forms that fall however fast the gains move, and forms that fall as the error ties the gains.
 
-use fspid_core::Law;
+use fspid_core::{Fspid, Law};
 use fspid_lti::Matrix;
 
 use super::Prover;
@@ -40,7 +40,8 @@ impl Prover<'_> {
         factor: f64,
         best_rate: bool,
     ) -> Option<(Certificate, Rechecked)> {
-        let fspid = self.tuned().filter(|fspid| fspid.tuner().settings().law == Law::Memoryless)?;
+        let memoryless = |fspid: &&Fspid<f64>| fspid.tuner().settings().law == Law::Memoryless;
+        let fspid = self.tuned().filter(memoryless).filter(|_| self.effort.cones > 0)?;
         let cones = set.cones(self.effort.cones);
         let forms = cones.iter().map(|cone| cone_form(&self.enclosed, fspid, cone));
         let forms: Vec<Matrix> = forms.map(|form| form.midpoint()).collect();

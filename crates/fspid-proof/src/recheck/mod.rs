@@ -5,6 +5,7 @@ mod moving;
 use core::fmt;
 
 use fspid_core::{Change, Fspid, Gains, Law};
+use fspid_fuzzy::Scalar;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
 use fspid_sim::Controller;
@@ -16,7 +17,7 @@ use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, IncrementMap, producible};
 use crate::limits;
 
-pub(crate) use moving::part_in;
+pub(crate) use moving::{Corner, moved_inputs, part_in};
 
 /// Longest sequence of gains that is multiplied out.
 const MOST_SAMPLES: usize = 20_000;
@@ -30,6 +31,29 @@ pub struct Rechecked {
     pub inequalities: usize,
     /// Bounds of each gain.
     pub bounds: [Interval; 3],
+    /// Where the law was proved to keep to the rate that is claimed; none where it was not, and for claims
+    /// that are not about a rate.
+    pub kept: Option<Kept>,
+    /// Where a level is claimed: how far the pitch angle may be off, everything else at rest, to lie within,
+    /// rad.
+    pub pitch_within_rad: Option<f64>,
+}
+
+/// Where a law keeps its gains to a rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// In every flight.
+    Everywhere,
+    /// In flights that begin within the level of the certificate, and so never leave it.
+    WithinLevel,
+}
+
+/// What the proof of a claim came to.
+#[derive(Clone, Debug, Default)]
+struct Proved {
+    inequalities: usize,
+    kept: Option<Kept>,
+    pitch_within_rad: Option<f64>,
 }
 
 /// Why a certificate is not believed.
@@ -128,18 +152,39 @@ impl<'a> Recheck<'a> {
     }
 
     pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
-        let inequalities = match &self.certificate.claim {
-            Claim::AnySpeed { form, rate } => self.any_speed(form, *rate)?,
-            Claim::Tied { form, rate, multipliers } => self.tied(form, *rate, multipliers)?,
-            Claim::BoundedRate(claim) => self.bounded_rate(claim)?,
+        let Proved { inequalities, kept, pitch_within_rad } = self.proved()?;
+        let bounds = self.set.bounds();
+        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds, kept, pitch_within_rad })
+    }
+
+    fn proved(&self) -> Result<Proved, Doubt> {
+        let only = |inequalities| Proved { inequalities, ..Proved::default() };
+        match &self.certificate.claim {
+            Claim::AnySpeed { form, rate } => {
+                self.any_speed(form, *rate).map(|proved| self.with_pitch(proved, form))
+            }
+            Claim::Tied { form, rate, multipliers } => {
+                self.tied(form, *rate, multipliers).map(|proved| self.with_pitch(proved, form))
+            }
+            Claim::BoundedRate(claim) => self.bounded_rate(claim),
             Claim::FrozenGrowth { input, factor, form, direction } => {
-                self.growth(&[*input], *factor, (form, direction))?
+                self.growth(&[*input], *factor, (form, direction)).map(only)
             }
             Claim::SequenceGrowth { inputs, factor, form, direction } => {
-                self.growth(inputs, *factor, (form, direction))?
+                self.growth(inputs, *factor, (form, direction)).map(only)
             }
-        };
-        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds: self.set.bounds() })
+        }
+    }
+
+    fn with_pitch(&self, inequalities: usize, form: &Matrix) -> Proved {
+        let level = self.certificate.level;
+        let within = |level| limits::pitch_within(&self.model, form, level);
+        Proved { inequalities, kept: None, pitch_within_rad: level.and_then(within) }
+    }
+
+    /// Whether the limits are such that an ellipsoid can keep clear of them.
+    fn covers_limits(&self) -> bool {
+        limits::not_covered(&self.certificate.description).is_none()
     }
 
     /// The closed loop at gains.
@@ -150,6 +195,9 @@ impl<'a> Recheck<'a> {
 
     fn form(&self, form: &Matrix, rate: f64) -> Result<(), Doubt> {
         allowed_rate(rate)?;
+        if self.certificate.level.is_some() && !self.covers_limits() {
+            return Err(malformed("a level is claimed where limits are not covered"));
+        }
         if (form.rows(), form.columns()) != (self.model.size(), self.model.size()) {
             return Err(malformed("the form has another size than the loop's state"));
         }
@@ -237,6 +285,20 @@ fn points(gains: Gains<f64>) -> Gains<Interval> {
     Gains { kp: Interval::point(kp), ki: Interval::point(ki), kd: Interval::point(kd) }
 }
 
+/// Rows from the state to what the supervisor sees of error and change, but for the sign that both share.
+pub(crate) fn input_rows<T: Scalar>(model: &LoopModel<T>, fspid: &Fspid<f64>) -> [Vec<T>; 2] {
+    let settings = fspid.tuner().settings();
+    let time_s = match settings.change {
+        Change::Rate => T::constant(model.settings().shell.dt_s),
+        Change::Delta => T::one(),
+    };
+    let by_error = T::constant(settings.input_scale.error_per_rad);
+    let by_change = T::constant(settings.input_scale.change_per_rad) / time_s;
+    let [error, change] = model.error_rows();
+    let scaled = |row: Vec<T>, factor: T| row.into_iter().map(|entry| factor * entry).collect();
+    [scaled(error, by_error), scaled(change, by_change)]
+}
+
 /// The quadratic form that is not negative where the supervisor's inputs lie in a double cone:
 ///
 /// $$ z^T Q z = (n_1 \cdot x)(n_2 \cdot x), \qquad x = (s_e e, s_c \Delta e) $$
@@ -245,21 +307,12 @@ pub(crate) fn cone_form(
     fspid: &Fspid<f64>,
     cone: &Cone,
 ) -> IntervalMatrix {
-    let settings = fspid.tuner().settings();
     let point = Interval::point;
-    let time_s = match settings.change {
-        Change::Rate => point(model.settings().shell.dt_s),
-        Change::Delta => Interval::ONE,
-    };
-    let by_error = point(settings.input_scale.error_per_rad);
-    let by_change = point(settings.input_scale.change_per_rad) / time_s;
-    let [error, change] = model.error_rows();
+    let [error, change] = input_rows(model, fspid);
     // The sign of both inputs together does not matter to a double cone.
     let side = |normal: [f64; 2]| -> Vec<Interval> {
         let inputs = error.iter().zip(&change);
-        inputs
-            .map(|(e, c)| point(normal[0]) * by_error * *e + point(normal[1]) * by_change * *c)
-            .collect()
+        inputs.map(|(e, c)| point(normal[0]) * *e + point(normal[1]) * *c).collect()
     };
     let [first, second] = cone.normals.map(side);
     let half = point(0.5);

@@ -1,13 +1,23 @@
 //! The re-check of a form that moves with the gains.
 
+use core::cmp::Ordering;
+
 use fspid_core::Gains;
+use fspid_fuzzy::Scalar;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_sim::Controller;
 
-use super::{Doubt, Recheck, allowed_rate, malformed};
+use super::{Doubt, Kept, Proved, Recheck, allowed_rate, input_rows, malformed};
 use crate::certificate::BoundedRate;
-use crate::check::{Ends, IntervalMatrix, Moving, NotProved, NotProvedAt, falls_while_moving};
-use crate::gain_set::GainSet;
+use crate::check::{
+    Ends, IntervalMatrix, Moving, MovingProof, NotProved, NotProvedAt, falls_while_moving, inside_limits,
+};
+use crate::gain_set::{GainSet, IncrementSlopes};
+use crate::limits;
+
+/// Rounding of the tuner's last sums and products, as a share of the gain.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// The box of gains of a claim, in half widths of which gains are counted there.
 #[derive(Clone, Debug)]
@@ -95,9 +105,91 @@ impl GainBox {
 
 type Closed<'a> = dyn Fn([Interval; 3]) -> Result<IntervalMatrix, Doubt> + 'a;
 
+/// A moving form that was proved to fall.
+pub(crate) struct Fall {
+    gain_box: GainBox,
+    proof: MovingProof,
+}
+
+/// The form at gains that are a corner of a cell.
+pub(crate) struct Corner {
+    pub(crate) gains: Gains<Interval>,
+    pub(crate) form: IntervalMatrix,
+}
+
+impl Corner {
+    pub(crate) fn gains_middle(&self) -> Gains<f64> {
+        middles(self.gains)
+    }
+}
+
+impl Fall {
+    /// The corners of all cells: what is affine in the gains and holds there holds for the whole set.
+    pub(crate) fn corners(&self, claim: &BoundedRate) -> Result<Vec<Corner>, Doubt> {
+        let moving = &self.gain_box.moving;
+        let mut places: Vec<Vec<f64>> = Vec::new();
+        for cell in &self.proof.cells {
+            places.extend((0..1_usize << moving.len()).map(|corner| {
+                let sides = cell.iter().enumerate();
+                sides.map(|(gain, side)| side[corner >> gain & 1]).collect()
+            }));
+        }
+        places.sort_by(|one, other| {
+            let pairs = one.iter().zip(other).map(|(one, other)| one.total_cmp(other));
+            pairs.fold(Ordering::Equal, Ordering::then)
+        });
+        places.dedup();
+        places.iter().map(|place| self.corner(claim, place)).collect()
+    }
+
+    fn corner(&self, claim: &BoundedRate, place: &[f64]) -> Result<Corner, Doubt> {
+        let mut form = IntervalMatrix::from(&claim.forms[0]);
+        for (&gain, &count) in self.gain_box.moving.iter().zip(place) {
+            let by_gain = IntervalMatrix::from(&claim.forms[gain + 1]);
+            let moved = form.sum(&by_gain.scaled(Interval::point(count)));
+            form = moved.map_err(NotProved::from)?;
+        }
+        let sides: Vec<[f64; 2]> = place.iter().map(|&count| [count, count]).collect();
+        let [kp, ki, kd] = self.gain_box.gains(&sides);
+        Ok(Corner { gains: Gains { kp, ki, kd }, form })
+    }
+
+    /// Numbers of the gains whose rate counts, each with the most that it may change by in a sample.
+    pub(crate) fn allowed(&self, claim: &BoundedRate) -> Vec<(usize, Interval)> {
+        let moving = self.gain_box.moving.iter().copied();
+        let bounded = moving.filter(|&gain| claim.changes[gain] < 1.0);
+        let allowed = |gain: usize| {
+            Interval::point(claim.changes[gain]) * self.gain_box.half_width(gain)
+                - Interval::point(ROUNDING * self.gain_box.ends[gain].magnitude())
+        };
+        bounded.map(|gain| (gain, allowed(gain))).collect()
+    }
+}
+
 impl Recheck<'_> {
+    /// Proves a claim with all that comes with it.
+    pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<Proved, Doubt> {
+        let fall = self.moving_fall(claim)?;
+        let mut proved = Proved { inequalities: fall.proof.inequalities, ..Proved::default() };
+        if self.keeps_everywhere(claim, &fall) {
+            proved.kept = Some(Kept::Everywhere);
+        }
+        let Some(level) = self.certificate.level else { return Ok(proved) };
+        let corners = fall.corners(claim)?;
+        if proved.kept.is_none() {
+            proved.inequalities += self.keeps_within(claim, &fall, &corners, level)?;
+            proved.kept = Some(Kept::WithinLevel);
+        }
+        if self.covers_limits() {
+            proved.inequalities += self.limits_at(&corners, level)?;
+        }
+        let forms = corners.iter().map(|corner| &corner.form);
+        proved.pitch_within_rad = limits::pitch_within_all(&self.model, forms, level);
+        Ok(proved)
+    }
+
     /// Proves the fall for every gain of the set and every motion that is as slow as claimed.
-    pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<usize, Doubt> {
+    pub(crate) fn moving_fall(&self, claim: &BoundedRate) -> Result<Fall, Doubt> {
         allowed_rate(claim.rate)?;
         let size = self.model.size();
         if claim.forms.iter().any(|form| (form.rows(), form.columns()) != (size, size)) {
@@ -106,17 +198,114 @@ impl Recheck<'_> {
         let gain_box = GainBox::of(claim, &self.set)?;
         let closed = |[kp, ki, kd]: [Interval; 3]| self.closed(Gains { kp, ki, kd });
         let loops = gain_box.loops(&closed)?;
-        let forms: Vec<Matrix> = core::iter::once(0)
-            .chain(gain_box.moving.iter().map(|gain| gain + 1))
-            .map(|part| claim.forms[part].clone())
-            .collect();
+        let parts = core::iter::once(0).chain(gain_box.moving.iter().map(|gain| gain + 1));
+        let forms: Vec<Matrix> = parts.map(|part| claim.forms[part].clone()).collect();
         let changes: Vec<f64> = gain_box.moving.iter().map(|&gain| claim.changes[gain]).collect();
         let moving = Moving { loops: &loops, forms: &forms, changes: &changes, rate: claim.rate };
         let cells = gain_box.counted(&self.set);
         let proof = falls_while_moving(&moving, |cell| part_in(&cells, cell))
             .map_err(|failed| doubt(&gain_box, failed))?;
-        Ok(proof.inequalities)
+        Ok(Fall { gain_box, proof })
     }
+
+    /// Whether the law itself keeps the gains to the rate, whatever the flight.
+    fn keeps_everywhere(&self, claim: &BoundedRate, fall: &Fall) -> bool {
+        let allowed = fall.allowed(claim);
+        let dt_s = Interval::point(self.model.settings().shell.dt_s);
+        let Some(rates) = self.set.rate_per_s else { return allowed.is_empty() };
+        let keeps = |&(gain, most): &(usize, Interval)| {
+            (dt_s * Interval::point(rates[gain])).upper() <= most.lower()
+        };
+        allowed.iter().all(keeps)
+    }
+
+    /// Proves that gains tied to error and change keep to the rate as long as $z^T P(\kappa) z$ is within
+    /// a level, which as it falls is for ever.
+    ///
+    /// With the rows $r_x$ of the supervisor's inputs, they move by $r_x (M(\kappa) - I) z$ in a sample, and
+    /// each gain by no more than its slopes times that.
+    fn keeps_within(
+        &self,
+        claim: &BoundedRate,
+        fall: &Fall,
+        corners: &[Corner],
+        level: f64,
+    ) -> Result<usize, Doubt> {
+        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
+            return Err(malformed("fixed gains have no rate"));
+        };
+        let Some(inputs) = claim.inputs else {
+            return Err(malformed("a level without bounds of error and change"));
+        };
+        let known = IncrementSlopes::of(fspid.tuner(), inputs)
+            .map_err(|_| malformed("nothing is known of how fast the law moves the gains"))?;
+        let factor = Interval::point(self.certificate.output_factor);
+        let scales = fspid.tuner().settings().output_scale;
+        let scales = [scales.kp, scales.ki, scales.kd].map(|s| factor * Interval::point(s.abs()));
+        let allowed: Vec<(usize, f64)> = fall
+            .allowed(claim)
+            .into_iter()
+            .filter(|(gain, _)| scales[*gain].upper() > 0.0)
+            .map(|(gain, most)| (gain, (most / scales[gain] - Interval::point(known.off)).lower()))
+            .collect();
+        let rows_of_inputs = input_rows(&self.model, fspid);
+        for corner in corners {
+            let moved = moved_inputs(&rows_of_inputs, &self.model.closed(corner.gains));
+            let mut rows: Vec<(Vec<Interval>, f64)> =
+                rows_of_inputs.iter().cloned().zip(inputs).collect();
+            for &(gain, most) in &allowed {
+                rows.extend(steepest(known.slopes[gain], &moved).map(|row| (row, most)));
+            }
+            rows.retain(|(row, _)| row.iter().any(|entry| entry.magnitude() > 0.0));
+            let gains = Some(middles(corner.gains));
+            inside_limits(&corner.form, level, &rows)
+                .map_err(|reason| Doubt::Inequality { gains, reason })?;
+        }
+        Ok(corners.len() * (2 + 4 * allowed.len()))
+    }
+
+    /// Proves that no limit acts within a level.
+    fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, Doubt> {
+        let mut proved = 0;
+        for corner in corners {
+            let rows = limits::rows(&self.certificate.description, &self.model, corner.gains);
+            proved += rows.len();
+            let gains = Some(middles(corner.gains));
+            inside_limits(&corner.form, level, &rows)
+                .map_err(|reason| Doubt::Inequality { gains, reason })?;
+        }
+        Ok(proved)
+    }
+}
+
+/// What a sample adds to the supervisor's inputs, by state: $r_x (M - I)$.
+pub(crate) fn moved_inputs<T: Scalar>(inputs: &[Vec<T>; 2], closed: &[Vec<T>]) -> [Vec<T>; 2] {
+    inputs.each_ref().map(|row| {
+        let mut moved: Vec<T> = row.iter().map(|entry| -*entry).collect();
+        for (factor, line) in row.iter().zip(closed) {
+            for (sum, entry) in moved.iter_mut().zip(line) {
+                *sum = *sum + *factor * *entry;
+            }
+        }
+        moved
+    })
+}
+
+/// Rows of which one is the steepest that a gain can have over the way of the inputs: with the ends of both
+/// slopes.
+fn steepest(slopes: [Interval; 2], moved: &[Vec<Interval>; 2]) -> [Vec<Interval>; 4] {
+    let [by_error, by_change] = slopes.map(|slope| [slope.lower(), slope.upper()]);
+    let [error, change] = moved;
+    [0, 1, 2, 3].map(|end: usize| {
+        let (one, other) =
+            (Interval::point(by_error[end & 1]), Interval::point(by_change[end >> 1]));
+        error.iter().zip(change).map(|(e, c)| one * *e + other * *c).collect()
+    })
+}
+
+fn middles(gains: Gains<Interval>) -> Gains<f64> {
+    let Gains { kp, ki, kd } = gains;
+    Gains { kp: kp.midpoint(), ki: ki.midpoint(), kd: kd.midpoint() }
 }
 
 /// The smallest cell that holds all that some cells have in common with one.

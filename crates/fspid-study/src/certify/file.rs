@@ -64,6 +64,8 @@ enum ClaimFile {
         ends: [[f64; 2]; 3],
         changes: [f64; 3],
         forms: [Rows; 4],
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inputs: Option<[f64; 2]>,
     },
     UnstableWithFrozenGains {
         input: [f64; 2],
@@ -143,12 +145,13 @@ fn claim_file(claim: &Claim) -> ClaimFile {
             form: rows(form),
             multipliers: multipliers.clone(),
         },
-        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate }) => {
+        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs }) => {
             ClaimFile::StableAtBoundedRate {
                 rate: *rate,
                 ends: *ends,
                 changes: *changes,
                 forms: forms.each_ref().map(rows),
+                inputs: *inputs,
             }
         }
         Claim::FrozenGrowth { input, factor, form, direction } => {
@@ -177,10 +180,10 @@ impl ClaimFile {
             Self::StableAsTiedToTheError { rate, form, multipliers } => {
                 Claim::Tied { form: matrix(&form)?, rate, multipliers }
             }
-            Self::StableAtBoundedRate { rate, ends, changes, forms } => {
+            Self::StableAtBoundedRate { rate, ends, changes, forms, inputs } => {
                 let [constant, kp, ki, kd] = &forms;
                 let forms = [matrix(constant)?, matrix(kp)?, matrix(ki)?, matrix(kd)?];
-                Claim::BoundedRate(BoundedRate { ends, changes, forms, rate })
+                Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs })
             }
             Self::UnstableWithFrozenGains { input, factor, form, direction } => {
                 Claim::FrozenGrowth { input, factor, form: matrix(&form)?, direction }

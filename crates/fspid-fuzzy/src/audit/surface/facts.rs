@@ -51,6 +51,19 @@ pub(super) fn of_output(
     }
 }
 
+/// The smallest and the largest slope of an output along an input.
+pub(super) fn slopes(
+    field: &mut Field<'_>,
+    output: usize,
+    input: usize,
+    domain: &[Interval],
+    options: &SurfaceOptions,
+) -> [Extreme; 2] {
+    let effort = Effort { tolerance: options.slope_tolerance, boxes: options.boxes };
+    let mut slope = SlopeAlong { field, output, input };
+    [minimum(&mut slope, domain, effort), maximum(&mut slope, domain, effort)]
+}
+
 impl Question<'_, '_> {
     fn value_effort(&self) -> Effort {
         Effort { tolerance: self.options.value_tolerance, boxes: self.options.boxes }

@@ -153,6 +153,26 @@ pub fn surface(system: &System, options: &SurfaceOptions) -> Result<SurfaceAudit
     })
 }
 
+/// The smallest and the largest slope of each output along each input, and nothing else of what
+/// [`surface`] says; with its exception of narrow strips.
+///
+/// # Errors
+/// As [`surface`].
+pub fn slopes(
+    system: &System,
+    options: &SurfaceOptions,
+) -> Result<Vec<Vec<[Extreme; 2]>>, SurfaceError> {
+    let domain = options.domain(system)?;
+    let mut field = Field::new(system);
+    let outputs = 0..system.parts.outputs.len();
+    Ok(outputs
+        .map(|output| {
+            let inputs = 0..domain.len();
+            inputs.map(|input| facts::slopes(&mut field, output, input, &domain, options)).collect()
+        })
+        .collect())
+}
+
 /// Lower and upper bound.
 fn ends(interval: Interval) -> [f64; 2] {
     [interval.lower(), interval.upper()]
