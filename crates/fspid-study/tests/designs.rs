@@ -46,7 +46,8 @@ fn every_certificate_holds_and_is_about_the_loop_beside_it() {
         let whole = checked.certificate.output_factor.to_bits() == 1.0_f64.to_bits();
         assert!(whole, "{path:?}: of the output scale as it is");
         let scenario = &study.scenario;
-        let named = scenario.controllers.iter().find(|named| named.name == checked.origin.controller);
+        let named =
+            scenario.controllers.iter().find(|named| named.name == checked.origin.controller);
         let plant = scenario.plant.linear().expect("a linear plant");
         let controller = &named.expect("the controller of the certificate").controller;
         let described = LoopDescription::of(scenario, plant, controller).expect("provable");

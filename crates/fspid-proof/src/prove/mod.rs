@@ -33,7 +33,7 @@ pub struct Effort {
     pub frozen_points: usize,
     /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
     /// gains of bounded rate is tried with.
-    pub changes: [f64; 6],
+    pub changes: &'static [f64],
 }
 
 impl Default for Effort {
@@ -44,7 +44,7 @@ impl Default for Effort {
             halvings: 6,
             largest_factor: 64.0,
             frozen_points: 33,
-            changes: [0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
+            changes: &[0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
         }
     }
 }

@@ -69,7 +69,10 @@ impl<'a> Region<'a> {
                     product(&form, by_error, by_change)?,
                     product(&form, by_change, by_change)?,
                 ],
-                within_limits: within.collect::<Option<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min),
+                within_limits: within
+                    .collect::<Option<Vec<f64>>>()?
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min),
             })
         };
         let reaches = corners.iter().map(reach).collect::<Option<Vec<Reach>>>()?;
@@ -77,8 +80,7 @@ impl<'a> Region<'a> {
         let scales = [scale.kp, scale.ki, scale.kd].map(|scale| (factor * scale).abs());
         let allowed = fall.allowed(claim).into_iter();
         let allowed = allowed.filter(|(gain, _)| scales[*gain] > 0.0);
-        let allowed =
-            allowed.map(|(gain, most)| (gain, scales[gain], most.lower())).collect();
+        let allowed = allowed.map(|(gain, most)| (gain, scales[gain], most.lower())).collect();
         Some(Self { tuner: fspid.tuner(), reaches, allowed })
     }
 

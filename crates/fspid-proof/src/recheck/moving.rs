@@ -11,7 +11,8 @@ use fspid_sim::Controller;
 use super::{Doubt, Kept, Proved, Recheck, allowed_rate, input_rows, malformed};
 use crate::certificate::BoundedRate;
 use crate::check::{
-    Ends, IntervalMatrix, Moving, MovingProof, NotProved, NotProvedAt, falls_while_moving, inside_limits,
+    Ends, IntervalMatrix, Moving, MovingProof, NotProved, NotProvedAt, falls_while_moving,
+    inside_limits,
 };
 use crate::gain_set::{GainSet, IncrementSlopes};
 use crate::limits;

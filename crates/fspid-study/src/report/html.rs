@@ -45,6 +45,7 @@ const TEMPLATES: &[(&str, &str)] = templates![
     "claims",
     "document",
     "identification",
+    "stability",
     "variants",
     "provenance",
 ];

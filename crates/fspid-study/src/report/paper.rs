@@ -33,7 +33,7 @@ pub(super) fn report(paper: &Paper<'_>) -> String {
 /// Figures, traces and scenarios, each as a file.
 pub(super) fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
     let Paper { library, reproduction } = paper;
-    let mut files: Vec<(String, String)> = section::ALL
+    let mut files: Vec<(String, String)> = section::DRAWING
         .iter()
         .flat_map(|of| of(paper).figures)
         .map(|figure| (format!("figures/{}.svg", figure.name), figure.svg))

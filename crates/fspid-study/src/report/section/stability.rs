@@ -1,0 +1,116 @@
+//! Whether the identified loops are stable at rest, with gains that stand elsewhere, and while they move.
+
+use fspid_proof::{Claim, Effort, Verdict};
+
+use crate::analysis::{AnalysedLoop, Analysis, Margins, Question, flown_inputs};
+use crate::certify::{Certification, Certified};
+use crate::file::Study;
+use crate::report::html::context;
+use crate::report::number::fixed;
+use crate::report::page::{Cell, Section, Table};
+use crate::report::paper::Paper;
+use crate::reproduce::{FIGURES, Fit};
+
+/// Verdicts alone: the report does not ask for the largest output scale, nor for proofs that take long.
+fn effort() -> Effort {
+    Effort { halvings: 0, largest_factor: 1.0, cones: 0, changes: &[], ..Effort::default() }
+}
+
+/// Margins and verdicts of every figure.
+pub(super) fn section(paper: &Paper<'_>) -> Section {
+    let head = [
+        "loop",
+        "gain margin at rest [dB]",
+        "phase margin at rest [deg]",
+        "verdict while gains move",
+        "why",
+        "inputs of the flight [supervisor units]",
+    ];
+    let table = |caption: &str, fit: Fit| {
+        let mut table = Table::new(caption, &head).in_cards();
+        for figure in FIGURES {
+            let study = paper.library.figure(fit, figure.id).ok();
+            for row in study.iter().flat_map(|study| rows(figure.id, study)) {
+                table.push(row);
+            }
+        }
+        table
+    };
+    let context = context! {
+        own => table("Loops with parameters of their own for each figure.", Fit::Own),
+        shared => table("Loops with one set of scale factors for all figures of a range.", Fit::Shared),
+    };
+    Section::of("stability", "Stability while the gains move", "stability", context)
+}
+
+fn rows(figure: &str, study: &Study) -> Vec<Vec<Cell>> {
+    let question = Question { map_points: 0, ..Question::default() };
+    let analysis = Analysis::of(study, question);
+    let certification = Certification::of(study, None, &effort());
+    let (Ok(analysis), Ok(certification)) = (analysis, certification) else {
+        return Vec::new();
+    };
+    let found = analysis.loops.iter().zip(&certification.results);
+    found.map(|(analysed, certified)| row(figure, study, (analysed, certified))).collect()
+}
+
+fn row(
+    figure: &str,
+    study: &Study,
+    (analysed, certified): (&AnalysedLoop, &Certified),
+) -> Vec<Cell> {
+    let margin = |of: &dyn Fn(&Margins) -> f64, decimals| match analysed.margins() {
+        Ok(margins) if of(&margins).is_finite() => Cell::number(fixed(of(&margins), decimals)),
+        Ok(_) => Cell { class: "absent", ..Cell::text("without end") },
+        Err(reason) => Cell { class: "absent", ..Cell::text(reason.to_string()) },
+    };
+    let (class, verdict, why) = verdict(certified);
+    vec![
+        Cell::text(format!("Fig. {figure}, {}", analysed.name)),
+        margin(&Margins::smaller_gain_margin_db, 1),
+        margin(&|margins| margins.phase_margin_deg, 1),
+        Cell { class, ..Cell::text(verdict) },
+        Cell::text(why),
+        Cell::text(flown(study, &analysed.name)),
+    ]
+}
+
+fn verdict(certified: &Certified) -> (&'static str, &'static str, String) {
+    let outcome = match &certified.outcome {
+        Err(reason) => return ("absent", "not provable", reason.to_string()),
+        Ok(outcome) => outcome,
+    };
+    match &outcome.verdict {
+        Verdict::Proved(..) => ("met", "\u{2713} proved", "for every gain it can have".to_owned()),
+        Verdict::Refuted(certificate, _) => ("unmet", "\u{2717} refuted", why(&certificate.claim)),
+        Verdict::Open => ("absent", "? open", "neither proved nor refuted".to_owned()),
+    }
+}
+
+fn why(claim: &Claim) -> String {
+    match claim {
+        Claim::FrozenGrowth { input: [error, change], .. } => format!(
+            "the gains that the rules give at error {}, change {} do not hold the aircraft if they stay",
+            fixed(*error, 2),
+            fixed(*change, 2)
+        ),
+        _ => "a sequence of gains that the rules give lets the loop grow".to_owned(),
+    }
+}
+
+/// Between which inputs of its supervisor a loop flies.
+fn flown(study: &Study, name: &str) -> String {
+    let inputs = flown_inputs(study, name);
+    if inputs.is_empty() {
+        return "fixed gains".to_owned();
+    }
+    let range = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (least, most) = inputs
+            .iter()
+            .map(of)
+            .fold(ends, |(least, most), value| (least.min(value), most.max(value)));
+        format!("{} to {}", fixed(least, 1), fixed(most, 1))
+    };
+    format!("error {}, change {}", range(&|input| input.0), range(&|input| input.1))
+}
