@@ -8,9 +8,10 @@ use super::answer::{Margins, decibels};
 use super::frozen::{FrozenMap, FrozenPoint};
 use super::{AnalysedLoop, Analysis, PlantLoop};
 use crate::figure::{
-    BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, LocusSample, LoopCurve, LoopPoint,
-    MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure, PeakMark,
-    PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle, Transfer,
+    BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, GainSurface, LocusSample, LoopCurve,
+    LoopPoint, MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure,
+    PeakMark, PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle,
+    Transfer,
 };
 
 /// Points of a frequency response, over so many decades below the Nyquist frequency.
@@ -258,6 +259,19 @@ pub(crate) fn gain_map(
         }),
         equilibrium: Some(MapPoint { at: (0.0, 0.0), name: "at rest".to_owned() }),
         flown,
+    }
+}
+
+/// The surface of the proportional gain over the supervisor's inputs, coloured by a margin.
+pub(crate) fn gain_surface(name: &str, map: &FrozenMap, quantity: MapQuantity) -> GainSurface {
+    let rows = (0..map.side).map(|change| {
+        let column = (0..map.side).filter_map(|error| map.points.get(error * map.side + change));
+        column.map(|point| point.gains.kp).collect()
+    });
+    GainSurface {
+        map: gain_map(name, map, quantity, Vec::new()),
+        gain_label: "kp".to_owned(),
+        gains: rows.collect(),
     }
 }
 

@@ -7,7 +7,7 @@ use super::analysis::{
 };
 use super::number::{fixed, significant};
 use crate::analysis::figures::{
-    LoopFigures, MapQuantity, gain_map, pole_zero, radius_figure, root_locus,
+    LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
@@ -258,9 +258,16 @@ fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
         let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
         picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)
     };
+    let svg = gain_surface(&found.name, map, MapQuantity::Phase).render();
+    let caption = "The proportional gain that the supervisor produces over its inputs, coloured by the phase margin of the loop with the gains there.";
+    let surface = picture(&format!("{id}-surface"), svg, caption);
     Some(Chapter {
         id: id.clone(),
         title: format!("Frozen gains of {}", found.name),
-        items: vec![of(MapQuantity::Gain, "gain margin"), of(MapQuantity::Phase, "phase margin")],
+        items: vec![
+            of(MapQuantity::Gain, "gain margin"),
+            of(MapQuantity::Phase, "phase margin"),
+            surface,
+        ],
     })
 }
