@@ -7,7 +7,7 @@ use crate::error::SimError;
 use crate::propagator::{LinearStep, PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
-const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
+pub(crate) const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
 
 /// A plant and what moves its elevator, discretised.
 #[derive(Clone, Debug)]

@@ -14,24 +14,24 @@ use crate::plant::LinearPlant;
 use crate::servo::Servo;
 
 /// Inputs of the propagated system beside its state: servo command (or rate), elevator disturbance.
-const INPUTS: usize = 2;
+pub(crate) const INPUTS: usize = 2;
 
 /// The continuous system of plant, servo and held inputs, discretised for one sample period.
 #[derive(Clone, Debug)]
 pub(crate) struct Propagator {
-    servo: Servo,
+    pub(crate) servo: Servo,
     dt_s: f64,
     order: usize,
     /// Free servo: input 0 is the command.
     free: Matrix,
-    free_step: Vec<f64>,
+    pub(crate) free_step: Vec<f64>,
     /// Rate-limited servo: input 0 is the rate.
     ramp: Matrix,
     ramp_step: Vec<f64>,
     /// Row vector from state and elevator to pitch rate.
-    rate_output: Vec<f64>,
-    rate_feedthrough: f64,
-    elevator_per_command: f64,
+    pub(crate) rate_output: Vec<f64>,
+    pub(crate) rate_feedthrough: f64,
+    pub(crate) elevator_per_command: f64,
 }
 
 /// Plant state and servo deflection (nose up positive), rad.
@@ -58,6 +58,10 @@ impl PlantState {
     /// Servo deflection, nose up positive, rad.
     pub(crate) fn deflection_rad(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
     }
 
     fn set_deflection(&mut self, deflection_rad: f64) {
@@ -126,8 +130,7 @@ impl Propagator {
 
     /// Moves an ideal servo to its command at once; a real one stays where it is.
     pub(crate) fn settle_ideal_servo(&self, state: &mut PlantState, command_rad: f64) {
-        if self.servo.time_constant_s() == 0.0 && self.servo.rate_limited_phase(1.0, 1.0).is_none()
-        {
+        if self.servo.is_at_once() {
             state.set_deflection(self.servo.limited(command_rad));
         }
     }
