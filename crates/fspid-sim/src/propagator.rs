@@ -72,6 +72,21 @@ impl PlantState {
 
     /// x ← M [x; input; disturbance]
     fn advance(&mut self, rows: &[f64], input: f64, disturbance_rad: f64) {
+        let held = [input, disturbance_rad];
+        let values = &mut self.values;
+        // A length known to the compiler makes of a product straight code; the sums are the same.
+        let done = match values.len() {
+            3 => product::<3, 5>(rows, values, held),
+            4 => product::<4, 6>(rows, values, held),
+            5 => product::<5, 7>(rows, values, held),
+            _ => None,
+        };
+        if done.is_none() {
+            self.advance_any(rows, held);
+        }
+    }
+
+    fn advance_any(&mut self, rows: &[f64], [input, disturbance_rad]: [f64; INPUTS]) {
         let width = self.values.len();
         for (next, row) in self.scratch.iter_mut().zip(rows.chunks_exact(width + INPUTS)) {
             let (state_part, input_part) = row.split_at(width);
@@ -83,6 +98,28 @@ impl PlantState {
         }
         std::mem::swap(&mut self.values, &mut self.scratch);
     }
+}
+
+/// x ← M [x; u] for that many states and columns; `None`, with nothing done, for another number.
+#[inline]
+fn product<const STATES: usize, const COLUMNS: usize>(
+    rows: &[f64],
+    values: &mut [f64],
+    held: [f64; INPUTS],
+) -> Option<()> {
+    let (rows, _) = rows.as_chunks::<COLUMNS>();
+    let values: &mut [f64; STATES] = values.try_into().ok()?;
+    let before = *values;
+    for (value, row) in values.iter_mut().zip(rows) {
+        let (state_part, input_part) = row.split_at(STATES);
+        let free: f64 = state_part.iter().zip(&before).map(|(a, x)| a * x).sum();
+        let &[by_input, by_disturbance] = input_part else {
+            continue;
+        };
+        let [input, disturbance_rad] = held;
+        *value = free + by_input * input + by_disturbance * disturbance_rad;
+    }
+    Some(())
 }
 
 impl Propagator {

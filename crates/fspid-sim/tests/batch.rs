@@ -405,6 +405,24 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
 }
 
 #[test]
+fn a_longer_flight_takes_no_more_memory() {
+    let allocated = |duration_s: f64| {
+        let mut scenario = scenario(&mut Random(1), PLAIN);
+        scenario.timing = Timing::new(0.02, duration_s).expect("allowed");
+        let flight = (scenario.prepare().expect("flies"), controller(&mut Random(1), PLAIN));
+        let entrants = entrants(std::slice::from_ref(&flight));
+        let counted = allocation_counter::measure(|| {
+            let flown = fly_group_by::<8>(InstructionSet::best(), &entrants, |row| {
+                assert!(row.flies(0));
+            });
+            assert!(flown.is_ok());
+        });
+        (counted.count_total, counted.bytes_total)
+    };
+    assert_eq!(allocated(1.0), allocated(30.0));
+}
+
+#[test]
 fn no_flights_have_no_outcomes() {
     assert_eq!(fly_many::<8>(&[], |_, _| {}), Ok(Vec::new()));
 }
