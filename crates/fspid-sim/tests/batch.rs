@@ -21,6 +21,7 @@ use proptest::test_runner::RngSeed;
 /// What may differ between cases but not between the flights of one.
 #[derive(Clone, Copy, Debug)]
 struct Structure {
+    order: usize,
     self_tuning: bool,
     literal: bool,
     anti_windup: u8,
@@ -57,16 +58,25 @@ fn table() -> RuleTable {
     RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table")
 }
 
-fn plant(random: &mut Random, nose_up: bool) -> LinearPlant {
-    let mut near = |value: f64| value * random.between(0.7, 1.3);
-    let numerator = [near(-1.69144), near(-0.84341), near(-0.009_909_6)];
-    let denominator = [1.0, near(1.17103), near(1.55405), near(0.012_538), near(0.007_277_1)];
-    let (sign, factor) = if nose_up {
-        (ElevatorSign::NoseUpPositive, -1.0)
-    } else {
-        (ElevatorSign::NoseDownPositive, 1.0)
+/// A stable plant of that order, near the paper's for 3 (Navion) and 4 (747).
+fn plant(random: &mut Random, order: usize, nose_up: bool) -> LinearPlant {
+    let (numerator, denominator): (&[f64], &[f64]) = match order {
+        1 => (&[1.0], &[1.0, 0.5]),
+        2 => (&[2.0], &[1.0, 1.2, 2.0]),
+        3 => (&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.1]),
+        4 => (&[1.69144, 0.84341, 0.009_909_6], &[1.0, 1.17103, 1.55405, 0.012_538, 0.007_277_1]),
+        // That of order 4 behind a lag of 0.2 s.
+        _ => (&[8.4572, 4.217, 0.05], &[1.0, 6.17103, 7.4092, 7.7828, 0.069_967, 0.036_386]),
     };
-    LinearPlant::new(&numerator.map(|n| factor * n), &denominator, sign).expect("proper")
+    let (sign, factor) = if nose_up {
+        (ElevatorSign::NoseUpPositive, 1.0)
+    } else {
+        (ElevatorSign::NoseDownPositive, -1.0)
+    };
+    let mut near = |value: &f64| value * random.between(0.9, 1.1);
+    let numerator: Vec<f64> = numerator.iter().map(|n| factor * near(n)).collect();
+    let denominator: Vec<f64> = denominator.iter().map(near).collect();
+    LinearPlant::new(&numerator, &denominator, sign).expect("proper")
 }
 
 fn servo(random: &mut Random, wild: bool) -> Servo {
@@ -183,7 +193,7 @@ fn controller(random: &mut Random, structure: Structure) -> Controller {
 fn scenario(random: &mut Random, structure: Structure) -> Scenario {
     let mut scenario = Scenario {
         name: "batch".into(),
-        plant: plant(random, false).into(),
+        plant: plant(random, structure.order, false).into(),
         plant_changes: Vec::new(),
         servo: servo(random, structure.wild),
         timing: Timing::new(0.02, 3.0).expect("allowed"),
@@ -205,7 +215,7 @@ fn scenario(random: &mut Random, structure: Structure) -> Scenario {
             let change = PlantChange::new(
                 random.between(0.0, 2.0),
                 random.between(0.0, 0.3),
-                plant(random, true),
+                plant(random, structure.order, true),
             );
             scenario.plant_changes.push(change.expect("allowed"));
         }
@@ -293,9 +303,9 @@ fn compare(structure: Structure, seed: u64, count: usize) {
 fn structure() -> impl Strategy<Value = Structure> {
     let policy = prop::sample::select(OutOfRange::ALL.to_vec());
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
-    (flags, 0_u8..4, policy).prop_map(|(flags, anti_windup, policy)| {
+    (1_usize..=5, flags, 0_u8..4, policy).prop_map(|(order, flags, anti_windup, policy)| {
         let (self_tuning, literal, accumulates, wild) = flags;
-        Structure { self_tuning, literal, anti_windup, accumulates, policy, wild }
+        Structure { order, self_tuning, literal, anti_windup, accumulates, policy, wild }
     })
 }
 
@@ -316,6 +326,7 @@ proptest! {
 }
 
 const PLAIN: Structure = Structure {
+    order: 4,
     self_tuning: true,
     literal: false,
     anti_windup: 0,
@@ -391,6 +402,9 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
     mixed[3] = flights(Structure { policy: OutOfRange::Error, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
+
+    mixed[3] = flights(Structure { order: 3, ..PLAIN }, 1, 1).remove(0);
+    assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "the order of its plant" });
 
     let mut other = scenario(&mut Random(1), PLAIN);
     other.timing = Timing::new(0.02, 1.0).expect("allowed");
