@@ -177,11 +177,13 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
 fn controller(random: &mut Random, structure: Structure) -> Controller {
     // Some loops diverge.
     let size = if structure.wild && random.one_in(4) { 1e5 } else { 1.0 };
-    let gains = Gains {
-        kp: size * random.between(0.1, 2.0),
-        ki: random.between(0.0, 0.5),
-        kd: random.between(0.0, 0.5),
+    // Some integrals stand still, or need a sum that is no number.
+    let ki = match random.bits() % 8 {
+        0 => 0.0,
+        1 => 1e-320,
+        _ => random.between(0.0, 0.5),
     };
+    let gains = Gains { kp: size * random.between(0.1, 2.0), ki, kd: random.between(0.0, 0.5) };
     let shell = shell(random, structure);
     if structure.self_tuning {
         let tuner = tuner(random, structure, gains);
