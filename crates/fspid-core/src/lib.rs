@@ -55,7 +55,7 @@ pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
 pub use shell::{Derivative, SetpointWeights, Shell};
-pub use state::{Sample, State, Step};
+pub use state::{Previous, Sample, State, Step};
 pub use tuner::{Change, DeadZone, ErrorSign, InputScale, Law, SelfTuner, TunerSettings};
 
 pub use fspid_fuzzy as fuzzy;

@@ -122,6 +122,7 @@ impl<R: Real> Shell<R> {
 
     /// The sample as this controller uses it, or its fault. Without a rate loop the rate is zero:
     /// one that is not used cannot be at fault.
+    #[inline(always)]
     pub(crate) fn admitted(&self, sample: Sample<R>) -> Result<Sample<R>, Faults> {
         let mut used = sample;
         if self.rate_gain_s == R::ZERO {
@@ -147,7 +148,7 @@ impl<R: Real> Shell<R> {
     /// One sample with the gains of the moment. `sample` has been [admitted](Self::admitted).
     ///
     /// Either the whole memory moves on, or none of it (overflow: held and latched).
-    #[inline]
+    #[inline(always)]
     pub(crate) fn step(&self, state: &mut State<R>, sample: Sample<R>, gains: Gains<R>) -> Step<R> {
         let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
         let weights = self.setpoint_weights;

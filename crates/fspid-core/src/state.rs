@@ -30,23 +30,32 @@ pub struct Step<R> {
 }
 
 /// A controller's memory. To start a controller anew, give it a new one.
+///
+/// Open, so that the memories of many controllers can be kept side by side; a controller writes all
+/// of it or nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<R> {
-    pub(crate) command_rad: R,
-    /// In rad: the integral of `ki e` (bumpless) or the sum of `e` (literal).
-    pub(crate) integral: R,
-    pub(crate) derivative_rad_s: R,
-    pub(crate) previous: Option<Previous<R>>,
-    pub(crate) faults: Faults,
+    /// The last command, rad.
+    pub command_rad: R,
+    /// The integral of `ki e` (bumpless) or the sum of `e` (literal), rad.
+    pub integral: R,
+    /// The filtered derivative, rad/s.
+    pub derivative_rad_s: R,
+    /// The last good sample, `None` before the first.
+    pub previous: Option<Previous<R>>,
+    /// Faults latched so far.
+    pub faults: Faults,
 }
 
 /// What a controller remembers of the last good sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Previous<R> {
-    pub(crate) error_rad: R,
-    /// What the derivative acts on: $c r - y$.
-    pub(crate) derivative_input_rad: R,
-    pub(crate) gains: Gains<R>,
+pub struct Previous<R> {
+    /// Its error, rad.
+    pub error_rad: R,
+    /// What the derivative acts on, rad: $c r - y$.
+    pub derivative_input_rad: R,
+    /// The gains it was answered with.
+    pub gains: Gains<R>,
 }
 
 impl<R: Real> State<R> {

@@ -172,6 +172,7 @@ impl<R: Real> SelfTuner<R> {
     }
 
     /// Scaled increments $s \Delta k$ for an error and its change as the loop has them.
+    #[inline(always)]
     fn increments(&self, error_rad: R, change_rad: R) -> Result<(Gains<R>, Faults), Faults> {
         let settings = &self.settings;
         if let Some(zone) = settings.dead_zone
@@ -193,6 +194,7 @@ impl<R: Real> SelfTuner<R> {
     }
 
     /// Scaled increments for inputs as the supervisor sees them.
+    #[inline(always)]
     fn inferred(&self, error: R, change: R) -> Result<(Gains<R>, Faults), Faults> {
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
@@ -213,6 +215,7 @@ impl<R: Real> SelfTuner<R> {
     ///
     /// # Errors
     /// [`Faults::OVERFLOW`] where there are none.
+    #[inline(always)]
     pub(crate) fn gains(
         &self,
         previous: Option<Gains<R>>,

@@ -1,7 +1,8 @@
 //! How fast one core is: closed-loop steps per second. Inferences alone are measured in `fspid-fuzzy`.
 //!
-//! `cargo bench` prints the best of several rounds (others may use the machine), with a
-//! checksum that holds the compiler to doing the work and shows that every round did the same.
+//! `cargo bench` prints the best rate over blocks of work so short that some are not interrupted by
+//! whoever else uses the machine, with a checksum that holds the compiler to doing the work and shows
+//! that every round did the same, and that flights side by side did what single ones do.
 
 #![allow(
     clippy::disallowed_types,
@@ -15,44 +16,91 @@ use std::time::Instant;
 
 use fspid_core::fuzzy::{Defuzzifier, Label, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{Fspid, Gains, InputScale, Pid, SelfTuner, Shell, TunerSettings};
+use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
-    fly,
+    Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario, Servo,
+    Surroundings, Timing, fly,
 };
 
-const INPUTS: usize = 1_000_000;
+/// Flights: ten groups of the widest.
+const FLIGHTS: usize = 160;
+/// Samples of a flight; a million in all.
+const SAMPLES: usize = 6_250;
 const ROUNDS: usize = 7;
 
 fn main() {
-    let scenario = scenario();
-    let prepared = scenario.prepare().expect("a scenario that flies");
-    for named in &scenario.controllers {
-        let controller = named.controller;
-        report(&format!("closed-loop steps, {}", named.name), 3.0, || {
-            let mut sum = 0.0;
-            let outcome = fly(&prepared, black_box(&controller), |instant| {
-                sum += instant.theta_rad + instant.step.gains.kp;
-                ControlFlow::Continue(())
-            });
-            assert!(outcome.is_ok());
-            sum
+    let scenarios: Vec<Scenario> = (1..).take(FLIGHTS).map(scenario).collect();
+    let prepared: Vec<Prepared> =
+        scenarios.iter().map(|it| it.prepare().expect("a scenario that flies")).collect();
+    for (place, named) in scenarios[0].controllers.iter().enumerate() {
+        let controller = black_box(named.controller);
+        let name = &named.name;
+        let single = report(&format!("{name}, one by one"), 7.0, 1, |first| {
+            vec![single_sum(&prepared[first], &controller)]
         });
+        let entrants: Vec<Entrant<'_>> = prepared
+            .iter()
+            .zip(&scenarios)
+            .map(|(prepared, it)| Entrant {
+                prepared,
+                controller: &it.controllers[place].controller,
+            })
+            .collect();
+        for set in InstructionSet::available() {
+            batched::<8>(name, set, &entrants, single);
+            batched::<16>(name, set, &entrants, single);
+        }
     }
 }
 
-/// Times `work` over [`INPUTS`] items and prints the best round in millions per second.
-fn report(what: &str, asked: f64, work: impl Fn() -> f64) {
-    let checksum = work();
-    let mut best = 0.0_f64;
+fn batched<const W: usize>(name: &str, set: InstructionSet, flights: &[Entrant<'_>], single: f64) {
+    let what = format!("{name}, {W} lanes, {set}");
+    let sum = report(&what, 25.0, W, |first| group_sums::<W>(set, &flights[first..first + W]));
+    assert_eq!(sum.to_bits(), single.to_bits(), "flights side by side gave another answer");
+}
+
+fn single_sum(prepared: &Prepared, controller: &Controller) -> f64 {
+    let mut sum = 0.0;
+    let outcome = fly(prepared, controller, |instant| {
+        sum += instant.theta_rad + instant.step.gains.kp;
+        ControlFlow::Continue(())
+    });
+    assert!(outcome.is_ok());
+    sum
+}
+
+fn group_sums<const W: usize>(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
+    let mut sums = [0.0; W];
+    let outcomes = fly_group_by::<W>(set, flights, |row: &Row<'_, W>| {
+        let [kp, ..] = row.gains;
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            *sum += row.theta_rad[lane] + kp[lane];
+        }
+    });
+    assert!(outcomes.is_ok());
+    sums.to_vec()
+}
+
+/// Times `work` over all flights, `at_once` at a time, and prints the best rate of a block in millions
+/// of steps per second. Answers the sum over all flights, in their order.
+fn report(what: &str, asked: f64, at_once: usize, work: impl Fn(usize) -> Vec<f64>) -> f64 {
+    let (mut best, mut checksum) = (0.0_f64, None);
     for _ in 0..ROUNDS {
-        let start = Instant::now();
-        let again = black_box(work());
-        let rate = INPUTS as f64 / start.elapsed().as_secs_f64() / 1e6;
-        assert_eq!(again.to_bits(), checksum.to_bits(), "a round gave another answer");
-        best = best.max(rate);
+        let mut sum = 0.0;
+        for first in (0..FLIGHTS).step_by(at_once) {
+            let start = Instant::now();
+            let sums = black_box(work(first));
+            let steps = (at_once * SAMPLES) as f64;
+            best = best.max(steps / start.elapsed().as_secs_f64() / 1e6);
+            sum = sums.iter().fold(sum, |sum, more| sum + more);
+        }
+        let before: f64 = *checksum.get_or_insert(sum);
+        assert_eq!(before.to_bits(), sum.to_bits(), "a round gave another answer");
     }
-    println!("{what}: {best:.2} million/s (asked: {asked:.0}), checksum {checksum:?}");
+    let checksum = checksum.unwrap_or(0.0);
+    println!("{what}: {best:.2} million steps/s (asked: {asked:.0}), checksum {checksum:?}");
+    checksum
 }
 
 fn table() -> RuleTable {
@@ -67,8 +115,8 @@ fn supervisor() -> Supervisor<f64> {
     Supervisor::new(&table(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
 }
 
-/// A million samples of noise for a command, so that every sample is another one.
-fn scenario() -> Scenario {
+/// Noise for a command, so that every sample is another one.
+fn scenario(seed: u64) -> Scenario {
     let plant = LinearPlant::new(
         &[-1.69144, -0.84341, -0.009_909_6],
         &[1.0, 1.17103, 1.55405, 0.012_538, 0.007_277_1],
@@ -90,8 +138,8 @@ fn scenario() -> Scenario {
         plant: plant.expect("the paper's plant").into(),
         plant_changes: Vec::new(),
         servo: Servo::first_order(0.1).expect("allowed"),
-        timing: Timing::new(0.01, (INPUTS - 1) as f64 * 0.01).expect("allowed"),
-        setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed: 1 }).expect("allowed"),
+        timing: Timing::new(0.01, (SAMPLES - 1) as f64 * 0.01).expect("allowed"),
+        setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![
             named("FSPID", Controller::SelfTuning(fspid)),

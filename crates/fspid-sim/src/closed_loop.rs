@@ -1,6 +1,5 @@
 //! The loop itself: measure, decide, move.
 
-use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use fspid_core::{Sample, State, Step};
@@ -111,7 +110,7 @@ pub(crate) fn watch(
 ) -> Result<Outcome, SimError> {
     let mut path = perturbation.start()?;
     let mut memory = State::new();
-    let mut delayed: VecDeque<f64> = VecDeque::from(vec![0.0; prepared.delay_samples]);
+    let mut delayed = Delay::of(prepared.delay_samples);
     let mut stages = prepared.stages.iter().peekable();
     let Some(mut stage) = stages.next() else {
         return Ok(Outcome::Completed);
@@ -138,8 +137,8 @@ pub(crate) fn watch(
         let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
         let step = controller.step(&mut memory, sample);
-        delayed.push_back(path.pass(step.command_rad));
-        let command_rad = delayed.pop_front().unwrap_or(0.0) + at(&prepared.at_servo);
+        let arriving_rad = delayed.pass(path.pass(step.command_rad));
+        let command_rad = arriving_rad + at(&prepared.at_servo);
         stage.propagation.settle(&mut plant, command_rad);
         let elevator_rad = stage.propagation.elevator_rad(&plant, disturbance_rad);
         let measured = [measurement_rad, rate_rad_s];
@@ -154,6 +153,32 @@ pub(crate) fn watch(
         stage.propagation.advance(&mut plant, command_rad, &held)?;
     }
     Ok(Outcome::Completed)
+}
+
+/// Commands on their way, the oldest at `next`.
+struct Delay {
+    commands_rad: Vec<f64>,
+    next: usize,
+}
+
+impl Delay {
+    fn of(samples: usize) -> Self {
+        Self { commands_rad: vec![0.0; samples], next: 0 }
+    }
+
+    /// Takes a command and answers the one that arrives.
+    #[inline]
+    fn pass(&mut self, command_rad: f64) -> f64 {
+        let Some(place) = self.commands_rad.get_mut(self.next) else {
+            return command_rad;
+        };
+        let arriving_rad = std::mem::replace(place, command_rad);
+        self.next += 1;
+        if self.next == self.commands_rad.len() {
+            self.next = 0;
+        }
+        arriving_rad
+    }
 }
 
 /// What the controller sees through; nothing changes without a sensor.

@@ -19,6 +19,7 @@ mod actuated;
 pub mod actuator;
 pub mod air;
 pub mod aircraft;
+pub mod batch;
 mod closed_loop;
 mod controller;
 pub mod describing;

@@ -8,7 +8,7 @@ use crate::loop_model::SampledPlant;
 use crate::propagator::{LinearStep, PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
-const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
+pub(crate) const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
 
 /// Half the width of differences, relative to values above 1: limits let go and take hold at corners,
 /// so that it has to be small, and what is straight between them leaves nothing but rounding, 10⁻⁹.
@@ -43,6 +43,7 @@ impl Motion {
     }
 
     /// True for a pitch angle beyond ± 10⁶ degrees or not finite, and for an aircraft on its back.
+    #[inline(always)]
     pub(crate) fn is_lost(&self) -> bool {
         // Written so that NaN is lost.
         !(self.theta_rad().abs() <= DIVERGED_RAD)
@@ -60,6 +61,7 @@ impl Propagation {
     }
 
     /// Pitch rate just before a sample, rad/s.
+    #[inline(always)]
     pub(crate) fn rate_rad_s(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => it.rate_rad_s(state, disturbance_rad),
@@ -71,6 +73,7 @@ impl Propagation {
 
     /// Elevator in the plant's own sign, disturbance included, rad; that of an aircraft counts from
     /// where its data have zero, so that it begins with the trim's.
+    #[inline(always)]
     pub(crate) fn elevator_rad(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => it.elevator_rad(state, disturbance_rad),
@@ -95,6 +98,7 @@ impl Propagation {
     }
 
     /// Moves what has no lag to its command at once.
+    #[inline(always)]
     pub(crate) fn settle(&self, motion: &mut Motion, command_rad: f64) {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => it.settle_ideal_servo(state, command_rad),

@@ -14,24 +14,24 @@ use crate::plant::LinearPlant;
 use crate::servo::Servo;
 
 /// Inputs of the propagated system beside its state: servo command (or rate), elevator disturbance.
-const INPUTS: usize = 2;
+pub(crate) const INPUTS: usize = 2;
 
 /// The continuous system of plant, servo and held inputs, discretised for one sample period.
 #[derive(Clone, Debug)]
 pub(crate) struct Propagator {
-    servo: Servo,
+    pub(crate) servo: Servo,
     dt_s: f64,
     order: usize,
     /// Free servo: input 0 is the command.
     free: Matrix,
-    free_step: Vec<f64>,
+    pub(crate) free_step: Vec<f64>,
     /// Rate-limited servo: input 0 is the rate.
     ramp: Matrix,
     ramp_step: Vec<f64>,
     /// Row vector from state and elevator to pitch rate.
-    rate_output: Vec<f64>,
-    rate_feedthrough: f64,
-    elevator_per_command: f64,
+    pub(crate) rate_output: Vec<f64>,
+    pub(crate) rate_feedthrough: f64,
+    pub(crate) elevator_per_command: f64,
 }
 
 /// Plant state and servo deflection (nose up positive), rad.
@@ -67,6 +67,10 @@ impl PlantState {
         self.values.last().copied().unwrap_or(0.0)
     }
 
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
     fn set_deflection(&mut self, deflection_rad: f64) {
         if let Some(last) = self.values.last_mut() {
             *last = deflection_rad;
@@ -75,6 +79,21 @@ impl PlantState {
 
     /// x ← M [x; input; disturbance]
     fn advance(&mut self, rows: &[f64], input: f64, disturbance_rad: f64) {
+        let held = [input, disturbance_rad];
+        let values = &mut self.values;
+        // A length known to the compiler makes of a product straight code; the sums are the same.
+        let done = match values.len() {
+            3 => product::<3, 5>(rows, values, held),
+            4 => product::<4, 6>(rows, values, held),
+            5 => product::<5, 7>(rows, values, held),
+            _ => None,
+        };
+        if done.is_none() {
+            self.advance_any(rows, held);
+        }
+    }
+
+    fn advance_any(&mut self, rows: &[f64], [input, disturbance_rad]: [f64; INPUTS]) {
         let width = self.values.len();
         for (next, row) in self.scratch.iter_mut().zip(rows.chunks_exact(width + INPUTS)) {
             let (state_part, input_part) = row.split_at(width);
@@ -86,6 +105,28 @@ impl PlantState {
         }
         std::mem::swap(&mut self.values, &mut self.scratch);
     }
+}
+
+/// x ← M [x; u] for that many states and columns; `None`, with nothing done, for another number.
+#[inline]
+fn product<const STATES: usize, const COLUMNS: usize>(
+    rows: &[f64],
+    values: &mut [f64],
+    held: [f64; INPUTS],
+) -> Option<()> {
+    let (rows, _) = rows.as_chunks::<COLUMNS>();
+    let values: &mut [f64; STATES] = values.try_into().ok()?;
+    let before = *values;
+    for (value, row) in values.iter_mut().zip(rows) {
+        let (state_part, input_part) = row.split_at(STATES);
+        let free: f64 = state_part.iter().zip(&before).map(|(a, x)| a * x).sum();
+        let &[by_input, by_disturbance] = input_part else {
+            continue;
+        };
+        let [input, disturbance_rad] = held;
+        *value = free + by_input * input + by_disturbance * disturbance_rad;
+    }
+    Some(())
 }
 
 impl Propagator {
@@ -133,8 +174,7 @@ impl Propagator {
 
     /// Moves an ideal servo to its command at once; a real one stays where it is.
     pub(crate) fn settle_ideal_servo(&self, state: &mut PlantState, command_rad: f64) {
-        if self.servo.time_constant_s() == 0.0 && self.servo.rate_limited_phase(1.0, 1.0).is_none()
-        {
+        if self.servo.is_at_once() {
             state.set_deflection(self.servo.limited(command_rad));
         }
     }

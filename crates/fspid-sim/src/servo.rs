@@ -108,6 +108,16 @@ impl Servo {
         self.position_limit_rad.is_none() && self.rate_limit_rad_s.is_none()
     }
 
+    /// True without lag and rate limit: the deflection is the command.
+    pub(crate) fn is_at_once(&self) -> bool {
+        self.time_constant_s == 0.0 && self.rate_limit_rad_s.is_none()
+    }
+
+    /// Position limit, rad, and rate limit, rad/s.
+    pub(crate) fn limits(&self) -> [Option<f64>; 2] {
+        [self.position_limit_rad, self.rate_limit_rad_s]
+    }
+
     /// The command within the position limit, rad.
     pub(crate) fn limited(&self, command_rad: f64) -> f64 {
         match self.position_limit_rad {

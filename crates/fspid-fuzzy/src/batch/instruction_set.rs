@@ -30,7 +30,9 @@ impl InstructionSet {
         ["baseline", "SSE4.2", "AVX2", "AVX-512"][self.rank()]
     }
 
-    pub(crate) fn level(self) -> Level {
+    /// As what `fearless_simd` dispatches by.
+    #[must_use]
+    pub fn level(self) -> Level {
         self.0
     }
 }
