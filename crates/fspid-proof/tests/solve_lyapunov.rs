@@ -203,7 +203,7 @@ fn slow_loops() -> impl Strategy<Value = Vec<Matrix>> {
                                 -1.0
                             };
                             let rate = own + turn + spread * entries[(k * n + i) * n + j];
-                            let scale = 10.0_f64.powi(scales[i] - scales[j]);
+                            let scale = libm::pow(10.0, f64::from(scales[i] - scales[j]));
                             let old = matrix.get(i, j).unwrap();
                             matrix.set(i, j, old + 0.01 * rate * scale).unwrap();
                         }

@@ -370,9 +370,10 @@ mod tests {
     fn weights_are_those_of_the_powers_between_the_ends() {
         // (x + 2)³ between -0.5 and 0.25: the polar form is the product of (x_i + 2).
         let table = weights([-0.5, 0.25]);
-        for (b, product) in [1.5 * 1.5 * 1.5, 1.5 * 1.5 * 2.25, 1.5 * 2.25 * 2.25, 2.25_f64.powi(3)]
-            .into_iter()
-            .enumerate()
+        for (b, product) in
+            [1.5 * 1.5 * 1.5, 1.5 * 1.5 * 2.25, 1.5 * 2.25 * 2.25, 2.25 * 2.25 * 2.25]
+                .into_iter()
+                .enumerate()
         {
             let found = 8.0 * table[0][b] + 12.0 * table[1][b] + 6.0 * table[2][b] + table[3][b];
             assert!((found - 3.0 * product).abs() < 1e-14, "{found} {product}");

@@ -16,7 +16,7 @@ use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::{GainSet, IncrementMap};
 use crate::limits;
-use crate::recheck::{Recheck, Rechecked};
+use crate::recheck::{Kept, Recheck, Rechecked};
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,10 @@ impl<'a> Prover<'a> {
         if let Some((certificate, rechecked)) = self.proved(set, 1.0, true) {
             return Verdict::Proved(certificate, rechecked);
         }
-        if let Some((certificate, rechecked)) = self.bounded(set, 1.0) {
+        // A claim about gains of bounded rate is one about this loop only if its law keeps to the rate.
+        let bounded = self.bounded(set, 1.0);
+        let kept = bounded.filter(|(_, rechecked)| rechecked.kept == Some(Kept::Everywhere));
+        if let Some((certificate, rechecked)) = kept {
             return Verdict::Proved(certificate, rechecked);
         }
         self.sequence_growth().unwrap_or(Verdict::Open)

@@ -152,6 +152,12 @@ impl<'a> Recheck<'a> {
     }
 
     pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
+        let description = &self.certificate.description;
+        if self.certificate.level.is_some()
+            && let Some(what) = limits::not_covered(description)
+        {
+            return Err(malformed(what));
+        }
         let Proved { inequalities, kept, pitch_within_rad } = self.proved()?;
         let bounds = self.set.bounds();
         Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds, kept, pitch_within_rad })

@@ -1,0 +1,142 @@
+//! From loops to proved, refuted, refused; and certificates that are tampered with.
+
+use fspid_core::{Derivative, Fspid, Gains, InputScale, Law, Pid, SelfTuner, Shell, TunerSettings};
+use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_proof::{Certificate, Claim, Effort, LoopDescription, NotProvable, Verdict, certify};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::loop_model::Sensing;
+use fspid_sim::{Controller, ElevatorSign};
+
+const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+/// Each gain rises with the error, and not with its change.
+const RISING: &str = "NB NB NB NB NB NB NB
+NM NM NM NM NM NM NM
+NS NS NS NS NS NS NS
+ZO ZO ZO ZO ZO ZO ZO
+PS PS PS PS PS PS PS
+PM PM PM PM PM PM PM
+PB PB PB PB PB PB PB";
+
+fn shell() -> Shell<f64> {
+    Shell { derivative: Derivative { filter_s: 0.05 }, ..Shell::sampled_every(0.01) }
+}
+
+/// The paper's 747 behind its servo.
+fn loop_of(controller: Controller) -> LoopDescription {
+    LoopDescription {
+        numerator: vec![-1.69144, -0.84341, -0.0099096],
+        denominator: vec![1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller,
+    }
+}
+
+fn fixed(gains: Gains<f64>) -> Controller {
+    Controller::Fixed(Pid::new(gains, shell()).expect("allowed"))
+}
+
+/// Gains within ± 8/9 of `scale` times 5 around the nominal ones.
+fn tuned(scale: Gains<f64>, law: Law<f64>) -> Controller {
+    let table = RuleTable::parse([RISING; 3]).expect("a table");
+    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+    let settings = TunerSettings {
+        input_scale: InputScale { error_per_rad: 57.0, change_per_rad: 12.0 },
+        output_scale: scale,
+        law,
+        ..TunerSettings::literal()
+    };
+    let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
+    Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed"))
+}
+
+fn quick() -> Effort {
+    Effort { halvings: 2, largest_factor: 2.0, changes: &[], ..Effort::default() }
+}
+
+/// The certificate of a loop that is proved.
+fn proved(description: &LoopDescription) -> Certificate {
+    match certify(description, &quick()).expect("provable").verdict {
+        Verdict::Proved(certificate, _) => certificate,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_stable_loop_with_fixed_gains_is_proved_and_an_unstable_one_refuted() {
+    assert!(proved(&loop_of(fixed(NOMINAL))).check().is_ok());
+    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
+    let outcome = certify(&unstable, &quick()).expect("provable");
+    let Verdict::Refuted(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    assert!(matches!(certificate.claim, Claim::FrozenGrowth { .. }));
+    assert!(certificate.check().is_ok());
+}
+
+#[test]
+fn gains_that_move_by_a_fifth_are_proved_at_any_speed() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let certificate = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    assert!(matches!(certificate.claim, Claim::AnySpeed { rate, .. } if rate < 1.0));
+    let rechecked = certificate.check().expect("it holds");
+    assert!(rechecked.inequalities > rechecked.cells);
+    assert!(rechecked.bounds[0].lower() < 1.65 && rechecked.bounds[0].upper() > 2.35);
+}
+
+#[test]
+fn gains_that_do_not_hold_where_the_supervisor_puts_them_are_refuted() {
+    let scale = Gains { kp: 0.0, ki: 0.0, kd: 0.5 };
+    let description = loop_of(tuned(scale, Law::Memoryless));
+    let outcome = certify(&description, &quick()).expect("provable");
+    let Verdict::Refuted(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    assert!(matches!(certificate.claim, Claim::FrozenGrowth { .. }), "{:?}", certificate.claim);
+    assert!(outcome.largest.proved > 0.0 && outcome.largest.proved < 1.0);
+}
+
+#[test]
+fn gains_without_bounds_and_actuators_with_play_are_refused_with_words() {
+    let law = Law::Accumulating { leakage_per_s: 0.0 };
+    let drifting = loop_of(tuned(Gains { kp: 0.1, ki: 0.0, kd: 0.0 }, law));
+    let refused = certify(&drifting, &quick()).expect_err("without bounds");
+    assert!(matches!(refused, NotProvable::UnboundedGains(_)), "{refused}");
+    let mut loose = loop_of(fixed(NOMINAL));
+    loose.actuator = loose.actuator.with_play(0.01).expect("allowed");
+    let refused = loose.provable().expect_err("play");
+    assert!(refused.to_string().contains("play"), "{refused}");
+}
+
+#[test]
+fn limits_that_do_not_act_near_rest_are_in_the_proof() {
+    let mut description = loop_of(fixed(NOMINAL));
+    let actuator = description.actuator.with_command_limits(-0.35, 0.35);
+    description.actuator = actuator.and_then(|a| a.with_rate_limit(0.65)).expect("allowed");
+    let outcome = certify(&description, &quick()).expect("provable");
+    let pitch_rad = outcome.pitch_within_rad.expect("an ellipsoid");
+    assert!(pitch_rad > 1e-4 && pitch_rad < 0.35, "{pitch_rad}");
+    let mut certificate = proved(&description);
+    assert!(certificate.check().is_ok());
+    // Twice the level that was found lets a limit act.
+    certificate.level = certificate.level.map(|level| 2.0 * level);
+    assert!(certificate.check().is_err());
+}
+
+#[test]
+fn a_certificate_of_another_loop_or_a_better_rate_does_not_hold() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let mut wider = good.clone();
+    wider.output_factor = 8.0;
+    assert!(wider.check().is_err());
+    let mut other = good.clone();
+    other.description.denominator[1] = 0.1;
+    assert!(other.check().is_err());
+    let mut faster = good.clone();
+    if let Claim::AnySpeed { rate, .. } = &mut faster.claim {
+        *rate = 0.999;
+    }
+    assert!(faster.check().is_err());
+    let mut later = good;
+    later.description.actuator = later.description.actuator.with_delay(40).expect("allowed");
+    assert!(later.check().is_err(), "the form has another size");
+}
