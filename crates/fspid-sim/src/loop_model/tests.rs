@@ -166,3 +166,37 @@ fn the_matrix_is_affine_in_the_gains() {
     let difference = half.sum(&at(0.8, 0.5, 0.2).scaled(-1.0)).expect("same size").norm_one();
     assert!(difference < 1e-14, "{difference:e}");
 }
+
+#[test]
+fn scratch() {
+    for dt_s in [0.01, 0.05] {
+        for filter_s in [0.0, 0.05] {
+            for (number, mut case) in cases().into_iter().enumerate() {
+                case.shell.dt_s = dt_s;
+                case.shell.derivative.filter_s = filter_s;
+                case.gains = Gains { kp: 0.8, ki: 0.1, kd: 0.3 };
+
+                let model = LoopModel::of(
+                    &case.scenario(),
+                    &case.plant(),
+                    &case.shell,
+                    Memory::of_gains(case.gains, &case.shell),
+                )
+                .unwrap();
+                for point in [BreakPoint::Command, BreakPoint::Pitch] {
+                    let family = model.family(point).unwrap().unwrap();
+
+                    let open = model.open(case.gains, point).unwrap();
+                    let gains = [case.gains.kp, case.gains.ki, case.gains.kd];
+                    let mut text = String::new();
+                    for w in [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0] {
+                        let (q, f) = (family.at(&gains, w), open.at(w));
+                        text +=
+                            &format!(" {:.0e}", fspid_lti::modulus(q - f) / fspid_lti::modulus(f));
+                    }
+                    println!("{dt_s} {filter_s} {number} {point:?} {text}");
+                }
+            }
+        }
+    }
+}

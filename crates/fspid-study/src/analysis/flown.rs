@@ -10,7 +10,8 @@ use crate::file::Study;
 pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
     let scenario = &study.scenario;
     let named = scenario.controllers.iter().position(|named| named.name == name);
-    let Some((index, named)) = named.and_then(|at| Some((at, scenario.controllers.get(at)?))) else {
+    let Some((index, named)) = named.and_then(|at| Some((at, scenario.controllers.get(at)?)))
+    else {
         return Vec::new();
     };
     let Controller::SelfTuning(fspid) = &named.controller else {

@@ -24,9 +24,9 @@ use crate::file::Study;
 
 pub use answer::{Margins, decibels};
 pub use equilibrium::{Equilibrium, equilibrium};
+pub(crate) use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
-pub(crate) use flown::flown_inputs;
 pub(crate) use loops::lasting_plants;
 pub use loops::{AnalysedLoop, PlantLoop};
 pub use nonlinear_parts::not_in_the_linear_loop;

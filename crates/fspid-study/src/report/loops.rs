@@ -8,8 +8,8 @@ use super::analysis::{
 use super::number::{fixed, significant};
 use crate::analysis::figures::{LoopFigures, MapQuantity, gain_map, pole_zero, root_locus};
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
-use crate::file::Study;
 use crate::figure::Svg;
+use crate::file::Study;
 
 /// The page.
 ///
@@ -93,7 +93,9 @@ fn margins(analysis: &Analysis) -> Chapter {
         "gain crossover [rad/s]",
     ];
     let mut table = DataTable {
-        caption: "Margins of each controller with each plant that lasts; of a self-tuning one at rest.".to_owned(),
+        caption:
+            "Margins of each controller with each plant that lasts; of a self-tuning one at rest."
+                .to_owned(),
         head: head.map(str::to_owned).to_vec(),
         rows: Vec::new(),
         cards: true,
@@ -178,8 +180,16 @@ fn poles(found: &AnalysedLoop) -> Result<Option<Chapter>, SimError> {
         id: id.clone(),
         title: format!("Poles of {}", found.name),
         items: vec![
-            picture(&format!("{id}-locus"), locus, "Closed-loop poles while the gain of the loop is multiplied; the unit circle is the limit of stability."),
-            picture(&format!("{id}-map"), map, "Poles and zeros of the open loop, and poles of the closed loop."),
+            picture(
+                &format!("{id}-locus"),
+                locus,
+                "Closed-loop poles while the gain of the loop is multiplied; the unit circle is the limit of stability.",
+            ),
+            picture(
+                &format!("{id}-map"),
+                map,
+                "Poles and zeros of the open loop, and poles of the closed loop.",
+            ),
         ],
     }))
 }
@@ -189,7 +199,9 @@ fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
     let flown = crate::analysis::flown_inputs(study, &found.name);
     let id = format!("frozen-{}", found.name);
     let of = |quantity, what: &str| {
-        let caption = format!("The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move.");
+        let caption = format!(
+            "The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move."
+        );
         let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
         picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)
     };

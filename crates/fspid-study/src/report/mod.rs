@@ -20,8 +20,8 @@ mod supervisor;
 mod traces;
 mod user;
 
-use crate::file::Study;
 use crate::analysis::Analysis;
+use crate::file::Study;
 use crate::fuzzy_system::Audit;
 use crate::reproduce::{Library, Reproduction};
 use crate::simulation::Simulation;
