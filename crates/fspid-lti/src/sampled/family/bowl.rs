@@ -4,8 +4,10 @@
 const STEPS_MAX: usize = 60;
 /// Part of the larger side for a step where parabolas do not help, $(3 - \sqrt 5)/2$.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
-/// A parabola that promises less than this share of the value is believed, and the search ends.
+/// Where a parabola promises less than this share of the value, the search ends, unless a point beside tells otherwise.
 const PROMISE: f64 = 1e-12;
+/// That point, as part of the larger side: through three points that lie evenly a parabola may turn anywhere.
+const PROBE: f64 = 0.1;
 
 /// A place and the value there.
 pub(super) type Point = (f64, f64);
@@ -23,27 +25,32 @@ pub(super) fn lowest(
 ) -> Point {
     let (mut low, mut high, mut best) = (left.0, right.0, middle);
     let (mut second, mut third) = if left.1 < right.1 { (left, right) } else { (right, left) };
-    let (mut step, mut before) = (high - low, high - low);
-    for taken in 0..STEPS_MAX {
-        let parabola = vertex(best, second, third);
-        let tiny = 4.0 * f64::EPSILON * best.0.abs();
-        let next = match parabola {
-            // The first three points may lie too far apart to be believed.
-            Some((_, promise)) if taken > 0 && promise <= PROMISE * best.1.abs() => break,
+    let (mut step, mut before, mut doubted) = (high - low, high - low, false);
+    for _ in 0..STEPS_MAX {
+        let end = if best.0 < 0.5 * (low + high) { high } else { low };
+        let next = match vertex(best, second, third) {
+            Some((_, promise)) if promise <= PROMISE * best.1.abs() => {
+                if doubted {
+                    break;
+                }
+                doubted = true;
+                best.0 + PROBE * (end - best.0)
+            }
             Some((place, _))
                 if low < place && place < high && (place - best.0).abs() < 0.5 * before.abs() =>
             {
+                doubted = false;
                 place
             }
             _ => {
-                let end = if best.0 < 0.5 * (low + high) { high } else { low };
+                doubted = false;
                 step = end - best.0;
                 best.0 + GOLDEN * step
             }
         };
         before = step;
         step = next - best.0;
-        if step.abs() <= tiny {
+        if step.abs() <= 4.0 * f64::EPSILON * best.0.abs() {
             break;
         }
         let point = (next, function(next));
@@ -114,6 +121,17 @@ mod tests {
         let narrow = |x: f64| 1.0 + x - 1.0 / (1.0 + 1e8 * (x - 0.501) * (x - 0.501));
         let (found, steps) = searched(narrow, [0.4, 0.5011, 0.6]);
         assert!((found.0 - 0.501).abs() < 1e-8 && steps < 40, "{found:?} {steps}");
+    }
+
+    #[test]
+    fn three_even_points_do_not_end_the_search() {
+        let bent = |x: f64| (x - 0.3) * (x - 0.3) * (1.0 + 3.0 * x) + 0.5;
+        // As high on the left as at 0.35: the first step goes to the middle between the two, where a parabola through
+        // all three has its lowest point again.
+        let even = |x: f64| bent(x) - bent(0.35);
+        let (left, _) = crate::sampled::scan::root(&even, (0.2, even(0.2)), (0.3, even(0.3)));
+        let (found, steps) = searched(bent, [left, 0.35, 1.0]);
+        assert!((found.1 - 0.5).abs() < 1e-11 && steps > 2 && steps <= 15, "{found:?} {steps}");
     }
 
     #[test]

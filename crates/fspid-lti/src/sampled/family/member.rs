@@ -1,5 +1,7 @@
 //! One loop of a family: its response on the grid, and where it crosses.
 
+use core::f64::consts::PI;
+
 use super::LoopFamily;
 use super::bowl;
 use super::grid::{Known, turns_far};
@@ -44,9 +46,37 @@ impl<'a> Member<'a> {
         self.family.chain.closed_poles(&self.family.control, &self.coefficients)
     }
 
+    /// A spectral radius that is not exceeded, whatever error the poles have; infinite or NaN where two coincide.
+    ///
+    /// With the characteristic polynomial p of degree n, whose leading coefficient is 1, all zeros lie in the disks
+    ///
+    /// $$ |z - z_i| \leq n \left| \frac{p(z_i)}{\prod_{j \neq i} (z_i - z_j)} \right| $$
+    ///
+    /// # Source
+    /// B. T. Smith, Error bounds for zeros of a polynomial based upon Gerschgorin's theorems, J. ACM 17 (1970) 661.
+    pub(super) fn radius_bound(&self, poles: &[Complex]) -> f64 {
+        let mut bound = 0.0;
+        for (index, &zeta) in poles.iter().enumerate().filter(|(_, zeta)| zeta.im >= 0.0) {
+            let others = poles.iter().enumerate().filter(|(other, _)| *other != index);
+            let product =
+                others.fold(Complex::new(1.0, 0.0), |product, (_, other)| product * (zeta - other));
+            let response = self.at_zeta(zeta);
+            let value = response.over + response.under;
+            let disk = poles.len() as f64 * modulus(value) / modulus(product);
+            let reach = modulus(zeta + 1.0) + disk;
+            // Not f64::max, which would pass over a NaN.
+            bound = if reach <= bound { bound } else { reach };
+        }
+        bound
+    }
+
     /// The response at a place.
     pub(super) fn at(&self, place: f64) -> Response {
-        let zeta = place::zeta(place);
+        self.at_zeta(place::zeta(place))
+    }
+
+    /// The response; over and under are polynomials, and the leading coefficient of the second is 1.
+    fn at_zeta(&self, zeta: Complex) -> Response {
         let parts = self.family.chain.at(zeta);
         let (over, under) = self.family.control.at(&self.coefficients, zeta);
         Response { over: parts.fixed * under + parts.measured * over, under: parts.under * under }
@@ -66,15 +96,12 @@ impl<'a> Member<'a> {
             Sample { place: known.place, response: Response { over, under: known.under } }
         };
         let mut samples: Vec<Sample> = self.family.grid.known.iter().map(on_grid).collect();
-        for &pole in poles {
+        for &pole in poles.iter().filter(|pole| pole.im > 0.0) {
             let angle_rad = libm::atan2(pole.im, 1.0 + pole.re);
             let damping = 1.0 - modulus(pole + 1.0);
-            if pole.im > 0.0 && damping < NARROW * angle_rad {
-                for angle in [angle_rad - damping, angle_rad, angle_rad + damping] {
-                    samples.push(
-                        self.sample(place::of_angle(angle.clamp(0.0, core::f64::consts::PI))),
-                    );
-                }
+            if damping < NARROW * angle_rad {
+                let angles = [angle_rad - damping, angle_rad, (angle_rad + damping).min(PI)];
+                samples.extend(angles.map(|angle| self.sample(place::of_angle(angle))));
             }
         }
         samples.sort_by(|one, other| one.place.total_cmp(&other.place));
