@@ -61,7 +61,8 @@ pub use polynomial::{DEGREE_LIMIT, Polynomial};
 pub use regulator::{Regulator, regulator};
 pub use response::step_response;
 pub use sampled::{
-    DiskMargin, GainLimit, Peak, SampledCrossover, SampledLoop, SampledMargins, Stability,
+    DiskMargin, GainLimit, LoopFamily, Peak, SampledCrossover, SampledLoop, SampledMargins,
+    SeriesControl, Stability,
 };
 pub use state_space::StateSpace;
 pub use transfer_function::TransferFunction;

@@ -71,6 +71,11 @@ impl Matrix {
         &self.data
     }
 
+    /// All entries, row after row, to be worn down.
+    pub(crate) fn into_data(self) -> Vec<f64> {
+        self.data
+    }
+
     /// Entry at a row and column counted from 0; `None` outside.
     #[must_use]
     pub fn get(&self, row: usize, column: usize) -> Option<f64> {

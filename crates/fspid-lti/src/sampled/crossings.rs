@@ -64,13 +64,13 @@ pub(super) fn unit_gain_angles(
 }
 
 /// $|L|^2 - 1$ over $|L|^2 + 1$.
-fn excess(response: Response) -> f64 {
+pub(super) fn excess(response: Response) -> f64 {
     let (over, under) = (response.over.norm_sqr(), response.under.norm_sqr());
     (over - under) / (over + under)
 }
 
 /// Sine of the phase.
-fn sine(response: Response) -> f64 {
+pub(super) fn sine(response: Response) -> f64 {
     let (over, under) = (response.over, response.under);
     let size = (over.norm_sqr() * under.norm_sqr()).sqrt();
     if size > 0.0 { (over * under.conj()).im / size } else { 0.0 }

@@ -129,7 +129,7 @@ impl SampledLoop {
 }
 
 /// The crossover with the smallest phase margin to either side.
-fn nearest(crossovers: &[SampledCrossover]) -> Option<SampledCrossover> {
+pub(super) fn nearest(crossovers: &[SampledCrossover]) -> Option<SampledCrossover> {
     let size = |at: &SampledCrossover| at.phase_margin_rad.abs();
     crossovers.iter().copied().min_by(|left, right| size(left).total_cmp(&size(right)))
 }

@@ -7,6 +7,7 @@
 
 mod crossings;
 mod disk;
+mod family;
 mod gain_limits;
 mod level_set;
 mod margins;
@@ -27,6 +28,7 @@ use crate::matrix::Matrix;
 use reduced::{Reduced, Response};
 
 pub use disk::DiskMargin;
+pub use family::{LoopFamily, SeriesControl};
 pub use gain_limits::GainLimit;
 pub use margins::{SampledCrossover, SampledMargins, Stability};
 pub use peak::Peak;
@@ -67,12 +69,19 @@ impl SampledLoop {
     /// No states, a matrix that is not square, vectors of another length, an entry that is not finite, a sample
     /// period that is not above zero and finite.
     pub fn new(a: Matrix, b: Vec<f64>, c: Vec<f64>, dt_s: f64) -> Result<Self, LtiError> {
+        Self::require(&a, &b, &c, dt_s)?;
+        let reduced = Reduced::new(&a, &b, &c);
+        Ok(Self { a, b, c, dt_s, reduced })
+    }
+
+    /// `Ok` when a loop can be made of these.
+    fn require(a: &Matrix, b: &[f64], c: &[f64], dt_s: f64) -> Result<(), LtiError> {
         a.require_square_and_finite("state matrix")?;
         let order = a.rows();
         if order == 0 {
             return Err(LtiError::Empty { what: "state matrix" });
         }
-        for (what, vector) in [("input vector", &b), ("output vector", &c)] {
+        for (what, vector) in [("input vector", b), ("output vector", c)] {
             if vector.len() != order {
                 let found = (vector.len(), 1);
                 return Err(LtiError::Shape { what, found, allowed: (order, 1) });
@@ -82,8 +91,7 @@ impl SampledLoop {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(LtiError::NotPositive { what: "sample period in seconds", value: dt_s });
         }
-        let reduced = Reduced::new(&a, &b, &c);
-        Ok(Self { a, b, c, dt_s, reduced })
+        Ok(())
     }
 
     /// Sample period.

@@ -29,6 +29,15 @@ pub(super) fn quick_eigenvalues(matrix: &Matrix) -> Result<Vec<Complex>, LtiErro
     }
 }
 
+/// All eigenvalues of a Hessenberg matrix, in no order; `None` if they do not come.
+pub(super) fn hessenberg_eigenvalues(matrix: Matrix) -> Option<Vec<Complex>> {
+    let size = matrix.rows();
+    let mut work = Work { h: matrix.into_data(), size };
+    work.balance();
+    let values = work.iterate()?;
+    values.iter().all(|value| value.is_finite()).then_some(values)
+}
+
 /// Similar matrix with zeros below the first subdiagonal, by elimination with exchange of rows and columns.
 ///
 /// The first row and column take part, but the first unit vector stays what it is. Unlike reflections, which spread the

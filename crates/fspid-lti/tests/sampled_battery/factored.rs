@@ -67,6 +67,13 @@ impl Factored {
 
     /// The sections and the dead time one after another, the gain at the output.
     pub(crate) fn realised(&self) -> SampledLoop {
+        let (rows, input, c) = self.parts();
+        let a = Matrix::from_rows(&rows).expect("finite entries");
+        SampledLoop::new(a, input, c, self.dt_s).expect("a well formed loop")
+    }
+
+    /// The same as rows of the state matrix, input and output.
+    pub(crate) fn parts(&self) -> (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) {
         let mut chain = Chain::default();
         for section in &self.sections {
             chain.append(section);
@@ -80,8 +87,7 @@ impl Factored {
             });
         }
         let c = chain.output.iter().map(|value| self.gain * value).collect();
-        let a = Matrix::from_rows(&chain.rows_square()).expect("finite entries");
-        SampledLoop::new(a, chain.input, c, self.dt_s).expect("a well formed loop")
+        (chain.rows_square(), chain.input, c)
     }
 }
 

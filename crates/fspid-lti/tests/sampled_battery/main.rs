@@ -7,6 +7,7 @@
 mod dense;
 mod factored;
 mod families;
+mod family;
 #[path = "../support/mod.rs"]
 mod support;
 

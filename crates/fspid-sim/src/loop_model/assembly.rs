@@ -73,6 +73,18 @@ pub(super) struct Broken<T> {
     pub(super) exit: Vec<T>,
 }
 
+/// Everything from the command to what is seen.
+pub(super) struct OpenPlant<T> {
+    /// Next state by state, with the command at zero and with the command of the rate loop.
+    pub(super) matrix: Vec<Vec<T>>,
+    pub(super) matrix_with_rate: Vec<Vec<T>>,
+    /// Next state by command.
+    pub(super) by_command: Vec<T>,
+    /// Seen pitch, and what comes back through the seen rate, by state.
+    pub(super) pitch: Vec<T>,
+    pub(super) by_rate: Vec<T>,
+}
+
 /// The controller at one sample: its command and next memory, by memory (over the state) and by seen
 /// pitch; the rate only enters the command.
 struct ControllerRows<T> {
@@ -264,6 +276,19 @@ impl<T: Scalar> Assembly<T> {
                 entry: self.by_command.iter().map(|by| self.command_by_rate * *by).collect(),
                 exit: self.rate.clone(),
             },
+        }
+    }
+
+    /// What is between command and seen signals, for a loop without memory of its controller.
+    pub(super) fn plant(self) -> OpenPlant<T> {
+        let by_rate = self.rate.iter().map(|rate| -(self.command_by_rate * *rate)).collect();
+        let returned = self.command_through(false, true);
+        OpenPlant {
+            matrix_with_rate: with(&self.free, &self.by_command, &returned),
+            matrix: self.free,
+            by_command: self.by_command,
+            by_rate,
+            pitch: self.pitch,
         }
     }
 

@@ -1,10 +1,10 @@
 //! The loop broken at a named point, the others closed.
 
 use fspid_core::Gains;
-use fspid_lti::{Matrix, SampledLoop};
+use fspid_lti::{LoopFamily, Matrix, SampledLoop, SeriesControl};
 
-use super::LoopModel;
 use super::assembly::Broken;
+use super::{LoopModel, LoopSettings, Memory};
 use crate::error::SimError;
 
 /// Where a loop is broken. At each point the signal there is replaced by another, and what comes back
@@ -42,6 +42,31 @@ impl BreakPoint {
 }
 
 impl LoopModel<f64> {
+    /// The open loops of all gains (kp, ki, kd) at a point, if the gains are factors there.
+    ///
+    /// For gains that stand still the literal and the bumpless integral are one. At the pitch angle it is the loop
+    /// through the part of the command that answers it, in which the same signals go around. At the rate the gains are
+    /// in the loop that stays closed: there is no family.
+    ///
+    /// # Errors
+    /// Poles of the plant that are not found.
+    pub fn family(&self, point: BreakPoint) -> Result<Option<LoopFamily>, SimError> {
+        let (settings, none) =
+            (&self.settings, Memory { integral: false, derivative: false, previous: false });
+        let without = LoopSettings { memory: none, ..settings.clone() };
+        let plant = Self::new(self.plant.clone(), without).assembly(Gains::ZERO).plant();
+        let (matrix, fixed) = match point {
+            BreakPoint::Command => (plant.matrix, plant.by_rate),
+            BreakPoint::Pitch => (plant.matrix_with_rate, vec![0.0; plant.by_rate.len()]),
+            BreakPoint::Rate => return Ok(None),
+        };
+        let matrix = Matrix::from_rows(&matrix)?;
+        let control = settings.series_control()?;
+        let outputs = [fixed.as_slice(), &plant.pitch];
+        let dt_s = settings.shell.dt_s;
+        Ok(Some(LoopFamily::new((&matrix, &plant.by_command), outputs, control, dt_s)?))
+    }
+
     /// The open loop at a point.
     ///
     /// # Errors
@@ -51,5 +76,27 @@ impl LoopModel<f64> {
         let returned = exit.iter().map(|value| -value).collect();
         let dt_s = self.settings.shell.dt_s;
         Ok(SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?)
+    }
+}
+
+impl LoopSettings {
+    /// The controller from seen pitch to command, its sign changed: factors of kp, ki and kd.
+    ///
+    /// $$ C = k_p + k_i \frac{T z}{z - 1} + \frac{k_d}{T_f + T} \frac{z - 1}{z - 1 + T/(T_f + T)} $$
+    fn series_control(&self) -> Result<SeriesControl, SimError> {
+        let (dt_s, memory) = (self.shell.dt_s, self.memory);
+        let time_s = self.shell.derivative.filter_s + dt_s;
+        let pole = -dt_s / time_s;
+        let (poles, by_gain) = match (memory.previous, memory.integral) {
+            (false, false) => (vec![], [vec![], vec![]]),
+            (false, true) => (vec![0.0], [vec![dt_s, dt_s], vec![]]),
+            (true, false) => (vec![pole], [vec![], vec![1.0 / time_s, pole / time_s]]),
+            (true, true) => {
+                let integral = vec![dt_s, dt_s, -pole * dt_s];
+                (vec![pole, 0.0], [integral, vec![1.0 / time_s, pole / time_s]])
+            }
+        };
+        let by_gain = core::iter::once(vec![1.0]).chain(by_gain).collect();
+        Ok(SeriesControl::new(poles, by_gain)?)
     }
 }

@@ -166,3 +166,22 @@ fn the_matrix_is_affine_in_the_gains() {
     let difference = half.sum(&at(0.8, 0.5, 0.2).scaled(-1.0)).expect("same size").norm_one();
     assert!(difference < 1e-14, "{difference:e}");
 }
+
+#[test]
+fn the_family_of_all_gains_is_the_open_loop_at_each() {
+    for (number, case) in cases().iter().enumerate() {
+        let model = case.model();
+        let gains = [case.gains.kp, case.gains.ki, case.gains.kd];
+        for point in [BreakPoint::Command, BreakPoint::Pitch] {
+            let family = model.family(point).expect("poles").expect("gains are factors here");
+            let open = model.open(case.gains, point).expect("finite");
+            for omega_rad_s in [0.01, 0.1, 1.0, 10.0, 100.0] {
+                let (quick, careful) = (family.at(&gains, omega_rad_s), open.at(omega_rad_s));
+                let off = fspid_lti::modulus(quick - careful) / fspid_lti::modulus(careful);
+                // At low frequency the open loop loses digits in its integral.
+                assert!(off < 1e-7, "case {number}, {point:?}, {omega_rad_s} rad/s: {off:e}");
+            }
+        }
+        assert!(model.family(BreakPoint::Rate).expect("poles").is_none());
+    }
+}

@@ -56,7 +56,7 @@ impl Margins {
         }
     }
 
-    fn of_stable(found: &SampledMargins) -> Self {
+    pub(super) fn of_stable(found: &SampledMargins) -> Self {
         let low = found.gain_low.as_ref();
         let high = found.gain_high.as_ref();
         let phase = found.phase_margin.as_ref();

@@ -1,6 +1,7 @@
 //! Margins at every gain that a supervisor can produce, the gains standing still.
 
 use fspid_core::{Fspid, Gains, Law};
+use fspid_lti::LoopFamily;
 use fspid_proof::gain_set::producible;
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_sim::{LinearPlant, Scenario, SimError};
@@ -46,7 +47,7 @@ impl FrozenMap {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Ok(None);
         }
-        Mapper { scenario, plant, fspid, question }.map()
+        Mapper::new(scenario, plant, fspid, question)?.map()
     }
 
     /// True if every gain on the map holds the plant.
@@ -62,14 +63,31 @@ impl FrozenMap {
     }
 }
 
+/// The loops of all frozen gains, and how their margins are found.
 struct Mapper<'a> {
     scenario: &'a Scenario,
     plant: &'a LinearPlant,
     fspid: &'a Fspid<f64>,
     question: Question,
+    /// The loop with all of the memory that the gains at rest let out.
+    model: LoopModel<f64>,
+    /// The same for all gains at once, if they differ in its output alone.
+    family: Option<LoopFamily>,
 }
 
-impl Mapper<'_> {
+impl<'a> Mapper<'a> {
+    fn new(
+        scenario: &'a Scenario,
+        plant: &'a LinearPlant,
+        fspid: &'a Fspid<f64>,
+        question: Question,
+    ) -> Result<Self, SimError> {
+        let memory = Memory::of_gains(producible(fspid.tuner(), 0.0, 0.0), fspid.shell());
+        let model = LoopModel::of(scenario, plant, fspid.shell(), memory)?;
+        let family = model.family(question.point)?;
+        Ok(Self { scenario, plant, fspid, question, model, family })
+    }
+
     fn map(&self) -> Result<Option<FrozenMap>, SimError> {
         let side = self.question.map_points;
         let range = self.fspid.tuner().supervisor().range();
@@ -82,7 +100,8 @@ impl Mapper<'_> {
             .map(|(row, column)| self.point([place(row), place(column)]))
             .collect::<Result<Vec<_>, _>>()?;
         let Some(worst) = worst_of(&points) else { return Ok(None) };
-        let worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
+        let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
+        worst.margins = self.margins(worst.gains)?;
         Ok(Some(FrozenMap { side, points, worst }))
     }
 
@@ -109,10 +128,34 @@ impl Mapper<'_> {
 
     fn point(&self, input: [f64; 2]) -> Result<FrozenPoint, SimError> {
         let gains = producible(self.fspid.tuner(), input[0], input[1]);
-        let memory = Memory::of_gains(gains, self.fspid.shell());
-        let model = LoopModel::of(self.scenario, self.plant, self.fspid.shell(), memory)?;
-        let (_, margins) = judged(&model.open(gains, self.question.point)?)?;
+        let margins = match self.quick_margins(gains) {
+            Some(margins) => Ok(margins),
+            None => self.margins(gains)?,
+        };
         Ok(FrozenPoint { input, gains, margins })
+    }
+
+    /// Margins by the family, where it is sure of them and the gains let out the memory that it has.
+    fn quick_margins(&self, gains: Gains<f64>) -> Option<Margins> {
+        if Memory::of_gains(gains, self.fspid.shell()) != self.model.settings().memory {
+            return None;
+        }
+        let found = self.family.as_ref()?.margins(&[gains.kp, gains.ki, gains.kd])?;
+        Some(Margins::of_stable(&found))
+    }
+
+    /// Margins of one loop by eigenvalues.
+    fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
+        let memory = Memory::of_gains(gains, self.fspid.shell());
+        let open = if memory == self.model.settings().memory {
+            self.model.open(gains, self.question.point)?
+        } else {
+            let shell = self.fspid.shell();
+            let own = LoopModel::of(self.scenario, self.plant, shell, memory)?;
+            own.open(gains, self.question.point)?
+        };
+        let (_, margins) = judged(&open)?;
+        Ok(margins)
     }
 }
 
