@@ -70,6 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         point: arguments.broken_at.into(),
         map_points: usize::from(arguments.map),
         fly: arguments.fly,
+        ..Question::default()
     };
     let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
     if let Some(path) = &arguments.report {

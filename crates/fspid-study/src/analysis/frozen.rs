@@ -137,6 +137,9 @@ impl<'a> Mapper<'a> {
 
     /// Margins by the family, where it is sure of them and the gains let out the memory that it has.
     fn quick_margins(&self, gains: Gains<f64>) -> Option<Margins> {
+        if self.question.every_point_in_full {
+            return None;
+        }
         if Memory::of_gains(gains, self.fspid.shell()) != self.model.settings().memory {
             return None;
         }

@@ -42,13 +42,16 @@ pub struct Question {
     pub point: BreakPoint,
     /// Points along each input of the frozen-gain map; none for 0.
     pub map_points: usize,
+    /// Ask every point of the map in full, one by one, in place of the quick way for many gains: its
+    /// numbers are those of the gains as fixed ones, to the bit.
+    pub every_point_in_full: bool,
     /// Fly as well: margins by flying, limit cycles, small signals along the way.
     pub fly: bool,
 }
 
 impl Default for Question {
     fn default() -> Self {
-        Self { point: BreakPoint::Command, map_points: 9, fly: false }
+        Self { point: BreakPoint::Command, map_points: 9, every_point_in_full: false, fly: false }
     }
 }
 

@@ -45,7 +45,8 @@ pub(super) fn loops(
     named: &NamedController,
     map_points: usize,
 ) -> Result<Vec<PlantEvidence>, NotEvaluated> {
-    let question = Question { map_points, ..Question::default() };
+    // In full, so that a replay with these gains as fixed ones gives the same bits.
+    let question = Question { map_points, every_point_in_full: true, ..Question::default() };
     let alone = Scenario { controllers: vec![named.clone()], ..scenario.clone() };
     let analysed = Analysis::of_scenario(&alone, question)?.loops.pop();
     let analysed = analysed.ok_or(NotEvaluated::Linear(SimError::NotLinear))?;
