@@ -2,6 +2,7 @@
 
 use fspid_core::{Derivative, Fspid, Gains, InputScale, Law, Pid, SelfTuner, Shell, TunerSettings};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_lti::Matrix;
 use fspid_proof::{Certificate, Claim, Effort, LoopDescription, NotProvable, Verdict, certify};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
@@ -40,14 +41,14 @@ fn fixed(gains: Gains<f64>) -> Controller {
 
 /// Gains within ± 8/9 of `scale` times 5 around the nominal ones.
 fn tuned(scale: Gains<f64>, law: Law<f64>) -> Controller {
+    with_inputs(InputScale { error_per_rad: 57.0, change_per_rad: 12.0 }, scale, law)
+}
+
+fn with_inputs(input_scale: InputScale<f64>, scale: Gains<f64>, law: Law<f64>) -> Controller {
     let table = RuleTable::parse([RISING; 3]).expect("a table");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let settings = TunerSettings {
-        input_scale: InputScale { error_per_rad: 57.0, change_per_rad: 12.0 },
-        output_scale: scale,
-        law,
-        ..TunerSettings::literal()
-    };
+    let settings =
+        TunerSettings { input_scale, output_scale: scale, law, ..TunerSettings::literal() };
     let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed"))
 }
@@ -139,4 +140,43 @@ fn a_certificate_of_another_loop_or_a_better_rate_does_not_hold() {
     let mut later = good;
     later.description.actuator = later.description.actuator.with_delay(40).expect("allowed");
     assert!(later.check().is_err(), "the form has another size");
+}
+
+#[test]
+fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
+    let description = loop_of(tuned(Gains { kp: 0.0, ki: 0.0, kd: 0.5 }, Law::Memoryless));
+    let size = description.enclosed().expect("a model").size();
+    let tied = |multipliers| Certificate {
+        description: description.clone(),
+        output_factor: 1.0,
+        divisions: 4,
+        claim: Claim::Tied { form: Matrix::identity(size), rate: 1.0, multipliers },
+        level: None,
+    };
+    let refused = tied(vec![]).check().expect_err("no cones");
+    assert!(refused.to_string().contains("double cones"), "{refused}");
+    assert!(tied(vec![0.0]).check().is_err());
+    assert!(tied(vec![0.0; 1001]).check().is_err());
+    let good = proved(&loop_of(fixed(NOMINAL)));
+    for output_factor in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(Certificate { output_factor, ..good.clone() }.check().is_err());
+    }
+    for divisions in [0, usize::MAX] {
+        assert!(Certificate { divisions, ..good.clone() }.check().is_err());
+    }
+}
+
+#[test]
+fn an_input_that_the_supervisor_never_sees_refutes_nothing() {
+    let scale = Gains { kp: 0.0, ki: 0.0, kd: 0.5 };
+    let seeing = loop_of(tuned(scale, Law::Memoryless));
+    let outcome = certify(&seeing, &quick()).expect("provable");
+    let Verdict::Refuted(mut certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    // The table answers to the error alone: without it the gains stay as they are.
+    let blind = InputScale { error_per_rad: 0.0, change_per_rad: 12.0 };
+    let description = loop_of(with_inputs(blind, scale, Law::Memoryless));
+    let outcome = certify(&description, &quick()).expect("provable");
+    assert!(!matches!(outcome.verdict, Verdict::Refuted(..)), "{outcome:?}");
+    certificate.description = description;
+    assert!(certificate.check().is_err());
 }

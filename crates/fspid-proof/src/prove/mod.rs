@@ -143,7 +143,7 @@ impl<'a> Prover<'a> {
             return Verdict::Proved(certificate, rechecked);
         }
         // A claim about gains of bounded rate is one about this loop only if its law keeps to the rate.
-        let bounded = self.bounded(set, 1.0);
+        let bounded = set.rate_per_s.and_then(|_| self.bounded(set, 1.0));
         let kept = bounded.filter(|(_, rechecked)| rechecked.kept == Some(Kept::Everywhere));
         if let Some((certificate, rechecked)) = kept {
             return Verdict::Proved(certificate, rechecked);

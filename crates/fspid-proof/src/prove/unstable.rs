@@ -44,8 +44,12 @@ impl Prover<'_> {
         };
         let (range, side) = (fspid.tuner().supervisor().range(), self.effort.frozen_points.max(2));
         let place = |index: usize| range * (2.0 * index as f64 / (side - 1) as f64 - 1.0);
+        let scale = fspid.tuner().settings().input_scale;
+        // An input whose scale is 0 stays 0 in every flight.
+        let scaled = [scale.error_per_rad, scale.change_per_rad].map(|scale| scale != 0.0);
+        let seen = |input: usize, index| if scaled[input] { place(index) } else { 0.0 };
         let pairs = (0..side).flat_map(|row| (0..side).map(move |column| (row, column)));
-        pairs.map(|(row, column)| [place(row), place(column)]).collect()
+        pairs.map(|(row, column)| [seen(0, row), seen(1, column)]).collect()
     }
 
     /// Gains that the supervisor produces, in an order of our own, under which the loop grows.

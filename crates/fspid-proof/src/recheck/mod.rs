@@ -21,6 +21,8 @@ pub(crate) use moving::{Corner, moved_inputs, part_in};
 
 /// Longest sequence of gains that is multiplied out.
 const MOST_SAMPLES: usize = 20_000;
+/// Most double cones of a claim, and most cells along an input: a file must not fill the memory.
+const MOST_PARTS: usize = 1000;
 
 /// What was re-checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,6 +133,12 @@ fn allowed_rate(rate: f64) -> Result<(), Doubt> {
 impl<'a> Recheck<'a> {
     /// Everything enclosed anew from the description.
     fn of(certificate: &'a Certificate) -> Result<Self, Doubt> {
+        if !(certificate.output_factor >= 0.0 && certificate.output_factor.is_finite()) {
+            return Err(malformed("the output factor is not 0 or more"));
+        }
+        if !(1..=MOST_PARTS).contains(&certificate.divisions) {
+            return Err(malformed("the cells along an input are not 1 to 1000"));
+        }
         let description = certificate.description.clone().provable()?;
         let model = description.enclosed()?;
         let set = match &description.controller {
@@ -188,11 +196,6 @@ impl<'a> Recheck<'a> {
         Proved { inequalities, kept: None, pitch_within_rad: level.and_then(within) }
     }
 
-    /// Whether the limits are such that an ellipsoid can keep clear of them.
-    fn covers_limits(&self) -> bool {
-        limits::not_covered(&self.certificate.description).is_none()
-    }
-
     /// The closed loop at gains.
     fn closed(&self, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
         let rows = self.model.closed(gains);
@@ -201,9 +204,6 @@ impl<'a> Recheck<'a> {
 
     fn form(&self, form: &Matrix, rate: f64) -> Result<(), Doubt> {
         allowed_rate(rate)?;
-        if self.certificate.level.is_some() && !self.covers_limits() {
-            return Err(malformed("a level is claimed where limits are not covered"));
-        }
         if (form.rows(), form.columns()) != (self.model.size(), self.model.size()) {
             return Err(malformed("the form has another size than the loop's state"));
         }
@@ -241,6 +241,10 @@ impl<'a> Recheck<'a> {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(malformed("gains that remember are not tied to the error of the moment"));
         }
+        // Without a cone nothing would be asked of the loop at all.
+        if !(1..=MOST_PARTS).contains(&multipliers.len()) {
+            return Err(malformed("the double cones are not 1 to 1000"));
+        }
         let corners: Vec<(usize, Gains<f64>)> = self.set.corners().collect();
         let mut proved = 1;
         for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
@@ -268,6 +272,9 @@ impl<'a> Recheck<'a> {
         }
         let mut product = IntervalMatrix::identity(self.model.size());
         for input in inputs {
+            if !can_see(&self.certificate.description.controller, *input) {
+                return Err(malformed("an input whose scale is 0 is not 0"));
+            }
             let gains = produced(&self.certificate.description.controller, *input);
             let closed = self.closed(points(gains))?;
             product = closed.product(&product).map_err(NotProved::from)?;
@@ -284,6 +291,13 @@ pub(crate) fn produced(controller: &Controller, [error, change]: [f64; 2]) -> Ga
         Controller::Fixed(pid) => pid.gains(),
         Controller::SelfTuning(fspid) => producible(fspid.tuner(), error, change),
     }
+}
+
+/// Whether the supervisor can ever see an input: one whose scale is 0 stays 0.
+fn can_see(controller: &Controller, [error, change]: [f64; 2]) -> bool {
+    let Controller::SelfTuning(fspid) = controller else { return true };
+    let scale = fspid.tuner().settings().input_scale;
+    (scale.error_per_rad != 0.0 || error == 0.0) && (scale.change_per_rad != 0.0 || change == 0.0)
 }
 
 fn points(gains: Gains<f64>) -> Gains<Interval> {

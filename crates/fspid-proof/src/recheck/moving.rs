@@ -181,7 +181,7 @@ impl Recheck<'_> {
             proved.inequalities += self.keeps_within(claim, &fall, &corners, level)?;
             proved.kept = Some(Kept::WithinLevel);
         }
-        if self.covers_limits() {
+        if limits::not_covered(&self.certificate.description).is_none() {
             proved.inequalities += self.limits_at(&corners, level)?;
         }
         let forms = corners.iter().map(|corner| &corner.form);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
+use fspid_proof::{BoundedRate, Certificate, Claim, Kept, Outcome, Rechecked, Verdict};
 
 use super::{Certification, Certified, CheckedFile};
 use crate::metrics::short;
@@ -90,11 +90,26 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
     push_limits(out, certified, outcome);
 }
 
+/// How fast each gain may move; half the width of its box or more in a sample is as it likes.
+fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
+    let speed = |gain: usize| {
+        let ([lower, upper], change) = (claim.ends[gain], claim.changes[gain]);
+        if !(change < 1.0) {
+            return "as it likes".to_owned();
+        }
+        format!("{:.4} /s", change * 0.5 * (upper - lower) / dt_s)
+    };
+    let [kp, ki, kd] = [speed(0), speed(1), speed(2)];
+    line(out, format_args!("  gains move         at most kp {kp}, ki {ki}, kd {kd}"));
+}
+
 fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
     match &certificate.claim {
-        Claim::AnySpeed { rate, .. }
-        | Claim::Tied { rate, .. }
-        | Claim::BoundedRate(BoundedRate { rate, .. }) => push_rate(out, *rate, dt_s),
+        Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => push_rate(out, *rate, dt_s),
+        Claim::BoundedRate(claim) => {
+            push_rate(out, claim.rate, dt_s);
+            push_speed(out, claim, dt_s);
+        }
         Claim::FrozenGrowth { factor, .. } => {
             line(
                 out,
@@ -196,6 +211,7 @@ impl CheckedFile {
         match &self.result {
             Ok(rechecked) => {
                 push_rechecked(&mut out, rechecked);
+                push_kept(&mut out, &self.certificate, rechecked);
                 let [kp, ki, kd] = rechecked.bounds.map(range);
                 line(&mut out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
                 out.push_str("HOLDS\n");
@@ -204,6 +220,19 @@ impl CheckedFile {
         }
         out
     }
+}
+
+/// Whether the law of the loop keeps its gains to the rate that is claimed.
+fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked) {
+    if !matches!(certificate.claim, Claim::BoundedRate(_)) {
+        return;
+    }
+    let kept = match rechecked.kept {
+        Some(Kept::Everywhere) => "in every flight",
+        Some(Kept::WithinLevel) => "in flights that begin near enough to rest",
+        None => "not shown: this is no proof of the flown loop",
+    };
+    line(out, format_args!("  law keeps to this  {kept}"));
 }
 
 /// Writing to a string cannot fail.
