@@ -1,0 +1,1 @@
+//! What many numbers say: quantiles, probabilities, ranks and shares, with how sure that is.
