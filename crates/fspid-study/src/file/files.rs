@@ -5,7 +5,9 @@ use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
-use crate::file::document::FILE_LIMIT;
+use crate::file::document::{FILE_LIMIT, Item};
+use crate::file::overrides::Change;
+use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::Table;
 
@@ -15,18 +17,62 @@ pub(crate) struct Files<'a> {
     hasher: Sha256,
     /// Path of the key that refers to a file, the file's specification, and what it says.
     referred: Vec<(String, &'static Table, Section)>,
+    /// Changes that wait for the file that they are in, and whether it came.
+    changes: Vec<(Change, bool)>,
+    /// What was read, by the path of the key that names it; kept if asked for.
+    documents: Option<Vec<(String, Item)>>,
 }
 
 impl<'a> Files<'a> {
     /// Relative paths are those of `folder`; without one, no file can be referred to.
     pub(crate) fn new(folder: Option<&'a Path>) -> Self {
         let hasher = Sha256::new();
-        Self { folder, hasher, referred: Vec::new() }
+        Self { folder, hasher, referred: Vec::new(), changes: Vec::new(), documents: None }
     }
 
     /// Keeps what the file says that the key at `path` refers to.
     pub(crate) fn keep(&mut self, path: String, spec: &'static Table, section: Section) {
         self.referred.push((path, spec, section));
+    }
+
+    /// Keeps a change until the file has been read that it is in.
+    pub(crate) fn change(&mut self, change: Change) {
+        self.changes.push((change, false));
+    }
+
+    /// The changes that wait.
+    pub(crate) fn changes(&self) -> impl Iterator<Item = &Change> {
+        self.changes.iter().map(|(change, _)| change)
+    }
+
+    /// Changes what the file says that the key at `path` refers to; every file passes here.
+    pub(crate) fn apply_changes(&mut self, report: &mut Report, path: &str, document: &mut Item) {
+        for (change, used) in self.changes.iter_mut().filter(|(change, _)| change.path == path) {
+            change.apply(report, document);
+            *used = true;
+        }
+        if let Some(documents) = &mut self.documents {
+            documents.push((path.to_owned(), document.clone()));
+        }
+    }
+
+    /// Keeps what is read from here on.
+    pub(crate) fn keep_documents(&mut self) {
+        self.documents = Some(Vec::new());
+    }
+
+    /// What was read that the key at `path` names.
+    pub(crate) fn document(&self, path: &str) -> Option<&Item> {
+        let mut documents = self.documents.iter().flatten();
+        documents.find(|(at, _)| at == path).map(|(_, document)| document)
+    }
+
+    /// Reports changes whose file never came, where nothing else explains that.
+    pub(crate) fn report_unused_changes(&self, report: &mut Report) {
+        if report.count() == 0 {
+            let unused = self.changes.iter().filter(|(_, used)| !used);
+            unused.for_each(|(change, _)| change.report_unused(report));
+        }
     }
 
     /// What the file says that the key at `path` refers to.

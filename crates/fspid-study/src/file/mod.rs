@@ -32,6 +32,7 @@ pub(crate) mod section;
 mod setting;
 pub(crate) mod spec;
 pub(crate) mod tables;
+mod template;
 
 use std::fmt;
 use std::path::Path;
@@ -55,6 +56,7 @@ pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
+pub use template::{NewValue, SettingPath, Template};
 
 /// A scenario with what its file asks of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +73,21 @@ pub struct Study {
     pub digest: String,
     /// What is allowed and probably not meant.
     pub warnings: Vec<String>,
+}
+
+impl Study {
+    /// What was built from other values than those of a text, without settings and digest.
+    fn without_text(built: Built) -> Self {
+        let Built { scenario, requirements, airframes } = built;
+        Self {
+            scenario,
+            requirements,
+            airframes,
+            settings: Vec::new(),
+            digest: String::new(),
+            warnings: Vec::new(),
+        }
+    }
 }
 
 /// Why a file gave no study.
@@ -184,7 +201,9 @@ fn read(
 ) -> Option<(Built, Vec<Setting>)> {
     let document = changed_document(report, files, text, extra)?;
     let section = check::table(report, &spec::SCENARIO, &document, "")?;
-    let built = build::scenario(report, files, &section)?;
+    let built = build::scenario(report, files, &section);
+    files.report_unused_changes(report);
+    let built = built?;
     Some((built, setting::settings(files, &section)))
 }
 
@@ -202,9 +221,10 @@ fn changed_document(
         return None;
     }
     let mut document = document::read(report, None, text)?;
+    overrides::apply_listed(report, files, &mut document);
     for text in extra.overrides {
         files.digest(text);
-        overrides::apply(report, &mut document, text);
+        overrides::apply(report, files, &mut document, text);
     }
     extra::apply(report, files, &mut document, extra);
     Some(document)

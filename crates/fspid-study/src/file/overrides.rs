@@ -1,18 +1,61 @@
 //! `--set path=value`: changes of a document before it is checked.
+//!
+//! A path may lead through a key that names a file or preset into what that says, as in
+//! `plant.preset.numerator[0]`. Such a change waits in [`Files`] until the file has been read.
 
 use crate::file::document::{Item, Member, Value, read_value};
+use crate::file::files::Files;
 use crate::file::problem::nearest;
 use crate::file::report::{Place, Report, excerpt};
 
 /// A step of a path.
-#[derive(Debug, PartialEq)]
-enum Step {
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Step {
     Name(String),
     Index(usize),
 }
 
+/// Name of the key that lists changes in the file itself.
+pub(crate) const KEY: &str = "set";
+
+/// Applies the changes that the document lists itself; a list that is none is left for the check.
+pub(crate) fn apply_listed(report: &mut Report, files: &mut Files<'_>, document: &mut Item) {
+    let Value::Table(members) = &document.value else {
+        return;
+    };
+    let listed = members.iter().find(|member| member.name == KEY).map(|member| &member.item.value);
+    let Some(Value::Array(items)) = listed else {
+        return;
+    };
+    let text = |item: &Item| match &item.value {
+        Value::Text(text) => Some(text.clone()),
+        _ => None,
+    };
+    let texts: Vec<String> = items.iter().filter_map(text).collect();
+    texts.iter().for_each(|text| apply(report, files, document, text));
+}
+
+/// What the key may hold, in words.
+pub(crate) fn listed_in_words() -> String {
+    "a list of texts `path=value`, such as [\"plant.preset.numerator[0]=-1.5\"]".to_owned()
+}
+
+/// As JSON Schema.
+pub(crate) fn listed_schema() -> serde_json::Value {
+    serde_json::json!({ "type": "array", "items": { "type": "string", "pattern": "=" } })
+}
+
+/// Reports a list of changes that is none.
+pub(crate) fn check_listed(report: &mut Report, item: &Item) {
+    let is_text = |item: &Item| matches!(item.value, Value::Text(_));
+    if !matches!(&item.value, Value::Array(items) if items.iter().all(is_text)) {
+        let message = format!("wrong type: {}", item.value.type_name());
+        report.value(item.place, KEY, message, listed_in_words());
+    }
+}
+
 /// Applies `path=value` to the document; what is wrong with it is reported.
-pub(crate) fn apply(report: &mut Report, document: &mut Item, text: &str) {
+pub(crate) fn apply(report: &mut Report, files: &mut Files<'_>, document: &mut Item, text: &str) {
     let origin = format!("--set {}", excerpt(text));
     let Some((path, value)) = text.split_once('=') else {
         let place = whole(report, &origin, text);
@@ -28,13 +71,67 @@ pub(crate) fn apply(report: &mut Report, document: &mut Item, text: &str) {
         return;
     };
     let set = Setting { origin, item };
-    descend(report, document, &steps, "", &set);
+    put(report, files, document, (&steps, &set));
+}
+
+/// Puts a value into the document, or keeps it for the file that its path leads into.
+pub(crate) fn put(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    document: &mut Item,
+    (steps, set): (&[Step], &Setting),
+) {
+    if let Some((path, rest)) = descend(report, document, steps, "", set) {
+        files.change(Change { path, steps: rest.to_vec(), set: set.clone() });
+    }
 }
 
 /// What is set, and the words it was set with.
-struct Setting {
-    origin: String,
-    item: Item,
+#[derive(Clone, Debug)]
+pub(crate) struct Setting {
+    pub(crate) origin: String,
+    pub(crate) item: Item,
+}
+
+/// A change inside of a file that the key at `path` names.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    pub(crate) path: String,
+    steps: Vec<Step>,
+    set: Setting,
+}
+
+impl Change {
+    /// Changes what the file says.
+    pub(crate) fn apply(&self, report: &mut Report, document: &mut Item) {
+        if descend(report, document, &self.steps, "", &self.set).is_some() {
+            let place = whole(report, &self.set.origin, "");
+            report.missing(place, &self.path, "a file there names no other file", "");
+        }
+    }
+
+    /// The change as `path=value`, where the key stands at another path; `written` writes a value.
+    pub(crate) fn text(&self, path: &str, written: fn(&Value) -> String) -> String {
+        let mut text = path.to_owned();
+        for step in &self.steps {
+            match step {
+                Step::Index(index) => text.push_str(&format!("[{index}]")),
+                Step::Name(name) => text.push_str(&format!(".\"{name}\"")),
+            }
+        }
+        format!("{text}={}", written(&self.set.item.value))
+    }
+
+    /// Reports that there is no file at the path.
+    pub(crate) fn report_unused(&self, report: &mut Report) {
+        let place = whole(report, &self.set.origin, "");
+        let message = match self.steps.first() {
+            Some(Step::Index(index)) => format!("has no [{index}]: it is text"),
+            Some(Step::Name(name)) => format!("has no `{name}` in it: it is text"),
+            None => "is text".to_owned(),
+        };
+        report.missing(place, &self.path, message, "");
+    }
 }
 
 fn whole(report: &mut Report, origin: &str, text: &str) -> Place {
@@ -43,7 +140,7 @@ fn whole(report: &mut Report, origin: &str, text: &str) -> Place {
 }
 
 /// The steps of `controller[0].nominal.kp` or `controller."my PID".kp`.
-fn steps(path: &str) -> Option<Vec<Step>> {
+pub(crate) fn steps(path: &str) -> Option<Vec<Step>> {
     let mut steps = Vec::new();
     let mut rest = path.trim();
     loop {
@@ -73,30 +170,38 @@ fn steps(path: &str) -> Option<Vec<Step>> {
     }
 }
 
-fn descend(report: &mut Report, at: &mut Item, steps: &[Step], path: &str, set: &Setting) {
+/// Follows the steps and sets what is there. Answers the path of a text on the way and the steps
+/// that lead into the file it names, if there is one.
+fn descend<'s>(
+    report: &mut Report,
+    at: &mut Item,
+    steps: &'s [Step],
+    path: &str,
+    set: &Setting,
+) -> Option<(String, &'s [Step])> {
     let Some((step, rest)) = steps.split_first() else {
         *at = set.item.clone();
-        return;
+        return None;
     };
     let kind = at.value.type_name();
     match (&mut at.value, step) {
         (Value::Table(members), Step::Name(name)) => {
             let path = join(path, name);
             let member = member(members, name, set.item.place);
-            descend(report, &mut member.item, rest, &path, set);
+            descend(report, &mut member.item, rest, &path, set)
         }
         (Value::Array(items), step) => match index(items, step) {
             Ok(index) => {
                 let path = format!("{path}[{index}]");
-                if let Some(item) = items.get_mut(index) {
-                    descend(report, item, rest, &path, set);
-                }
+                descend(report, items.get_mut(index)?, rest, &path, set)
             }
             Err((message, allowed)) => {
                 let place = whole(report, &set.origin, "");
                 report.missing(place, path, message, allowed);
+                None
             }
         },
+        (Value::Text(_), _) => Some((path.to_owned(), steps)),
         (_, step) => {
             let place = whole(report, &set.origin, "");
             let message = match step {
@@ -104,7 +209,37 @@ fn descend(report: &mut Report, at: &mut Item, steps: &[Step], path: &str, set: 
                 Step::Index(index) => format!("has no [{index}]: it is {kind}"),
             };
             report.missing(place, path, message, "");
+            None
         }
+    }
+}
+
+/// What is found at the end of a path.
+pub(crate) enum Found<'a> {
+    /// The value itself.
+    Here(&'a Item),
+    /// The key that names a file, and the steps inside of that.
+    InFile(String, &'a [Step]),
+    /// Nothing.
+    Nothing,
+}
+
+/// Follows the steps without changing anything.
+pub(crate) fn find<'a>(at: &'a Item, steps: &'a [Step], path: &str) -> Found<'a> {
+    let Some((step, rest)) = steps.split_first() else {
+        return Found::Here(at);
+    };
+    match (&at.value, step) {
+        (Value::Table(members), Step::Name(name)) => {
+            let member = members.iter().find(|member| member.name == *name);
+            member.map_or(Found::Nothing, |it| find(&it.item, rest, &join(path, name)))
+        }
+        (Value::Array(items), step) => {
+            let found = index(items, step).ok().and_then(|at| Some((at, items.get(at)?)));
+            found.map_or(Found::Nothing, |(at, item)| find(item, rest, &format!("{path}[{at}]")))
+        }
+        (Value::Text(_), _) => Found::InFile(path.to_owned(), steps),
+        _ => Found::Nothing,
     }
 }
 

@@ -1,5 +1,7 @@
 //! The texts that are being read and the problems found in them so far.
 
+use std::sync::Arc;
+
 use crate::file::problem::{Problem, Problems};
 
 /// Longest excerpt of a file in a message, in characters.
@@ -20,7 +22,7 @@ pub(crate) struct Place {
 }
 
 /// A text and what it is called; `None` for the file itself.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Source {
     origin: Option<String>,
     text: String,
@@ -29,9 +31,9 @@ struct Source {
 }
 
 /// What is known about the files so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Report {
-    sources: Vec<Source>,
+    sources: Vec<Arc<Source>>,
     /// With the number of the text that each is in.
     problems: Vec<(usize, Problem)>,
     omitted: usize,
@@ -44,7 +46,7 @@ impl Report {
         let after_breaks = text.match_indices('\n').map(|(at, _)| at + 1);
         let lines = std::iter::once(0).chain(after_breaks).collect();
         let text = text.to_owned();
-        self.sources.push(Source { origin, text, lines });
+        self.sources.push(Arc::new(Source { origin, text, lines }));
         self.sources.len() - 1
     }
 

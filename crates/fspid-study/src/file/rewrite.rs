@@ -8,6 +8,7 @@ use fspid_sim::ElevatorSign;
 use crate::file::document::{Item, Member, Value};
 use crate::file::extra::Extra;
 use crate::file::files::Files;
+use crate::file::overrides::{self, Change};
 use crate::file::preset::rule_table_names;
 use crate::file::report::{Place, Report};
 use crate::file::spec::{Kind, SCENARIO, Table};
@@ -45,7 +46,19 @@ pub(crate) fn replay(
     if let Some(plant) = replay.plant {
         keep_plant(&mut members, plant, replay.sign);
     }
-    keep_controller(&mut members, replay);
+    let kept = keep_controller(&mut members, replay);
+    let listed = |change: &Change| {
+        // A frozen controller has no supervisor any more.
+        let is_gone = replay.frozen.is_some() && change.path.contains(".supervisor.");
+        let path = path_now(&change.path, replay.plant, kept).filter(|_| !is_gone)?;
+        Some(item(text_value(&change.text(&path, written))))
+    };
+    let changes: Vec<Item> = files.changes().filter_map(listed).collect();
+    // The others stand in the document by now.
+    members.retain(|member| member.name != overrides::KEY);
+    if !changes.is_empty() {
+        put(&mut members, overrides::KEY, Value::Array(changes));
+    }
     put(&mut members, "requirement", Value::Array(vec![requirement(replay)]));
     move_paths(&SCENARIO, &mut members, moved);
     let mut out = String::new();
@@ -59,7 +72,7 @@ fn item(value: Value) -> Item {
     Item { place: NOWHERE, value }
 }
 
-fn text(text: &str) -> Value {
+fn text_value(text: &str) -> Value {
     Value::Text(text.to_owned())
 }
 
@@ -90,40 +103,59 @@ fn keep_plant(members: &mut Vec<Member>, plant: usize, sign: ElevatorSign) {
                 ElevatorSign::NoseUpPositive => "nose-up-positive",
                 ElevatorSign::NoseDownPositive => "nose-down-positive",
             };
-            put(&mut plant, "elevator_sign", text(word));
+            put(&mut plant, "elevator_sign", text_value(word));
         }
         put(members, "plant", Value::Table(plant));
     }
     members.retain(|member| member.name != "plant_change");
 }
 
-/// Leaves one controller, frozen where that is asked for.
-fn keep_controller(members: &mut Vec<Member>, replay: &Replay<'_>) {
-    let Some(meant) = replay.controller else {
-        return;
+/// Where a key stands in the replay that was at `path`; `None` for one that is left out.
+fn path_now(path: &str, plant: Option<usize>, controller: Option<usize>) -> Option<String> {
+    let moved = |number: usize, list: &str, to: &str| {
+        let rest = path.strip_prefix(&format!("{list}[{number}]"))?;
+        Some(format!("{to}{rest}"))
     };
+    if let (true, Some(number)) = (path.starts_with("controller["), controller) {
+        return moved(number, "controller", "controller[0]");
+    }
+    let of_plant = path.starts_with("plant.");
+    match plant {
+        Some(0) if path.starts_with("plant_change[") => None,
+        Some(0) | None => Some(path.to_owned()),
+        Some(_) if of_plant => None,
+        Some(number) if path.starts_with("plant_change[") => {
+            moved(number - 1, "plant_change", "plant")
+        }
+        Some(_) => Some(path.to_owned()),
+    }
+}
+
+/// Leaves one controller, frozen where that is asked for; answers which one it was.
+fn keep_controller(members: &mut Vec<Member>, replay: &Replay<'_>) -> Option<usize> {
+    let meant = replay.controller?;
     let is_name = |member: &Member| {
         member.name == "name" && matches!(&member.item.value, Value::Text(name) if name == meant)
     };
-    let is_meant = |item: &&Item| match &item.value {
+    let is_meant = |item: &Item| match &item.value {
         Value::Table(members) => members.iter().any(is_name),
         _ => false,
     };
-    let found = tables_of(members, "controller").iter().find(is_meant).cloned();
-    let Some(mut controller) = found else {
-        return;
-    };
+    let controllers = tables_of(members, "controller");
+    let index = controllers.iter().position(is_meant)?;
+    let mut controller = controllers.get(index)?.clone();
     if let (Some((gains, shell)), Value::Table(keys)) = (replay.frozen, &mut controller.value) {
         freeze(keys, gains, &shell);
     }
     put(members, "controller", Value::Array(vec![controller]));
+    Some(index)
 }
 
 /// A self-tuning controller with its gains held: a PID of the same shell.
 fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, shell: &Shell<f64>) {
     let of_pid: Vec<&str> = controller_table().keys_of("pid").map(|key| key.name).collect();
     keys.retain(|member| of_pid.contains(&member.name.as_str()));
-    put(keys, "kind", text("pid"));
+    put(keys, "kind", text_value("pid"));
     // The filter may have been given with gains in ISA form.
     put(keys, "derivative_filter_s", Value::Float(shell.derivative.filter_s));
     for (name, gain) in [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)] {
@@ -144,8 +176,8 @@ fn controller_table() -> &'static Table {
 fn requirement(replay: &Replay<'_>) -> Item {
     let asked = replay.requirement;
     let mut members = Vec::new();
-    put(&mut members, "id", text(&asked.id));
-    put(&mut members, "measure", text(asked.measure.name()));
+    put(&mut members, "id", text_value(&asked.id));
+    put(&mut members, "measure", text_value(asked.measure.name()));
     let limits = [("least", asked.least), ("most", asked.most)];
     for (name, number) in limits.into_iter().chain(asked.conditions.numbers()) {
         if let Some(number) = number {
@@ -163,7 +195,7 @@ fn requirement(replay: &Replay<'_>) -> Item {
     ];
     for (name, word) in words {
         if let Some(word) = word {
-            put(&mut members, name, text(word));
+            put(&mut members, name, text_value(word));
         }
     }
     item(Value::Table(members))
@@ -297,7 +329,7 @@ mod tests {
     fn a_value_is_written_so_that_toml_reads_it_back() {
         let hostile = "a\"b\\c\nd\te\r\u{1b}\u{7f}\u{85}ä=[{,";
         for value in [
-            text(hostile),
+            text_value(hostile),
             Value::Float(0.1 + 0.2),
             Value::Float(-1e-300),
             Value::Float(5.0),
@@ -319,7 +351,8 @@ mod tests {
 
     #[test]
     fn a_nested_table_is_written_in_one_line() {
-        let inner = vec![Member { name: "a b".to_owned(), place: NOWHERE, item: item(text("c")) }];
+        let inner =
+            vec![Member { name: "a b".to_owned(), place: NOWHERE, item: item(text_value("c")) }];
         let read: toml::Table =
             format!("x = {}", written(&Value::Table(inner))).parse().expect("TOML");
         assert_eq!(read["x"]["a b"].as_str(), Some("c"));

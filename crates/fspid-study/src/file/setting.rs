@@ -22,7 +22,7 @@ pub struct Setting {
     /// The top-level table that it is in, such as `loop` or `controller.FSPID`; empty for none.
     pub table: String,
     /// Where it is, such as `controller.FSPID.supervisor.range`: what `--set` changes. What a file
-    /// says is below the key that names it, as in `plant.preset.numerator`; no `--set` there.
+    /// says is below the key that names it, as in `plant.preset.numerator`.
     pub path: String,
     /// The value in one line, as TOML has it. Long lists and texts are cut, with their length.
     pub value: String,

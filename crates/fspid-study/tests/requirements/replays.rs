@@ -112,6 +112,19 @@ fn a_plant_of_a_change_in_flight_is_alone_in_its_replay() {
     assert!(later.filter(|plant| plant.index > 0).count() > 5);
 }
 
+#[test]
+fn changes_of_what_presets_say_are_in_their_replay() {
+    let text = JUMBO.replace("b747-paper", "navion-full");
+    let change = "[[plant_change]]\nat_s = 10.0\npreset = \"navion-full\"\n";
+    let (folder, path) = written(&format!("{text}\n{change}\n{}", every_measure()));
+    let settings = ["plant_change[0].preset.denominator[1]=0.5", "plant.preset.numerator[0]=-12.0"];
+    let verification = verified(&path, &settings, &[]);
+    assert_ne!(verified(&path, &[], &[]).judgements, verification.judgements);
+    replay_all(&verification, &folder.path().join("replay"));
+    let later = verification.judgements.iter().filter_map(|judgement| judgement.place().plant);
+    assert!(later.filter(|plant| plant.index > 0).count() > 5);
+}
+
 /// Presets keep their speed: without it a replay would have no control anticipation.
 #[test]
 fn a_plant_of_a_change_keeps_the_speed_of_its_preset() {

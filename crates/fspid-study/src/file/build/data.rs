@@ -20,7 +20,12 @@ pub(super) fn plant(
     section: &Section,
 ) -> Option<LinearPlant> {
     if let Some(name) = section.text("preset") {
-        let part = carried(report, files, &PLANT_FILE, (name, plant_text(name)?))?;
+        let part = carried(
+            report,
+            files,
+            &PLANT_FILE,
+            (name, plant_text(name)?, &section.path("preset")),
+        )?;
         return of_file(report, files, section.path("preset"), part);
     }
     if let Some(file) = section.text("file") {
@@ -111,7 +116,8 @@ pub(super) fn rules(
     }
     let name = supervisor.text("table")?;
     if let Some(text) = rule_table_text(name) {
-        return rule_table(&carried(report, files, &RULE_FILE, (name, text))?);
+        let path = supervisor.path("table");
+        return rule_table(&carried(report, files, &RULE_FILE, (name, text, &path))?);
     }
     let at = (supervisor.at("table"), supervisor.path("table"));
     rule_table(&referred(report, files, &RULE_FILE, (name, at))?)
@@ -124,7 +130,7 @@ pub(crate) fn rules_named(
     name: &str,
 ) -> Option<RuleTable> {
     if let Some(text) = rule_table_text(name) {
-        return rule_table(&carried(report, files, &RULE_FILE, (name, text))?);
+        return rule_table(&carried(report, files, &RULE_FILE, (name, text, ""))?);
     }
     let source = report.add_source(None, name);
     let end = name.len();
@@ -140,15 +146,16 @@ fn rule_table(section: &Section) -> Option<RuleTable> {
     ]))
 }
 
-/// A file that the program carries.
+/// A file that the program carries, named by the key at a path.
 pub(super) fn carried(
     report: &mut Report,
     files: &mut Files<'_>,
     spec: &'static Table,
-    (name, text): (&str, &str),
+    (name, text, path): (&str, &str, &str),
 ) -> Option<Section> {
     files.digest(text);
-    let item = document::read(report, Some(format!("{name} (built in)")), text)?;
+    let mut item = document::read(report, Some(format!("{name} (built in)")), text)?;
+    files.apply_changes(report, path, &mut item);
     check::table(report, spec, &item, "").filter(|section| section.sound)
 }
 
@@ -168,6 +175,7 @@ pub(super) fn referred(
         }
     };
     files.digest(&text);
-    let item = document::read(report, Some(name.to_owned()), &text)?;
+    let mut item = document::read(report, Some(name.to_owned()), &text)?;
+    files.apply_changes(report, &path, &mut item);
     check::table(report, spec, &item, "").filter(|section| section.sound)
 }

@@ -76,7 +76,8 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
 fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {
     let (key, section, place) = match part.text("name") {
         Some(name) => {
-            let named = (name, aircraft_text(name)?);
+            let path = part.path("name");
+            let named = (name, aircraft_text(name)?, path.as_str());
             ("name", data::carried(report, files, &AIRCRAFT_FILE, named)?, None)
         }
         None => {

@@ -16,6 +16,7 @@ use flight::Flown;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 
 use crate::file::files::Files;
+use crate::file::overrides;
 use crate::file::report::Report;
 use crate::file::requirement::requirements;
 use crate::file::section::Section;
@@ -36,6 +37,9 @@ pub(crate) fn scenario(
     files: &mut Files<'_>,
     section: &Section,
 ) -> Option<Built> {
+    if let Some(item) = section.item(overrides::KEY) {
+        overrides::check_listed(report, item);
+    }
     let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
     let flown = flight::flown(report, files, section);
     let drive = match section.section("actuator") {

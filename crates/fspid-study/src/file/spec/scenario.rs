@@ -11,6 +11,7 @@ use super::{
     Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
     positive, required,
 };
+use crate::file::overrides;
 use crate::file::preset::plant_names;
 
 /// The file as a whole.
@@ -63,6 +64,11 @@ pub(crate) static SCENARIO: Table = Table {
             "requirement",
             Kind::Tables { table: &REQUIREMENT, least: 0, most: 1000 },
             "What the responses must meet.",
+        ),
+        optional(
+            overrides::KEY,
+            Kind::Own { allowed: overrides::listed_in_words, schema: overrides::listed_schema },
+            "Changes as `--set` makes them, before anything is checked; also of what the files say that are named.",
         ),
     ]],
     choices: &[one_of!("plant", "aircraft")],

@@ -1,0 +1,230 @@
+//! A scenario that is read once and built many times, each time with other numbers.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::build::{Built, scenario};
+use super::document::{Item, Value};
+use super::extra::Extra;
+use super::files::Files;
+use super::overrides::{self, Found, Setting, Step};
+use super::problem::Problems;
+use super::report::{Place, Report};
+use super::{Study, changed_document, check, spec};
+
+/// A place in a scenario, as `--set` names it: `controller.FSPID.nominal.kp`,
+/// `plant.preset.numerator[0]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingPath {
+    text: String,
+    steps: Vec<Step>,
+}
+
+impl SettingPath {
+    /// Reads a path; `None` for a text that is none.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let steps = overrides::steps(text)?;
+        Some(Self { text: text.trim().to_owned(), steps })
+    }
+
+    /// As it was written.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// What is put at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NewValue {
+    /// A number.
+    Number(f64),
+    /// A whole number, such as a seed.
+    Integer(i64),
+    /// A text, such as the name of a plant.
+    Text(String),
+    /// True or false.
+    Boolean(bool),
+}
+
+impl NewValue {
+    fn value(&self) -> Value {
+        match self {
+            Self::Number(number) => Value::Float(*number),
+            Self::Integer(integer) => Value::Integer(*integer as f64, Some(*integer)),
+            Self::Text(text) => Value::Text(text.clone()),
+            Self::Boolean(boolean) => Value::Boolean(*boolean),
+        }
+    }
+}
+
+/// As `--set` takes it; reads back as the same bits.
+impl fmt::Display for NewValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number:?}"),
+            Self::Integer(integer) => write!(f, "{integer}"),
+            Self::Text(text) => write!(f, "{text:?}"),
+            Self::Boolean(boolean) => write!(f, "{boolean}"),
+        }
+    }
+}
+
+/// A scenario with everything that comes from outside, ready to be built with other numbers.
+#[derive(Clone, Debug)]
+pub struct Template {
+    name: String,
+    folder: Option<PathBuf>,
+    report: Report,
+    document: Item,
+    /// Changes of files that the scenario names.
+    changes: Vec<overrides::Change>,
+    study: Study,
+}
+
+impl Template {
+    /// Reads a scenario from a text called `name` in messages, as [`parse_with`](super::parse_with).
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn parse(
+        text: &str,
+        name: &str,
+        folder: Option<&Path>,
+        extra: &Extra<'_>,
+    ) -> Result<Self, Problems> {
+        let study = super::parse_with(text, name, folder, extra)?;
+        let (mut report, mut files) = (Report::default(), Files::new(folder));
+        let document = changed_document(&mut report, &mut files, text, extra);
+        Ok(Self {
+            name: name.to_owned(),
+            folder: folder.map(Path::to_owned),
+            // The text was read once already.
+            document: document.ok_or_else(|| Problems::new(name, Vec::new(), 0))?,
+            changes: files.changes().cloned().collect(),
+            report,
+            study,
+        })
+    }
+
+    /// The scenario as it is written.
+    #[must_use]
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// The scenario with other values at some places. It has neither settings nor a digest of its own.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it then.
+    pub fn with(&self, values: &[(&SettingPath, NewValue)]) -> Result<Study, Problems> {
+        let (mut report, mut files) = (self.report.clone(), self.files());
+        let mut document = self.document.clone();
+        for (path, value) in values {
+            let set = setting(&mut report, path, value);
+            overrides::put(&mut report, &mut files, &mut document, (&path.steps, &set));
+        }
+        let built = build(&mut report, &mut files, &document);
+        files.report_unused_changes(&mut report);
+        report.finish(&self.name)?;
+        let built = built.ok_or_else(|| Problems::new(&self.name, Vec::new(), 0))?;
+        Ok(Study::without_text(built))
+    }
+
+    /// The number at a place, in the scenario or in a file that it names; `None` where there is none.
+    #[must_use]
+    pub fn number_at(&self, path: &SettingPath) -> Option<f64> {
+        let (key, rest) = match overrides::find(&self.document, &path.steps, "") {
+            Found::Here(item) => return number(item),
+            Found::InFile(key, rest) => (key, rest),
+            Found::Nothing => return None,
+        };
+        let (mut report, mut files) = (self.report.clone(), self.files());
+        files.keep_documents();
+        build(&mut report, &mut files, &self.document)?;
+        match overrides::find(files.document(&key)?, rest, "") {
+            Found::Here(item) => number(item),
+            _ => None,
+        }
+    }
+
+    fn files(&self) -> Files<'_> {
+        let mut files = Files::new(self.folder.as_deref());
+        self.changes.iter().for_each(|change| files.change(change.clone()));
+        files
+    }
+}
+
+fn build(report: &mut Report, files: &mut Files<'_>, document: &Item) -> Option<Built> {
+    let section = check::table(report, &spec::SCENARIO, document, "")?;
+    scenario(report, files, &section)
+}
+
+/// A new value with the words that a problem quotes.
+fn setting(report: &mut Report, path: &SettingPath, value: &NewValue) -> Setting {
+    let text = value.to_string();
+    let origin = format!("--set {}={text}", path.text);
+    let source = report.add_source(Some(origin.clone()), &text);
+    let place = Place { source, start: 0, end: text.len() };
+    Setting { origin, item: Item { place, value: value.value() } }
+}
+
+fn number(item: &Item) -> Option<f64> {
+    match item.value {
+        Value::Float(number) | Value::Integer(number, _) => Some(number),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::parse;
+
+    const SCENARIO: &str = include_str!("../../../../scenarios/747-pitch-step.toml");
+
+    fn path(text: &str) -> SettingPath {
+        SettingPath::parse(text).expect("a path")
+    }
+
+    fn template() -> Template {
+        Template::parse(SCENARIO, "step.toml", None, &Extra::default()).expect("a scenario")
+    }
+
+    #[test]
+    fn a_template_with_new_values_is_the_scenario_with_those_changes() {
+        let (gain, zero) = (path("controller.FSPID.nominal.kp"), path("plant.preset.numerator[0]"));
+        let values = [(&gain, NewValue::Number(0.1 + 0.2)), (&zero, NewValue::Number(-1.7))];
+        let built = template().with(&values).expect("a scenario");
+        let texts = values.map(|(path, value)| format!("{}={value}", path.text()));
+        let parsed = parse(SCENARIO, "step.toml", None, &texts).expect("a scenario");
+        assert_eq!(built.scenario, parsed.scenario);
+        assert_ne!(built.scenario, template().study().scenario);
+    }
+
+    #[test]
+    fn a_number_is_found_in_the_scenario_and_in_the_plant_that_it_names() {
+        let found = |text: &str| template().number_at(&path(text));
+        assert_eq!(found("controller[2].nominal.ki"), Some(0.5));
+        assert_eq!(found("plant.preset.numerator[0]"), Some(-1.69144));
+        for nothing in ["plant.preset.nominator[0]", "name", "loop.x", "controller[9].kp"] {
+            assert_eq!(found(nothing), None, "{nothing}");
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_not_allowed_is_refused_with_its_path_and_number() {
+        let period = path("loop.sample_period_s");
+        let problems = template().with(&[(&period, NewValue::Number(-1.0))]).expect_err("negative");
+        let text = problems.to_string();
+        assert!(text.contains("loop.sample_period_s") && text.contains("-1"), "{text}");
+    }
+
+    #[test]
+    fn a_path_into_a_file_that_is_none_is_refused() {
+        let name = path("name.x");
+        let problems = template().with(&[(&name, NewValue::Number(1.0))]).expect_err("no file");
+        assert!(problems.to_string().contains("has no `x` in it"), "{problems}");
+    }
+}
