@@ -45,6 +45,13 @@ impl<const W: usize> Row<'_, W> {
         self.excess.get(lane) == Some(&YES)
     }
 
+    /// Faults latched by the controller of a lane; none without such a lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn faults(&self, lane: usize) -> Faults {
+        self.faults.get(lane).copied().unwrap_or(Faults::NONE)
+    }
+
     /// What [`fly`](crate::fly) shows of a lane's flight at this sample; `None` where none flies.
     #[inline(always)]
     #[must_use]

@@ -39,6 +39,12 @@ impl Verdict {
         matches!(self, Self::Settled | Self::Flown)
     }
 
+    /// True for a loop that is lost: it diverged or is unstable.
+    #[must_use]
+    pub fn is_failure(self) -> bool {
+        self.absence().is_some()
+    }
+
     /// Why nothing can be measured, where that is so.
     fn absence(self) -> Option<Absent> {
         match self {

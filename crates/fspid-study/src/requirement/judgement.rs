@@ -46,6 +46,12 @@ impl Judgement {
         Self { controller, requirement: requirement.clone(), found, met }
     }
 
+    /// True for a judgement of the aircraft alone, whoever flies it.
+    #[must_use]
+    pub fn is_of_aircraft(&self) -> bool {
+        is_of_aircraft(&self.requirement)
+    }
+
     /// Where the worst case is.
     #[must_use]
     pub fn place(&self) -> Place {

@@ -1,0 +1,58 @@
+//! One controller of each study, in lanes as far as they go.
+
+use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
+use fspid_sim::{Controller, Prepared, SimError, Trace};
+use fspid_study::file::Study;
+
+use super::recorder::Recorder;
+use super::single;
+
+/// A flight, with its place among the studies.
+#[derive(Clone, Copy)]
+struct Ready<'a> {
+    place: usize,
+    prepared: &'a Prepared,
+    controller: &'a Controller,
+}
+
+/// Flies the controller at `place` of each study; `None` where there is no flight.
+pub(super) fn fly(
+    studies: &[Study],
+    prepared: &[Result<Prepared, SimError>],
+    place: usize,
+) -> Vec<Option<Result<Trace, SimError>>> {
+    let ready = studies.iter().zip(prepared).enumerate().filter_map(|(at, (study, prepared))| {
+        let controller = &study.scenario.controllers.get(place)?.controller;
+        Some(Ready { place: at, prepared: prepared.as_ref().ok()?, controller })
+    });
+    let ready: Vec<Ready<'_>> = ready.collect();
+    let mut traces: Vec<Option<Result<Trace, SimError>>> = vec![None; studies.len()];
+    for group in ready.chunks(LANES) {
+        for (flight, trace) in group.iter().zip(fly_together(group)) {
+            traces[flight.place] = Some(trace);
+        }
+    }
+    traces
+}
+
+/// Up to as many flights as there are lanes; one by one where they cannot fly side by side.
+fn fly_together(group: &[Ready<'_>]) -> Vec<Result<Trace, SimError>> {
+    in_lanes(group).unwrap_or_else(|| {
+        let alone = |flight: &Ready<'_>| single::trace(flight.prepared, flight.controller);
+        group.iter().map(alone).collect()
+    })
+}
+
+fn in_lanes(group: &[Ready<'_>]) -> Option<Vec<Result<Trace, SimError>>> {
+    let entrants: Vec<Entrant<'_>> = group
+        .iter()
+        .map(|flight| Entrant { prepared: flight.prepared, controller: flight.controller })
+        .collect();
+    let rows = group.first()?.prepared.timing().rows();
+    let mut recorder = Recorder::<LANES>::with_room(rows);
+    let outcomes = fly_group::<LANES>(&entrants, |row: &Row<'_, LANES>| recorder.push(row)).ok()?;
+    let traces = outcomes.into_iter().zip(group).enumerate().map(|(lane, (outcome, flight))| {
+        outcome.map(|outcome| recorder.trace(lane, flight.prepared, outcome))
+    });
+    Some(traces.collect())
+}

@@ -1,0 +1,171 @@
+//! Flying studies that differ in numbers: side by side where lanes can, one by one where not.
+//!
+//! Every flight has the bits of [`simulate`](fspid_sim::simulate): it is the same loop, measured and
+//! judged by the same functions as a single study. No trace outlives its measures.
+
+mod lanes;
+mod recorder;
+mod single;
+
+use fspid_core::Faults;
+use fspid_sim::stability::instability;
+use fspid_sim::{Exit, Outcome, Prepared, SimError, Trace};
+use fspid_study::file::Study;
+use fspid_study::metrics::{CommandEffort, FlightMetrics};
+use fspid_study::requirement::{Judgement, judge};
+use fspid_study::simulation::ControllerResult;
+
+/// What one controller's flight comes to, without its trace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightResult {
+    /// Name of the controller.
+    pub controller: String,
+    /// Measures and verdict.
+    pub metrics: FlightMetrics,
+    /// Largest error, rad.
+    pub largest_error_rad: f64,
+    /// Effort of the elevator over the whole flight.
+    pub elevator: CommandEffort,
+    /// Samples whose command was cut by the controller's own limits, as a share of those flown.
+    pub saturated_share: f64,
+    /// Faults latched by the controller.
+    pub faults: Faults,
+    /// When an aircraft first left the range of its model, if it did.
+    pub exit: Option<Exit>,
+    /// The requirements that concern it, in the order of the study; those of the aircraft alone stand
+    /// with the first controller.
+    pub judgements: Vec<Judgement>,
+}
+
+/// Most memory for traces that are being measured, in numbers: 16 MiB a thread.
+const MOST_NUMBERS: usize = 2 << 20;
+
+/// How many studies are best flown at once: as many as there are lanes, fewer where flights are long.
+#[must_use]
+pub fn at_once(study: &Study) -> usize {
+    let scenario = &study.scenario;
+    let numbers = scenario.timing.rows() * scenario.controllers.len() * recorder::COLUMNS;
+    (MOST_NUMBERS / numbers.max(1)).clamp(1, fspid_sim::batch::LANES)
+}
+
+/// Flies each study with each of its controllers. The studies come from one scenario, so that all have
+/// the same controllers in the same order; in every number they may differ.
+#[must_use]
+pub fn fly(studies: &[Study]) -> Vec<Result<Vec<FlightResult>, SimError>> {
+    let prepared: Vec<_> = studies.iter().map(|study| study.scenario.prepare()).collect();
+    let mut traces: Vec<Result<Vec<Trace>, SimError>> = prepared
+        .iter()
+        .map(|found| found.as_ref().map(|_| Vec::new()).map_err(Clone::clone))
+        .collect();
+    let controllers = studies.iter().map(|study| study.scenario.controllers.len()).max();
+    for place in 0..controllers.unwrap_or(0) {
+        let flown = lanes::fly(studies, &prepared, place);
+        for (traces, flown) in traces.iter_mut().zip(flown) {
+            keep(traces, flown);
+        }
+    }
+    let measured = studies.iter().zip(&prepared).zip(traces);
+    measured.map(|((study, prepared), traces)| measure(study, prepared, traces?)).collect()
+}
+
+/// Adds a trace to those of its study; the first error stays.
+fn keep(traces: &mut Result<Vec<Trace>, SimError>, flown: Option<Result<Trace, SimError>>) {
+    if let (Ok(list), Some(flown)) = (&mut *traces, flown) {
+        match flown {
+            Ok(trace) => list.push(trace),
+            Err(error) => *traces = Err(error),
+        }
+    }
+}
+
+fn measure(
+    study: &Study,
+    prepared: &Result<Prepared, SimError>,
+    traces: Vec<Trace>,
+) -> Result<Vec<FlightResult>, SimError> {
+    let prepared = prepared.as_ref().map_err(Clone::clone)?;
+    let scenario = &study.scenario;
+    let results = scenario.controllers.iter().zip(traces).map(|(named, trace)| {
+        let unstable = instability(scenario, &named.controller)?;
+        let metrics = FlightMetrics::of(&trace, prepared.edges(), scenario.timing, unstable);
+        Ok(ControllerResult { name: named.name.clone(), trace, metrics })
+    });
+    let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
+    let mut judgements = judge(study, &results);
+    let mut first = true;
+    let flights = results.into_iter().map(|result| {
+        let is_mine = |judgement: &Judgement| {
+            judgement.controller == result.name || (first && judgement.is_of_aircraft())
+        };
+        let (mine, others) = std::mem::take(&mut judgements).into_iter().partition(is_mine);
+        judgements = others;
+        first = false;
+        flight(result, mine, scenario.timing.dt_s())
+    });
+    Ok(flights.collect())
+}
+
+fn flight(result: ControllerResult, judgements: Vec<Judgement>, dt_s: f64) -> FlightResult {
+    let ControllerResult { name, trace, metrics } = result;
+    let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs());
+    FlightResult {
+        controller: name,
+        metrics,
+        // Written so that NaN is the largest.
+        largest_error_rad: errors.fold(0.0, |most, error| if error <= most { most } else { error }),
+        elevator: CommandEffort::of(&trace.elevator_rad, dt_s),
+        saturated_share: trace.saturated_samples as f64 / trace.rows().max(1) as f64,
+        faults: trace.faults,
+        exit: trace.exit,
+        judgements,
+    }
+}
+
+impl FlightResult {
+    /// When it diverged, if it did, s.
+    #[must_use]
+    pub fn diverged_at_s(&self) -> Option<f64> {
+        match self.metrics.verdict {
+            fspid_study::metrics::Verdict::Diverged { at_s } => Some(at_s),
+            _ => None,
+        }
+    }
+
+    /// Why the flight counts as failed: a loop that diverged or is unstable, requirements that are not
+    /// met. Empty for a flight that is well.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<String> {
+        let verdict = &self.metrics.verdict;
+        let lost = verdict.is_failure().then(|| verdict.to_string());
+        let unmet = self.judgements.iter().filter(|judgement| !judgement.met).map(|judgement| {
+            let requirement = &judgement.requirement;
+            format!(
+                "{} {}, {}",
+                requirement.id,
+                judgement.value_in_words(),
+                requirement.limits_in_words()
+            )
+        });
+        lost.into_iter().chain(unmet).collect()
+    }
+}
+
+/// A trace with room for what measures need, and nothing else.
+fn empty_trace(prepared: &Prepared) -> Trace {
+    let rows = prepared.timing().rows();
+    let column = || Vec::with_capacity(rows);
+    Trace {
+        time_s: column(),
+        setpoint_rad: column(),
+        theta_rad: column(),
+        q_rad_s: Vec::new(),
+        command_rad: column(),
+        elevator_rad: column(),
+        gains: Vec::new(),
+        columns: Vec::new(),
+        exit: None,
+        outcome: Outcome::Completed,
+        saturated_samples: 0,
+        faults: Faults::NONE,
+    }
+}

@@ -1,0 +1,30 @@
+//! Flights that no lane can fly: nonlinear aircraft, actuators, gusts, sensors.
+
+use std::ops::ControlFlow;
+
+use fspid_sim::{Controller, Exit, Prepared, SimError, Trace, fly};
+
+use super::empty_trace;
+
+/// One flight, recorded as far as measures need it.
+pub(super) fn trace(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
+    let mut trace = empty_trace(prepared);
+    let timing = prepared.timing();
+    let outcome = fly(prepared, controller, |instant| {
+        trace.time_s.push(timing.time_s(instant.k));
+        trace.setpoint_rad.push(instant.setpoint_rad);
+        trace.theta_rad.push(instant.theta_rad);
+        trace.command_rad.push(instant.step.command_rad);
+        trace.elevator_rad.push(instant.elevator_rad);
+        trace.saturated_samples += usize::from(instant.step.saturated);
+        trace.faults = instant.step.faults;
+        if trace.exit.is_none() {
+            let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
+            let at_s = timing.time_s(instant.k);
+            trace.exit = departure.map(|departure| Exit { at_s, departure });
+        }
+        ControlFlow::Continue(())
+    })?;
+    trace.outcome = outcome;
+    Ok(trace)
+}

@@ -1,0 +1,110 @@
+//! Flights of a campaign are those of `simulate`, whatever flies beside them.
+
+use fspid_campaign::engine::{self, FlightResult};
+use fspid_study::file::{Extra, NewValue, SettingPath, Study, Template};
+use fspid_study::simulation::Simulation;
+
+const STEP: &str = include_str!("../../../scenarios/747-pitch-step.toml");
+const REQUIREMENTS: &str = "
+[[requirement]]
+measure = \"overshoot_pct\"
+most = 20.0
+[[requirement]]
+measure = \"elevator_rate_deg_s\"
+most = 40.0
+[[requirement]]
+measure = \"phase_margin_deg\"
+least = 30.0
+[[requirement]]
+measure = \"phugoid_damping\"
+least = 0.04
+";
+
+fn template(text: &str) -> Template {
+    let extra = Extra::default();
+    Template::parse(text, "campaign.toml", None, &extra).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn path(text: &str) -> SettingPath {
+    SettingPath::parse(text).expect("a path")
+}
+
+/// Gains from idle to wild, so that flights settle, swing and diverge side by side.
+fn studies(template: &Template, count: u32) -> Vec<Study> {
+    let (kp, rate, gain) =
+        (path("controller.FSPID.nominal.kp"), path("controller.PC.kp"), path("plant.preset.numerator[0]"));
+    let study = |run: u32| {
+        let x = f64::from(run);
+        let values = [
+            (&kp, NewValue::Number(0.2 + 1.7 * x)),
+            (&rate, NewValue::Number(1.0 + 9.0 * x)),
+            (&gain, NewValue::Number(-1.7 + 0.01 * x)),
+        ];
+        template.with(&values).unwrap_or_else(|error| panic!("{error}"))
+    };
+    (0..count).map(study).collect()
+}
+
+/// The same as the engine says it, from a simulation of the study alone.
+fn alone(study: &Study) -> Vec<FlightResult> {
+    engine::fly(std::slice::from_ref(study)).pop().expect("one study").expect("it flies")
+}
+
+#[test]
+fn flights_side_by_side_are_measured_as_single_simulations_are() {
+    let template = template(&format!("{STEP}{REQUIREMENTS}"));
+    let studies = studies(&template, 19);
+    let flown = engine::fly(&studies);
+    let mut verdicts = Vec::new();
+    for (study, flights) in studies.iter().zip(flown) {
+        let flights = flights.expect("it flies");
+        let simulation = Simulation::of(study).expect("it flies");
+        let judgements: Vec<_> = flights.iter().flat_map(|it| it.judgements.clone()).collect();
+        assert_eq!(judgements.len(), simulation.judgements.len());
+        assert!(judgements.iter().all(|judgement| simulation.judgements.contains(judgement)));
+        for (flight, result) in flights.iter().zip(&simulation.results) {
+            assert_eq!(flight.controller, result.name);
+            assert_eq!(flight.metrics, result.metrics);
+            assert_eq!(flight.faults, result.trace.faults);
+            verdicts.push(flight.metrics.verdict.is_failure());
+        }
+        assert_eq!(flights, alone(study));
+    }
+    // All three kinds of company were there.
+    assert!(verdicts.contains(&true) && verdicts.contains(&false));
+}
+
+#[test]
+fn flights_of_different_lengths_and_orders_fly_in_one_call() {
+    let template = template(STEP);
+    let (duration, preset) = (path("loop.duration_s"), path("plant.preset"));
+    let studies: Vec<Study> = [(20.0, "b747-paper"), (3.0, "b747-paper"), (20.0, "navion-full")]
+        .map(|(length, plant)| {
+            let values = [
+                (&duration, NewValue::Number(length)),
+                (&preset, NewValue::Text(plant.to_owned())),
+            ];
+            template.with(&values).expect("a scenario")
+        })
+        .into();
+    for (study, flown) in studies.iter().zip(engine::fly(&studies)) {
+        assert_eq!(flown.expect("it flies"), alone(study));
+    }
+}
+
+#[test]
+fn aircraft_with_sensors_and_gusts_fly_in_a_campaign_too() {
+    let text = include_str!("../../../scenarios/gallery/b747-turbulence.toml");
+    let template = template(text);
+    let seed = path("turbulence.seed");
+    let study = |seed_of_run| template.with(&[(&seed, NewValue::Integer(seed_of_run))]).expect("a scenario");
+    let studies: Vec<Study> = (1..=3).map(study).collect();
+    let flown: Vec<_> = engine::fly(&studies).into_iter().map(|it| it.expect("it flies")).collect();
+    for (study, flights) in studies.iter().zip(&flown) {
+        let simulation = Simulation::of(study).expect("it flies");
+        for (flight, result) in flights.iter().zip(&simulation.results) {
+            assert_eq!((&flight.metrics, flight.exit), (&result.metrics, result.trace.exit));
+        }
+    }
+    assert_ne!(flown[0], flown[1]);
+}
