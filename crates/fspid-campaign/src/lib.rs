@@ -12,7 +12,24 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+mod campaign;
 pub mod engine;
+mod error;
+mod folder;
+pub mod local;
+mod merge;
+mod plan;
+mod planning;
+pub mod replay;
+pub mod rows;
 pub mod sample;
+pub mod shard;
 pub mod statistics;
 pub mod table;
+
+pub use campaign::{Campaign, Progress};
+pub use error::CampaignError;
+pub use folder::{Folder, Lock};
+pub use merge::{PLAN_KEY, merge};
+pub use plan::{MOST_RUNS, Plan, Range, SHARD_RUNS, SLOW_SHARD_RUNS};
+pub use planning::{Question, plan};

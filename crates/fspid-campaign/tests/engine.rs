@@ -31,8 +31,11 @@ fn path(text: &str) -> SettingPath {
 
 /// Gains from idle to wild, so that flights settle, swing and diverge side by side.
 fn studies(template: &Template, count: u32) -> Vec<Study> {
-    let (kp, rate, gain) =
-        (path("controller.FSPID.nominal.kp"), path("controller.PC.kp"), path("plant.preset.numerator[0]"));
+    let (kp, rate, gain) = (
+        path("controller.FSPID.nominal.kp"),
+        path("controller.PC.kp"),
+        path("plant.preset.numerator[0]"),
+    );
     let study = |run: u32| {
         let x = f64::from(run);
         let values = [
@@ -97,7 +100,9 @@ fn aircraft_with_sensors_and_gusts_fly_in_a_campaign_too() {
     let text = include_str!("../../../scenarios/gallery/b747-turbulence.toml");
     let template = template(text);
     let seed = path("turbulence.seed");
-    let study = |seed_of_run| template.with(&[(&seed, NewValue::Integer(seed_of_run))]).expect("a scenario");
+    let study = |seed_of_run| {
+        template.with(&[(&seed, NewValue::Integer(seed_of_run))]).expect("a scenario")
+    };
     let studies: Vec<Study> = (1..=3).map(study).collect();
     let flown: Vec<_> = engine::fly(&studies).into_iter().map(|it| it.expect("it flies")).collect();
     for (study, flights) in studies.iter().zip(&flown) {

@@ -18,6 +18,7 @@
 mod aircraft;
 mod build;
 pub(crate) mod check;
+mod dispersion;
 pub(crate) mod document;
 mod extra;
 pub(crate) mod files;
@@ -39,6 +40,7 @@ use std::path::Path;
 
 use fspid_sim::Scenario;
 
+use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -67,6 +69,8 @@ pub struct Study {
     pub requirements: Vec<Requirement>,
     /// What is known of the flight of each plant: the one at the start and one for each change.
     pub airframes: Vec<Airframe>,
+    /// What differs from run to run of a campaign.
+    pub dispersions: Vec<Dispersion>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -78,11 +82,12 @@ pub struct Study {
 impl Study {
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
-        let Built { scenario, requirements, airframes } = built;
+        let Built { scenario, requirements, airframes, dispersions } = built;
         Self {
             scenario,
             requirements,
             airframes,
+            dispersions,
             settings: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),
@@ -189,8 +194,9 @@ pub fn parse_with(
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
     let (built, settings) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    let Built { scenario, requirements, airframes } = built;
-    Ok(Study { scenario, requirements, airframes, settings, digest: files.finish(), warnings })
+    let Built { scenario, requirements, airframes, dispersions } = built;
+    let digest = files.finish();
+    Ok(Study { scenario, requirements, airframes, dispersions, settings, digest, warnings })
 }
 
 fn read(

@@ -46,6 +46,19 @@ impl Problems {
         Self { file, list, omitted }
     }
 
+    /// The first problem in one line, without its place.
+    #[must_use]
+    pub fn first_in_a_line(&self) -> String {
+        let Some(first) = self.list.first() else {
+            return String::new();
+        };
+        let allowed = match first.allowed.as_str() {
+            "" => String::new(),
+            allowed => format!("; allowed: {allowed}"),
+        };
+        format!("{}: {}{allowed}", first.path, first.message)
+    }
+
     /// The problems as JSON: `{"file": …, "problems": [{"path": …, "line": …, …}]}`.
     #[must_use]
     pub fn to_json(&self) -> Value {

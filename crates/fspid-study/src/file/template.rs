@@ -28,6 +28,14 @@ impl SettingPath {
         Some(Self { text: text.trim().to_owned(), steps })
     }
 
+    /// The first name in it.
+    pub(crate) fn root(&self) -> &str {
+        match self.steps.first() {
+            Some(Step::Name(name)) => name,
+            _ => "",
+        }
+    }
+
     /// As it was written.
     #[must_use]
     pub fn text(&self) -> &str {
@@ -112,6 +120,11 @@ impl Template {
     #[must_use]
     pub fn study(&self) -> &Study {
         &self.study
+    }
+
+    /// What the scenario is called in messages.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
     }
 
     /// The scenario with other values at some places. It has neither settings nor a digest of its own.

@@ -15,6 +15,8 @@ pub use airframe::Airframe;
 use flight::Flown;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 
+use crate::dispersion::Dispersion;
+use crate::file::dispersion::dispersions;
 use crate::file::files::Files;
 use crate::file::overrides;
 use crate::file::report::Report;
@@ -28,6 +30,7 @@ pub(crate) struct Built {
     pub(crate) scenario: Scenario,
     pub(crate) requirements: Vec<Requirement>,
     pub(crate) airframes: Vec<Airframe>,
+    pub(crate) dispersions: Vec<Dispersion>,
 }
 
 /// The scenario with its requirements; every part that the check left sound is built even where
@@ -71,6 +74,7 @@ pub(crate) fn scenario(
     let names = names(section);
     let asked = section.sections("requirement");
     let requirements = requirements(report, files, asked, &names);
+    let dispersions = dispersions(report, section.sections("dispersion"));
     let airframes = airframe::airframes(files, section, flown.as_ref());
     let scenario = Scenario {
         name: section.text("name")?.to_owned(),
@@ -86,7 +90,7 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    Some(Built { scenario, requirements, airframes })
+    Some(Built { scenario, requirements, airframes, dispersions })
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.

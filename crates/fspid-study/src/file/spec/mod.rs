@@ -15,6 +15,7 @@ mod air;
 mod aircraft;
 mod controller;
 mod data;
+pub(crate) mod dispersion;
 mod flight;
 mod requirement;
 mod scenario;

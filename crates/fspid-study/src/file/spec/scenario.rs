@@ -3,6 +3,7 @@
 use super::actuator::ACTUATOR;
 use super::air::{GUST, TURBULENCE, WIND};
 use super::controller::CONTROLLER;
+use super::dispersion::DISPERSION;
 use super::flight::AIRCRAFT;
 use super::requirement::REQUIREMENT;
 use super::sensor::SENSOR;
@@ -64,6 +65,11 @@ pub(crate) static SCENARIO: Table = Table {
             "requirement",
             Kind::Tables { table: &REQUIREMENT, least: 0, most: 1000 },
             "What the responses must meet.",
+        ),
+        optional(
+            "dispersion",
+            Kind::Tables { table: &DISPERSION, least: 0, most: 1000 },
+            "What differs from run to run of `fspid campaign`.",
         ),
         optional(
             overrides::KEY,

@@ -1,0 +1,206 @@
+//! A campaign ready to fly: what run *i* draws, and what comes of it.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use fspid_study::dispersion::Drawn;
+use fspid_study::file::{NewValue, SettingPath, Study, Template};
+use rayon::prelude::*;
+
+use crate::engine;
+use crate::error::CampaignError;
+use crate::plan::{Plan, Range};
+use crate::rows::{Rows, Run};
+use crate::sample::Cube;
+use crate::table::Table;
+
+/// A planned campaign with its scenario read.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    plan: Plan,
+    template: Template,
+    cube: Cube,
+    rows: Rows,
+    /// The number that stands in the scenario at each path of each dispersion, where draws are relative.
+    nominal: Vec<Vec<f64>>,
+}
+
+/// How far a campaign is; may be read while it flies.
+#[derive(Debug, Default)]
+pub struct Progress {
+    flown: AtomicU64,
+    found: AtomicU64,
+    failed: AtomicU64,
+}
+
+impl Progress {
+    /// Runs flown so far.
+    #[must_use]
+    pub fn flown(&self) -> u64 {
+        self.flown.load(Ordering::Relaxed)
+    }
+
+    /// Runs that had been flown before.
+    #[must_use]
+    pub fn found(&self) -> u64 {
+        self.found.load(Ordering::Relaxed)
+    }
+
+    /// Flights that failed so far, of those flown now.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.failed.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn add_found(&self, runs: u64) {
+        self.found.fetch_add(runs, Ordering::Relaxed);
+    }
+
+    fn add(&self, runs: &[Run]) {
+        let failed = |run: &Run| match &run.flights {
+            Ok(flights) => flights.iter().filter(|flight| !flight.reasons().is_empty()).count(),
+            Err(_) => 1,
+        };
+        let failed: usize = runs.iter().map(failed).sum();
+        self.flown.fetch_add(runs.len() as u64, Ordering::Relaxed);
+        self.failed.fetch_add(failed as u64, Ordering::Relaxed);
+    }
+}
+
+impl Campaign {
+    /// Reads the scenario of a plan that lies in `folder`, and checks what it disperses.
+    ///
+    /// # Errors
+    /// A scenario that is wrong, that disperses nothing, or that its dispersions make wrong.
+    pub fn new(plan: Plan, folder: &Path) -> Result<Self, CampaignError> {
+        let template = plan.template(folder)?;
+        Self::of_template(plan, template)
+    }
+
+    /// As [`new`](Self::new), of a scenario that is read already.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_template(plan: Plan, template: Template) -> Result<Self, CampaignError> {
+        let study = template.study();
+        if study.dispersions.is_empty() {
+            return Err(CampaignError::NothingDispersed { path: plan.scenario_path });
+        }
+        let dimensions = study.dispersions.iter().map(|it| it.dimensions()).sum();
+        let cube = Cube::new(plan.sampling, dimensions, plan.runs, plan.seed)?;
+        let rows = Rows::of(study)?;
+        let nominal = template.check_dispersions().map_err(CampaignError::Scenario)?;
+        Ok(Self { cube, rows, nominal, plan, template })
+    }
+
+    /// The plan.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The scenario.
+    #[must_use]
+    pub fn template(&self) -> &Template {
+        &self.template
+    }
+
+    /// The rows that flights leave.
+    #[must_use]
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// How many numbers between 0 and 1 decide about a run.
+    #[must_use]
+    pub fn dimensions(&self) -> usize {
+        self.template.study().dispersions.iter().map(|it| it.dimensions()).sum()
+    }
+
+    /// What run `number` draws.
+    #[must_use]
+    pub fn drawn(&self, number: u64) -> Vec<Drawn> {
+        let mut point = vec![0.0; self.dimensions()];
+        self.cube.point(number, &mut point);
+        self.drawn_at(&point)
+    }
+
+    /// What is drawn at a point of the unit cube.
+    #[must_use]
+    pub fn drawn_at(&self, point: &[f64]) -> Vec<Drawn> {
+        let mut rest = point;
+        let mut drawn = Vec::new();
+        for dispersion in &self.template.study().dispersions {
+            let (mine, others) = rest.split_at(dispersion.dimensions().min(rest.len()));
+            rest = others;
+            dispersion.draw(mine, &mut drawn);
+        }
+        drawn
+    }
+
+    /// The values that draws put into the scenario.
+    #[must_use]
+    pub fn values(&self, drawn: &[Drawn]) -> Vec<(&SettingPath, NewValue)> {
+        let mut rest = drawn;
+        let mut values = Vec::new();
+        for (dispersion, nominal) in self.template.study().dispersions.iter().zip(&self.nominal) {
+            let (mine, others) = rest.split_at(dispersion.names().count().min(rest.len()));
+            rest = others;
+            values.extend(dispersion.values(mine, nominal));
+        }
+        values
+    }
+
+    /// The scenario of a run.
+    ///
+    /// # Errors
+    /// Why its numbers make no scenario.
+    pub fn study(&self, drawn: &[Drawn]) -> Result<Study, String> {
+        let built = self.template.with(&self.values(drawn));
+        built.map_err(|problems| problems.first_in_a_line())
+    }
+
+    /// Flies some runs on all threads of the pool that this is called in.
+    ///
+    /// # Errors
+    /// None where the runs are of this campaign.
+    pub fn fly(&self, range: Range, progress: &Progress) -> Result<Table, CampaignError> {
+        let at_once = engine::at_once(self.template.study()) as u64;
+        let groups = (range.end.saturating_sub(range.first)).div_ceil(at_once);
+        let fly = |group: u64| {
+            let first = range.first + group * at_once;
+            let numbers = first..(first + at_once).min(range.end);
+            let runs = self.fly_together(numbers.map(|number| (number, self.drawn(number))));
+            progress.add(&runs);
+            self.rows.table(&runs)
+        };
+        let tables: Vec<_> = (0..groups).into_par_iter().map(fly).collect();
+        let mut whole = Table::new(std::sync::Arc::clone(self.rows.schema()));
+        for table in tables {
+            whole.append(&table?)?;
+        }
+        Ok(whole)
+    }
+
+    /// Flies a few runs side by side.
+    pub fn fly_together(&self, drawn: impl Iterator<Item = (u64, Vec<Drawn>)>) -> Vec<Run> {
+        let mut runs = Vec::new();
+        let mut studies = Vec::new();
+        for (number, drawn) in drawn {
+            let flights = match self.study(&drawn) {
+                Ok(study) => {
+                    studies.push(study);
+                    Ok(Vec::new())
+                }
+                Err(reason) => Err(reason),
+            };
+            runs.push(Run { number, drawn, flights });
+        }
+        let flown = engine::fly(&studies);
+        let waiting = runs.iter_mut().filter(|run| run.flights.is_ok());
+        for (run, flights) in waiting.zip(flown) {
+            run.flights = flights.map_err(|error| error.to_string());
+        }
+        runs
+    }
+}

@@ -1,0 +1,59 @@
+//! A campaign flown on this machine: shard after shard on all threads, then merged.
+
+use crate::campaign::{Campaign, Progress};
+use crate::error::CampaignError;
+use crate::folder::Folder;
+use crate::merge::merge;
+use crate::shard::{self, Done};
+use crate::table::Digest;
+
+/// What became of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flown {
+    /// Shards flown now.
+    pub flown: u64,
+    /// Shards that were there already.
+    pub found: u64,
+    /// Digest of all rows.
+    pub digest: Digest,
+}
+
+/// Flies what is missing of a campaign and merges it. Interrupted and called again it goes on where it
+/// was; at most the shards that were being flown are flown again.
+///
+/// # Errors
+/// Another process in the folder; parts that cannot be written or merged.
+pub fn run(
+    folder: &Folder,
+    campaign: &Campaign,
+    threads: usize,
+    progress: &Progress,
+) -> Result<Flown, CampaignError> {
+    let _lock = folder.lock(true)?;
+    folder.remove_unfinished()?;
+    let (mut flown, mut found) = (0, 0);
+    in_threads(threads, || {
+        for number in 0..campaign.plan().shards() {
+            match shard::fly(folder, campaign, number, progress)? {
+                Done::Flown => flown += 1,
+                Done::Found => found += 1,
+            }
+        }
+        Ok::<_, CampaignError>(())
+    })??;
+    let digest = merge(folder, campaign, &folder.merged_path())?;
+    Ok(Flown { flown, found, digest })
+}
+
+/// Calls a function in a pool of so many threads; 0 for as many as the machine has.
+///
+/// # Errors
+/// [`CampaignError::Threads`].
+pub fn in_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, CampaignError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| CampaignError::Threads(error.to_string()))?;
+    Ok(pool.install(work))
+}

@@ -1,0 +1,186 @@
+//! What a campaign is: a scenario, how many runs, which seed, and how runs are cut into shards.
+//!
+//! A plan is a file `campaign.json` in the campaign's folder. Everything that decides about results
+//! goes into [`Plan::id`]; the size of shards does not.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use fspid_study::file::{Extra, Template};
+use serde_json::{Value, json};
+use sha2::{Digest as _, Sha256};
+
+use crate::error::CampaignError;
+use crate::rows;
+use crate::sample::Sampling;
+
+/// Version of the plan's format.
+const SCHEMA: u64 = 1;
+/// Most runs of a campaign.
+pub const MOST_RUNS: u64 = 1_000_000_000;
+/// Runs of a shard where nothing else is asked for: a second or two of flights in lanes.
+pub const SHARD_RUNS: u64 = 8192;
+/// The same for flights that are flown one by one.
+pub const SLOW_SHARD_RUNS: u64 = 256;
+
+/// Runs from the first up to, and without, the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Range {
+    /// The first run.
+    pub first: u64,
+    /// The run after the last.
+    pub end: u64,
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "runs {} to {}", self.first, self.end.saturating_sub(1))
+    }
+}
+
+/// A campaign as it is planned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// The scenario's text.
+    pub scenario_text: String,
+    /// What the scenario is called in messages and commands: its path, as it was given.
+    pub scenario_path: String,
+    /// Folder that the scenario's files are relative to, seen from the campaign's folder.
+    pub scenario_folder: PathBuf,
+    /// Digest of the scenario with its changes and everything it refers to.
+    pub scenario_digest: String,
+    /// Changes `path=value`.
+    pub overrides: Vec<String>,
+    /// How points are chosen.
+    pub sampling: Sampling,
+    /// How many runs.
+    pub runs: u64,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Runs of each shard but the last.
+    pub shard_runs: u64,
+    /// Program and version that made the plan.
+    pub program: String,
+}
+
+impl Plan {
+    /// Name of the program and its version, as plans and results carry it.
+    #[must_use]
+    pub fn this_program() -> String {
+        concat!("fspid ", env!("CARGO_PKG_VERSION")).to_owned()
+    }
+
+    /// What names the campaign: a digest of everything that decides about its results.
+    #[must_use]
+    pub fn id(&self) -> String {
+        let mut hasher = Sha256::new();
+        let numbers = [self.runs.to_string(), self.seed.to_string(), rows::FORMAT.to_string()];
+        let texts = [self.scenario_digest.as_str(), self.sampling.name(), self.program.as_str()];
+        for text in texts.into_iter().chain(numbers.iter().map(String::as_str)) {
+            hasher.update((text.len() as u64).to_le_bytes());
+            hasher.update(text.as_bytes());
+        }
+        let bytes = hasher.finalize();
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// How many shards.
+    #[must_use]
+    pub fn shards(&self) -> u64 {
+        self.runs.div_ceil(self.shard_runs.max(1))
+    }
+
+    /// The runs of shard `number`, from 0; `None` for a shard that there is not.
+    #[must_use]
+    pub fn shard(&self, number: u64) -> Option<Range> {
+        let first = number.checked_mul(self.shard_runs)?;
+        let end = first.checked_add(self.shard_runs)?.min(self.runs);
+        (first < self.runs).then_some(Range { first, end })
+    }
+
+    /// The scenario, read again from the plan in `folder`.
+    ///
+    /// # Errors
+    /// A scenario that is wrong, or whose files have changed since the plan.
+    pub fn template(&self, folder: &Path) -> Result<Template, CampaignError> {
+        let files = folder.join(&self.scenario_folder);
+        let extra = Extra { overrides: &self.overrides, ..Extra::default() };
+        let template =
+            Template::parse(&self.scenario_text, &self.scenario_path, Some(&files), &extra)
+                .map_err(CampaignError::Scenario)?;
+        if template.study().digest != self.scenario_digest {
+            return Err(CampaignError::Changed { path: self.scenario_path.clone() });
+        }
+        Ok(template)
+    }
+
+    /// The plan as a file has it.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        json!({
+            "schema": SCHEMA,
+            "campaign": self.id(),
+            "program": self.program,
+            "runs": self.runs,
+            // As text: JSON readers round whole numbers beyond 2^53.
+            "seed": self.seed.to_string(),
+            "sampling": self.sampling.name(),
+            "shard_runs": self.shard_runs,
+            "scenario": {
+                "path": self.scenario_path,
+                "folder": self.scenario_folder.to_string_lossy(),
+                "digest": self.scenario_digest,
+                "changes": self.overrides,
+                "text": self.scenario_text,
+            },
+        })
+    }
+
+    /// Reads a plan from the text of a file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it, in words.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let at = |path: &str| value.pointer(path);
+        let number = |path: &str| {
+            let found = at(path).and_then(Value::as_u64);
+            found.ok_or_else(|| format!("{path} is no whole number"))
+        };
+        let word = |path: &str| {
+            let found = at(path).and_then(Value::as_str).map(str::to_owned);
+            found.ok_or_else(|| format!("{path} is no text"))
+        };
+        if number("/schema")? != SCHEMA {
+            return Err(format!("/schema is not {SCHEMA}"));
+        }
+        let changes = at("/scenario/changes").and_then(Value::as_array);
+        let changes = changes.ok_or("/scenario/changes is no list")?;
+        let overrides: Option<Vec<String>> =
+            changes.iter().map(|change| change.as_str().map(str::to_owned)).collect();
+        let sampling = word("/sampling")?;
+        let plan = Self {
+            scenario_text: word("/scenario/text")?,
+            scenario_path: word("/scenario/path")?,
+            scenario_folder: PathBuf::from(word("/scenario/folder")?),
+            scenario_digest: word("/scenario/digest")?,
+            overrides: overrides.ok_or("/scenario/changes holds what is no text")?,
+            sampling: Sampling::from_name(&sampling)
+                .ok_or_else(|| format!("/sampling is \"{sampling}\", which is unknown"))?,
+            runs: number("/runs")?,
+            seed: word("/seed")?.parse().map_err(|_| "/seed is no whole number".to_owned())?,
+            shard_runs: number("/shard_runs")?,
+            program: word("/program")?,
+        };
+        let allowed = 1..=MOST_RUNS;
+        if !allowed.contains(&plan.runs) || !allowed.contains(&plan.shard_runs) {
+            return Err(format!("/runs and /shard_runs must be from 1 to {MOST_RUNS}"));
+        }
+        if word("/campaign")? != plan.id() {
+            return Err(
+                "/campaign is not the digest of the rest: it was changed by hand".to_owned()
+            );
+        }
+        Ok(plan)
+    }
+}

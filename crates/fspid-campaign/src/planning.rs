@@ -1,0 +1,93 @@
+//! Making a plan from what is written on a command line.
+
+use std::path::{Component, Path, PathBuf};
+
+use fspid_study::file::{Extra, LoadError, Template, read_text};
+
+use crate::campaign::Campaign;
+use crate::error::CampaignError;
+use crate::folder::Folder;
+use crate::plan::{MOST_RUNS, Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
+use crate::sample::Sampling;
+
+/// What to plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The scenario file.
+    pub scenario: &'a Path,
+    /// Changes `path=value`.
+    pub overrides: &'a [String],
+    /// How many runs.
+    pub runs: u64,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// How points are chosen.
+    pub sampling: Sampling,
+    /// Runs of each shard but the last; as many as take a second or more if none is given.
+    pub shard_runs: Option<u64>,
+}
+
+/// Plans a campaign in a folder; nothing is written yet.
+///
+/// # Errors
+/// A scenario that is wrong, or wrong with what its dispersions draw; numbers that are not allowed.
+pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, CampaignError> {
+    check("the number of runs", question.runs)?;
+    let text = read_text(question.scenario)?;
+    let path = question.scenario.display().to_string();
+    let home = question.scenario.parent().unwrap_or(Path::new(""));
+    let extra = Extra { overrides: question.overrides, ..Extra::default() };
+    let template = Template::parse(&text, &path, Some(home), &extra)
+        .map_err(|problems| CampaignError::Unreadable(LoadError::Problems(problems)))?;
+    let usual = if flies_in_lanes(&template) { SHARD_RUNS } else { SLOW_SHARD_RUNS };
+    let shard_runs = question.shard_runs.unwrap_or(usual);
+    check("the number of runs in a shard", shard_runs)?;
+    let plan = Plan {
+        scenario_digest: template.study().digest.clone(),
+        scenario_text: text,
+        scenario_path: path,
+        scenario_folder: way(folder.path(), home),
+        overrides: question.overrides.to_vec(),
+        sampling: question.sampling,
+        runs: question.runs,
+        seed: question.seed,
+        shard_runs,
+        program: Plan::this_program(),
+    };
+    Campaign::of_template(plan, template)
+}
+
+fn check(what: &'static str, found: u64) -> Result<(), CampaignError> {
+    if (1..=MOST_RUNS).contains(&found) {
+        return Ok(());
+    }
+    let allowed = format!("1 to {MOST_RUNS}");
+    Err(CampaignError::Number { what, found: found.to_string(), allowed })
+}
+
+/// True for flights that go side by side, which are some hundred times as fast as six degrees of freedom.
+fn flies_in_lanes(template: &Template) -> bool {
+    let scenario = &template.study().scenario;
+    let has_sensors =
+        scenario.surroundings.pitch_sensor.is_some() || scenario.surroundings.rate_sensor.is_some();
+    scenario.plant.linear().is_some()
+        && scenario.surroundings.weather.is_none()
+        && scenario.surroundings.actuator.is_none()
+        && !has_sensors
+}
+
+/// The way from a folder that may not be there yet to one that is; absolute where there is none.
+fn way(from: &Path, to: &Path) -> PathBuf {
+    let absolute = |path: &Path| {
+        std::path::absolute(if path == Path::new("") { Path::new(".") } else { path })
+    };
+    let (Ok(from), Ok(to)) = (absolute(from), absolute(to)) else {
+        return to.to_owned();
+    };
+    let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) =
+        (from.components().collect(), to.components().collect());
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let up = from.iter().skip(shared).map(|_| Component::ParentDir);
+    let way: PathBuf = up.chain(to.into_iter().skip(shared)).collect();
+    if way == Path::new("") { PathBuf::from(".") } else { way }
+}

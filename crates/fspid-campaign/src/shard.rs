@@ -1,0 +1,159 @@
+//! Parts of a campaign: a Parquet file for a range of runs, whole or not there.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::Path;
+
+use crate::campaign::{Campaign, Progress};
+use crate::error::CampaignError;
+use crate::folder::{Folder, UNFINISHED};
+use crate::plan::{Plan, Range};
+use crate::table::{Reader, Table, Writer};
+
+/// Key of the metadata that names the campaign.
+pub const CAMPAIGN_KEY: &str = "fspid.campaign";
+/// Key of the metadata that names the program and its version.
+pub const PROGRAM_KEY: &str = "fspid.program";
+/// Key of the first run of a part.
+const FIRST_KEY: &str = "fspid.first_run";
+/// Key of the run after the last of a part.
+const END_KEY: &str = "fspid.end_run";
+
+/// What became of a shard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Done {
+    /// It was flown now.
+    Flown,
+    /// It was there already.
+    Found,
+}
+
+/// Flies the shard with this number and writes its part, unless a whole one is there.
+///
+/// # Errors
+/// No such shard; a part that cannot be written.
+pub fn fly(
+    folder: &Folder,
+    campaign: &Campaign,
+    number: u64,
+    progress: &Progress,
+) -> Result<Done, CampaignError> {
+    let plan = campaign.plan();
+    let most = plan.shards().saturating_sub(1);
+    let range = plan.shard(number).ok_or(CampaignError::NoShard { found: number, most })?;
+    let path = folder.shard_path(range);
+    if is_whole(&path, campaign, range) {
+        progress.add_found(range.end - range.first);
+        return Ok(Done::Found);
+    }
+    let table = campaign.fly(range, progress)?;
+    write(&path, campaign, range, &table)?;
+    Ok(Done::Flown)
+}
+
+/// True for a part that holds what it should, to the last byte.
+fn is_whole(path: &Path, campaign: &Campaign, range: Range) -> bool {
+    let Ok(part) = Part::open(path) else {
+        return false;
+    };
+    let rows = range.end.saturating_sub(range.first) * campaign.rows().of_run() as u64;
+    part.range == range
+        && part.refusal(campaign).is_none()
+        && part.reader.rows() as u64 == rows
+        && part.reader.verify().is_ok()
+}
+
+/// Writes a part: into a new file beside it first, flushed to the disk, then renamed.
+fn write(
+    path: &Path,
+    campaign: &Campaign,
+    range: Range,
+    table: &Table,
+) -> Result<(), CampaignError> {
+    let text = |key: &str, value: String| (key.to_owned(), value);
+    let mut metadata = provenance(campaign.plan());
+    metadata.push(text(FIRST_KEY, range.first.to_string()));
+    metadata.push(text(END_KEY, range.end.to_string()));
+    write_whole(path, |file| {
+        let mut writer = Writer::new(file, campaign.rows().schema(), &metadata)?;
+        writer.write(table)?;
+        writer.finish(&[])?;
+        Ok(())
+    })
+}
+
+/// What every file of a campaign says of where it is from.
+pub(crate) fn provenance(plan: &Plan) -> Vec<(String, String)> {
+    vec![(CAMPAIGN_KEY.to_owned(), plan.id()), (PROGRAM_KEY.to_owned(), plan.program.clone())]
+}
+
+/// Writes a file beside its place, flushes it to the disk and renames it.
+pub(crate) fn write_whole<T>(
+    path: &Path,
+    contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, CampaignError>,
+) -> Result<T, CampaignError> {
+    let failed = |reason: io::Error| CampaignError::Io { path: path.to_owned(), reason };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder).map_err(failed)?;
+    let mut buffered = BufWriter::new(file.as_file());
+    let answer = contents(&mut buffered)?;
+    buffered.into_inner().map_err(|error| failed(error.into_error()))?;
+    file.as_file().sync_all().map_err(failed)?;
+    readable(file.as_file()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    // The rename itself; not every file system knows how, and the file is safe without.
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    Ok(answer)
+}
+
+/// Lets others read the file, as the user's mask allows: new files beside it are private.
+fn readable(file: &File) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        file.set_permissions(fs::Permissions::from_mode(0o644))?;
+    }
+    Ok(())
+}
+
+/// A part of a campaign, opened.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) reader: Reader,
+    pub(crate) range: Range,
+}
+
+impl Part {
+    /// Opens a part; its rows are not read yet.
+    pub(crate) fn open(path: &Path) -> Result<Self, CampaignError> {
+        let reader = Reader::open(path)?;
+        let run = |key: &str| reader.metadata_value(key).and_then(|text| text.parse().ok());
+        match (run(FIRST_KEY), run(END_KEY)) {
+            (Some(first), Some(end)) if first < end => {
+                Ok(Self { range: Range { first, end }, reader })
+            }
+            _ => {
+                let reason = "it does not say which runs it holds".to_owned();
+                Err(CampaignError::Foreign { path: path.to_owned(), reason })
+            }
+        }
+    }
+
+    /// Why this is no part of a campaign, if it is none.
+    pub(crate) fn refusal(&self, campaign: &Campaign) -> Option<String> {
+        let plan = campaign.plan();
+        for (key, value) in provenance(plan) {
+            let found = self.reader.metadata_value(&key).unwrap_or("nothing");
+            if found != value {
+                return Some(format!("{key} is {found}; this campaign's is {value}"));
+            }
+        }
+        if self.reader.schema() != campaign.rows().schema() {
+            return Some("its columns are others".to_owned());
+        }
+        if self.range.end > plan.runs {
+            return Some(format!("it holds {} of {} runs", self.range, plan.runs));
+        }
+        None
+    }
+}

@@ -1,0 +1,148 @@
+//! A campaign as a whole: planned, flown in parts, merged; the same bytes however that was done.
+
+use std::path::{Path, PathBuf};
+
+use fspid_campaign::sample::Sampling;
+use fspid_campaign::table::{Reader, Values};
+use fspid_campaign::{
+    Campaign, CampaignError, Folder, Progress, Question, local, merge, plan, shard,
+};
+
+fn scenario() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign.toml")
+}
+
+fn planned(folder: &Folder, runs: u64, shard_runs: u64) -> Campaign {
+    let question = Question {
+        scenario: &scenario(),
+        overrides: &["loop.duration_s=10.0".to_owned()],
+        runs,
+        seed: 7,
+        sampling: Sampling::LatinHypercube,
+        shard_runs: Some(shard_runs),
+    };
+    let campaign = plan(&question, folder).unwrap_or_else(|error| panic!("{error}"));
+    folder.put_plan(campaign.plan()).expect("written");
+    campaign
+}
+
+fn flown(runs: u64, shard_runs: u64, threads: usize) -> (Vec<u8>, String) {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(&home.path().join("campaign"));
+    let campaign = planned(&folder, runs, shard_runs);
+    let flown = local::run(&folder, &campaign, threads, &Progress::default());
+    let digest = flown.unwrap_or_else(|error| panic!("{error}")).digest.to_string();
+    (std::fs::read(folder.merged_path()).expect("merged"), digest)
+}
+
+#[test]
+fn the_merged_file_has_the_same_bytes_for_any_number_of_threads_and_size_of_shards() {
+    let whole = flown(50, 50, 1);
+    for (shard_runs, threads) in [(50, 2), (7, 3), (1, 8), (16, 1)] {
+        assert_eq!(flown(50, shard_runs, threads), whole, "{shard_runs} {threads}");
+    }
+}
+
+#[test]
+fn an_interrupted_campaign_goes_on_and_flies_nothing_twice() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    let campaign = planned(&folder, 30, 8);
+    let progress = Progress::default();
+    for number in [2, 0] {
+        shard::fly(&folder, &campaign, number, &progress).expect("flown");
+    }
+    // A part that was being written when the machine went down, and one that was damaged since.
+    std::fs::write(folder.shards_path().join(".fspid-half"), b"PAR1").expect("written");
+    let damaged = folder.shard_path(campaign.plan().shard(2).expect("there is one"));
+    let mut bytes = std::fs::read(&damaged).expect("written");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&damaged, bytes).expect("written");
+    let progress = Progress::default();
+    let flown_now = local::run(&folder, &campaign, 2, &progress).expect("flown");
+    assert_eq!((flown_now.found, flown_now.flown), (1, 3));
+    assert_eq!((progress.found(), progress.flown()), (8, 22));
+    assert_eq!(std::fs::read(folder.merged_path()).expect("merged"), flown(30, 30, 1).0);
+    let again = local::run(&folder, &campaign, 2, &Progress::default()).expect("flown");
+    assert_eq!((again.found, again.flown), (4, 0));
+    assert!(!folder.shards_path().join(".fspid-half").exists());
+}
+
+#[test]
+fn gaps_overlaps_and_foreign_parts_are_refused_by_name() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(&home.path().join("one"));
+    let campaign = planned(&folder, 30, 10);
+    let progress = Progress::default();
+    for number in [0, 2] {
+        shard::fly(&folder, &campaign, number, &progress).expect("flown");
+    }
+    let merged =
+        || merge(&folder, &campaign, &folder.merged_path()).map(|digest| digest.to_string());
+    let gap = merged().expect_err("a gap");
+    assert!(matches!(gap, CampaignError::Gap { count: 10, .. }), "{gap}");
+    assert!(gap.to_string().contains("runs 10 to 19 are missing"), "{gap}");
+    let copy = folder.shards_path().join("copy.parquet");
+    shard::fly(&folder, &campaign, 1, &progress).expect("flown");
+    std::fs::copy(folder.shard_path(campaign.plan().shard(1).expect("one")), &copy)
+        .expect("copied");
+    let overlap = merged().expect_err("an overlap");
+    assert!(matches!(overlap, CampaignError::Overlap { .. }), "{overlap}");
+    let other = Folder::new(&home.path().join("other"));
+    let theirs = planned(&other, 31, 31);
+    shard::fly(&other, &theirs, 0, &progress).expect("flown");
+    std::fs::copy(other.shard_path(theirs.plan().shard(0).expect("one")), &copy).expect("copied");
+    let foreign = merged().expect_err("a foreign part");
+    assert!(matches!(foreign, CampaignError::Foreign { .. }), "{foreign}");
+    std::fs::remove_file(copy).expect("removed");
+    assert_eq!(merged().expect("merged").len(), 64);
+}
+
+#[test]
+fn a_second_process_in_the_folder_is_refused() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    let campaign = planned(&folder, 3, 3);
+    let lock = folder.lock(true).expect("free");
+    let refused = local::run(&folder, &campaign, 1, &Progress::default()).expect_err("busy");
+    assert!(matches!(refused, CampaignError::Busy { .. }), "{refused}");
+    drop(lock);
+    local::run(&folder, &campaign, 1, &Progress::default()).expect("free again");
+}
+
+#[test]
+fn a_folder_with_another_campaign_is_refused_with_the_difference() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    let mine = planned(&folder, 3, 3);
+    folder.put_plan(mine.plan()).expect("the same plan stays");
+    let other = fspid_campaign::Plan { seed: 8, ..mine.plan().clone() };
+    let refused = folder.put_plan(&other).expect_err("another seed").to_string();
+    assert!(refused.contains("seed: 7 there, 8 here"), "{refused}");
+}
+
+#[test]
+fn a_row_holds_what_was_drawn_and_a_replay_gives_the_same_numbers() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    let campaign = planned(&folder, 20, 20);
+    local::run(&folder, &campaign, 2, &Progress::default()).expect("flown");
+    let reader = Reader::open(folder.merged_path()).expect("a file");
+    assert_eq!(reader.rows(), 40);
+    reader.verify().expect("whole");
+    let replay = fspid_campaign::replay::replay(&campaign, 13).expect("flown again");
+    let table = reader.tables().next().expect("a row group").expect("readable");
+    let again = campaign.rows().table(std::slice::from_ref(&replay.run)).expect("rows");
+    assert_eq!(table.slice(26..28).expect("rows"), again);
+    let Values::Float(overshoot) = table.column("overshoot_pct").expect("a column") else {
+        panic!("numbers")
+    };
+    let simulated = replay.simulation.results[1].metrics.first_step().overshoot_pct;
+    assert_eq!(overshoot[27], simulated.ok());
+    // The changes make it the run's scenario for anybody.
+    let mut changes = vec!["loop.duration_s=10.0".to_owned()];
+    changes.extend(replay.changes);
+    let study = fspid_study::file::load(&scenario(), &changes).expect("a scenario");
+    assert_eq!(study.scenario, replay.study.scenario);
+}

@@ -1,0 +1,373 @@
+//! Dispersions as files have them, and whether a scenario can bear them.
+
+use crate::dispersion::{
+    Choice, Correlated, Dispersion, DispersionError, Distribution, LogUniform, Normal, Target,
+    Uniform,
+};
+use crate::file::document::{Item, Value};
+use crate::file::problem::{Problem, Problems};
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::file::spec::dispersion::{
+    OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
+};
+use crate::file::{NewValue, SettingPath, Template};
+
+/// Most values that a choice is made from.
+const MOST_VALUES: usize = 1000;
+
+/// The dispersions of a scenario.
+pub(crate) fn dispersions(report: &mut Report, sections: &[Section]) -> Vec<Dispersion> {
+    let mut dispersions: Vec<Dispersion> = Vec::new();
+    for section in sections.iter().filter(|section| section.sound) {
+        if let Some(found) = dispersion(report, section) {
+            check_names(report, section, (&dispersions, &found));
+            dispersions.push(found);
+        }
+    }
+    dispersions
+}
+
+fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
+    let word = section.text("distribution")?;
+    let before = report.count();
+    check_keys(report, section, word);
+    let paths = paths(report, section);
+    let choices = if word == "choice" { values(report, section) } else { Some(Vec::new()) };
+    let correlation = match word {
+        "correlated" => matrix(report, section),
+        _ => Some(Vec::new()),
+    };
+    let (paths, choices, correlation) = (paths?, choices?, correlation?);
+    if word == "correlated" {
+        check_lengths(report, section, paths.len());
+    }
+    if report.count() > before {
+        return None;
+    }
+    let numbers = Numbers { section, choices: choices.len(), correlation };
+    let distribution = match numbers.distribution(word)? {
+        Ok(distribution) => distribution,
+        Err(error) => {
+            let place = section.at("distribution");
+            report.missing(place, &section.path.clone(), error.to_string(), "");
+            return None;
+        }
+    };
+    let relative = section.boolean("relative")?;
+    if relative && (word == "seed" || choices.iter().any(|it| !is_number(it))) {
+        let (place, path) = (section.at("relative"), section.path("relative"));
+        report.value(place, &path, "only numbers can be factors", "false");
+        return None;
+    }
+    let targets = targets(report, section, paths, word == "correlated")?;
+    Some(Dispersion { targets, distribution, relative, choices })
+}
+
+fn is_number(value: &NewValue) -> bool {
+    matches!(value, NewValue::Number(_) | NewValue::Integer(_))
+}
+
+/// Refuses keys of other distributions, and misses those of this one.
+fn check_keys(report: &mut Report, section: &Section, word: &str) {
+    let [needed, allowed] = keys_of(word);
+    for key in needed.iter().filter(|key| !section.given(key)) {
+        let message = format!("missing key; distribution \"{word}\" needs it");
+        report.missing(section.place, &section.path(key), message, "");
+    }
+    for key in OWN_KEYS.into_iter().filter(|key| section.given(key)) {
+        if !needed.contains(&key) && !allowed.contains(&key) {
+            let message = format!("says nothing to distribution \"{word}\"");
+            let may: Vec<&str> = needed.iter().chain(allowed).copied().collect();
+            report.value(section.at(key), &section.path(key), message, may.join(", "));
+        }
+    }
+}
+
+/// Refuses lists that have not one number for each path.
+fn check_lengths(report: &mut Report, section: &Section, paths: usize) {
+    for key in ["means", "standard_deviations", "lowers", "uppers"] {
+        let found = section.numbers(key).map_or(paths, |numbers| numbers.len());
+        if found != paths {
+            let message = format!("{found} numbers for {paths} paths");
+            report.value(section.at(key), &section.path(key), message, "one for each path");
+        }
+    }
+}
+
+/// The places, each with its steps.
+fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
+    if section.given("path") == section.given("paths") {
+        let message = "exactly one of `path` and `paths` must be there";
+        report.missing(section.place, &section.path("path"), message, "path or paths");
+        return None;
+    }
+    let key = if section.given("path") { "path" } else { "paths" };
+    let texts = match section.text("path") {
+        Some(text) => Some(vec![text.to_owned()]),
+        None => section.item("paths").and_then(texts),
+    };
+    let Some(texts) = texts.filter(|texts| !texts.is_empty()) else {
+        report.value(section.at(key), &section.path(key), "wrong type", paths_in_words());
+        return None;
+    };
+    let mut paths = Vec::new();
+    for text in &texts {
+        let Some(path) = SettingPath::parse(text) else {
+            let allowed = "names joined by dots, such as controller[0].kp";
+            let message = format!("the path `{text}` cannot be read");
+            report.missing(section.at(key), &section.path(key), message, allowed);
+            return None;
+        };
+        if ["dispersion", "requirement", "schema", "set"].contains(&path.root()) {
+            let message = format!("`{text}` cannot differ from run to run");
+            let allowed = "a place of what flies or of what disturbs it";
+            report.missing(section.at(key), &section.path(key), message, allowed);
+            return None;
+        }
+        paths.push(path);
+    }
+    Some(paths)
+}
+
+fn texts(item: &Item) -> Option<Vec<String>> {
+    let Value::Array(items) = &item.value else {
+        return None;
+    };
+    let text = |item: &Item| match &item.value {
+        Value::Text(text) => Some(text.clone()),
+        _ => None,
+    };
+    items.iter().map(text).collect()
+}
+
+/// What a choice chooses from.
+fn values(report: &mut Report, section: &Section) -> Option<Vec<NewValue>> {
+    let item = section.item("values")?;
+    let value = |item: &Item| match &item.value {
+        Value::Integer(_, Some(whole)) => Some(NewValue::Integer(*whole)),
+        Value::Float(number) if number.is_finite() => Some(NewValue::Number(*number)),
+        Value::Text(text) => Some(NewValue::Text(text.clone())),
+        Value::Boolean(boolean) => Some(NewValue::Boolean(*boolean)),
+        _ => None,
+    };
+    let values: Option<Vec<NewValue>> = match &item.value {
+        Value::Array(items) if (1..=MOST_VALUES).contains(&items.len()) => {
+            items.iter().map(value).collect()
+        }
+        _ => None,
+    };
+    if values.is_none() {
+        report.value(item.place, &section.path("values"), "wrong values", values_in_words());
+    }
+    values
+}
+
+/// A matrix by its rows.
+fn matrix(report: &mut Report, section: &Section) -> Option<Vec<Vec<f64>>> {
+    let item = section.item("correlation")?;
+    let number = |item: &Item| match &item.value {
+        Value::Float(number) | Value::Integer(number, _) => Some(*number),
+        _ => None,
+    };
+    let row = |item: &Item| match &item.value {
+        Value::Array(items) => items.iter().map(number).collect::<Option<Vec<f64>>>(),
+        _ => None,
+    };
+    let rows = match &item.value {
+        Value::Array(items) => items.iter().map(row).collect::<Option<Vec<_>>>(),
+        _ => None,
+    };
+    if rows.is_none() {
+        report.value(item.place, &section.path("correlation"), "no matrix", matrix_in_words());
+    }
+    rows
+}
+
+/// The numbers of a section, for its distribution.
+struct Numbers<'a> {
+    section: &'a Section,
+    choices: usize,
+    correlation: Vec<Vec<f64>>,
+}
+
+impl Numbers<'_> {
+    fn distribution(&self, word: &str) -> Option<Result<Distribution, DispersionError>> {
+        let section = self.section;
+        let number = |key: &str| section.number(key);
+        Some(match word {
+            "normal" => {
+                let (mean, deviation) = (number("mean")?, number("standard_deviation")?);
+                normal(mean, deviation, [number("lower"), number("upper")])
+                    .map(Distribution::Normal)
+            }
+            "uniform" => {
+                Uniform::new(number("lower")?, number("upper")?).map(Distribution::Uniform)
+            }
+            "log-uniform" => {
+                LogUniform::new(number("lower")?, number("upper")?).map(Distribution::LogUniform)
+            }
+            "choice" => {
+                let weights = section.numbers("weights");
+                Choice::new(self.choices, weights.as_deref()).map(Distribution::Choice)
+            }
+            "seed" => Ok(Distribution::Seed),
+            _ => self.correlated()?,
+        })
+    }
+
+    fn correlated(&self) -> Option<Result<Distribution, DispersionError>> {
+        let numbers = |key: &str| self.section.numbers(key);
+        let (means, deviations) = (numbers("means")?, numbers("standard_deviations")?);
+        let [lowers, uppers] = ["lowers", "uppers"].map(|key| numbers(key).unwrap_or_default());
+        let entry = |(index, (mean, deviation)): (usize, (f64, f64))| {
+            normal(mean, deviation, [lowers.get(index).copied(), uppers.get(index).copied()])
+        };
+        let entries = means.into_iter().zip(deviations).enumerate().map(entry);
+        let entries: Result<Vec<Normal>, _> = entries.collect();
+        let made = entries.and_then(|entries| Correlated::new(entries, &self.correlation));
+        Some(made.map(Distribution::Correlated))
+    }
+}
+
+fn normal(
+    mean: f64,
+    deviation: f64,
+    [lower, upper]: [Option<f64>; 2],
+) -> Result<Normal, DispersionError> {
+    Normal::new(mean, deviation)?.truncated(lower, upper)
+}
+
+fn targets(
+    report: &mut Report,
+    section: &Section,
+    paths: Vec<SettingPath>,
+    correlated: bool,
+) -> Option<Vec<Target>> {
+    if correlated && section.given("name") {
+        let message = "correlated numbers are called by their paths";
+        report.value(section.at("name"), &section.path("name"), message, "nothing; leave it out");
+        return None;
+    }
+    if correlated {
+        let target = |path: SettingPath| Target { name: path.text().to_owned(), paths: vec![path] };
+        return Some(paths.into_iter().map(target).collect());
+    }
+    let first = paths.first().map(|path| path.text().to_owned());
+    let name = section.text("name").map(str::to_owned).or(first)?;
+    Some(vec![Target { name, paths }])
+}
+
+/// Refuses a name or a place that an earlier dispersion, or the same one, has already.
+fn check_names(
+    report: &mut Report,
+    section: &Section,
+    (earlier, new): (&[Dispersion], &Dispersion),
+) {
+    let of = |dispersion: &Dispersion| -> (Vec<String>, Vec<String>) {
+        let names = dispersion.names().map(str::to_owned).collect();
+        let paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+        (names, paths.map(|path| path.text().to_owned()).collect())
+    };
+    let (names, paths) = of(new);
+    let (mut known_names, mut known_paths) = (Vec::new(), Vec::new());
+    for dispersion in earlier {
+        let (names, paths) = of(dispersion);
+        known_names.extend(names);
+        known_paths.extend(paths);
+    }
+    let twice = |list: &[String], known: &[String]| {
+        let is_twice = |(at, text): &(usize, &String)| {
+            known.contains(text) || list.get(..*at).is_some_and(|before| before.contains(text))
+        };
+        list.iter().enumerate().find(is_twice).map(|(_, text)| text.clone())
+    };
+    if let Some(path) = twice(&paths, &known_paths) {
+        let message = format!("`{path}` is drawn already");
+        report.missing(section.place, &section.path, message, "each place once");
+    } else if let Some(name) = twice(&names, &known_names) {
+        let message = format!("the name `{name}` is taken");
+        report.missing(section.place, &section.path, message, "a name of its own");
+    }
+}
+
+impl Template {
+    /// Tries each dispersion alone at the ends of what it can draw (untruncated normals at three standard
+    /// deviations), so that a campaign does not begin that its numbers make wrong. Answers the numbers
+    /// that stand at the paths of each relative dispersion.
+    ///
+    /// # Errors
+    /// Everything that is wrong then, each with the value that made it so.
+    pub fn check_dispersions(&self) -> Result<Vec<Vec<f64>>, Problems> {
+        let mut problems = Vec::new();
+        let mut nominal = Vec::new();
+        for (index, dispersion) in self.study().dispersions.iter().enumerate() {
+            let place = format!("dispersion[{index}]");
+            match self.nominal(dispersion) {
+                Ok(numbers) => {
+                    problems.extend(self.at_ends(dispersion, &numbers, &place));
+                    nominal.push(numbers);
+                }
+                Err(path) => problems.push(problem(
+                    &place,
+                    format!("there is no number at `{path}` that a factor could go with"),
+                    "a path to a number that is written in the scenario or in a file that it names; or relative = false",
+                )),
+            }
+        }
+        if problems.is_empty() { Ok(nominal) } else { Err(Problems::new(self.name(), problems, 0)) }
+    }
+
+    /// The numbers at all paths of a relative dispersion, or the path without one.
+    fn nominal(&self, dispersion: &Dispersion) -> Result<Vec<f64>, String> {
+        if !dispersion.relative {
+            return Ok(Vec::new());
+        }
+        let paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+        let number =
+            |path: &SettingPath| self.number_at(path).ok_or_else(|| path.text().to_owned());
+        paths.map(number).collect()
+    }
+
+    fn at_ends(&self, dispersion: &Dispersion, nominal: &[f64], place: &str) -> Option<Problem> {
+        for drawn in dispersion.ends() {
+            let values = dispersion.values(&drawn, nominal);
+            let shown: Vec<String> =
+                values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect();
+            let shown = shown.join(", ");
+            match self.with(&values) {
+                Err(problems) => {
+                    let message = format!("{shown} is not allowed: {}", problems.first_in_a_line());
+                    let allowed = "limits (`lower`, `upper`) within what the scenario allows";
+                    return Some(problem(place, message, allowed));
+                }
+                Ok(study) if !same_shape(self.study(), &study) => {
+                    let message = format!("{shown} changes the controllers");
+                    return Some(problem(place, message, "numbers and names of what flies"));
+                }
+                Ok(_) => {}
+            }
+        }
+        None
+    }
+}
+
+/// True if both have the same controllers by name.
+fn same_shape(one: &crate::file::Study, other: &crate::file::Study) -> bool {
+    let names = |study: &crate::file::Study| -> Vec<String> {
+        study.scenario.controllers.iter().map(|named| named.name.clone()).collect()
+    };
+    names(one) == names(other)
+}
+
+fn problem(path: &str, message: String, allowed: &str) -> Problem {
+    Problem {
+        origin: None,
+        path: path.to_owned(),
+        line: 1,
+        column: 1,
+        message,
+        found: String::new(),
+        allowed: allowed.to_owned(),
+    }
+}
