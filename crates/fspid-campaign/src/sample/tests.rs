@@ -1,5 +1,7 @@
 //! Points against the laws that each sampling obeys, and against recorded bits.
 
+use fspid_study::dispersion::{Distribution, Draw};
+
 use super::*;
 
 /// All points of a campaign, one after the other.
@@ -105,6 +107,21 @@ fn coordinates_are_strictly_inside_the_unit_interval_and_never_come_twice() {
         first.sort_by(f64::total_cmp);
         first.dedup();
         assert_eq!(first.len(), 20_000);
+    }
+}
+
+#[test]
+fn no_two_runs_of_evenly_spread_points_share_a_seed() {
+    for sampling in [Sampling::LatinHypercube, Sampling::Sobol] {
+        let mut draws = Vec::new();
+        for point in points(sampling, 1, 1 << 16, 77) {
+            Distribution::Seed.draw(&point, &mut draws).unwrap();
+        }
+        let seed = |draw| if let Draw::Seed(seed) = draw { seed } else { panic!("{draw:?}") };
+        let mut seeds: Vec<u64> = draws.into_iter().map(seed).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 1 << 16);
     }
 }
 
