@@ -5,9 +5,12 @@
 //! Where points come from is not known here, nor what the numbers mean: they have the units of
 //! whatever they are written into.
 
+use std::fmt;
+
 mod choice;
 mod cholesky;
 mod correlated;
+mod dispersed;
 mod error;
 mod normal;
 pub mod standard_normal;
@@ -18,6 +21,7 @@ mod tests;
 
 pub use choice::Choice;
 pub use correlated::Correlated;
+pub use dispersed::{Dispersion, Drawn, Target};
 pub use error::DispersionError;
 pub use normal::Normal;
 pub use uniform::{LogUniform, Uniform};
@@ -68,6 +72,10 @@ pub enum Distribution {
 }
 
 impl Distribution {
+    /// The words in files.
+    pub const NAMES: [&'static str; 6] =
+        ["normal", "uniform", "log-uniform", "choice", "seed", "correlated"];
+
     /// How many coordinates it takes, which is also how many values it gives.
     #[must_use]
     pub fn dimensions(&self) -> usize {
@@ -123,6 +131,32 @@ impl Distribution {
             }
             Self::Correlated(correlated) => {
                 correlated.entries().iter().map(|entry| numbers(entry.ends())).collect()
+            }
+        }
+    }
+}
+
+/// In words, for what columns of results mean.
+impl fmt::Display for Distribution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Normal(normal) => {
+                let (mean, deviation) = (normal.mean(), normal.standard_deviation());
+                write!(f, "normal, mean {mean:?}, standard deviation {deviation:?}")?;
+                let ends = [("from", normal.lower()), ("to", normal.upper())];
+                let mut cut = ends.into_iter().filter_map(|(word, end)| Some((word, end?)));
+                cut.try_for_each(|(word, end)| write!(f, ", {word} {end:?}"))
+            }
+            Self::Uniform(uniform) => {
+                write!(f, "uniform from {:?} to {:?}", uniform.lower(), uniform.upper())
+            }
+            Self::LogUniform(uniform) => {
+                write!(f, "log-uniform from {:?} to {:?}", uniform.lower(), uniform.upper())
+            }
+            Self::Choice(choice) => write!(f, "one of {} values", choice.count()),
+            Self::Seed => f.write_str("a seed for each run"),
+            Self::Correlated(correlated) => {
+                write!(f, "one of {} correlated normals", correlated.entries().len())
             }
         }
     }
