@@ -33,7 +33,7 @@ impl Moments {
     ///
     /// # Source
     /// T. F. Chan, G. H. Golub, R. J. LeVeque, *Algorithms for computing the sample variance*, The American Statistician
-    /// 37 (1983), eq. (1.7): the corrected two-pass algorithm.
+    /// 37 (1983): the corrected two-pass algorithm.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let (minimum, maximum) = extremes(values)?;
