@@ -217,6 +217,40 @@ mod tests {
         assert!(near.edges.windows(2).all(|ends| ends[0] < ends[1]), "{near:?}");
     }
 
+    /// 0.3 / 0.1 is 2.9999999999999996: quotients of round numbers are rounded across whole numbers, both ways.
+    #[test]
+    fn the_outer_bins_hold_the_limits_and_no_bin_lies_beyond() {
+        let sorted = Sorted::of(&line(50));
+        for lower in (-30..30).map(|tenths| f64::from(tenths) / 10.0) {
+            for upper in (1..40).map(|tenths| lower + f64::from(tenths) / 10.0) {
+                for (lower, upper) in [
+                    (lower, upper),
+                    (lower.next_down(), upper.next_up()),
+                    (lower.next_up(), upper.next_down()),
+                ] {
+                    let edges =
+                        Histogram::between(&sorted, lower, upper).expect("a histogram").edges;
+                    let bins = edges.len() - 1;
+                    assert!(edges[0] <= lower && lower < edges[1], "{lower} {upper}: {edges:?}");
+                    assert!(
+                        edges[bins - 1] < upper && upper <= edges[bins],
+                        "{lower} {upper}: {edges:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_column_with_a_narrow_middle_has_sixty_bins_at_most() {
+        for upper in (100..1000).map(|hundredths| f64::from(hundredths) / 100.0) {
+            let mut values = vec![1.0; 50];
+            values.extend([-0.01, upper]);
+            let bins = of(&values).counts.len();
+            assert!((20..=60).contains(&bins), "{upper}: {bins}");
+        }
+    }
+
     proptest::proptest! {
         #[test]
         fn every_value_is_counted_once_in_ten_to_sixty_bins(

@@ -33,7 +33,7 @@ impl Moments {
     ///
     /// # Source
     /// T. F. Chan, G. H. Golub, R. J. LeVeque, *Algorithms for computing the sample variance*, The American Statistician
-    /// 37 (1983), eq. (1.7): the corrected two-pass algorithm.
+    /// 37 (1983): the corrected two-pass algorithm.
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let (minimum, maximum) = extremes(values)?;
@@ -66,8 +66,9 @@ fn extremes(values: &[f64]) -> Option<(f64, f64)> {
         if !value.is_finite() {
             return None;
         }
-        minimum = minimum.min(value);
-        maximum = maximum.max(value);
+        // Not `min` and `max`: of the two zeros they may give either.
+        minimum = if value < minimum { value } else { minimum };
+        maximum = if value > maximum { value } else { maximum };
     }
     Some((minimum, maximum))
 }
@@ -85,8 +86,17 @@ mod tests {
 
     #[test]
     fn equal_values_have_no_spread_at_all() {
-        let moments = Moments::of(&[0.1; 1000]).expect("values");
-        assert_eq!((moments.mean, moments.standard_deviation), (0.1, Some(0.0)));
+        for count in 2..1000 {
+            let moments = Moments::of(&vec![0.1; count]).expect("values");
+            assert_eq!((moments.mean, moments.standard_deviation), (0.1, Some(0.0)), "{count}");
+        }
+    }
+
+    /// At 10¹⁶ doubles are 2 apart: the mean of these two is not one of them.
+    #[test]
+    fn a_mean_that_had_to_be_rounded_does_not_widen_the_spread() {
+        let moments = Moments::of(&[1e16, 1e16 + 2.0]).expect("values");
+        assert_eq!(moments.standard_deviation, Some(2f64.sqrt()));
     }
 
     /// 1e9 + (4, 7, 13, 16): mean 10 above 1e9, variance 30. One pass over the squares in doubles gives a variance of 0 or less.

@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// The example of R's statpsych 1.9, ci.spear, by the first of the two authors: 0.8699639, 0.5840951 to 0.9638297.
+    /// The example of ci.spear in R's statpsych, by the first of the two authors: 0.8699639, 0.5840951 to 0.9638297.
     #[test]
     fn the_authors_own_example_comes_out() {
         let y = [21., 4., 9., 12., 35., 18., 10., 22., 24., 1., 6., 8., 13., 16., 19.];

@@ -6,7 +6,7 @@
 //!
 //! # Source
 //! C. Loader, *Fast and Accurate Computation of Binomial Probabilities* (2000); NIST Digital Library of Mathematical
-//! Functions, 8.17.5 (binomial tail as incomplete beta function) and 8.17.22 (its continued fraction).
+//! Functions, 8.17.5 (binomial tail as incomplete beta function).
 
 use std::f64::consts::TAU;
 
@@ -185,7 +185,7 @@ fn deviance(found: f64, expected: f64) -> f64 {
 ///
 /// # Source
 /// A. R. DiDonato, A. H. Morris, *Significant Digit Computation of the Incomplete Beta Function Ratios*, ACM Transactions on
-/// Mathematical Software 18 (1992), eq. (9); W. J. Lentz, Applied Optics 15 (1976), for the evaluation from the front.
+/// Mathematical Software 18 (1992); W. J. Lentz, Applied Optics 15 (1976), for the evaluation from the front.
 fn fraction(a: f64, b: f64, chance: Chance) -> f64 {
     let x = chance.hit;
     let lead = a * chance.miss - b * x + 1.0;
