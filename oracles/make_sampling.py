@@ -102,6 +102,27 @@ pub(super) const DIRECTIONS: [(u32, &[u32]); 160] = [
 """
 
 
+def pairs(runs):
+    """Second eigenvalue of a round of swap-or-not, as a walk on ordered pairs of different numbers."""
+    states = [(x, y) for x in range(runs) for y in range(runs) if x != y]
+    index = {state: i for i, state in enumerate(states)}
+    walk = numpy.zeros((len(states), len(states)))
+    for x, y in states:
+        for turn in range(runs):
+            a, b = (turn - x) % runs, (turn - y) % runs
+            # Partners of each other share a bit, others have one each.
+            ends = [(x, y), (y, x)] if a == y else [(x, y), (a, y), (x, b), (a, b)]
+            for end in ends:
+                walk[index[x, y], index[end]] += 1 / runs / len(ends)
+    return numpy.sort(numpy.abs(numpy.linalg.eigvalsh(walk)))[-2]
+
+
+def permutation():
+    for runs in [4, 5, 7, 8, 12, 16, 23, 32]:
+        assert abs(pairs(runs) - (1 + 1 / runs) / 2) < 1e-12, runs
+    print("swap-or-not: second eigenvalue of pairs (1 + 1/N) / 2 for N from 4 to 32")
+
+
 def exact(value):
     """A double nearest to an exact value."""
     return float(mp.nstr(value, 40))
@@ -166,6 +187,7 @@ def truncated():
 
 if __name__ == "__main__":
     sobol()
+    permutation()
     normal()
     truncated()
     print(f"mpmath {mpmath.__version__}: {mp.dps} digits")
