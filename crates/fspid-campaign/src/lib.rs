@@ -25,6 +25,7 @@ pub mod rows;
 pub mod sample;
 pub mod shard;
 pub mod statistics;
+pub mod summary;
 pub mod table;
 
 pub use campaign::{Campaign, Progress};
