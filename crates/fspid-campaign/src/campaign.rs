@@ -120,6 +120,17 @@ impl Campaign {
         self.template.study().dispersions.iter().map(Dispersion::dimensions).sum()
     }
 
+    /// What a function says of the coordinates of each dispersion, in the order of the cube's.
+    pub(crate) fn in_cube(&self, of: impl Fn(&Dispersion) -> Vec<f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.dimensions()];
+        for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
+            for (place, value) in all.iter_mut().skip(first).zip(of(dispersion)) {
+                *place = value;
+            }
+        }
+        all
+    }
+
     /// What run `number` draws.
     #[must_use]
     pub fn drawn(&self, number: u64) -> Vec<Drawn> {

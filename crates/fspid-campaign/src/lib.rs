@@ -23,6 +23,7 @@ mod planning;
 pub mod replay;
 pub mod rows;
 pub mod sample;
+pub mod search;
 pub mod shard;
 pub mod statistics;
 pub mod table;

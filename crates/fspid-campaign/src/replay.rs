@@ -108,7 +108,7 @@ fn shown(drawn: &Drawn) -> String {
 }
 
 /// A word as a shell takes it: in quotes where it needs them.
-fn in_shell(word: &str) -> String {
+pub(crate) fn in_shell(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:+".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();

@@ -5,6 +5,7 @@ mod plan;
 mod progress;
 mod replay;
 mod run;
+mod search;
 mod shard;
 
 use std::path::PathBuf;
@@ -33,11 +34,13 @@ enum Command {
     Shard(shard::Arguments),
     Merge(merge::Arguments),
     Replay(replay::Arguments),
+    Search(search::Arguments),
 }
 
 const HELP: &str = "Examples:
   fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
   fspid campaign replay robust --run 137 --trace run-137.csv
+  fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID
 On a cluster: plan once, fly each shard anywhere, merge:
   fspid campaign plan pitch.toml --runs 1000000 --out robust
   fspid campaign shard 0 --out robust
@@ -77,6 +80,7 @@ Examples:
   fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
   fspid campaign run --out robust                  # go on where it was interrupted
   fspid campaign replay robust --run 137 --trace run-137.csv
+  fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID --budget 5000
   python -c \"import pandas; print(pandas.read_parquet('robust/campaign.parquet').describe())\"
 Exit codes: 0 done, failed flights are results; 2 the input is wrong; 4 the output could not be written.";
 
@@ -87,6 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Shard(arguments) => shard::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Replay(arguments) => replay::run(arguments),
+        Command::Search(arguments) => search::run(arguments),
     }
 }
 
