@@ -88,6 +88,7 @@ fn what_cannot_be_is_refused_with_what_can() {
             vec!["campaign", "replay", "here", "--run", "40"],
             "there is no run 40; allowed is 0 to 39",
         ),
+        (vec!["campaign", "run", "--out", "here", "--runs", "9"], "--runs goes with a scenario"),
         (vec!["campaign", "run", "--out", "nowhere"], "there is no campaign here"),
         (
             vec!["campaign", "run", "pitch.toml", "--runs", "0", "--out", "x"],
@@ -188,6 +189,11 @@ fn an_interrupted_campaign_and_a_full_disk_lose_nothing() {
     let full =
         Command::new("sh").args(["-c", &line]).current_dir(folder).output().expect("a shell");
     assert_eq!(code(&full), 4, "{}", text(&full.stderr));
+    let told = text(&full.stderr);
+    assert!(
+        told.contains("cannot write here/shards/") && told.contains("when it is run again"),
+        "{told}"
+    );
     done(&with(&LARGE, &["--out", "here", "--quiet"]), folder);
     done(&with(&LARGE, &["--out", "whole", "--quiet"]), folder);
     assert_eq!(merged(folder, "here"), merged(folder, "whole"));

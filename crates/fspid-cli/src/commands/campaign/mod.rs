@@ -122,28 +122,45 @@ struct Planned {
     /// Set a value before anything is drawn, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
-    /// How many runs.
-    #[arg(long, default_value_t = 1000)]
-    runs: u64,
-    /// Seed of everything that is drawn.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// How the drawn points are spread.
-    #[arg(long, value_enum, default_value_t = Spread::Random)]
-    sampling: Spread,
+    /// How many runs; 1000 if left out.
+    #[arg(long)]
+    runs: Option<u64>,
+    /// Seed of everything that is drawn; 1 if left out.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// How the drawn points are spread; at random if left out.
+    #[arg(long, value_enum)]
+    sampling: Option<Spread>,
     /// Runs of a shard, the least that an interruption can lose; by default a second or two of flights.
     #[arg(long, value_name = "RUNS")]
     shard_runs: Option<u64>,
 }
 
+/// How many runs there are if nobody says.
+const RUNS: u64 = 1000;
+/// The seed if nobody says.
+const SEED: u64 = 1;
+
 impl Planned {
+    /// An option that says something, if one does.
+    fn given(&self) -> Option<&'static str> {
+        let options = [
+            (!self.overrides.is_empty(), "--set"),
+            (self.runs.is_some(), "--runs"),
+            (self.seed.is_some(), "--seed"),
+            (self.sampling.is_some(), "--sampling"),
+            (self.shard_runs.is_some(), "--shard-runs"),
+        ];
+        options.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
+    }
+
     fn campaign(&self, scenario: &std::path::Path, folder: &Folder) -> Result<Campaign, Failure> {
         let question = Question {
             scenario,
             overrides: &self.overrides,
-            runs: self.runs,
-            seed: self.seed,
-            sampling: self.sampling.into(),
+            runs: self.runs.unwrap_or(RUNS),
+            seed: self.seed.unwrap_or(SEED),
+            sampling: self.sampling.unwrap_or(Spread::Random).into(),
             shard_runs: self.shard_runs,
         };
         let campaign = fspid_campaign::plan(&question, folder).map_err(failure)?;

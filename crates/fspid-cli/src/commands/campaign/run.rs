@@ -40,7 +40,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.place.folder();
     let campaign = match &arguments.scenario {
         Some(scenario) => arguments.planned.campaign(scenario, &folder)?,
-        None => planned(&folder)?,
+        None => match arguments.planned.given() {
+            None => planned(&folder)?,
+            Some(option) => {
+                return Err(Failure::input(format_args!(
+                    "{option} goes with a scenario; without one the campaign in the folder goes on as it was planned"
+                )));
+            }
+        },
     };
     let Engine::Local = arguments.engine;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
