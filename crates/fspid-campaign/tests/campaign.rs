@@ -146,3 +146,21 @@ fn a_row_holds_what_was_drawn_and_a_replay_gives_the_same_numbers() {
     let study = fspid_study::file::load(&scenario(), &changes).expect("a scenario");
     assert_eq!(study.scenario, replay.study.scenario);
 }
+
+#[test]
+fn every_column_stands_in_the_documentation_with_its_unit() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/campaigns.md");
+    let docs = std::fs::read_to_string(docs).expect("the documentation");
+    let home = tempfile::tempdir().expect("a folder");
+    let campaign = planned(&Folder::new(home.path()), 1, 1);
+    for column in campaign.rows().schema().columns() {
+        let name = column.name.as_str();
+        let family = ["parameter.", "requirement."].iter().find(|family| name.starts_with(**family));
+        let row = match family {
+            Some(family) => docs.lines().find(|line| line.contains(&format!("`{family}"))),
+            None => docs.lines().find(|line| line.contains(&format!("`{name}`"))),
+        };
+        let row = row.unwrap_or_else(|| panic!("{name} is not documented"));
+        assert!(family.is_some() || row.contains(&column.unit), "{name}: {row}");
+    }
+}
