@@ -44,6 +44,28 @@ fn the_merged_file_has_the_same_bytes_for_any_number_of_threads_and_size_of_shar
 }
 
 #[test]
+fn nonlinear_aircraft_in_gusts_of_their_own_fly_the_same_on_any_number_of_threads() {
+    let name =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign-turbulence.toml");
+    let flown = |threads| {
+        let home = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new(home.path());
+        let question = Question {
+            scenario: &name,
+            overrides: &["loop.duration_s=3.0".to_owned()],
+            runs: 9,
+            seed: 2,
+            sampling: Sampling::Sobol,
+            shard_runs: Some(4),
+        };
+        let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
+        folder.put_plan(campaign.plan()).expect("written");
+        local::run(&folder, &campaign, threads, &Progress::default()).expect("flown").digest
+    };
+    assert_eq!(flown(1), flown(3));
+}
+
+#[test]
 fn an_interrupted_campaign_goes_on_and_flies_nothing_twice() {
     let home = tempfile::tempdir().expect("a folder");
     let folder = Folder::new(home.path());
@@ -155,7 +177,8 @@ fn every_column_stands_in_the_documentation_with_its_unit() {
     let campaign = planned(&Folder::new(home.path()), 1, 1);
     for column in campaign.rows().schema().columns() {
         let name = column.name.as_str();
-        let family = ["parameter.", "requirement."].iter().find(|family| name.starts_with(**family));
+        let family =
+            ["parameter.", "requirement."].iter().find(|family| name.starts_with(**family));
         let row = match family {
             Some(family) => docs.lines().find(|line| line.contains(&format!("`{family}"))),
             None => docs.lines().find(|line| line.contains(&format!("`{name}`"))),
