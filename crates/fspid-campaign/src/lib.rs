@@ -26,6 +26,7 @@ pub mod sample;
 pub mod search;
 pub mod shard;
 pub mod statistics;
+pub mod summary;
 pub mod table;
 
 pub use campaign::{Campaign, Progress};
