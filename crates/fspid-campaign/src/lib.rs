@@ -33,5 +33,5 @@ pub use campaign::{Campaign, Progress};
 pub use error::CampaignError;
 pub use folder::{Folder, Lock};
 pub use merge::{PLAN_KEY, merge};
-pub use plan::{MOST_RUNS, Plan, Range, SHARD_RUNS, SLOW_SHARD_RUNS};
+pub use plan::{MOST_RUNS, MOST_SHARD_RUNS, Plan, Range, SHARD_RUNS, SLOW_SHARD_RUNS};
 pub use planning::{Question, plan};

@@ -134,6 +134,31 @@ fn a_second_process_in_the_folder_is_refused() {
 }
 
 #[test]
+fn a_plan_that_was_changed_by_hand_is_refused_with_the_place() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    planned(&folder, 3, 3);
+    let text = std::fs::read_to_string(folder.plan_path()).expect("written");
+    for (from, to, words) in [
+        ("\"runs\": 3", "\"runs\": 4", "/campaign is not the digest"),
+        ("\"runs\": 3", "\"runs\": 0", "/runs is 0; it must be from 1"),
+        ("\"shard_runs\": 3", "\"shard_runs\": 1e9", "/shard_runs is no whole number"),
+        ("\"latin-hypercube\"", "\"lhs\"", "\"lhs\", which is unknown"),
+        ("\"seed\": \"7\"", "\"seed\": \"-7\"", "/seed is no whole number"),
+        ("\"schema\": 1", "\"schema\": 2", "/schema is not 1"),
+        ("{", "", "campaign.json"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        std::fs::write(folder.plan_path(), changed).expect("written");
+        let refused = folder.plan().expect_err("changed").to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+    std::fs::write(folder.plan_path(), text).expect("written");
+    assert!(folder.plan().is_ok());
+}
+
+#[test]
 fn a_folder_with_another_campaign_is_refused_with_the_difference() {
     let home = tempfile::tempdir().expect("a folder");
     let folder = Folder::new(home.path());

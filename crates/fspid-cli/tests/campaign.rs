@@ -94,6 +94,10 @@ fn what_cannot_be_is_refused_with_what_can() {
             vec!["campaign", "run", "pitch.toml", "--runs", "0", "--out", "x"],
             "the number of runs is 0",
         ),
+        (
+            vec!["campaign", "plan", "pitch.toml", "--shard-runs", "65537", "--out", "x"],
+            "in a shard is 65537",
+        ),
         (vec!["campaign", "run", "pitch.toml", "--out", "here"], "another campaign is there"),
         (
             vec!["campaign", "search", "pitch.toml", "--measure", "overshot"],
