@@ -32,7 +32,7 @@ pub enum SummaryError {
 #[non_exhaustive]
 pub enum NotMerged {
     /// It is a part of one.
-    #[error("it is a part of one; merge the parts first")]
+    #[error("it is a part of one; merge the parts with `fspid campaign merge`")]
     Part,
     /// Metadata that a merged file has.
     #[error("its metadata has no \"{key}\"")]

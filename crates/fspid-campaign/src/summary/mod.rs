@@ -13,8 +13,19 @@
 //! of one column at a time, and of the first [`SENSITIVITY_RUNS`] runs every parameter with its ranks. All sums
 //! run in the order of the file: the same file gives the same bits on every machine, with any number of threads.
 
+mod columns;
 mod data;
 mod error;
+mod flights;
+mod json;
+mod make;
+mod measures;
+mod probability;
+mod requirements;
+mod sensitivity;
+mod source;
+mod text;
+pub mod words;
 
 pub use data::{
     Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureSummary, Note,
@@ -22,6 +33,8 @@ pub use data::{
     Severity, Summary, SummarySettings, VerdictCount,
 };
 pub use error::{NotMerged, SummaryError};
+pub use json::json;
+pub use text::text;
 
 /// Shares of the flights whose quantiles a summary has.
 pub const QUANTILES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];

@@ -1,0 +1,255 @@
+//! A summary for a terminal.
+
+use super::columns::{Align, Columns};
+use super::data::{
+    Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, RequirementSummary,
+    Sensitivity, SensitivityTarget, Severity, Summary,
+};
+use super::words::{number, percent, whole};
+
+/// Widest line, in characters, as long as names are not very long.
+const WIDTH: usize = 100;
+/// Longest name of a measure or parameter in a table, in characters.
+const NAME: usize = 24;
+/// Least share of the variance that is named, and how many standard errors it must be above 0.
+const LEAST_SHARE: f64 = 0.01;
+const SURE: f64 = 2.0;
+/// What stands where there is nothing.
+const NOTHING: &str = "\u{2013}";
+
+/// A summary in lines of at most some hundred characters.
+#[must_use]
+pub fn text(summary: &Summary) -> String {
+    let mut lines = head(&summary.head);
+    for controller in &summary.controllers {
+        lines.push(String::new());
+        lines.extend(of_controller(controller, summary.head.confidence));
+    }
+    if !summary.notes.is_empty() {
+        lines.push(String::new());
+        lines.push("Notes".to_owned());
+        let notes = summary.notes.iter().flat_map(|note| wrapped(&note.to_string(), "- "));
+        lines.extend(notes);
+    }
+    let mut text = lines.join("\n");
+    text.push('\n');
+    text
+}
+
+fn head(head: &Head) -> Vec<String> {
+    let short = |digest: &str| digest.chars().take(12).collect::<String>();
+    let mut lines = vec![head.scenario.clone().unwrap_or_else(|| "a campaign".to_owned())];
+    lines.push(format!(
+        "  {} runs, {} sampling, seed {}; flown by {}",
+        whole(head.runs),
+        head.sampling.name(),
+        head.seed,
+        head.program
+    ));
+    let digest = short(&head.digest.to_string());
+    lines.push(format!("  campaign {}, digest of the rows {digest}", short(&head.campaign)));
+    if !head.changes.is_empty() {
+        lines.extend(wrapped(&format!("changed: {}", head.changes.join(", ")), "  "));
+    }
+    let sure = percent(head.confidence);
+    lines.push(format!("  Intervals in brackets hold the truth with {sure} confidence."));
+    lines
+}
+
+fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String> {
+    let mut lines = vec![controller.name.clone()];
+    lines.push(format!("  fails {}", controller.failed.in_words(confidence)));
+    let verdicts: Vec<String> = controller
+        .verdicts
+        .iter()
+        .map(|count| format!("{} {}", count.verdict, whole(count.flights)))
+        .collect();
+    lines.extend(wrapped(&verdicts.join(", "), "  "));
+    if controller.refused.count > 0 {
+        lines.push(format!("  refused {}", controller.refused.in_words(confidence)));
+    }
+    lines.extend(requirements(&controller.requirements, confidence));
+    lines.extend(measures(&controller.measures));
+    lines.extend(sensitivities(&controller.sensitivities));
+    lines.extend(failed_runs(controller));
+    lines
+}
+
+fn requirements(requirements: &[RequirementSummary], confidence: f64) -> Vec<String> {
+    let asked: Vec<_> = requirements.iter().filter(|it| it.not_met.of > 0).collect();
+    if asked.is_empty() {
+        return Vec::new();
+    }
+    let mut table = Columns::new(&[
+        ("requirement", Align::Left),
+        ("required", Align::Left),
+        ("not met", Align::Left),
+        ("worst", Align::Right),
+        ("run", Align::Right),
+    ]);
+    for requirement in asked {
+        let [worst, run] = extreme(requirement.worst);
+        let not_met = requirement.not_met.in_words(confidence);
+        table.row(vec![cut(&requirement.id), cut(&requirement.required), not_met, worst, run]);
+    }
+    table.lines()
+}
+
+fn measures(measures: &[MeasureSummary]) -> Vec<String> {
+    let mut table = Columns::new(&[
+        ("measure", Align::Left),
+        ("without", Align::Right),
+        ("mean", Align::Right),
+        ("5 %", Align::Right),
+        ("median", Align::Right),
+        ("95 %", Align::Right),
+        ("99 %", Align::Right),
+        ("worst", Align::Right),
+        ("run", Align::Right),
+    ]);
+    for measure in measures.iter().filter(|measure| measure.count > 0) {
+        let [worst, run] = extreme(worst(measure));
+        let mean = measure.moments.map_or_else(nothing, |moments| number(moments.mean));
+        let quantile = |share: f64| {
+            let found = measure.quantiles.iter().find(|it| it.share.to_bits() == share.to_bits());
+            found.map_or_else(nothing, |quantile| number(quantile.value))
+        };
+        table.row(vec![
+            cut(short_name(&measure.name)),
+            whole(measure.missing + measure.not_finite),
+            mean,
+            quantile(0.05),
+            quantile(0.5),
+            quantile(0.95),
+            quantile(0.99),
+            worst,
+            run,
+        ]);
+    }
+    table.lines()
+}
+
+/// The worst value, where it is known which side is bad.
+fn worst(measure: &MeasureSummary) -> Option<Extreme> {
+    match measure.bad? {
+        Bad::High => measure.highest.first().copied(),
+        Bad::Low => measure.lowest.first().copied(),
+    }
+}
+
+fn extreme(extreme: Option<Extreme>) -> [String; 2] {
+    match extreme {
+        Some(Extreme { run, value }) => [number(value), run.to_string()],
+        None => [nothing(), nothing()],
+    }
+}
+
+fn sensitivities(sensitivities: &[Sensitivity]) -> Vec<String> {
+    let mut table = Columns::new(&[
+        ("depends on", Align::Left),
+        ("most on", Align::Left),
+        ("share", Align::Right),
+        ("rank", Align::Right),
+        ("then on", Align::Left),
+        ("share", Align::Right),
+        ("rank", Align::Right),
+    ]);
+    for sensitivity in sensitivities {
+        let name = match &sensitivity.of {
+            SensitivityTarget::Failure => "failing",
+            SensitivityTarget::Measure(name) => short_name(name),
+        };
+        let mut row = vec![cut(name)];
+        let mut influences: Vec<_> = sensitivity.influences.iter().filter_map(clear).collect();
+        influences.sort_by(|a, b| b.1.total_cmp(&a.1));
+        for (influence, share) in influences.iter().take(2) {
+            let rank = influence.correlation.map(|found| rank(found.coefficient));
+            row.push(cut(&influence.parameter));
+            row.push(format!("{:.0} %", 100.0 * share));
+            row.push(rank.unwrap_or_else(nothing));
+        }
+        if row.len() > 1 {
+            row.resize(7, String::new());
+            table.row(row);
+        }
+    }
+    table.lines()
+}
+
+/// An influence whose share is clearly above 0, with it.
+fn clear(influence: &Influence) -> Option<(&Influence, f64)> {
+    let share = influence.share?;
+    let is_clear = share.fraction >= LEAST_SHARE && share.fraction > SURE * share.standard_error;
+    is_clear.then_some((influence, share.fraction))
+}
+
+fn rank(coefficient: f64) -> String {
+    let text = format!("{coefficient:+.2}");
+    text.replace('-', "\u{2212}")
+}
+
+fn failed_runs(controller: &ControllerSummary) -> Vec<String> {
+    if controller.failed_runs.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![String::new(), "  failed runs, the worst first".to_owned()];
+    for failed in &controller.failed_runs {
+        let reasons = match (failed.reasons.as_str(), failed.severity) {
+            ("", severity) => severity.name(),
+            (reasons, _) => reasons,
+        };
+        let mark = match failed.severity {
+            Severity::Refused => "refused: ",
+            _ => "",
+        };
+        let line = format!("  {:>10}  {mark}{reasons}", failed.run);
+        lines.push(shortened(&line, WIDTH));
+    }
+    lines
+}
+
+/// The id of a requirement for the column of its value.
+fn short_name(column: &str) -> &str {
+    let id = column.strip_prefix(crate::rows::REQUIREMENT);
+    id.and_then(|id| id.strip_suffix(".value")).unwrap_or(column)
+}
+
+fn nothing() -> String {
+    NOTHING.to_owned()
+}
+
+fn cut(name: &str) -> String {
+    shortened(name, NAME)
+}
+
+/// A text of at most so many characters on one line.
+fn shortened(text: &str, most: usize) -> String {
+    let text = text.replace(['\n', '\r', '\t'], " ");
+    if text.chars().count() <= most {
+        return text;
+    }
+    text.chars().take(most - 1).chain(['\u{2026}']).collect()
+}
+
+/// A text in lines, the first of which begins with `mark`, the others as far right.
+fn wrapped(text: &str, mark: &str) -> Vec<String> {
+    let room = WIDTH - mark.chars().count();
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        if let Some(line) = lines.last_mut() {
+            if line.is_empty() || line.chars().count() + 1 + word.chars().count() <= room {
+                let between = if line.is_empty() { "" } else { " " };
+                line.push_str(between);
+                line.push_str(word);
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+    }
+    let other = " ".repeat(mark.chars().count());
+    let marked = |(index, line): (usize, String)| {
+        let mark = if index == 0 { mark } else { &other };
+        format!("{mark}{line}")
+    };
+    lines.into_iter().enumerate().map(marked).collect()
+}
