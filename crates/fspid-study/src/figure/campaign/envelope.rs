@@ -18,6 +18,8 @@ pub struct EnvelopeFigure {
     pub x_label: String,
     /// Name and unit of the ordinate.
     pub y_label: String,
+    /// Ends of the abscissa; `None` takes those of everything that is drawn. What lies beyond is cut.
+    pub x_range: Option<(f64, f64)>,
     /// Ends of the ordinate; `None` takes those of everything that is drawn. What lies beyond is cut.
     pub y_range: Option<(f64, f64)>,
     /// Panels from top to bottom.
@@ -105,7 +107,9 @@ impl EnvelopeFigure {
 
     fn axes(&self, width: f64) -> (Axis, Axis) {
         let times = self.panels.iter().flat_map(|panel| panel.x.iter().copied());
-        let x = Axis::linear(extent(times), 0.0, (width / 90.0) as usize);
+        let ticks = (width / 90.0) as usize;
+        let x = Axis::fixed(self.x_range, ticks)
+            .unwrap_or_else(|| Axis::linear(extent(times), 0.0, ticks));
         let found = extent(self.panels.iter().flat_map(EnvelopePanel::values));
         let y = Axis::fixed(self.y_range, 5).unwrap_or_else(|| Axis::linear(found, 0.05, 5));
         (x, y)
@@ -151,7 +155,7 @@ impl Drawing<'_> {
                 canvas.path(&d, &Paint::face(role).opacity(opacity));
             }
         }
-        self.line(canvas, (&panel.x, &panel.setpoint), &Paint::line(Role::Setpoint, 1.2));
+        self.line(canvas, (&panel.x, &panel.setpoint), &setpoint_paint());
         for worst in &panel.worst {
             self.line(canvas, (&panel.x, worst), &worst_paint());
         }
@@ -192,10 +196,14 @@ impl Drawing<'_> {
     /// Far outside is as good as outside, and keeps numbers short.
     fn place(&self, x: f64, y: f64) -> (f64, f64) {
         let a = self.area;
-        let part = self.y.fraction(y);
-        let part = if part.is_nan() { part } else { part.clamp(-9.0, 10.0) };
-        (a.x + self.x.fraction(x) * a.width, a.y + (1.0 - part) * a.height)
+        let near = |part: f64| if part.is_nan() { part } else { part.clamp(-9.0, 10.0) };
+        let (across, up) = (near(self.x.fraction(x)), near(self.y.fraction(y)));
+        (a.x + across * a.width, a.y + (1.0 - up) * a.height)
     }
+}
+
+fn setpoint_paint() -> Paint {
+    Paint::line(Role::Ink, 1.5).dashed("1.5 3.5")
 }
 
 fn worst_paint() -> Paint {
@@ -230,7 +238,7 @@ impl Key {
             (any(|p| !p.median.is_empty()), "median", Paint::line(Role::Ink, 2.6)),
             (any(|p| !p.nominal.is_empty()), "nominal", nominal_paint()),
             (any(|p| !p.worst.is_empty()), "worst flights", worst_paint()),
-            (any(|p| !p.setpoint.is_empty()), "commanded", Paint::line(Role::Setpoint, 1.2)),
+            (any(|p| !p.setpoint.is_empty()), "commanded", setpoint_paint()),
         ];
         let shown = lines.into_iter().filter(|(there, ..)| *there);
         entries.extend(shown.map(|(_, name, paint)| (name.to_owned(), Some(paint), 1.0)));

@@ -63,7 +63,7 @@ const MARK: f64 = 13.0;
 /// Free height above and below the marks of a row (px).
 const PAD: f64 = 6.0;
 /// Gap between columns (px).
-const GAP: f64 = 26.0;
+const GAP: f64 = 44.0;
 
 /// Where everything stands.
 struct Places {

@@ -23,6 +23,8 @@ pub struct ShareMap {
     pub y_label: String,
     /// What the shares are of, such as "runs that failed".
     pub quantity: String,
+    /// The share at the upper end of the scale (%), to compare maps; `None` takes the largest.
+    pub most_pct: Option<f64>,
     /// Ends of the columns, ascending.
     pub x_edges: Vec<f64>,
     /// Ends of the rows, ascending.
@@ -104,7 +106,8 @@ impl ShareMap {
     /// Upper end of the scale: the largest share, at least a round one that can be told from none (%).
     fn most_pct(&self) -> f64 {
         let shares = self.cells.iter().flatten().filter_map(|cell| cell.share_pct());
-        let most = shares.fold(0.0, f64::max);
+        let asked = self.most_pct.filter(|most| *most > 0.0 && *most <= 100.0);
+        let most = asked.unwrap_or_else(|| shares.fold(0.0, f64::max));
         [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|end| most <= *end).unwrap_or(100.0)
     }
 

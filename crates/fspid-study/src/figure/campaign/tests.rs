@@ -86,6 +86,7 @@ fn envelope(panels: usize, samples: usize) -> EnvelopeFigure {
         title: "Pitch".to_owned(),
         x_label: "time [s]".to_owned(),
         y_label: "pitch angle [deg]".to_owned(),
+        x_range: None,
         y_range: None,
         panels: (0..panels).map(panel).collect(),
         width_px: 720.0,
@@ -113,6 +114,7 @@ fn map(side: usize) -> ShareMap {
         x_label: "servo time constant [s]".to_owned(),
         y_label: name(3),
         quantity: "runs that failed".to_owned(),
+        most_pct: None,
         x_edges: edges.clone(),
         y_edges: edges,
         cells: (0..side).map(|i| (0..side).map(|j| cell(i * side + j)).collect()).collect(),
@@ -159,7 +161,7 @@ pub(in crate::figure) fn odd(draw: &mut Draw) -> Vec<Svg> {
     }
     found.push(figure.render());
     let mut figure = envelope(2, 8);
-    figure.y_range = draw.range();
+    (figure.x_range, figure.y_range) = (draw.range(), draw.range());
     for panel in &mut figure.panels {
         panel.x = draw.list(8);
         panel.median = draw.list(8);
@@ -175,7 +177,15 @@ pub(in crate::figure) fn odd(draw: &mut Draw) -> Vec<Svg> {
     found.push(
         RunScatter { passed: pairs(draw), failed: pairs(draw), ranges, ..scatter(0) }.render(),
     );
-    found.push(ShareMap { x_edges: draw.list(5), y_edges: draw.list(5), ..map(4) }.render());
+    found.push(
+        ShareMap {
+            most_pct: Some(draw.mixed()),
+            x_edges: draw.list(5),
+            y_edges: draw.list(5),
+            ..map(4)
+        }
+        .render(),
+    );
     found
 }
 

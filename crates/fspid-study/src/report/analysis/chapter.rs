@@ -92,7 +92,10 @@ impl Datum {
             Self::Text(text) => Cell::text(text),
             Self::Number(text) => Cell::number(text),
             Self::Code(text) => {
-                let markup = format!("<code>{}</code>", html::escape(text));
+                // Broken between words alone, lest a hyphen end a line; a style sheet has the rest.
+                let words = text.split(' ').map(|it| format!("<span>{}</span>", html::escape(it)));
+                let words: Vec<String> = words.collect();
+                let markup = format!("<code>{}</code>", words.join(" "));
                 Cell { markup, ..Cell::default() }
             }
             Self::Absent(reason) => Cell { class: "absent", ..Cell::text(reason) },

@@ -12,6 +12,7 @@ fn picture(name: &str) -> Item {
         x_label: HOSTILE.to_owned(),
         y_label: HOSTILE.to_owned(),
         quantity: HOSTILE.to_owned(),
+        most_pct: None,
         x_edges: vec![0.0, 1.0],
         y_edges: vec![0.0, 1.0],
         cells: Vec::new(),
@@ -73,7 +74,7 @@ fn the_answer_stands_before_the_contents_and_its_notes_do_too() {
 fn nothing_that_somebody_named_becomes_markup() {
     let page = full().render();
     assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
-    assert!(page.contains("<code>&lt;script&gt;"), "a command in a table");
+    assert!(page.contains("<code><span>&lt;script&gt;"), "a command in a table");
     assert!(!page.contains("href=\"http") && !page.contains("src="));
 }
 
