@@ -21,6 +21,7 @@ mod merge;
 mod plan;
 mod planning;
 pub mod replay;
+pub mod report;
 pub mod rows;
 pub mod sample;
 pub mod search;

@@ -9,6 +9,8 @@ use fspid_study::figure::{
 
 #[path = "gallery/analysis.rs"]
 mod analysis;
+#[path = "gallery/campaign.rs"]
+mod campaign;
 #[path = "gallery/page.rs"]
 mod page;
 
@@ -30,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let loops = analysis::figures()?;
     std::fs::write(folder.join("analysis.html"), page::page(&loops))?;
-    for (name, svg) in figures.into_iter().chain(loops) {
+    for (name, svg) in figures.into_iter().chain(loops).chain(campaign::figures()) {
         std::fs::write(folder.join(format!("{name}.svg")), svg.as_str())?;
     }
     Ok(())

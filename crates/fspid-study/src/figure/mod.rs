@@ -10,6 +10,7 @@
 
 mod analysis;
 mod axis;
+mod campaign;
 mod conclusion;
 mod contour;
 pub mod diagrams;
@@ -36,6 +37,11 @@ pub use analysis::{
     GainSurface, LocusSample, LoopCurve, LoopPoint, MapCell, MapPoint, Margin, MarginDisk,
     MarginMark, NicholsFigure, NyquistFigure, PeakMark, PoleZeroMap, RadiusFigure, RootLocus,
     SensitivityFigure, Transfer,
+};
+pub use campaign::{
+    DistributionFigure, DistributionRow, EnvelopeBand, EnvelopeFigure, EnvelopePanel,
+    IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, LimitLine, RunScatter, ShareCell,
+    ShareMap,
 };
 pub use conclusion::{ConclusionFigure, Part};
 pub use line::{Band, LineFigure, LinePanel, Series};

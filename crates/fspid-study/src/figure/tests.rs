@@ -157,6 +157,10 @@ fn draw_gallery() -> Vec<Svg> {
         all.extend(analysis::tests::odd(&mut draw));
     }
     all.extend(analysis::tests::ordinary());
+    for _ in 0..40 {
+        all.extend(campaign::tests::odd(&mut draw));
+    }
+    all.extend(campaign::tests::ordinary());
     all
 }
 

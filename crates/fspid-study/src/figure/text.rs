@@ -74,6 +74,8 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
             'f' | 't' | 'r' | ' ' | '(' | ')' | '[' | ']' | '/' | '-' => 0.36,
             'm' | 'w' | 'M' | 'W' | '%' | '@' => 0.9,
             '_' | '^' | '{' | '}' => 0.0,
+            // Scripts of East Asia, and pictures.
+            '\u{2e80}'.. => 1.1,
             c if c.is_uppercase() => 0.72,
             _ => 0.57,
         })

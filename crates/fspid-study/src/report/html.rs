@@ -34,6 +34,7 @@ const TEMPLATES: &[(&str, &str)] = templates![
     "macros",
     "analysis",
     "audit",
+    "campaign",
     "page",
     "paper",
     "user",

@@ -7,11 +7,12 @@
 
 pub mod analysis;
 mod audit;
+pub mod campaign;
 mod html;
 mod loops;
 mod markdown;
 mod measures;
-mod number;
+pub mod number;
 mod page;
 mod paper;
 mod section;

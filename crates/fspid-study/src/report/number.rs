@@ -9,7 +9,8 @@ fn signed(text: String) -> String {
 }
 
 /// `value` with so many decimals.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() { signed(format!("{value:.decimals$}")) } else { "\u{2013}".to_owned() }
 }
 
@@ -21,7 +22,8 @@ pub(super) fn with_sign(value: f64, decimals: usize) -> String {
 }
 
 /// `value` with so many significant digits, in powers of ten where that is shorter.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "\u{2013}".to_owned();
     }

@@ -283,7 +283,7 @@ fn odd_loops(draw: &mut Draw, curves: &[LoopCurve]) -> Vec<Svg> {
 }
 
 /// Boxes of the upright and of the vertical texts of a figure: left, top, right, bottom.
-fn text_boxes(svg: &str) -> Vec<([f64; 4], String)> {
+pub(in crate::figure) fn text_boxes(svg: &str) -> Vec<([f64; 4], String)> {
     let attribute = |tag: &str, name: &str| -> Option<f64> {
         tag.split(&format!(" {name}=\"")).nth(1)?.split('"').next()?.parse().ok()
     };
@@ -302,6 +302,11 @@ fn text_boxes(svg: &str) -> Vec<([f64; 4], String)> {
         {
             let (x, y) = (attribute(tag, "x").unwrap(), attribute(tag, "y").unwrap() + here);
             let size = attribute(tag, "font-size").unwrap();
+            let text = &text
+                .replace("&lt;", "<")
+                .replace("&gt;", ">")
+                .replace("&quot;", "\"")
+                .replace("&amp;", "&");
             let width = text_width(text, size);
             let start = if tag.contains("\"middle\"") {
                 0.5

@@ -39,6 +39,8 @@ pub enum Item {
     Figures(Vec<Picture>),
     /// A table.
     Table(DataTable),
+    /// What few will read, behind a heading that opens it.
+    Fold(String, Vec<Item>),
 }
 
 /// A figure with its caption.
@@ -72,6 +74,8 @@ pub enum Datum {
     Text(String),
     /// A number, already written.
     Number(String),
+    /// A command or a part of a file, as it was typed.
+    Code(String),
     /// Why there is no number here.
     Absent(String),
     /// What is as asked for, in words; the sign is put before it.
@@ -87,6 +91,13 @@ impl Datum {
         match self {
             Self::Text(text) => Cell::text(text),
             Self::Number(text) => Cell::number(text),
+            Self::Code(text) => {
+                // Broken between words alone, lest a hyphen end a line; a style sheet has the rest.
+                let words = text.split(' ').map(|it| format!("<span>{}</span>", html::escape(it)));
+                let words: Vec<String> = words.collect();
+                let markup = format!("<code>{}</code>", words.join(" "));
+                Cell { markup, ..Cell::default() }
+            }
             Self::Absent(reason) => Cell { class: "absent", ..Cell::text(reason) },
             Self::Met(text) => Cell { class: "met", ..Cell::text(format!("\u{2713} {text}")) },
             Self::Unmet(text) => Cell { class: "unmet", ..Cell::text(format!("\u{2717} {text}")) },
@@ -119,6 +130,8 @@ impl DataTable {
 struct Shown {
     kind: &'static str,
     text: String,
+    /// Markup of our own.
+    body: String,
     lines: Vec<String>,
     figures: Vec<Figure>,
     table: Option<Table>,
@@ -126,11 +139,16 @@ struct Shown {
 
 impl Chapter {
     /// The id that the chapter got, and its markup.
-    pub(super) fn render(&self, ids: &mut Ids) -> (String, String) {
+    pub(in crate::report) fn render(&self, ids: &mut Ids) -> (String, String) {
         let id = ids.take(&self.id);
-        let items: Vec<Shown> = self.items.iter().map(|item| item.shown(ids)).collect();
-        (id, html::render("analysis", context! { part => "chapter", items }))
+        (id, markup(&self.items, ids))
     }
+}
+
+/// The markup of some items, one after the other.
+pub(in crate::report) fn markup(items: &[Item], ids: &mut Ids) -> String {
+    let items: Vec<Shown> = items.iter().map(|item| item.shown(ids)).collect();
+    html::render("analysis", context! { part => "chapter", items })
 }
 
 impl Item {
@@ -142,6 +160,7 @@ impl Item {
             Self::Heading(text) => words("heading", text),
             Self::Code(text) => words("code", text),
             Self::List(lines) => Shown { kind: "list", lines: lines.clone(), ..Shown::default() },
+            Self::Fold(title, items) => Shown { body: markup(items, ids), ..words("fold", title) },
             Self::Figure(picture) => {
                 Shown { kind: "figure", figures: vec![picture.shown(ids)], ..Shown::default() }
             }
@@ -165,13 +184,13 @@ impl Picture {
 
 /// Ids that a page has given away.
 #[derive(Default)]
-pub(super) struct Ids {
+pub(in crate::report) struct Ids {
     taken: BTreeSet<String>,
 }
 
 impl Ids {
     /// An id like `wanted` that no other element of the page has.
-    pub(super) fn take(&mut self, wanted: &str) -> String {
+    pub(in crate::report) fn take(&mut self, wanted: &str) -> String {
         let plain: String = wanted
             .chars()
             .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' })

@@ -9,12 +9,12 @@ mod chapter;
 mod tests;
 
 pub use chapter::{Chapter, DataTable, Datum, Item, Picture};
+pub(super) use chapter::{Ids, markup};
 
 use serde::Serialize;
 
 use super::html::{self, context};
 use super::page;
-use chapter::Ids;
 
 /// Everything that a page of an analysis holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,7 +92,7 @@ pub struct Provenance {
 
 /// A verdict as the template shows it.
 #[derive(Serialize)]
-struct Shown<'a> {
+pub(super) struct Shown<'a> {
     class: &'static str,
     sign: &'static str,
     word: &'a str,
@@ -159,7 +159,7 @@ impl AnalysisPage {
 }
 
 impl Verdict {
-    fn shown(&self) -> Shown<'_> {
+    pub(super) fn shown(&self) -> Shown<'_> {
         Shown {
             class: self.standing.class(),
             sign: self.standing.sign(),

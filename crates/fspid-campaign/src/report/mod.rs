@@ -1,0 +1,108 @@
+//! The page of a campaign: a [`Summary`] with figures, one HTML file that needs nothing else.
+//!
+//! ```text
+//! merged file ─Summary::of▶ Summary ─▶ words, tables, figures ─CampaignPage::render▶ HTML
+//!        └─plan in its metadata▶ a few hundred runs flown again ─▶ bands of responses
+//! ```
+//!
+//! The same file, with the same files beside it, gives the same bytes. What is drawn point by point is
+//! bounded, so that a page of a million runs is not longer than one of ten thousand.
+
+mod answer;
+mod by_parameter;
+mod distributions;
+mod head;
+mod maps;
+mod measures;
+mod notes;
+mod reflown;
+mod responses;
+mod sensitivities;
+#[cfg(test)]
+mod tests;
+mod words;
+mod worst;
+
+use std::path::Path;
+
+use fspid_study::figure::{SeriesStyle, Svg};
+use fspid_study::report::analysis::{Item, Picture};
+use fspid_study::report::campaign::CampaignPage;
+
+use crate::summary::{Summary, SummaryError, SummarySettings};
+use crate::table::Reader;
+
+/// What can be chosen about a page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Confidence of intervals and bounds.
+    pub summary: SummarySettings,
+    /// The campaign's folder as commands shall name it; `DIR` if none is given.
+    pub folder: Option<String>,
+}
+
+/// The page of the merged file at a path.
+///
+/// Runs are flown again on the threads of the pool that this is called in. If they cannot be (files that the
+/// scenario names are gone, another version of the program flew), the page says why in place of their figures.
+///
+/// # Errors
+/// A file that cannot be read, is damaged, or is not that of a whole campaign.
+pub fn page(path: &Path, settings: &Settings) -> Result<String, SummaryError> {
+    let summary = Summary::of(path, settings.summary)?;
+    let reader = Reader::open(path)?;
+    let source = Source { summary: &summary, reader: &reader, settings };
+    Ok(source.page()?.render())
+}
+
+/// What a page is made from.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    summary: &'a Summary,
+    reader: &'a Reader,
+    settings: &'a Settings,
+}
+
+impl Source<'_> {
+    fn page(&self) -> Result<CampaignPage, SummaryError> {
+        let mut chapters = vec![distributions::chapter(self)];
+        chapters.push(responses::chapter(self));
+        chapters.extend(maps::chapter(self)?);
+        chapters.extend(sensitivities::chapter(self));
+        chapters.push(worst::chapter(self));
+        chapters.push(head::scenario(self));
+        let heading = head::heading(self);
+        Ok(CampaignPage {
+            title: format!("{heading}: campaign"),
+            lead: head::lead(self),
+            facts: head::facts(self),
+            commands: head::commands(self),
+            verdicts: answer::verdicts(self),
+            answer: answer::items(self),
+            notes: notes::notes(self),
+            chapters,
+            heading,
+        })
+    }
+
+    /// The command that flies a run again.
+    fn replay(&self, run: u64) -> String {
+        let folder = self.settings.folder.as_deref().unwrap_or("DIR");
+        format!("fspid campaign replay {} --run {run} --trace run-{run}.csv", words::quoted(folder))
+    }
+
+    /// Names of controllers, cut to a length that headings and legends have room for.
+    fn name(&self, controller: usize) -> String {
+        let name = self.summary.controllers.get(controller).map_or("", |it| it.name.as_str());
+        words::cut(name, 60)
+    }
+}
+
+/// How the controller at a place is drawn in every figure.
+fn style(controller: usize) -> SeriesStyle {
+    SeriesStyle::Numbered(controller)
+}
+
+fn picture(name: &str, svg: Svg, caption: impl Into<String>) -> Item {
+    Item::Figure(Picture { name: name.to_owned(), svg, caption: caption.into() })
+}

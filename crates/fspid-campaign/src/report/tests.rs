@@ -1,0 +1,220 @@
+//! What holds for the page of a campaign, whatever was flown.
+
+use std::path::Path;
+
+use super::*;
+use crate::plan::Plan;
+use crate::sample::Sampling;
+use crate::{Folder, Progress, Question, local, plan};
+
+const HEAD: &str = "schema = 1\nname = \"a test\"\n[plant]\npreset = \"b747-paper\"\n[loop]\nsample_period_s = 0.05\nduration_s = 10.0\n";
+const STEP: &str = "[setpoint]\nkind = \"step\"\namplitude_deg = 1.0\n";
+const SINE: &str = "[setpoint]\nkind = \"sine\"\namplitude_deg = 1.0\nfrequency_hz = 0.2\n";
+const EFFECT: &str = "[[dispersion]]\nname = \"effect\"\npath = \"plant.preset.numerator[0]\"\ndistribution = \"uniform\"\nlower = 0.2\nupper = 4.0\nrelative = true\n";
+const DAMPING: &str = "[[dispersion]]\nname = \"damping\"\npath = \"plant.preset.denominator[1]\"\ndistribution = \"uniform\"\nlower = 0.4\nupper = 1.3\nrelative = true\n";
+const WORDS: &str = "[[dispersion]]\nname = \"law\"\npath = \"controller[0].derivative_on\"\ndistribution = \"choice\"\nvalues = [\"error\", \"measurement\"]\n";
+
+fn pid(name: &str) -> String {
+    format!("[[controller]]\nname = {name:?}\nkind = \"pid\"\nkp = 2.0\nki = 0.5\nkd = 1.0\n")
+}
+
+fn at_most(overshoot_pct: f64) -> String {
+    format!(
+        "[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = {overshoot_pct:?}\nsource = \"a test\"\nconfidence = \"own\"\n"
+    )
+}
+
+/// A campaign in a folder of its own.
+struct Flown {
+    home: tempfile::TempDir,
+    folder: Folder,
+}
+
+fn flown(parts: &[&str], runs: u64) -> Flown {
+    let home = tempfile::tempdir().expect("a folder");
+    let scenario = home.path().join("scenario.toml");
+    std::fs::write(&scenario, parts.concat()).expect("written");
+    let folder = Folder::new(&home.path().join("campaign"));
+    fly(&scenario, &folder, runs);
+    Flown { home, folder }
+}
+
+fn fly(scenario: &Path, folder: &Folder, runs: u64) {
+    let question = Question {
+        scenario,
+        overrides: &[],
+        runs,
+        seed: 3,
+        sampling: Sampling::Random,
+        shard_runs: None,
+    };
+    let campaign = plan(&question, folder).unwrap_or_else(|error| panic!("{error}"));
+    folder.put_plan(campaign.plan()).expect("written");
+    local::run(folder, &campaign, 2, &Progress::default()).expect("flown");
+}
+
+impl Flown {
+    fn page(&self) -> String {
+        let page = page(&self.folder.merged_path(), &Settings::default());
+        let page = page.unwrap_or_else(|error| panic!("{error}"));
+        assert!(!page.contains("class=\"failed\""), "a template failed");
+        assert!(!page.contains("NaN") && !page.contains("<script") && !page.contains("src="));
+        assert!(!page.contains("href=\"http"), "it needs nothing from outside");
+        assert!(page.len() < 3_000_000, "{} bytes", page.len());
+        page
+    }
+}
+
+#[track_caller]
+fn assert_says(page: &str, words: &[&str]) {
+    for words in words {
+        assert!(page.contains(words), "{words} is missing");
+    }
+}
+
+#[test]
+fn a_page_answers_first_and_has_the_same_bytes_twice() {
+    let two = [pid("CPID"), pid("other").replace("kp = 2.0", "kp = 4.0")].concat();
+    let flown = flown(&[HEAD, STEP, &two, &at_most(30.0), EFFECT, DAMPING], 120);
+    let page = flown.page();
+    assert_says(
+        &page,
+        &[
+            " of 120 flights failed",
+            "<h3>Requirements</h3>",
+            "at most 30\u{a0}%",
+            "<span>fspid</span> <span>campaign</span> <span>replay</span> <span>DIR</span> <span>--run</span>",
+            "--runs 120 --seed 3 --sampling random --out DIR",
+            "The first 120 runs, flown again",
+            "Where flights fail",
+            "id=\"map-",
+            "id=\"sensitivity-failing\"",
+            "the worst kind first",
+            "Before these numbers are used",
+        ],
+    );
+    let at = |text: &str| page.find(text).expect("it is there");
+    assert!(at("flights failed") < at("Contents"));
+    assert_eq!(flown.page(), page);
+    let settings = Settings { folder: Some("it's here".to_owned()), ..Settings::default() };
+    let named = super::page(&flown.folder.merged_path(), &settings).expect("a page");
+    assert_says(&named, &["--out 'it'\\''s here'", "'it'\\''s here/campaign.parquet'"]);
+}
+
+#[test]
+fn one_run_has_a_page_that_claims_little() {
+    let page = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 1).page();
+    assert_says(
+        &page,
+        &["One run of one scenario", "with so few runs", "flown with one controller"],
+    );
+    assert_says(&page, &["at most 95 % (95 %)", "The scenario has no requirements"]);
+}
+
+#[test]
+fn where_all_failed_or_none_did_the_worst_twentieth_is_mapped() {
+    let none = flown(&[HEAD, STEP, &pid("CPID"), &at_most(1e6), EFFECT, DAMPING], 60).page();
+    assert_says(&none, &["None of 60 flights failed", "No flight failed.", "verdict good"]);
+    assert_says(&none, &["Where the worst flights lie", "highest 5 % of overshoot_pct"]);
+    let all = flown(&[HEAD, STEP, &pid("CPID"), &at_most(1e-9), EFFECT, DAMPING], 60).page();
+    assert_says(&all, &["All 60 flights failed", "at least ", "Where the worst flights lie"]);
+    assert!(!all.contains("verdict good"));
+}
+
+#[test]
+fn parameters_that_are_no_numbers_have_no_map() {
+    let page = flown(&[HEAD, STEP, &pid("CPID"), &at_most(30.0), WORDS], 40).page();
+    assert_says(&page, &["no parameter is a number"]);
+}
+
+#[test]
+fn a_single_number_has_its_failures_in_bins_and_no_map() {
+    let page = flown(&[HEAD, STEP, &pid("CPID"), &at_most(30.0), EFFECT], 60).page();
+    assert_says(&page, &["Flights over effect", "where effect lies between two values"]);
+    assert!(!page.contains("id=\"map-0-0\"") && !page.contains("id=\"runs-0\""));
+}
+
+#[test]
+fn measures_that_no_flight_has_are_named() {
+    let page = flown(&[HEAD, SINE, &pid("CPID"), EFFECT], 20).page();
+    assert_says(&page, &["No flight has: overshoot, settling time, rise time", "IAE"]);
+}
+
+#[test]
+fn names_that_would_break_a_page_do_not() {
+    let names = [
+        "<script>alert(1)</script>",
+        "a name that is so long that no figure has room for it, as happens when names are whole sentences without an end",
+        "飛行制御 \u{1f6e9} \" & '",
+    ];
+    let controllers: String = names.iter().map(|name| pid(name)).collect();
+    let title = "name = \"</title><script>alert(2)</script>\"\n";
+    let head = HEAD.replace("name = \"a test\"\n", title);
+    let dispersion = EFFECT.replace("\"effect\"", "\"</svg><script>alert(3)</script>\"");
+    let page = flown(&[&head, STEP, &controllers, &at_most(30.0), &dispersion, DAMPING], 40).page();
+    assert_says(&page, &["&lt;script&gt;alert(1)", "飛行制御"]);
+}
+
+#[test]
+fn twelve_controllers_make_a_page_of_bounded_size() {
+    let controllers: String = (0..12)
+        .map(|n| pid(&format!("PID {n}")).replace("kp = 2.0", &format!("kp = {}.5", n + 1)))
+        .collect();
+    let page = flown(&[HEAD, STEP, &controllers, &at_most(30.0), EFFECT, DAMPING], 200).page();
+    assert_says(
+        &page,
+        &["The other controllers", "Further controllers are in the table", "PID 11"],
+    );
+    assert_says(&page, &["Maps are drawn for"]);
+}
+
+#[test]
+fn flights_that_diverge_leave_the_bands_and_are_told_of() {
+    let wild = pid("wild").replace("kp = 2.0", "kp = 60.0");
+    let page = flown(&[HEAD, STEP, &pid("calm"), &wild, EFFECT], 40).page();
+    assert_says(&page, &["diverged", "ended early; from then on they are in no band"]);
+}
+
+/// A page without its figures is still a page; one with figures of another scenario would be a lie.
+#[test]
+fn a_file_that_the_scenario_names_and_that_is_gone_is_told_of() {
+    let head = HEAD.replace("preset = \"b747-paper\"", "file = \"plant.toml\"");
+    let home = tempfile::tempdir().expect("a folder");
+    let scenario = home.path().join("scenario.toml");
+    let effect = EFFECT.replace("plant.preset.numerator[0]", "controller[0].kp");
+    std::fs::write(&scenario, [head.as_str(), STEP, &pid("CPID"), &effect].concat())
+        .expect("written");
+    let plant = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/plants/b747-paper.toml");
+    std::fs::copy(plant, home.path().join("plant.toml")).expect("copied");
+    let folder = Folder::new(&home.path().join("campaign"));
+    fly(&scenario, &folder, 5);
+    let flown = Flown { home, folder };
+    assert_says(&flown.page(), &["The first 5 runs, flown again"]);
+    std::fs::remove_file(flown.home.path().join("plant.toml")).expect("removed");
+    let without = flown.page();
+    assert_says(&without, &["could not be flown again: the scenario cannot be read again"]);
+    assert_says(&without, &["All measures in numbers"]);
+}
+
+#[test]
+fn a_file_alone_is_enough_where_the_scenario_names_no_others() {
+    let flown = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 5);
+    let home = tempfile::tempdir().expect("a folder");
+    let moved = home.path().join("moved.parquet");
+    std::fs::copy(flown.folder.merged_path(), &moved).expect("copied");
+    assert_eq!(page(&moved, &Settings::default()).expect("a page"), flown.page());
+}
+
+#[test]
+fn a_file_of_another_program_is_not_flown_again() {
+    let flown = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 5);
+    let summary = Summary::of(&flown.folder.merged_path(), SummarySettings::default());
+    let mut summary = summary.expect("a summary");
+    summary.head.program = "fspid 0.0.1".to_owned();
+    let reader = Reader::open(flown.folder.merged_path()).expect("a file");
+    let settings = Settings::default();
+    let source = Source { summary: &summary, reader: &reader, settings: &settings };
+    let page = source.page().expect("a page").render();
+    assert_says(&page, &["could not be flown again: they were flown by fspid 0.0.1"]);
+    assert_says(&page, &[&Plan::this_program()]);
+}

@@ -1,0 +1,122 @@
+//! Numbers, probabilities and names in words.
+
+use fspid_study::report::number::significant;
+
+use crate::summary::Probability;
+pub(super) use crate::summary::words::{percent, whole as count};
+
+/// A share of the variance in per cent.
+pub(super) fn share(part: f64) -> String {
+    significant(100.0 * part, 3)
+}
+
+/// A number with four digits.
+pub(super) fn number(value: f64) -> String {
+    let text = significant(value, 4);
+    let plain = text.contains('.') && !text.contains('\u{d7}');
+    if plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A number with its unit, if it has one.
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
+    let number = number(value);
+    if unit.is_empty() { number } else { format!("{number} {}", cut(unit, 30)) }
+}
+
+/// How probable something is, with how sure that is: "6.7 % (5.8 % to 7.7 %)", "at most 0.10 % (95 %)".
+pub(super) fn probability(found: &Probability, confidence: f64) -> String {
+    let words = found.in_words(confidence);
+    words.split_once(": ").map_or("not judged", |(_, sure)| sure).to_owned()
+}
+
+/// A word as a shell takes it.
+pub(super) fn quoted(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,[]".contains(c);
+    let bare = !text.is_empty() && text.chars().all(plain) && !text.contains('[');
+    if bare { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+/// At most so many characters, with an ellipsis where some are left out.
+pub(super) fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{}\u{2026}", kept.trim_end())
+}
+
+/// A measure's column in words: `elevator_rate_deg_s` in deg/s is "elevator rate".
+pub(super) fn label(name: &str, unit: &str) -> String {
+    let suffix = unit_in_names(unit);
+    let bare = name.strip_suffix(&suffix).and_then(|rest| rest.strip_suffix('_')).unwrap_or(name);
+    let bare = if suffix.is_empty() { name } else { bare };
+    let word = |word: &str| match word {
+        "iae" | "itae" | "ise" | "itse" | "rms" => word.to_uppercase(),
+        _ => word.to_owned(),
+    };
+    bare.split('_').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// The same with the unit in brackets, for axes.
+pub(super) fn axis_label(label: &str, unit: &str) -> String {
+    if unit.is_empty() { label.to_owned() } else { format!("{label} [{}]", cut(unit, 30)) }
+}
+
+/// A text with a capital at its beginning.
+pub(super) fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
+}
+
+/// A unit as names end with it: `deg/s` is `deg_s`.
+fn unit_in_names(unit: &str) -> String {
+    unit.replace('%', "pct").replace('\u{b2}', "2").replace(['/', ' '], "_")
+}
+
+/// Words as a list: "one, two and three".
+pub(super) fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_failures_are_a_bound_and_not_a_probability_of_nought() {
+        let words = |count, of| {
+            let found = Probability {
+                count,
+                of,
+                estimate: (of > 0).then(|| count as f64 / of as f64),
+                interval: [0.0, 0.002],
+                at_most: (count == 0 && of > 0).then_some(0.001),
+                at_least: None,
+            };
+            probability(&found, 0.95)
+        };
+        assert_eq!(words(0, 3000), "at most 0.10 % (95 %)");
+        assert_eq!(words(0, 0), "not judged");
+    }
+
+    #[test]
+    fn folders_and_changes_pass_through_a_shell() {
+        assert_eq!(quoted("out/robust-1"), "out/robust-1");
+        assert_eq!(quoted("it's here"), "'it'\\''s here'");
+        assert_eq!(quoted("a;rm -rf *"), "'a;rm -rf *'");
+        assert_eq!(quoted(""), "''");
+        assert_eq!(quoted("plant.numerator[0]=1.0"), "'plant.numerator[0]=1.0'");
+    }
+
+    #[test]
+    fn columns_lose_their_units_in_words() {
+        assert_eq!(label("elevator_rate_deg_s", "deg/s"), "elevator rate");
+        assert_eq!(label("itse_deg2_s2", "deg\u{b2} s\u{b2}"), "ITSE");
+        assert_eq!(label("overshoot_pct", "%"), "overshoot");
+        assert_eq!(label("disk_margin", ""), "disk margin");
+    }
+}
