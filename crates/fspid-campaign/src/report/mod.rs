@@ -49,9 +49,20 @@ pub struct Settings {
 /// # Errors
 /// A file that cannot be read, is damaged, or is not that of a whole campaign.
 pub fn page(path: &Path, settings: &Settings) -> Result<String, SummaryError> {
-    let summary = Summary::of(path, settings.summary)?;
+    page_of(path, &Summary::of(path, settings.summary)?, settings)
+}
+
+/// As [`page`], of a file that is summarised already.
+///
+/// # Errors
+/// As there.
+pub fn page_of(
+    path: &Path,
+    summary: &Summary,
+    settings: &Settings,
+) -> Result<String, SummaryError> {
     let reader = Reader::open(path)?;
-    let source = Source { summary: &summary, reader: &reader, settings };
+    let source = Source { summary, reader: &reader, settings };
     Ok(source.page()?.render())
 }
 
