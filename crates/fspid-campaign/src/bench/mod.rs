@@ -28,7 +28,7 @@ use clock::timed;
 pub struct Effort {
     /// Rounds that count; one before them does not.
     pub rounds: usize,
-    /// Flights of a round.
+    /// Flights of a round, more where there are so many threads that each would have next to nothing to do.
     pub flights: u64,
     /// Multiplies the inferences and steps of a round.
     pub passes: usize,
@@ -36,10 +36,13 @@ pub struct Effort {
 
 impl Effort {
     /// Some seconds.
-    pub const USUAL: Self = Self { rounds: 7, flights: 1000, passes: 4 };
+    pub const USUAL: Self = Self { rounds: 15, flights: 256, passes: 2 };
     /// Less than a second.
     pub const QUICK: Self = Self { rounds: 3, flights: 48, passes: 1 };
 }
+
+/// Fewest flights of a round for each thread: eight groups.
+const FLIGHTS_OF_A_THREAD: u64 = 8 * fspid_sim::batch::LANES as u64;
 
 /// A kind of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,14 +134,14 @@ impl Bench {
     /// # Errors
     /// [`BenchError::Differs`] where the same work gives another answer; threads that cannot be had.
     pub fn of_this_machine(threads: usize, effort: Effort) -> Result<Self, BenchError> {
-        let work = Work::new(effort.flights)?;
+        let work = Work::new()?;
         let (one, all) = (pool(1)?, pool(threads)?);
         let mut answers = [const { None }; Kind::ALL.len()];
         let mut rates = [const { [const { Vec::new() }; 2] }; Kind::ALL.len()];
         for round in 0..=effort.rounds {
             for ((kind, answer), rates) in Kind::ALL.into_iter().zip(&mut answers).zip(&mut rates) {
                 for (pool, rates) in [&one, &all].into_iter().zip(rates) {
-                    let rate = measure(&work, kind, (pool, effort.passes), answer)?;
+                    let rate = measure(&work, kind, (pool, effort), answer)?;
                     // The first round warms up.
                     if round > 0 {
                         rates.push(rate);
@@ -171,10 +174,11 @@ fn pool(threads: usize) -> Result<ThreadPool, CampaignError> {
 fn measure(
     work: &Work,
     kind: Kind,
-    (pool, passes): (&ThreadPool, usize),
+    (pool, effort): (&ThreadPool, Effort),
     expected: &mut Option<String>,
 ) -> Result<f64, BenchError> {
-    let passes = passes * kind.passes();
+    let passes = effort.passes * kind.passes();
+    let flights = effort.flights.max(FLIGHTS_OF_A_THREAD * pool.current_num_threads() as u64);
     let each = |pass: &(dyn Fn() -> f64 + Sync)| {
         let (answers, time_s) = timed(|| pool.broadcast(|_| pass()));
         (answers.into_iter().map(in_words).collect::<Vec<_>>(), time_s)
@@ -188,20 +192,22 @@ fn measure(
         Kind::StepScalar => many(&|| work.fly_one_by_one()),
         Kind::StepBatch => many(&|| work.fly_in_lanes()),
         Kind::Flights => {
-            let (table, time_s) = timed(|| pool.install(|| work.fly_all()));
-            (vec![crate::table::Digest::of(&table?).to_string()], time_s)
+            let (table, time_s) = timed(|| pool.install(|| work.fly(flights)));
+            let first = table?.slice(0..usize::try_from(effort.flights).unwrap_or(0))?;
+            (vec![crate::table::Digest::of(&first).to_string()], time_s)
         }
     };
     for answer in &answers {
         let expected = expected.get_or_insert_with(|| answer.clone());
         differs(kind.name(), expected, answer)?;
     }
+    let all_passes = (answers.len() * passes) as f64;
     let done = match kind {
-        Kind::InferenceScalar | Kind::InferenceBatch => answers.len() * passes * work.inferences(),
-        Kind::StepScalar | Kind::StepBatch => answers.len() * passes * work.steps(),
-        Kind::Flights => work.flights(),
+        Kind::InferenceScalar | Kind::InferenceBatch => all_passes * work.inferences() as f64,
+        Kind::StepScalar | Kind::StepBatch => all_passes * work.steps() as f64,
+        Kind::Flights => flights as f64,
     };
-    Ok(done as f64 / time_s)
+    Ok(done / time_s)
 }
 
 /// All bits of a sum.

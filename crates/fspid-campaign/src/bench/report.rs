@@ -99,16 +99,15 @@ impl Bench {
         let plural = if threads == 1 { "" } else { "s" };
         let heading = format!("{threads} thread{plural}");
         let _ = writeln!(text, "{}, vector instructions: {}\n", program(), instruction_set());
-        let _ = writeln!(
-            text,
-            "{:<28}{:>15}{:>9}{:>15}{:>9}{:>9}",
-            "", "1 thread", "spread", heading, "spread", "scaling"
-        );
+        let _ = writeln!(text, "{:<28}{:>39}{heading:>39}", "", "1 thread");
+        let columns = format!("{:>15}{:>15}{:>9}", "median", "best", "spread");
+        let _ = writeln!(text, "{:<28}{columns}{columns}{:>9}", "", "scaling");
         for measurement in &self.measurements {
             let kind = measurement.kind;
             let _ = write!(text, "{:<28}", in_words(kind));
             for rates in [&measurement.one, &measurement.all] {
-                let _ = write!(text, "{}{:>7.1} %", rate(rates.median_per_s()), rates.spread_pct());
+                let (median, best) = (rate(rates.median_per_s()), rate(rates.best_per_s()));
+                let _ = write!(text, "{median}{best}{:>7.1} %", rates.spread_pct());
             }
             let _ = writeln!(text, "{:>7.0} %", self.scaling_pct(kind));
         }
@@ -159,8 +158,8 @@ fn in_words(kind: Kind) -> &'static str {
 /// Three digits and a unit, 15 characters wide.
 fn rate(per_s: f64) -> String {
     let (value, unit) = match per_s {
-        large if large >= 1e6 => (large / 1e6, "million/s"),
-        some if some >= 1e4 => (some / 1e3, "thousand/s"),
+        large if large >= 1e6 => (large / 1e6, "M/s"),
+        some if some >= 1e4 => (some / 1e3, "k/s"),
         few => (few, "/s"),
     };
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };

@@ -12,7 +12,7 @@ use fspid_study::file::{Extra, Template};
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
-use crate::plan::{Plan, Range};
+use crate::plan::{MOST_RUNS, Plan, Range};
 use crate::sample::Sampling;
 use crate::table::Table;
 
@@ -37,12 +37,12 @@ pub struct Work {
 }
 
 impl Work {
-    /// Work of so many flights.
+    /// All of it.
     ///
     /// # Errors
     /// None: the scenario is built in.
-    pub fn new(flights: u64) -> Result<Self, CampaignError> {
-        let campaign = campaign(flights.max(LOOPS))?;
+    pub fn new() -> Result<Self, CampaignError> {
+        let campaign = campaign()?;
         let (mut prepared, mut controllers) = (Vec::new(), Vec::new());
         for run in 0..LOOPS {
             let refused = |reason| CampaignError::Refused { run, reason };
@@ -61,12 +61,6 @@ impl Work {
     #[must_use]
     pub fn campaign(&self) -> &Campaign {
         &self.campaign
-    }
-
-    /// Flights of [`fly_all`](Self::fly_all).
-    #[must_use]
-    pub fn flights(&self) -> usize {
-        usize::try_from(self.campaign.plan().runs).unwrap_or(usize::MAX)
     }
 
     /// Inferences of a pass.
@@ -147,13 +141,12 @@ impl Work {
         total
     }
 
-    /// All flights with their measures, on the threads of the pool that this is called in.
+    /// The first flights with their measures, on the threads of the pool that this is called in.
     ///
     /// # Errors
     /// None: the scenario is built in.
-    pub fn fly_all(&self) -> Result<Table, CampaignError> {
-        let range = Range { first: 0, end: self.campaign.plan().runs };
-        self.campaign.fly(range, &Progress::default())
+    pub fn fly(&self, flights: u64) -> Result<Table, CampaignError> {
+        self.campaign.fly(Range { first: 0, end: flights }, &Progress::default())
     }
 }
 
@@ -201,7 +194,7 @@ fn input(n: usize, range: f64) -> (f64, f64) {
     (place(0.754_877_666_246_692_8), place(0.569_840_290_998_053_3))
 }
 
-fn campaign(runs: u64) -> Result<Campaign, CampaignError> {
+fn campaign() -> Result<Campaign, CampaignError> {
     let name = "the built-in benchmark";
     let template = Template::parse(SCENARIO, name, None, &Extra::default())
         .map_err(CampaignError::Scenario)?;
@@ -212,9 +205,10 @@ fn campaign(runs: u64) -> Result<Campaign, CampaignError> {
         scenario_digest: template.study().digest.clone(),
         overrides: Vec::new(),
         sampling: Sampling::Random,
-        runs,
+        // More than any machine is asked for; independent points do not depend on how many there are.
+        runs: MOST_RUNS,
         seed: SEED,
-        shard_runs: runs,
+        shard_runs: MOST_RUNS,
         program: Plan::this_program(),
     };
     Campaign::of_template(plan, template)
