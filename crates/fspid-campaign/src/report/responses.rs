@@ -12,8 +12,11 @@ use crate::summary::{ControllerSummary, FailedRun, Severity};
 
 /// Worst flights of each controller that are drawn.
 const WORST: usize = 3;
-/// Controllers in one figure; more make further ones.
+/// Controllers in one figure, and in all of them.
 const PANELS: usize = 4;
+const MOST_PANELS: usize = 8;
+/// Panels have one ordinate unless that of one of them is wider than its own by more than this.
+const ALIKE: f64 = 4.0;
 /// What lies beyond the middle nine tenths by more than this many times their width is cut.
 const BEYOND: f64 = 0.75;
 /// What lies beyond the nominal response by more than this many times its width is cut in any case.
@@ -59,15 +62,22 @@ fn worst(controller: &ControllerSummary) -> Vec<u64> {
 
 fn items(source: &Source<'_>, reflown: &Reflown) -> Vec<Item> {
     let mut items = vec![Item::Text(said(source, reflown))];
-    let places: Vec<usize> = (0..reflown.controllers.len()).collect();
+    let all = reflown.controllers.len();
+    let places: Vec<usize> = (0..all.min(MOST_PANELS)).collect();
+    if all > places.len() {
+        let words = format!("Drawn for the first {} of {all} controllers.", places.len());
+        items.push(Item::Text(words));
+    }
     let mut further = Vec::new();
     for (n, group) in places.chunks(PANELS).enumerate() {
         let list = if n == 0 { &mut items } else { &mut further };
         let views = group_views(source, reflown, group);
-        list.extend(views.into_iter().map(Item::Figures));
+        // Of further controllers, the whole flight must do: pages shall stay small.
+        let most = if n == 0 { usize::MAX } else { 1 };
+        list.extend(views.into_iter().take(most).map(Item::Figures));
     }
     if !further.is_empty() {
-        items.push(Item::Fold("The other controllers".to_owned(), further));
+        items.push(Item::Fold("Further controllers".to_owned(), further));
     }
     items
 }
@@ -108,8 +118,9 @@ fn group_views(source: &Source<'_>, reflown: &Reflown, group: &[usize]) -> Vec<V
         let setpoint = if title == "Pitch" { reflown.setpoint_deg.as_slice() } else { &[] };
         let of = |place: &usize| Some((*place, reflown.controllers.get(*place)?));
         let chosen = group.iter().filter_map(of);
-        let panels: Vec<EnvelopePanel> =
+        let mut panels: Vec<EnvelopePanel> =
             chosen.map(|it| panel(source, it, (&reflown.time_s, setpoint, pick))).collect();
+        scale(&mut panels);
         panels
     });
     let beginning = beginning(&reflown.time_s, panels.iter().flatten());
@@ -126,11 +137,12 @@ fn group_views(source: &Source<'_>, reflown: &Reflown, group: &[usize]) -> Vec<V
                 x_label: "time [s]".to_owned(),
                 y_label: (*y_label).to_owned(),
                 x_range,
-                y_range: range(panels),
                 panels: panels.clone(),
                 width_px: 600.0,
             };
-            let caption = format!("{}. What leaves the picture is cut. {worst}", figure.title);
+            let alike = panels.windows(2).all(|pair| pair[0].y_range == pair[1].y_range);
+            let axes = if alike { "" } else { " Each panel has an ordinate of its own." };
+            let caption = format!("{}. What leaves a panel is cut.{axes} {worst}", figure.title);
             let name = format!("responses-{}", title.to_lowercase());
             Picture { name, svg: figure.render(), caption }
         })
@@ -203,6 +215,19 @@ fn panel(
         nominal: pick(&flights.nominal).to_vec(),
         worst: flights.worst.iter().map(|(_, curves)| pick(curves).to_vec()).collect(),
         setpoint: setpoint.to_vec(),
+        y_range: None,
+    }
+}
+
+/// Gives panels one ordinate, or each its own where one would hide what happens in another.
+fn scale(panels: &mut [EnvelopePanel]) {
+    let own: Vec<Option<(f64, f64)>> =
+        panels.iter().map(|panel| range(std::slice::from_ref(panel))).collect();
+    let all = range(panels);
+    let width = |range: &Option<(f64, f64)>| range.map_or(0.0, |(lo, hi)| hi - lo);
+    let alike = own.iter().all(|it| width(&all) <= ALIKE * width(it));
+    for (panel, own) in panels.iter_mut().zip(own) {
+        panel.y_range = if alike { all } else { own };
     }
 }
 

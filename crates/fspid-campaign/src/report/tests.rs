@@ -96,9 +96,9 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let at = |text: &str| page.find(text).expect("it is there");
     assert!(at("flights failed") < at("Contents"));
     assert_eq!(flown.page(), page);
-    let settings = Settings { folder: Some("it's here".to_owned()), ..Settings::default() };
+    let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
     let named = super::page(&flown.folder.merged_path(), &settings).expect("a page");
-    assert_says(&named, &["--out 'it'\\''s here'", "'it'\\''s here/campaign.parquet'"]);
+    assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
 }
 
 #[test]
@@ -163,7 +163,11 @@ fn twelve_controllers_make_a_page_of_bounded_size() {
     let page = flown(&[HEAD, STEP, &controllers, &at_most(30.0), EFFECT, DAMPING], 200).page();
     assert_says(
         &page,
-        &["The other controllers", "Further controllers are in the table", "PID 11"],
+        &[
+            "<summary>Further controllers</summary>",
+            "Further controllers are in the table",
+            "PID 11",
+        ],
     );
     assert_says(&page, &["Maps are drawn for"]);
 }
