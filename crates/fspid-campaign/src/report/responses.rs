@@ -84,10 +84,14 @@ fn items(source: &Source<'_>, reflown: &Reflown) -> Vec<Item> {
 
 /// What the figures rest on.
 fn said(source: &Source<'_>, reflown: &Reflown) -> String {
-    let mut text = format!(
-        "The first {} runs, flown again for this page; the first of them gave the numbers in the file, bit for bit.",
-        count(reflown.runs)
-    );
+    let mut text = match reflown.runs {
+        1 => "The first run, flown again for this page; it gave".to_owned(),
+        runs => {
+            let runs = count(runs);
+            format!("The first {runs} runs, flown again for this page; the first of them gave")
+        }
+    };
+    text.push_str(" the numbers in the file, bit for bit.");
     if reflown.left_out > 0 {
         text.push_str(&format!(
             " {} of them have no curves: their numbers make no scenario, or another sample period.",
@@ -256,4 +260,53 @@ fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> Option<(f64, f64)> {
     finite.fold(None, |found, value| {
         Some(found.map_or((value, value), |(lo, hi): (f64, f64)| (lo.min(value), hi.max(value))))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(width: impl Fn(f64) -> f64, time_s: &[f64]) -> EnvelopePanel {
+        let band = |part: f64| EnvelopeBand {
+            name: String::new(),
+            lower: time_s.iter().map(|t| -part * width(*t)).collect(),
+            upper: time_s.iter().map(|t| part * width(*t)).collect(),
+        };
+        EnvelopePanel {
+            name: String::new(),
+            style: style(0),
+            x: time_s.to_vec(),
+            bands: vec![band(1.0), band(0.9), band(0.5)],
+            median: vec![0.0; time_s.len()],
+            nominal: vec![0.0; time_s.len()],
+            worst: Vec::new(),
+            setpoint: vec![1.0; time_s.len()],
+            y_range: None,
+        }
+    }
+
+    fn times() -> Vec<f64> {
+        (0..=500).map(|k| f64::from(k) * 0.1).collect()
+    }
+
+    #[test]
+    fn the_beginning_ends_where_flights_differ_little() {
+        let time_s = times();
+        let calm = panel(|t| if t < 6.05 { 1.0 } else { 0.1 }, &time_s);
+        assert_eq!(beginning(&time_s, [&calm].into_iter()), Some((0.0, 8.0)));
+        let long = panel(|_| 1.0, &time_s);
+        assert_eq!(beginning(&time_s, [&calm, &long].into_iter()), None);
+        assert_eq!(beginning(&[], std::iter::empty()), None);
+    }
+
+    #[test]
+    fn a_panel_that_another_would_flatten_has_an_ordinate_of_its_own() {
+        let time_s = times();
+        let mut panels = vec![panel(|_| 1.0, &time_s), panel(|_| 1.5, &time_s)];
+        scale(&mut panels);
+        assert_eq!(panels[0].y_range, panels[1].y_range);
+        let mut panels = vec![panel(|_| 0.2, &time_s), panel(|_| 6.0, &time_s)];
+        scale(&mut panels);
+        assert_ne!(panels[0].y_range, panels[1].y_range);
+    }
 }

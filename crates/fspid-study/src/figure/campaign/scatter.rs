@@ -74,7 +74,7 @@ impl RunScatter {
         }
         canvas.end();
         name_abscissa(&mut canvas, area, &self.x_label);
-        let label = [fitted(&self.y_label, LABEL_PX, SIDE + 20.0)];
+        let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, area.y + SIDE / 2.0, &label);
         canvas.finish(&self.title, &self.describe())
     }

@@ -80,7 +80,7 @@ impl ShareMap {
             hatch_key(&mut canvas, (left, top - 18.0));
         }
         name_abscissa(&mut canvas, area, &self.x_label);
-        let label = [fitted(&self.y_label, LABEL_PX, SIDE + 20.0)];
+        let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, top + SIDE / 2.0, &label);
         canvas.finish(&self.title, &self.describe())
     }
