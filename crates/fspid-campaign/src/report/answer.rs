@@ -19,12 +19,18 @@ pub(super) fn verdicts(source: &Source<'_>) -> Vec<Verdict> {
 fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) -> Verdict {
     let failed = &controller.failed;
     let word = match (failed.count, failed.of) {
+        (0, 1) => "The only flight did not fail".to_owned(),
         (0, of) => format!("None of {} flights failed", count(of)),
         (all, of) if all == of && of == 1 => "The only flight failed".to_owned(),
         (all, of) if all == of => format!("All {} flights failed", count(of)),
         (some, of) => format!("{} of {} flights failed", count(some), count(of)),
     };
-    let standing = if failed.count == 0 { Standing::Good } else { Standing::Bad };
+    let standing = match (failed.count, failed.at_most) {
+        // So few flights that failing may be the rule.
+        (0, Some(bound)) if bound >= 0.5 => Standing::Fair,
+        (0, _) => Standing::Good,
+        _ => Standing::Bad,
+    };
     let verdicts: Vec<String> = controller
         .verdicts
         .iter()

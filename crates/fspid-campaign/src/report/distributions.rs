@@ -11,6 +11,11 @@ use crate::summary::{Extreme, MeasureSummary};
 
 /// Most controllers in one figure.
 const MOST_ROWS: usize = 12;
+/// Most figures of main measures, and most controllers with figures of the others: pages shall stay small.
+const MOST_FIGURES: usize = 16;
+const FEW_CONTROLLERS: usize = 4;
+/// Most rows of the table.
+const MOST_TABLE: usize = 400;
 
 pub(super) fn chapter(source: &Source<'_>) -> Chapter {
     let measures = measures::all(source);
@@ -20,13 +25,13 @@ pub(super) fn chapter(source: &Source<'_>) -> Chapter {
         "Each row is the histogram of one controller, as high as its highest bin, whose share of the flights stands left of it. Below: a thin line from 5 to 95 %, a thick one over the middle half, a stroke at the median. A dashed line is a limit; its short strokes point to what is not allowed.".to_owned(),
     )];
     let pictures = |list: &[&Measure<'_>]| list.iter().map(|it| picture(source, it)).collect();
-    items.push(Item::Figures(pictures(&main)));
+    items.push(Item::Figures(pictures(&main[..main.len().min(MOST_FIGURES)])));
     let missing: Vec<String> =
         empty.iter().filter(|it| it.is_main).map(|it| it.title.to_lowercase()).collect();
     if !missing.is_empty() {
         items.push(Item::Text(format!("No flight has: {}.", cut(&missing.join(", "), 400))));
     }
-    if !others.is_empty() {
+    if !others.is_empty() && source.summary.controllers.len() <= FEW_CONTROLLERS {
         let title = format!("{} more measures", others.len());
         items.push(Item::Fold(title, vec![Item::Figures(pictures(&others))]));
     }
@@ -125,9 +130,12 @@ fn table(source: &Source<'_>) -> DataTable {
             rows.push(row);
         }
     }
+    let left = rows.len().saturating_sub(MOST_TABLE);
+    rows.truncate(MOST_TABLE);
+    let left = if left > 0 { format!(" {left} rows are left out.") } else { String::new() };
     DataTable {
         caption: format!(
-            "Measures over the flights that have them. The interval of the median is exact at {} for independent runs.",
+            "Measures over the flights that have them. The interval of the median is exact at {} for independent runs.{left}",
             super::words::percent(source.summary.head.confidence)
         ),
         head: head.map(str::to_owned).to_vec(),

@@ -12,8 +12,11 @@ use crate::summary::{ControllerSummary, FailedRun, Severity};
 
 /// Worst flights of each controller that are drawn.
 const WORST: usize = 3;
-/// Controllers in one figure; more make further ones.
+/// Controllers in one figure, and in all of them.
 const PANELS: usize = 4;
+const MOST_PANELS: usize = 8;
+/// Panels have one ordinate unless that of one of them is wider than its own by more than this.
+const ALIKE: f64 = 4.0;
 /// What lies beyond the middle nine tenths by more than this many times their width is cut.
 const BEYOND: f64 = 0.75;
 /// What lies beyond the nominal response by more than this many times its width is cut in any case.
@@ -59,25 +62,36 @@ fn worst(controller: &ControllerSummary) -> Vec<u64> {
 
 fn items(source: &Source<'_>, reflown: &Reflown) -> Vec<Item> {
     let mut items = vec![Item::Text(said(source, reflown))];
-    let places: Vec<usize> = (0..reflown.controllers.len()).collect();
+    let all = reflown.controllers.len();
+    let places: Vec<usize> = (0..all.min(MOST_PANELS)).collect();
+    if all > places.len() {
+        let words = format!("Drawn for the first {} of {all} controllers.", places.len());
+        items.push(Item::Text(words));
+    }
     let mut further = Vec::new();
     for (n, group) in places.chunks(PANELS).enumerate() {
         let list = if n == 0 { &mut items } else { &mut further };
         let views = group_views(source, reflown, group);
-        list.extend(views.into_iter().map(Item::Figures));
+        // Of further controllers, the whole flight must do: pages shall stay small.
+        let most = if n == 0 { usize::MAX } else { 1 };
+        list.extend(views.into_iter().take(most).map(Item::Figures));
     }
     if !further.is_empty() {
-        items.push(Item::Fold("The other controllers".to_owned(), further));
+        items.push(Item::Fold("Further controllers".to_owned(), further));
     }
     items
 }
 
 /// What the figures rest on.
 fn said(source: &Source<'_>, reflown: &Reflown) -> String {
-    let mut text = format!(
-        "The first {} runs, flown again for this page; the first of them gave the numbers in the file, bit for bit.",
-        count(reflown.runs)
-    );
+    let mut text = match reflown.runs {
+        1 => "The first run, flown again for this page; it gave".to_owned(),
+        runs => {
+            let runs = count(runs);
+            format!("The first {runs} runs, flown again for this page; the first of them gave")
+        }
+    };
+    text.push_str(" the numbers in the file, bit for bit.");
     if reflown.left_out > 0 {
         text.push_str(&format!(
             " {} of them have no curves: their numbers make no scenario, or another sample period.",
@@ -108,8 +122,9 @@ fn group_views(source: &Source<'_>, reflown: &Reflown, group: &[usize]) -> Vec<V
         let setpoint = if title == "Pitch" { reflown.setpoint_deg.as_slice() } else { &[] };
         let of = |place: &usize| Some((*place, reflown.controllers.get(*place)?));
         let chosen = group.iter().filter_map(of);
-        let panels: Vec<EnvelopePanel> =
+        let mut panels: Vec<EnvelopePanel> =
             chosen.map(|it| panel(source, it, (&reflown.time_s, setpoint, pick))).collect();
+        scale(&mut panels);
         panels
     });
     let beginning = beginning(&reflown.time_s, panels.iter().flatten());
@@ -126,11 +141,12 @@ fn group_views(source: &Source<'_>, reflown: &Reflown, group: &[usize]) -> Vec<V
                 x_label: "time [s]".to_owned(),
                 y_label: (*y_label).to_owned(),
                 x_range,
-                y_range: range(panels),
                 panels: panels.clone(),
                 width_px: 600.0,
             };
-            let caption = format!("{}. What leaves the picture is cut. {worst}", figure.title);
+            let alike = panels.windows(2).all(|pair| pair[0].y_range == pair[1].y_range);
+            let axes = if alike { "" } else { " Each panel has an ordinate of its own." };
+            let caption = format!("{}. What leaves a panel is cut.{axes} {worst}", figure.title);
             let name = format!("responses-{}", title.to_lowercase());
             Picture { name, svg: figure.render(), caption }
         })
@@ -203,6 +219,19 @@ fn panel(
         nominal: pick(&flights.nominal).to_vec(),
         worst: flights.worst.iter().map(|(_, curves)| pick(curves).to_vec()).collect(),
         setpoint: setpoint.to_vec(),
+        y_range: None,
+    }
+}
+
+/// Gives panels one ordinate, or each its own where one would hide what happens in another.
+fn scale(panels: &mut [EnvelopePanel]) {
+    let own: Vec<Option<(f64, f64)>> =
+        panels.iter().map(|panel| range(std::slice::from_ref(panel))).collect();
+    let all = range(panels);
+    let width = |range: &Option<(f64, f64)>| range.map_or(0.0, |(lo, hi)| hi - lo);
+    let alike = own.iter().all(|it| width(&all) <= ALIKE * width(it));
+    for (panel, own) in panels.iter_mut().zip(own) {
+        panel.y_range = if alike { all } else { own };
     }
 }
 
@@ -231,4 +260,53 @@ fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> Option<(f64, f64)> {
     finite.fold(None, |found, value| {
         Some(found.map_or((value, value), |(lo, hi): (f64, f64)| (lo.min(value), hi.max(value))))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(width: impl Fn(f64) -> f64, time_s: &[f64]) -> EnvelopePanel {
+        let band = |part: f64| EnvelopeBand {
+            name: String::new(),
+            lower: time_s.iter().map(|t| -part * width(*t)).collect(),
+            upper: time_s.iter().map(|t| part * width(*t)).collect(),
+        };
+        EnvelopePanel {
+            name: String::new(),
+            style: style(0),
+            x: time_s.to_vec(),
+            bands: vec![band(1.0), band(0.9), band(0.5)],
+            median: vec![0.0; time_s.len()],
+            nominal: vec![0.0; time_s.len()],
+            worst: Vec::new(),
+            setpoint: vec![1.0; time_s.len()],
+            y_range: None,
+        }
+    }
+
+    fn times() -> Vec<f64> {
+        (0..=500).map(|k| f64::from(k) * 0.1).collect()
+    }
+
+    #[test]
+    fn the_beginning_ends_where_flights_differ_little() {
+        let time_s = times();
+        let calm = panel(|t| if t < 6.05 { 1.0 } else { 0.1 }, &time_s);
+        assert_eq!(beginning(&time_s, [&calm].into_iter()), Some((0.0, 8.0)));
+        let long = panel(|_| 1.0, &time_s);
+        assert_eq!(beginning(&time_s, [&calm, &long].into_iter()), None);
+        assert_eq!(beginning(&[], std::iter::empty()), None);
+    }
+
+    #[test]
+    fn a_panel_that_another_would_flatten_has_an_ordinate_of_its_own() {
+        let time_s = times();
+        let mut panels = vec![panel(|_| 1.0, &time_s), panel(|_| 1.5, &time_s)];
+        scale(&mut panels);
+        assert_eq!(panels[0].y_range, panels[1].y_range);
+        let mut panels = vec![panel(|_| 0.2, &time_s), panel(|_| 6.0, &time_s)];
+        scale(&mut panels);
+        assert_ne!(panels[0].y_range, panels[1].y_range);
+    }
 }

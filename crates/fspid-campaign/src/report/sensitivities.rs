@@ -14,6 +14,8 @@ const MOST_CONTROLLERS: usize = 6;
 const MOST_MARKS: usize = 48;
 /// Most measures with a figure; the table has all.
 const MOST_FIGURES: usize = 7;
+/// Most rows of the table.
+const MOST_TABLE: usize = 400;
 /// Half the width of an interval of 95 % in standard errors of a normal estimate.
 const STANDARD_ERRORS: f64 = 1.959_963_984_540_054;
 
@@ -174,6 +176,7 @@ fn table(source: &Source<'_>) -> DataTable {
             rows.push(row);
         }
     }
+    rows.truncate(MOST_TABLE);
     DataTable {
         caption: "The three parameters that each measure depends on most: share of the variance with its standard error, and rank correlation.".to_owned(),
         head: head.map(str::to_owned).to_vec(),

@@ -96,9 +96,9 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let at = |text: &str| page.find(text).expect("it is there");
     assert!(at("flights failed") < at("Contents"));
     assert_eq!(flown.page(), page);
-    let settings = Settings { folder: Some("it's here".to_owned()), ..Settings::default() };
+    let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
     let named = super::page(&flown.folder.merged_path(), &settings).expect("a page");
-    assert_says(&named, &["--out 'it'\\''s here'", "'it'\\''s here/campaign.parquet'"]);
+    assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
 }
 
 #[test]
@@ -106,9 +106,11 @@ fn one_run_has_a_page_that_claims_little() {
     let page = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 1).page();
     assert_says(
         &page,
-        &["One run of one scenario", "with so few runs", "flown with one controller"],
+        &["One run of one scenario", "with so few runs", "The first run, flown again"],
     );
     assert_says(&page, &["at most 95 % (95 %)", "The scenario has no requirements"]);
+    // A single flight that went well proves nothing.
+    assert!(page.contains("verdict fair") && !page.contains("verdict good"));
 }
 
 #[test]
@@ -163,7 +165,11 @@ fn twelve_controllers_make_a_page_of_bounded_size() {
     let page = flown(&[HEAD, STEP, &controllers, &at_most(30.0), EFFECT, DAMPING], 200).page();
     assert_says(
         &page,
-        &["The other controllers", "Further controllers are in the table", "PID 11"],
+        &[
+            "<summary>Further controllers</summary>",
+            "Further controllers are in the table",
+            "PID 11",
+        ],
     );
     assert_says(&page, &["Maps are drawn for"]);
 }
@@ -194,6 +200,68 @@ fn a_file_that_the_scenario_names_and_that_is_gone_is_told_of() {
     let without = flown.page();
     assert_says(&without, &["could not be flown again: the scenario cannot be read again"]);
     assert_says(&without, &["All measures in numbers"]);
+}
+
+/// What a map shows is counted here a second time, from runs flown again one by one.
+#[test]
+fn boxes_of_a_map_hold_the_runs_that_lie_in_them() {
+    let flown = flown(&[HEAD, STEP, &pid("CPID"), &at_most(15.0), EFFECT, DAMPING], 60);
+    let reader = Reader::open(flown.folder.merged_path()).expect("a file");
+    let names = ["damping".to_owned(), "effect".to_owned()];
+    let event = by_parameter::Event::Failed;
+    let counted = by_parameter::counted(&reader, &names, &event, (1, 3)).expect("readable");
+    let counted = counted.expect("they differ");
+    let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
+    let campaign = campaign.expect("a campaign");
+    let mut again = vec![vec![by_parameter::Counts::default(); 3]; 3];
+    let third = |value: f64, (lo, hi): (f64, f64)| {
+        let width = (hi - lo) / 3.0;
+        usize::from(value >= lo + width) + usize::from(value >= lo + 2.0 * width)
+    };
+    for run in 0..60 {
+        let replay = crate::replay::replay(&campaign, run).expect("flown");
+        let drawn: Vec<f64> = replay
+            .run
+            .drawn
+            .iter()
+            .map(|it| match it {
+                fspid_study::dispersion::Drawn::Number(number) => *number,
+                _ => panic!("numbers"),
+            })
+            .collect();
+        let overshoot = replay.simulation.results[0].metrics.first_step().overshoot_pct;
+        // The scenario draws the effect first; the map has the damping along its columns.
+        let (effect, damping) =
+            (third(drawn[0], counted.ends[1]), third(drawn[1], counted.ends[0]));
+        again[effect][damping].all += 1;
+        again[effect][damping].failed += u64::from(!overshoot.is_ok_and(|value| value <= 15.0));
+    }
+    assert_eq!(counted.of[0].together[0], again);
+    let failed: u64 = again.iter().flatten().map(|it| it.failed).sum();
+    assert!(failed > 5 && failed < 55, "{failed}");
+    assert_eq!(counted.of[0].failed.len() as u64, failed);
+}
+
+#[test]
+fn curves_are_those_of_the_run_as_it_is_flown_alone() {
+    let flown = flown(&[HEAD, STEP, &pid("CPID"), &pid("other"), EFFECT], 9);
+    let path = flown.folder.merged_path();
+    let summary = Summary::of(&path, SummarySettings::default()).expect("a summary");
+    let reader = Reader::open(&path).expect("a file");
+    let settings = Settings::default();
+    let source = Source { summary: &summary, reader: &reader, settings: &settings };
+    let reflown = reflown::reflown(&source, &[vec![7], vec![]]).expect("flown again");
+    let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
+    let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
+    let degrees = |rad: &f64| fspid_study::units::degrees(*rad);
+    let trace = &replay.simulation.results[0].trace;
+    let pitch_deg: Vec<f64> = trace.theta_rad.iter().map(degrees).collect();
+    assert_eq!(reflown.controllers[0].first[7].pitch_deg, pitch_deg);
+    assert_eq!(reflown.controllers[0].worst[0].1.pitch_deg, pitch_deg);
+    assert_eq!(reflown.time_s, trace.time_s);
+    let other = &replay.simulation.results[1].trace;
+    let elevator_deg: Vec<f64> = other.elevator_rad.iter().map(degrees).collect();
+    assert_eq!(reflown.controllers[1].first[7].elevator_deg, elevator_deg);
 }
 
 #[test]

@@ -9,9 +9,12 @@ use crate::summary::{ControllerSummary, FailedRun, Severity};
 /// Longest reasons that a row shows, in characters.
 const MOST_REASONS: usize = 300;
 
+/// Most controllers with a table: pages shall stay small.
+const MOST_TABLES: usize = 16;
+
 pub(super) fn chapter(source: &Source<'_>) -> Chapter {
     let mut items = Vec::new();
-    for (n, controller) in source.summary.controllers.iter().enumerate() {
+    for (n, controller) in source.summary.controllers.iter().enumerate().take(MOST_TABLES) {
         if controller.failed_runs.is_empty() {
             continue;
         }

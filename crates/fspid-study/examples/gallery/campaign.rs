@@ -131,6 +131,7 @@ fn pitch() -> EnvelopeFigure {
             nominal: response(0.0),
             worst: vec![response(2.0), response(1.9)],
             setpoint: vec![1.0; time.len()],
+            y_range: None,
         }
     };
     EnvelopeFigure {
@@ -138,7 +139,6 @@ fn pitch() -> EnvelopeFigure {
         x_label: "time [s]".to_owned(),
         y_label: "pitch angle [deg]".to_owned(),
         x_range: None,
-        y_range: None,
         panels: vec![panel(0, 0.5), panel(1, 0.9)],
         width_px: 720.0,
     }

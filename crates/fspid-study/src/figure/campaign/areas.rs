@@ -1,7 +1,7 @@
 //! What figures of campaigns share: grids without a library, words cut to their room, signs of series.
 
 use crate::figure::axis::Axis;
-use crate::figure::page::LABEL_PX;
+use crate::figure::page::{EDGE, LABEL_PX, TITLE_PX};
 use crate::figure::plot::TICK_PX;
 use crate::figure::sign::Sign;
 use crate::figure::style::{Role, SeriesStyle};
@@ -33,6 +33,14 @@ pub(super) fn fitted(text: &str, size: f64, width: f64) -> String {
     short.truncate(short.trim_end().len());
     short.push('\u{2026}');
     short
+}
+
+/// A title in which every word fits into a line of a figure of that width.
+pub(super) fn title(text: &str, width: f64) -> String {
+    // Titles are bold, and a tenth wider than the widths that are known.
+    let most = 0.9 * (width - 2.0 * EDGE);
+    let words = text.split_whitespace().map(|word| fitted(word, TITLE_PX, most));
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Room that the longest of some texts takes, but at most `most` (px).

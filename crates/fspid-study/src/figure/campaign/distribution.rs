@@ -1,6 +1,6 @@
 //! Histograms of one measure, a row each on the same axis, with medians, percentiles and limits.
 
-use super::areas::{abscissa, fitted, name_abscissa};
+use super::areas::{self, abscissa, fitted, name_abscissa};
 use crate::figure::axis::{Axis, extent, short_number};
 use crate::figure::page::{self, EDGE, LABEL_PX};
 use crate::figure::plot::TICK_PX;
@@ -71,11 +71,12 @@ impl DistributionFigure {
     pub fn render(&self) -> Svg {
         let width = page::sane_width(self.width_px);
         let left = EDGE + LEFT;
-        let title = page::title_height(&self.title, width);
+        let shown = areas::title(&self.title, width);
+        let title = page::title_height(&shown, width);
         let top = title + LIMIT * self.limits.len().min(LIMIT_ROWS) as f64 + 3.0;
         let height = (NAME + BINS + STRIP) * self.rows.len().max(1) as f64;
         let mut canvas = Canvas::new(width, top + height + 50.0);
-        page::title(&mut canvas, &self.title);
+        page::title(&mut canvas, &shown);
         let plot = width - left - EDGE - 8.0;
         let area = Rect { x: left, y: top, width: plot, height };
         let axis = self.axis((plot / 80.0) as usize);
@@ -168,9 +169,11 @@ impl LimitLine {
 impl DistributionRow {
     fn title(&self, canvas: &mut Canvas, area: Rect, top: f64) {
         let (left, right) = (area.x + 2.0, area.x + area.width);
-        let words = fitted(&self.words, TICK_PX, area.width * 0.62);
+        // The name may have two fifths of the row, and all that the words leave.
+        let wanted = text_width(&self.name, LABEL_PX).min(0.4 * area.width);
+        let words = fitted(&self.words, TICK_PX, area.width - wanted - 26.0);
         let used = text_width(&words, TICK_PX);
-        let name = fitted(&self.name, LABEL_PX, area.width - used - 24.0);
+        let name = fitted(&self.name, LABEL_PX, area.width - used - 26.0);
         let named = text_width(&name, LABEL_PX);
         // Grid and limits behind the words would make them hard to read.
         for (x, width) in [(left - 2.0, named + 10.0), (right - used - 3.0, used + 3.0)] {

@@ -1,6 +1,6 @@
 //! Bands of many responses over time: a panel each, with a middle, a nominal and the worst lines.
 
-use super::areas::{abscissa, fitted, name_abscissa, ordinate};
+use super::areas::{self, abscissa, fitted, name_abscissa, ordinate};
 use crate::figure::axis::{Axis, extent, short_number};
 use crate::figure::page::{self, EDGE, LABEL_PX};
 use crate::figure::plot::TICK_PX;
@@ -9,7 +9,7 @@ use crate::figure::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
 use crate::figure::text::text_width;
 use crate::figure::thin;
 
-/// Bands of responses, one panel below the other on the same axes.
+/// Bands of responses, one panel below the other on the same abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopeFigure {
     /// Printed above the figure and read out by screen readers.
@@ -20,8 +20,6 @@ pub struct EnvelopeFigure {
     pub y_label: String,
     /// Ends of the abscissa; `None` takes those of everything that is drawn. What lies beyond is cut.
     pub x_range: Option<(f64, f64)>,
-    /// Ends of the ordinate; `None` takes those of everything that is drawn. What lies beyond is cut.
-    pub y_range: Option<(f64, f64)>,
     /// Panels from top to bottom.
     pub panels: Vec<EnvelopePanel>,
     /// Width of the figure (px); the height follows from the panels.
@@ -48,6 +46,8 @@ pub struct EnvelopePanel {
     pub worst: Vec<Vec<f64>>,
     /// What was commanded; may be empty.
     pub setpoint: Vec<f64>,
+    /// Ends of the ordinate; `None` takes those of everything that is drawn in any panel. What lies beyond is cut.
+    pub y_range: Option<(f64, f64)>,
 }
 
 /// Between what a share of the responses lies.
@@ -73,24 +73,26 @@ impl EnvelopeFigure {
     #[must_use]
     pub fn render(&self) -> Svg {
         let width = page::sane_width(self.width_px);
-        let (x, y) = self.axes(width);
-        let left = EDGE + page::upright_room(1) + page::tick_room(&y);
+        let (x, ys) = self.axes(width);
+        let ticks = ys.iter().map(page::tick_room).fold(0.0, f64::max);
+        let left = EDGE + page::upright_room(1) + ticks;
         let plot = width - left - EDGE - 8.0;
-        let top = page::title_height(&self.title, width);
+        let shown = areas::title(&self.title, width);
+        let top = page::title_height(&shown, width);
         let legend = Key::of(self);
         let rows = legend.rows(plot);
         let count = self.panels.len().max(1) as f64;
         let bottom = top + rows.len() as f64 * 18.0 + count * (NAME + PANEL + GAP) - GAP;
         let mut canvas = Canvas::new(width, bottom + 50.0);
-        page::title(&mut canvas, &self.title);
+        page::title(&mut canvas, &shown);
         legend.draw(&mut canvas, (left, top), &rows);
         let mut y_top = top + rows.len() as f64 * 18.0;
-        for (n, panel) in self.panels.iter().enumerate() {
+        for (n, (panel, y)) in self.panels.iter().zip(&ys).enumerate() {
             let area = Rect { x: left, y: y_top + NAME, width: plot, height: PANEL };
             let last = n + 1 == self.panels.len();
             abscissa(&mut canvas, area, &x, last);
-            ordinate(&mut canvas, area, &y);
-            Drawing { area, x: &x, y: &y }.panel(&mut canvas, panel);
+            ordinate(&mut canvas, area, y);
+            Drawing { area, x: &x, y }.panel(&mut canvas, panel);
             let font = Font::new(LABEL_PX, Anchor::Start).bold();
             canvas.rect(left, y_top + 3.0, 3.0, 14.0, &Paint::face(panel.style.role()));
             canvas.text(left + 7.0, y_top + 14.2, &fitted(&panel.name, LABEL_PX, plot - 8.0), font);
@@ -105,14 +107,17 @@ impl EnvelopeFigure {
         canvas.finish(&self.title, &self.describe())
     }
 
-    fn axes(&self, width: f64) -> (Axis, Axis) {
+    /// The abscissa, and the ordinate of each panel.
+    fn axes(&self, width: f64) -> (Axis, Vec<Axis>) {
         let times = self.panels.iter().flat_map(|panel| panel.x.iter().copied());
         let ticks = (width / 90.0) as usize;
         let x = Axis::fixed(self.x_range, ticks)
             .unwrap_or_else(|| Axis::linear(extent(times), 0.0, ticks));
         let found = extent(self.panels.iter().flat_map(EnvelopePanel::values));
-        let y = Axis::fixed(self.y_range, 5).unwrap_or_else(|| Axis::linear(found, 0.05, 5));
-        (x, y)
+        let y = |panel: &EnvelopePanel| {
+            Axis::fixed(panel.y_range, 5).unwrap_or_else(|| Axis::linear(found, 0.05, 5))
+        };
+        (x, self.panels.iter().map(y).collect())
     }
 
     fn describe(&self) -> String {
@@ -198,7 +203,9 @@ impl Drawing<'_> {
         let a = self.area;
         let near = |part: f64| if part.is_nan() { part } else { part.clamp(-9.0, 10.0) };
         let (across, up) = (near(self.x.fraction(x)), near(self.y.fraction(y)));
-        (a.x + across * a.width, a.y + (1.0 - up) * a.height)
+        // Tenths of a pixel: nobody sees more, and a line is a fifth shorter.
+        let tenths = |v: f64| libm::round(10.0 * v) / 10.0;
+        (tenths(a.x + across * a.width), tenths(a.y + (1.0 - up) * a.height))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Estimates with their confidence intervals: a row each, one or more columns, a sign for each series.
 
-use super::areas::{abscissa, fitted, name_abscissa, room, sign};
+use super::areas::{self, abscissa, fitted, name_abscissa, room, sign};
 use crate::figure::axis::{Axis, extent, short_number};
 use crate::figure::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use crate::figure::style::{Role, SeriesStyle};
@@ -82,11 +82,12 @@ impl IntervalFigure {
             swatch: Swatch::Sign(sign(*style), style.role()),
         });
         let legend = Legend::set(entries.collect(), width - 2.0 * EDGE);
-        let title = page::title_height(&self.title, width);
+        let shown = areas::title(&self.title, width);
+        let title = page::title_height(&shown, width);
         let top = title + legend.height() + 2.0;
         let height: f64 = self.rows.iter().map(IntervalRow::height).sum::<f64>().max(MARK);
         let mut canvas = Canvas::new(width, top + height + 48.0);
-        page::title(&mut canvas, &self.title);
+        page::title(&mut canvas, &shown);
         legend.draw(&mut canvas, EDGE, title);
         let places = self.places(width, (top, height));
         for (column, (area, axis)) in self.columns.iter().zip(&places.columns) {

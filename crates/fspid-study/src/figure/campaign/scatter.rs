@@ -1,6 +1,6 @@
 //! Runs over two of their parameters: which failed, and which did not.
 
-use super::areas::{abscissa, fitted, name_abscissa, ordinate};
+use super::areas::{self, abscissa, fitted, name_abscissa, ordinate};
 use crate::figure::axis::{Axis, extent};
 use crate::figure::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use crate::figure::sign::Sign;
@@ -49,10 +49,11 @@ impl RunScatter {
             .zip(swatches)
             .map(|(name, swatch)| Entry { name: fitted(name, LABEL_PX, SIDE - 40.0), swatch });
         let legend = Legend::set(entries.collect(), SIDE);
-        let title = page::title_height(&self.title, width);
+        let shown = areas::title(&self.title, width);
+        let title = page::title_height(&shown, width);
         let top = title + legend.height() + 2.0;
         let mut canvas = Canvas::new(width, top + SIDE + 50.0);
-        page::title(&mut canvas, &self.title);
+        page::title(&mut canvas, &shown);
         legend.draw(&mut canvas, left, title);
         let area = Rect { x: left, y: top, width: SIDE, height: SIDE };
         abscissa(&mut canvas, area, &x, true);
@@ -73,7 +74,7 @@ impl RunScatter {
         }
         canvas.end();
         name_abscissa(&mut canvas, area, &self.x_label);
-        let label = [fitted(&self.y_label, LABEL_PX, SIDE + 20.0)];
+        let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, area.y + SIDE / 2.0, &label);
         canvas.finish(&self.title, &self.describe())
     }

@@ -1,6 +1,6 @@
 //! The share of runs that failed, in the boxes of a grid over two parameters.
 
-use super::areas::{fitted, name_abscissa};
+use super::areas::{self, fitted, name_abscissa};
 use super::scatter::SIDE;
 use crate::figure::axis::{Axis, extent, short_number};
 use crate::figure::gaps;
@@ -63,9 +63,10 @@ impl ShareMap {
         let (x, y) = (axis(&self.x_edges), axis(&self.y_edges));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
         let width = left + SIDE + RIGHT;
-        let top = page::title_height(&self.title, width) + 22.0;
+        let shown = areas::title(&self.title, width);
+        let top = page::title_height(&shown, width) + 22.0;
         let mut canvas = Canvas::new(width, top + SIDE + 50.0);
-        page::title(&mut canvas, &self.title);
+        page::title(&mut canvas, &shown);
         let area = Rect { x: left, y: top, width: SIDE, height: SIDE };
         canvas.begin_clip(area);
         gaps::hatch(&mut canvas, area);
@@ -79,7 +80,7 @@ impl ShareMap {
             hatch_key(&mut canvas, (left, top - 18.0));
         }
         name_abscissa(&mut canvas, area, &self.x_label);
-        let label = [fitted(&self.y_label, LABEL_PX, SIDE + 20.0)];
+        let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, top + SIDE / 2.0, &label);
         canvas.finish(&self.title, &self.describe())
     }

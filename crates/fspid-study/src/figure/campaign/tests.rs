@@ -81,13 +81,13 @@ fn envelope(panels: usize, samples: usize) -> EnvelopeFigure {
         nominal: line(0.05),
         worst: vec![line(0.9), line(-0.9)],
         setpoint: vec![0.5; samples],
+        y_range: None,
     };
     EnvelopeFigure {
-        title: "Pitch".to_owned(),
+        title: "Pitch".repeat(60),
         x_label: "time [s]".to_owned(),
         y_label: "pitch angle [deg]".to_owned(),
         x_range: None,
-        y_range: None,
         panels: (0..panels).map(panel).collect(),
         width_px: 720.0,
     }
@@ -96,7 +96,7 @@ fn envelope(panels: usize, samples: usize) -> EnvelopeFigure {
 fn scatter(points: usize) -> RunScatter {
     let at = |n: usize, by: f64| ((n as f64 * by).sin() + 1.0, (n as f64 * 1.7 * by).cos() - 7.0);
     RunScatter {
-        title: "Runs".to_owned(),
+        title: format!("Runs of {} and {}", name(points), "word".repeat(60)),
         x_label: name(3),
         y_label: name(2),
         ranges: [None, None],
@@ -161,10 +161,11 @@ pub(in crate::figure) fn odd(draw: &mut Draw) -> Vec<Svg> {
     }
     found.push(figure.render());
     let mut figure = envelope(2, 8);
-    (figure.x_range, figure.y_range) = (draw.range(), draw.range());
+    figure.x_range = draw.range();
     for panel in &mut figure.panels {
         panel.x = draw.list(8);
         panel.median = draw.list(8);
+        panel.y_range = draw.range();
         panel.worst = vec![draw.list(8), draw.list(8)];
         for band in &mut panel.bands {
             (band.lower, band.upper) = (draw.list(8), draw.list(8));
