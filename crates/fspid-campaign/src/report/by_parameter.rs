@@ -102,10 +102,10 @@ pub(super) fn counted(
 ) -> Result<Option<Counted>, SummaryError> {
     let columns: Vec<String> = parameters.iter().map(|name| format!("{PARAMETER}{name}")).collect();
     let Some(ends) = ends(reader, &columns)? else { return Ok(None) };
-    let pairs = pairs(parameters.len());
+    let axes = Axes { ends, pairs: pairs(parameters.len()) };
     let empty = ByParameter {
         alone: vec![vec![Counts::default(); bins]; parameters.len()],
-        together: vec![vec![vec![Counts::default(); bins]; bins]; pairs.len()],
+        together: vec![vec![vec![Counts::default(); bins]; bins]; axes.pairs.len()],
         ..ByParameter::default()
     };
     let mut of = vec![empty; controllers.max(1)];
@@ -123,25 +123,27 @@ pub(super) fn counted(
             let values: Vec<f64> =
                 (0..columns.len()).map(|n| value(n).unwrap_or(f64::NAN)).collect();
             if values.iter().all(|value| value.is_finite()) {
-                of[place].add((&values, &ends, &pairs), failed);
+                of[place].add(&values, &axes, failed);
             }
         }
     }
-    Ok(Some(Counted { ends, of }))
+    Ok(Some(Counted { ends: axes.ends, of }))
+}
+
+/// The ends of each parameter, and which pairs of parameters are counted together.
+struct Axes {
+    ends: Vec<(f64, f64)>,
+    pairs: Vec<(usize, usize)>,
 }
 
 impl ByParameter {
-    fn add(
-        &mut self,
-        (values, ends, pairs): (&[f64], &[(f64, f64)], &[(usize, usize)]),
-        failed: bool,
-    ) {
+    fn add(&mut self, values: &[f64], axes: &Axes, failed: bool) {
         let bins = self.alone.first().map_or(1, Vec::len);
-        let bin = |n: usize| place(values[n], ends[n], bins);
+        let bin = |n: usize| place(values[n], axes.ends[n], bins);
         for (n, counts) in self.alone.iter_mut().enumerate() {
             counts[bin(n)].add(failed);
         }
-        for (grid, (a, b)) in self.together.iter_mut().zip(pairs) {
+        for (grid, (a, b)) in self.together.iter_mut().zip(&axes.pairs) {
             grid[bin(*b)][bin(*a)].add(failed);
         }
         if let [x, y, ..] = *values {
