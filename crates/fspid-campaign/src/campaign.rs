@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use fspid_study::dispersion::Drawn;
+use fspid_study::dispersion::{Dispersion, Distribution, Drawn};
 use fspid_study::file::{NewValue, SettingPath, Study, Template};
 use rayon::prelude::*;
 
@@ -21,6 +21,8 @@ pub struct Campaign {
     template: Template,
     cube: Cube,
     rows: Rows,
+    /// The first coordinate of each dispersion.
+    first: Vec<usize>,
     /// The number that stands in the scenario at each path of each dispersion, where draws are relative.
     nominal: Vec<Vec<f64>>,
 }
@@ -86,11 +88,12 @@ impl Campaign {
         if study.dispersions.is_empty() {
             return Err(CampaignError::NothingDispersed { path: plan.scenario_path });
         }
-        let dimensions = study.dispersions.iter().map(|it| it.dimensions()).sum();
+        let dimensions = study.dispersions.iter().map(Dispersion::dimensions).sum();
         let cube = Cube::new(plan.sampling, dimensions, plan.runs, plan.seed)?;
         let rows = Rows::of(study)?;
         let nominal = template.check_dispersions().map_err(CampaignError::Scenario)?;
-        Ok(Self { cube, rows, nominal, plan, template })
+        let first = first_coordinates(&template.study().dispersions);
+        Ok(Self { cube, rows, first, nominal, plan, template })
     }
 
     /// The plan.
@@ -114,7 +117,18 @@ impl Campaign {
     /// How many numbers between 0 and 1 decide about a run.
     #[must_use]
     pub fn dimensions(&self) -> usize {
-        self.template.study().dispersions.iter().map(|it| it.dimensions()).sum()
+        self.template.study().dispersions.iter().map(Dispersion::dimensions).sum()
+    }
+
+    /// What a function says of the coordinates of each dispersion, in the order of the cube's.
+    pub(crate) fn in_cube(&self, of: impl Fn(&Dispersion) -> Vec<f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.dimensions()];
+        for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
+            for (place, value) in all.iter_mut().skip(first).zip(of(dispersion)) {
+                *place = value;
+            }
+        }
+        all
     }
 
     /// What run `number` draws.
@@ -128,11 +142,9 @@ impl Campaign {
     /// What is drawn at a point of the unit cube.
     #[must_use]
     pub fn drawn_at(&self, point: &[f64]) -> Vec<Drawn> {
-        let mut rest = point;
         let mut drawn = Vec::new();
-        for dispersion in &self.template.study().dispersions {
-            let (mine, others) = rest.split_at(dispersion.dimensions().min(rest.len()));
-            rest = others;
+        for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
+            let mine = point.get(first..first + dispersion.dimensions()).unwrap_or_default();
             dispersion.draw(mine, &mut drawn);
         }
         drawn
@@ -203,4 +215,19 @@ impl Campaign {
         }
         runs
     }
+}
+
+/// The first coordinate of each dispersion. Seeds come last: the last dimensions of an even sequence
+/// are its least even ones, and what a seed does with them nobody can tell.
+fn first_coordinates(dispersions: &[Dispersion]) -> Vec<usize> {
+    let is_seed = |dispersion: &Dispersion| matches!(dispersion.distribution, Distribution::Seed);
+    let mut order: Vec<usize> = (0..dispersions.len()).collect();
+    order.sort_by_key(|&index| is_seed(&dispersions[index]));
+    let mut first = vec![0; dispersions.len()];
+    let mut next = 0;
+    for index in order {
+        first[index] = next;
+        next += dispersions[index].dimensions();
+    }
+    first
 }

@@ -1,7 +1,7 @@
 //! What can go wrong with a campaign.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fspid_study::file::Problems;
 use fspid_study::output::OutputError;
@@ -133,6 +133,14 @@ pub enum CampaignError {
     /// A file cannot be written.
     #[error("{0}")]
     Output(#[from] OutputError),
+    /// A file of the campaign cannot be written.
+    #[error("cannot write {}: {reason}; what is whole stays, so that the campaign goes on when it is run again", path.display())]
+    Write {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// A file or folder cannot be used.
     #[error("{}: {reason}", path.display())]
     Io {
@@ -151,9 +159,28 @@ impl CampaignError {
     #[must_use]
     pub fn is_of_output(&self) -> bool {
         match self {
-            Self::Output(_) | Self::Io { .. } => true,
-            Self::Table(error) => matches!(error, TableError::Write { .. } | TableError::Failed),
+            Self::Output(_) | Self::Io { .. } | Self::Write { .. } => true,
             _ => false,
         }
+    }
+
+    /// The same, with the file that could not be written where that is what is wrong.
+    pub(crate) fn of_writing(self, path: &Path) -> Self {
+        let Self::Table(error @ (TableError::Write { .. } | TableError::Failed)) = self else {
+            return self;
+        };
+        Self::Write { path: path.to_owned(), reason: reason(&error) }
+    }
+}
+
+/// The reason of the system below a table's error, in words.
+fn reason(error: &TableError) -> String {
+    let mut innermost: &dyn std::error::Error = error;
+    while let Some(source) = innermost.source() {
+        innermost = source;
+    }
+    match innermost.downcast_ref::<io::Error>().map(io::Error::kind) {
+        Some(io::ErrorKind::StorageFull) => "the disk is full".to_owned(),
+        _ => innermost.to_string(),
     }
 }

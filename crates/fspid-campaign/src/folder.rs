@@ -96,9 +96,12 @@ impl Folder {
     /// Puts a plan into the folder; one that is the same already stays.
     ///
     /// # Errors
-    /// Another campaign in the folder, or a folder that cannot be written.
+    /// Another campaign or another process in the folder, or a folder that cannot be written.
     pub fn put_plan(&self, plan: &Plan) -> Result<(), CampaignError> {
         let path = self.plan_path();
+        output::make_folder(&self.shards_path())?;
+        // Two processes that begin at once would else each believe its own plan.
+        let _lock = self.lock(true)?;
         if path.exists() {
             let found = self.plan()?;
             let difference = difference(&found, plan);
@@ -107,7 +110,6 @@ impl Folder {
                 Some(difference) => Err(CampaignError::OtherCampaign { path, difference }),
             };
         }
-        output::make_folder(&self.shards_path())?;
         output::write(&path, format!("{:#}\n", plan.json()))?;
         Ok(())
     }

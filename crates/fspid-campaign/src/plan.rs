@@ -18,6 +18,8 @@ use crate::sample::Sampling;
 const SCHEMA: u64 = 1;
 /// Most runs of a campaign.
 pub const MOST_RUNS: u64 = 1_000_000_000;
+/// Most runs of a shard, whose rows are in memory together: some 100 MB.
+pub const MOST_SHARD_RUNS: u64 = 65_536;
 /// Runs of a shard where nothing else is asked for: a second or two of flights in lanes.
 pub const SHARD_RUNS: u64 = 8192;
 /// The same for flights that are flown one by one.
@@ -172,9 +174,12 @@ impl Plan {
             shard_runs: number("/shard_runs")?,
             program: word("/program")?,
         };
-        let allowed = 1..=MOST_RUNS;
-        if !allowed.contains(&plan.runs) || !allowed.contains(&plan.shard_runs) {
-            return Err(format!("/runs and /shard_runs must be from 1 to {MOST_RUNS}"));
+        let numbers =
+            [("/runs", plan.runs, MOST_RUNS), ("/shard_runs", plan.shard_runs, MOST_SHARD_RUNS)];
+        for (path, found, most) in numbers {
+            if !(1..=most).contains(&found) {
+                return Err(format!("{path} is {found}; it must be from 1 to {most}"));
+            }
         }
         if word("/campaign")? != plan.id() {
             return Err(

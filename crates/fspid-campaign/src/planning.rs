@@ -7,7 +7,7 @@ use fspid_study::file::{Extra, LoadError, Template, read_text};
 use crate::campaign::Campaign;
 use crate::error::CampaignError;
 use crate::folder::Folder;
-use crate::plan::{MOST_RUNS, Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
+use crate::plan::{MOST_RUNS, MOST_SHARD_RUNS, Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
 use crate::sample::Sampling;
 
 /// What to plan.
@@ -32,7 +32,7 @@ pub struct Question<'a> {
 /// # Errors
 /// A scenario that is wrong, or wrong with what its dispersions draw; numbers that are not allowed.
 pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, CampaignError> {
-    check("the number of runs", question.runs)?;
+    check("the number of runs", question.runs, MOST_RUNS)?;
     let text = read_text(question.scenario)?;
     let path = question.scenario.display().to_string();
     let home = question.scenario.parent().unwrap_or(Path::new(""));
@@ -41,7 +41,7 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
         .map_err(|problems| CampaignError::Unreadable(LoadError::Problems(problems)))?;
     let usual = if flies_in_lanes(&template) { SHARD_RUNS } else { SLOW_SHARD_RUNS };
     let shard_runs = question.shard_runs.unwrap_or(usual);
-    check("the number of runs in a shard", shard_runs)?;
+    check("the number of runs in a shard", shard_runs, MOST_SHARD_RUNS)?;
     let plan = Plan {
         scenario_digest: template.study().digest.clone(),
         scenario_text: text,
@@ -57,11 +57,11 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
     Campaign::of_template(plan, template)
 }
 
-fn check(what: &'static str, found: u64) -> Result<(), CampaignError> {
-    if (1..=MOST_RUNS).contains(&found) {
+fn check(what: &'static str, found: u64, most: u64) -> Result<(), CampaignError> {
+    if (1..=most).contains(&found) {
         return Ok(());
     }
-    let allowed = format!("1 to {MOST_RUNS}");
+    let allowed = format!("1 to {most}");
     Err(CampaignError::Number { what, found: found.to_string(), allowed })
 }
 

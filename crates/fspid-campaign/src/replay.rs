@@ -1,7 +1,9 @@
 //! One run of a campaign flown again by itself, as `simulate` flies it.
 
+use fspid_study::dispersion::Drawn;
 use fspid_study::file::Study;
 use fspid_study::simulation::Simulation;
+use serde_json::{Value, json};
 
 use crate::campaign::Campaign;
 use crate::engine;
@@ -46,9 +48,77 @@ pub fn replay(campaign: &Campaign, number: u64) -> Result<Replay, CampaignError>
     Ok(Replay { number, changes, study, simulation, run: Run { number, drawn, flights } })
 }
 
+impl Replay {
+    /// The answer for people: what was drawn, the command that flies it alone, and its measures.
+    #[must_use]
+    pub fn text(&self, campaign: &Campaign) -> String {
+        let mut out = format!("run {} of {}\n", self.number, campaign.plan().scenario_path);
+        for (name, drawn) in names(campaign).zip(&self.run.drawn) {
+            out.push_str(&format!("  {name} = {}\n", shown(drawn)));
+        }
+        out.push_str(&format!("  alone: {}\n\n{}", self.command(campaign), self.simulation.text()));
+        out
+    }
+
+    /// The answer for programs.
+    #[must_use]
+    pub fn json(&self, campaign: &Campaign) -> Value {
+        let drawn = names(campaign).zip(&self.run.drawn).map(|(name, drawn)| {
+            let value = match drawn {
+                Drawn::Number(number) => json!(number),
+                Drawn::Whole(whole) => json!(whole),
+                Drawn::Text(text) => json!(text),
+            };
+            (name.to_owned(), value)
+        });
+        json!({
+            "schema": 1,
+            "run": self.number,
+            "campaign": campaign.plan().id(),
+            "parameters": drawn.collect::<serde_json::Map<_, _>>(),
+            "changes": self.changes,
+            "command": self.command(campaign),
+            "simulation": self.simulation.json(),
+        })
+    }
+
+    /// The command that flies this run without its campaign.
+    #[must_use]
+    pub fn command(&self, campaign: &Campaign) -> String {
+        let plan = campaign.plan();
+        let mut command = format!("fspid simulate {}", in_shell(&plan.scenario_path));
+        for change in plan.overrides.iter().chain(&self.changes) {
+            command.push_str(&format!(" --set {}", in_shell(change)));
+        }
+        command
+    }
+}
+
+/// Names of what is drawn.
+fn names(campaign: &Campaign) -> impl Iterator<Item = &str> {
+    campaign.template().study().dispersions.iter().flat_map(|dispersion| dispersion.names())
+}
+
+fn shown(drawn: &Drawn) -> String {
+    match drawn {
+        Drawn::Number(number) => format!("{number:?}"),
+        Drawn::Whole(whole) => whole.to_string(),
+        Drawn::Text(text) => text.clone(),
+    }
+}
+
+/// A word as a shell takes it: in quotes where it needs them.
+pub(crate) fn in_shell(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:+".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
 /// What draws change in the scenario, as `--set` takes it.
 #[must_use]
-pub fn changes(campaign: &Campaign, drawn: &[fspid_study::dispersion::Drawn]) -> Vec<String> {
+pub fn changes(campaign: &Campaign, drawn: &[Drawn]) -> Vec<String> {
     let values = campaign.values(drawn);
     values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect()
 }

@@ -92,11 +92,17 @@ pub(crate) fn write_whole<T>(
     path: &Path,
     contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, CampaignError>,
 ) -> Result<T, CampaignError> {
-    let failed = |reason: io::Error| CampaignError::Io { path: path.to_owned(), reason };
+    let failed = |error: io::Error| {
+        let reason = match error.kind() {
+            io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+            _ => error.to_string(),
+        };
+        CampaignError::Write { path: path.to_owned(), reason }
+    };
     let folder = path.parent().unwrap_or(Path::new("."));
     let file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder).map_err(failed)?;
     let mut buffered = BufWriter::new(file.as_file());
-    let answer = contents(&mut buffered)?;
+    let answer = contents(&mut buffered).map_err(|error| error.of_writing(path))?;
     buffered.into_inner().map_err(|error| failed(error.into_error()))?;
     file.as_file().sync_all().map_err(failed)?;
     readable(file.as_file()).map_err(failed)?;

@@ -44,6 +44,28 @@ fn the_merged_file_has_the_same_bytes_for_any_number_of_threads_and_size_of_shar
 }
 
 #[test]
+fn nonlinear_aircraft_in_gusts_of_their_own_fly_the_same_on_any_number_of_threads() {
+    let name =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign-turbulence.toml");
+    let flown = |threads| {
+        let home = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new(home.path());
+        let question = Question {
+            scenario: &name,
+            overrides: &["loop.duration_s=3.0".to_owned()],
+            runs: 9,
+            seed: 2,
+            sampling: Sampling::Sobol,
+            shard_runs: Some(4),
+        };
+        let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
+        folder.put_plan(campaign.plan()).expect("written");
+        local::run(&folder, &campaign, threads, &Progress::default()).expect("flown").digest
+    };
+    assert_eq!(flown(1), flown(3));
+}
+
+#[test]
 fn an_interrupted_campaign_goes_on_and_flies_nothing_twice() {
     let home = tempfile::tempdir().expect("a folder");
     let folder = Folder::new(home.path());
@@ -112,6 +134,31 @@ fn a_second_process_in_the_folder_is_refused() {
 }
 
 #[test]
+fn a_plan_that_was_changed_by_hand_is_refused_with_the_place() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(home.path());
+    planned(&folder, 3, 3);
+    let text = std::fs::read_to_string(folder.plan_path()).expect("written");
+    for (from, to, words) in [
+        ("\"runs\": 3", "\"runs\": 4", "/campaign is not the digest"),
+        ("\"runs\": 3", "\"runs\": 0", "/runs is 0; it must be from 1"),
+        ("\"shard_runs\": 3", "\"shard_runs\": 1e9", "/shard_runs is no whole number"),
+        ("\"latin-hypercube\"", "\"lhs\"", "\"lhs\", which is unknown"),
+        ("\"seed\": \"7\"", "\"seed\": \"-7\"", "/seed is no whole number"),
+        ("\"schema\": 1", "\"schema\": 2", "/schema is not 1"),
+        ("{", "", "campaign.json"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        std::fs::write(folder.plan_path(), changed).expect("written");
+        let refused = folder.plan().expect_err("changed").to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+    std::fs::write(folder.plan_path(), text).expect("written");
+    assert!(folder.plan().is_ok());
+}
+
+#[test]
 fn a_folder_with_another_campaign_is_refused_with_the_difference() {
     let home = tempfile::tempdir().expect("a folder");
     let folder = Folder::new(home.path());
@@ -145,4 +192,23 @@ fn a_row_holds_what_was_drawn_and_a_replay_gives_the_same_numbers() {
     changes.extend(replay.changes);
     let study = fspid_study::file::load(&scenario(), &changes).expect("a scenario");
     assert_eq!(study.scenario, replay.study.scenario);
+}
+
+#[test]
+fn every_column_stands_in_the_documentation_with_its_unit() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/campaigns.md");
+    let docs = std::fs::read_to_string(docs).expect("the documentation");
+    let home = tempfile::tempdir().expect("a folder");
+    let campaign = planned(&Folder::new(home.path()), 1, 1);
+    for column in campaign.rows().schema().columns() {
+        let name = column.name.as_str();
+        let family =
+            ["parameter.", "requirement."].iter().find(|family| name.starts_with(**family));
+        let row = match family {
+            Some(family) => docs.lines().find(|line| line.contains(&format!("`{family}"))),
+            None => docs.lines().find(|line| line.contains(&format!("`{name}`"))),
+        };
+        let row = row.unwrap_or_else(|| panic!("{name} is not documented"));
+        assert!(family.is_some() || row.contains(&column.unit), "{name}: {row}");
+    }
 }

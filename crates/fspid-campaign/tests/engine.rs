@@ -113,3 +113,19 @@ fn aircraft_with_sensors_and_gusts_fly_in_a_campaign_too() {
     }
     assert_ne!(flown[0], flown[1]);
 }
+
+/// What a flight allocates does not grow with its length: traces have room from the start.
+#[test]
+fn flights_allocate_nothing_while_they_fly() {
+    let texts = [STEP, include_str!("../../../scenarios/gallery/b747-turbulence.toml")];
+    for text in texts {
+        let template = template(text);
+        let length = path("loop.duration_s");
+        let count = |duration_s: f64| {
+            let study = template.with(&[(&length, NewValue::Number(duration_s))]).expect("sound");
+            let studies = [study];
+            allocation_counter::measure(|| drop(engine::fly(&studies))).count_total
+        };
+        assert_eq!(count(8.0), count(4.0));
+    }
+}

@@ -30,6 +30,11 @@ impl Failure {
         Self { code: Self::INPUT, message: message.to_string() }
     }
 
+    /// Output that cannot be written.
+    pub(crate) fn output(message: impl Display) -> Self {
+        Self { code: Self::OUTPUT, message: message.to_string() }
+    }
+
     /// Standard output that cannot be written; a reader that has gone away is no failure.
     pub(crate) fn of_writing(error: &io::Error) -> Result<(), Self> {
         if error.kind() == io::ErrorKind::BrokenPipe {

@@ -215,7 +215,8 @@ pub struct QuantileSummary {
     /// The quantile of the flights that have a value.
     pub value: f64,
     /// Where the quantile of all such flights lies, at the confidence of the summary; an end that is `None` is
-    /// beyond what so few flights can bound.
+    /// beyond what so few flights can bound. Of one or two flights, the interval of an outer quantile may lie
+    /// beside the value.
     pub interval: Interval,
 }
 

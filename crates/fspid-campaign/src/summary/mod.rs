@@ -47,7 +47,7 @@ pub const FAILED_RUNS: usize = 10;
 
 /// Most runs that sensitivities are computed from: the first of the campaign.
 ///
-/// With so many a rank correlation is sure to ±0.006, a share of the variance to about 0.003; what is less does not
+/// With so many a rank correlation is sure to ±0.006, a share of the variance to about 0.002; what is less does not
 /// matter to an engineer. The first runs, not evenly spaced ones: every second point of a Sobol' sequence lies in
 /// the same half of a dimension, while its first 2¹⁷ points are as even as that many points can be. For independent
 /// runs and Latin hypercubes, the first are as good as any others.

@@ -9,11 +9,15 @@ use super::words::{number, percent, whole};
 
 /// Widest line, in characters, as long as names are not very long.
 const WIDTH: usize = 100;
-/// Longest name of a measure or parameter in a table, in characters.
-const NAME: usize = 24;
+/// Longest name of a measure or parameter in a table, in characters: three of them and four numbers fit into a line.
+const NAME: usize = 22;
 /// Least share of the variance that is named, and how many standard errors it must be above 0.
 const LEAST_SHARE: f64 = 0.01;
 const SURE: f64 = 2.0;
+/// What the columns are.
+const LEGEND: &str = "without: flights that do not have the measure. share: of the variance, what the \
+    parameter explains alone, where it is 1 % at least and above 0 by two standard errors. rank: Spearman's \
+    correlation. run: number of the flight with the worst value.";
 /// What stands where there is nothing.
 const NOTHING: &str = "\u{2013}";
 
@@ -25,12 +29,10 @@ pub fn text(summary: &Summary) -> String {
         lines.push(String::new());
         lines.extend(of_controller(controller, summary.head.confidence));
     }
-    if !summary.notes.is_empty() {
-        lines.push(String::new());
-        lines.push("Notes".to_owned());
-        let notes = summary.notes.iter().flat_map(|note| wrapped(&note.to_string(), "- "));
-        lines.extend(notes);
-    }
+    lines.push(String::new());
+    lines.push("Notes".to_owned());
+    lines.extend(wrapped(LEGEND, "- "));
+    lines.extend(summary.notes.iter().flat_map(|note| wrapped(&note.to_string(), "- ")));
     let mut text = lines.join("\n");
     text.push('\n');
     text
@@ -69,8 +71,17 @@ fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String>
         lines.push(format!("  refused {}", controller.refused.in_words(confidence)));
     }
     lines.extend(requirements(&controller.requirements, confidence));
-    lines.extend(measures(&controller.measures));
-    lines.extend(sensitivities(&controller.sensitivities));
+    let (values, others): (Vec<_>, Vec<_>) =
+        controller.measures.iter().partition(|measure| requirement_of(&measure.name).is_some());
+    lines.extend(measures("measure", &others));
+    lines.extend(measures("requirement", &values));
+    let (values, others): (Vec<_>, Vec<_>) =
+        controller.sensitivities.iter().partition(|it| match &it.of {
+            SensitivityTarget::Failure => false,
+            SensitivityTarget::Measure(name) => requirement_of(name).is_some(),
+        });
+    lines.extend(sensitivities("measure", &others));
+    lines.extend(sensitivities("requirement", &values));
     lines.extend(failed_runs(controller));
     lines
 }
@@ -95,9 +106,9 @@ fn requirements(requirements: &[RequirementSummary], confidence: f64) -> Vec<Str
     table.lines()
 }
 
-fn measures(measures: &[MeasureSummary]) -> Vec<String> {
+fn measures(heading: &str, measures: &[&MeasureSummary]) -> Vec<String> {
     let mut table = Columns::new(&[
-        ("measure", Align::Left),
+        (heading, Align::Left),
         ("without", Align::Right),
         ("mean", Align::Right),
         ("5 %", Align::Right),
@@ -144,10 +155,10 @@ fn extreme(extreme: Option<Extreme>) -> [String; 2] {
     }
 }
 
-fn sensitivities(sensitivities: &[Sensitivity]) -> Vec<String> {
+fn sensitivities(heading: &str, sensitivities: &[&Sensitivity]) -> Vec<String> {
     let mut table = Columns::new(&[
-        ("depends on", Align::Left),
-        ("most on", Align::Left),
+        (heading, Align::Left),
+        ("depends most on", Align::Left),
         ("share", Align::Right),
         ("rank", Align::Right),
         ("then on", Align::Left),
@@ -192,7 +203,8 @@ fn failed_runs(controller: &ControllerSummary) -> Vec<String> {
     if controller.failed_runs.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec![String::new(), "  failed runs, the worst first".to_owned()];
+    let order = "  failed runs: diverged first, then unstable, refused, requirements not met";
+    let mut lines = vec![String::new(), order.to_owned()];
     for failed in &controller.failed_runs {
         let reasons = match (failed.reasons.as_str(), failed.severity) {
             ("", severity) => severity.name(),
@@ -208,10 +220,14 @@ fn failed_runs(controller: &ControllerSummary) -> Vec<String> {
     lines
 }
 
-/// The id of a requirement for the column of its value.
+/// The id of the requirement whose value a column holds.
+fn requirement_of(column: &str) -> Option<&str> {
+    column.strip_prefix(crate::rows::REQUIREMENT)?.strip_suffix(".value")
+}
+
+/// The name of a column below the heading of its table.
 fn short_name(column: &str) -> &str {
-    let id = column.strip_prefix(crate::rows::REQUIREMENT);
-    id.and_then(|id| id.strip_suffix(".value")).unwrap_or(column)
+    requirement_of(column).unwrap_or(column)
 }
 
 fn nothing() -> String {

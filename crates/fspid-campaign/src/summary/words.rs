@@ -129,6 +129,9 @@ impl Note {
     }
 }
 
+/// Most measures that a note names of those that are missing in equally many flights.
+const NAMED: usize = 3;
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -155,7 +158,10 @@ impl fmt::Display for Note {
                 whole(*of)
             ),
             Self::Missing { controller, measures } => {
-                write!(f, "{controller}: not every flight has every measure; what is said is of the others. Without: ")?;
+                write!(
+                    f,
+                    "{controller}: not every flight has every measure; what is said is of those that do. Without: "
+                )?;
                 counted(f, measures)
             }
             Self::NotFinite { controller, measures } => {
@@ -166,11 +172,20 @@ impl fmt::Display for Note {
     }
 }
 
-/// Names with their counts.
+/// Counts with the names they belong to: `5082 flights rise_time_s, overshoot_pct and 9 others; …`.
 fn counted(f: &mut fmt::Formatter<'_>, measures: &[(String, u64)]) -> fmt::Result {
-    for (index, (name, count)) in measures.iter().enumerate() {
-        let between = if index > 0 { ", " } else { "" };
-        write!(f, "{between}{name} {}", whole(*count))?;
+    let mut left: Vec<&(String, u64)> = measures.iter().collect();
+    let mut between = "";
+    while let Some(&&(_, count)) = left.first() {
+        let (same, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|(_, it)| *it == count);
+        left = others;
+        let named: Vec<&str> = same.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
+        let flights = if count == 1 { "flight" } else { "flights" };
+        write!(f, "{between}{} {flights} {}", whole(count), named.join(", "))?;
+        if same.len() > NAMED {
+            write!(f, " and {} more", same.len() - NAMED)?;
+        }
+        between = "; ";
     }
     f.write_str(".")
 }
@@ -192,6 +207,17 @@ mod tests {
         assert_eq!(words(1, 1), "1 of 1: at least 5 % (95 %)");
         assert_eq!(words(7, 20), "7 of 20: 35 % (15 % to 60 %)");
         assert_eq!(words(0, 0), "0 of 0");
+    }
+
+    #[test]
+    fn measures_missing_in_equally_many_flights_are_named_together() {
+        let names = [("a", 5), ("b", 2), ("c", 5), ("d", 5), ("e", 5), ("f", 1)];
+        let measures = names.map(|(name, count)| (name.to_owned(), count)).to_vec();
+        let note = Note::NotFinite { controller: "A".to_owned(), measures };
+        assert_eq!(
+            note.to_string(),
+            "A: infinite or NaN, and left out: 5 flights a, c, d and 1 more; 2 flights b; 1 flight f."
+        );
     }
 
     #[test]

@@ -287,7 +287,8 @@ mod tests {
 
     #[test]
     fn structures_without_end_are_refused() {
-        let deep = vec![0x1c; 1000];
+        // Deep enough to run out of stack, if each level were a call.
+        let deep = vec![0x1c; 4_000_000];
         assert!(matches!(check(&deep), Err(Refusal::Damaged(_))));
         // A list that says it has 2^63 lists.
         let mut long = vec![0x19, 0xf9];

@@ -45,8 +45,8 @@ pub use writer::Writer;
 /// Rows of every row group but the last, which may have fewer.
 ///
 /// Fixed, so that the same rows give the same bytes however they arrive; 60 columns of it take
-/// about 16 MB of memory. Smaller groups cost more of the 100 bytes that a column of a group needs
-/// in the footer; larger ones more memory.
+/// about 16 MB of memory. Smaller groups cost more of the some 70 bytes that a column of a group
+/// takes in the footer; larger ones more memory.
 pub const ROWS_PER_GROUP: usize = 16_384;
 
 /// Longest text of a cell, in bytes of UTF-8.

@@ -158,3 +158,128 @@ impl PageReader for Guard {
 fn passed_over() -> ParquetError {
     ParquetError::NYI("passing over pages".to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No pages; the checks are called on pages of their own.
+    struct Empty;
+
+    impl Iterator for Empty {
+        type Item = Result<Page>;
+
+        fn next(&mut self) -> Option<Self::Item> {
+            None
+        }
+    }
+
+    impl PageReader for Empty {
+        fn get_next_page(&mut self) -> Result<Option<Page>> {
+            Ok(None)
+        }
+
+        fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+            Ok(None)
+        }
+
+        fn skip_next_page(&mut self) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    /// A guard of a column of four rows.
+    fn guard(kind: Kind) -> Guard {
+        Guard::new(Box::new(Empty), kind, 4)
+    }
+
+    /// Levels of so many rows, all with a value, and then these bytes.
+    fn page(rows: u8, encoding: Encoding, levels: Encoding, values: &[u8]) -> Page {
+        let mut bytes = vec![2, 0, 0, 0, rows << 1, 1];
+        bytes.extend(values);
+        Page::DataPage {
+            buf: bytes.into(),
+            num_values: rows.into(),
+            encoding,
+            def_level_encoding: levels,
+            rep_level_encoding: Encoding::RLE,
+            statistics: None,
+        }
+    }
+
+    fn dictionary(values: u32, bytes: &[u8]) -> Page {
+        let (encoding, is_sorted) = (Encoding::PLAIN, false);
+        Page::DictionaryPage { buf: bytes.to_vec().into(), num_values: values, encoding, is_sorted }
+    }
+
+    #[test]
+    fn more_rows_than_the_row_group_has_do_not_pass() {
+        let plain = |rows| page(rows, Encoding::PLAIN, Encoding::RLE, &[0; 40]);
+        guard(Kind::Float).check(&plain(4)).unwrap();
+        guard(Kind::Float).check(&plain(5)).unwrap_err();
+        guard(Kind::Float).check(&plain(0)).unwrap_err();
+        let mut guard = guard(Kind::Float);
+        guard.check(&plain(3)).unwrap();
+        guard.check(&plain(2)).unwrap_err();
+    }
+
+    #[test]
+    fn levels_in_another_encoding_do_not_pass() {
+        let levels = |encoding| page(4, Encoding::PLAIN, encoding, &[0; 32]);
+        guard(Kind::Float).check(&levels(Encoding::RLE)).unwrap();
+        guard(Kind::Float).check(&levels(Encoding::PLAIN)).unwrap_err();
+    }
+
+    #[test]
+    fn values_in_an_encoding_that_a_kind_does_not_have_do_not_pass() {
+        let delta = page(4, Encoding::DELTA_BINARY_PACKED, Encoding::RLE, &[0; 32]);
+        guard(Kind::Integer).check(&delta).unwrap_err();
+        let plain = page(4, Encoding::PLAIN, Encoding::RLE, &[0; 32]);
+        guard(Kind::Text).check(&plain).unwrap_err();
+    }
+
+    #[test]
+    fn a_dictionary_passes_once_and_as_long_as_it_says() {
+        let text = [1, 0, 0, 0, b'a', 0, 0, 0, 0];
+        let mut twice = guard(Kind::Text);
+        twice.check(&dictionary(2, &text)).unwrap();
+        twice.check(&dictionary(2, &text)).unwrap_err();
+        for (values, bytes) in [(1, &text[..]), (3, &text), (2, &text[..8]), (u32::MAX, &text)] {
+            guard(Kind::Text).check(&dictionary(values, bytes)).unwrap_err();
+        }
+        guard(Kind::Float).check(&dictionary(2, &[0; 16])).unwrap();
+        guard(Kind::Float).check(&dictionary(3, &[0; 16])).unwrap_err();
+        guard(Kind::Boolean).check(&dictionary(1, &[0])).unwrap_err();
+    }
+
+    #[test]
+    fn indices_pass_behind_their_dictionary_and_in_runs_that_can_be_followed() {
+        let indices = |bytes: &[u8]| page(4, Encoding::RLE_DICTIONARY, Encoding::RLE, bytes);
+        let check = |bytes: &[u8]| {
+            let mut guard = guard(Kind::Float);
+            guard.check(&dictionary(2, &[0; 16])).unwrap();
+            guard.check(&indices(bytes))
+        };
+        guard(Kind::Float).check(&indices(&[1, 8, 0])).unwrap_err();
+        // A width of one bit, then four times the same index, or eight indices in a byte.
+        check(&[1, 8, 0]).unwrap();
+        check(&[1, 3, 0b0110_0101]).unwrap();
+        // No width, too wide, a run without its index, a group without its byte.
+        for bytes in [&[][..], &[33, 8, 0, 0, 0, 0, 0], &[1, 8], &[1, 3]] {
+            check(bytes).unwrap_err();
+        }
+        // A number of more bytes than the library takes without panicking.
+        let mut long = vec![1];
+        long.extend([0x80; 12]);
+        long.extend([1, 0]);
+        check(&long).unwrap_err();
+    }
+
+    #[test]
+    fn levels_that_are_fewer_than_the_rows_do_not_pass() {
+        assert!(levels(&[2, 0, 0, 0, 8, 1, 7], 4).is_some_and(|values| values == [7]));
+        assert!(levels(&[2, 0, 0, 0, 6, 1, 7], 4).is_none());
+        assert!(levels(&[9, 0, 0, 0, 8, 1, 7], 4).is_none());
+        assert!(levels(&[2, 0, 0], 4).is_none());
+    }
+}

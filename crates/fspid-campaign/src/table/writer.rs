@@ -19,7 +19,8 @@ use super::{
 /// not on the machine, not on the day. They do depend on the version of the Parquet library, which
 /// the file names; the [`Digest`] does not.
 ///
-/// In memory is one row group, and of each that is written some hundred bytes a column for the footer.
+/// In memory is one row group, and of each that is written about 700 bytes a column for the footer: with
+/// 60 columns the process took 24.8 MB for 2 row groups and 26.5 MB for 40.
 pub struct Writer<W: Write + Send> {
     file: SerializedFileWriter<W>,
     /// Rows that wait for their row group to be full.

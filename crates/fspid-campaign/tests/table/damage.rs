@@ -24,6 +24,7 @@ fn survives(path: &Path, bytes: &[u8], original: &Table, place: &str) -> bool {
     match found {
         Ok((_, reader, table)) => {
             assert!(table == *original, "{place}: other rows without an error");
+            assert_eq!(reader.rows(), original.rows(), "{place}");
             assert_eq!(reader.metadata(), [("campaign".to_owned(), "test".to_owned())], "{place}");
             true
         }
@@ -156,6 +157,20 @@ fn metadata_that_was_changed_is_found_when_the_file_is_opened() {
         matches!(error, Some(TableError::Damaged { reason: Damage::MetadataDigest { .. }, .. })),
         "{error:?}"
     );
+}
+
+#[test]
+fn a_number_of_rows_that_the_row_groups_do_not_have_is_refused() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("t.parquet");
+    let mut bytes = file(&long_table(12));
+    // In the footer field 3, 12 as a signed number, then field 4, the list of row groups.
+    let place = bytes.windows(3).rposition(|window| window == [0x16, 24, 0x19]).unwrap();
+    bytes[place + 1] = 26;
+    fs::write(&path, &bytes).unwrap();
+    let error = Reader::open(&path).err();
+    let told = Damage::Rows { told: 13, found: 12 }.to_string();
+    assert!(error.as_ref().is_some_and(|error| error.to_string().ends_with(&told)), "{error:?}");
 }
 
 /// A dictionary of 2³¹ − 1 texts would be 64 GB before the first is looked at.

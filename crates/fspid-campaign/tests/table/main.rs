@@ -1,6 +1,13 @@
 //! Tables of results: what is written is read, the same rows are the same bytes, and no file,
 //! whatever is in it, does more than be refused.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    clippy::print_stdout,
+    reason = "a test; floats that are compared are the same bits"
+)]
+
 mod damage;
 mod files;
 mod rows;

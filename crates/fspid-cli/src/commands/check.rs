@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::exit::{Failure, note, print};
-use fspid_study::{file, fuzzy_system};
+use fspid_study::file::{self, Template};
+use fspid_study::fuzzy_system;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
 #[derive(Debug, Args)]
@@ -24,6 +25,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
+    }
+    if !study.dispersions.is_empty() {
+        Template::load(&arguments.file, &arguments.overrides)
+            .map_err(Failure::input)?
+            .check_dispersions()
+            .map_err(Failure::input)?;
     }
     let scenario = &study.scenario;
     print(&format!(

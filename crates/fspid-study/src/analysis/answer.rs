@@ -87,7 +87,18 @@ impl Margins {
         let [low, high] = self.gain_margin_db;
         (-low).min(high)
     }
+
+    /// True below 6 dB or 45 deg, what MIL-F-9490D asks of a rigid aircraft in normal operation
+    /// (3.1.3.6): such a loop is stable, and should not be called good.
+    #[must_use]
+    pub fn are_poor(&self) -> bool {
+        // Written so that NaN is poor.
+        !(self.smaller_gain_margin_db() >= 6.0 && self.phase_margin_deg >= 45.0)
+    }
 }
+
+/// What is said of a stable loop whose margins are poor.
+pub(crate) const POOR_MARGINS: &str = "margins below 6 dB or 45 deg";
 
 /// Why an end of the gain margin is infinite, in words.
 pub(super) const NO_LOWER_LIMIT: &str = "no smaller gain makes the loop unstable";

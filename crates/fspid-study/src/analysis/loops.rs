@@ -110,6 +110,13 @@ impl AnalysedLoop {
         }
     }
 
+    /// True for a loop that is stable with every plant, and whose margins are poor with one of them.
+    #[must_use]
+    pub fn has_poor_margins(&self) -> bool {
+        let mut margins = self.plants.iter().map(|plant| plant.margins);
+        self.is_stable() && margins.any(|margins| margins.is_ok_and(|it| it.are_poor()))
+    }
+
     /// True if every plant is held, at rest and at every gain of the map.
     #[must_use]
     pub fn is_stable(&self) -> bool {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
-use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
+use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop};
 
 impl Analysis {
@@ -41,6 +41,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     }
     let unstable = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
     match (unstable, found.plants.len()) {
+        (0, _) if found.has_poor_margins() => format!("stable, {POOR_MARGINS} {gains}"),
         (0, _) => format!("stable {gains}"),
         (_, 1) => format!("UNSTABLE {gains}"),
         (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}"),

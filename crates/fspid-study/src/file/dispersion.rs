@@ -49,8 +49,15 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
     let distribution = match numbers.distribution(word)? {
         Ok(distribution) => distribution,
         Err(error) => {
-            let place = section.at("distribution");
-            report.missing(place, &section.path.clone(), error.to_string(), "");
+            let key = match word {
+                "correlated" => "correlation",
+                "choice" => "weights",
+                _ if section.given("lower") => "lower",
+                _ => "mean",
+            };
+            let text = error.to_string();
+            let (message, allowed) = in_two(&text);
+            report.missing(section.at(key), &section.path(key), message, allowed);
             return None;
         }
     };
@@ -62,6 +69,11 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
     }
     let targets = targets(report, section, paths, word == "correlated")?;
     Some(Dispersion { targets, distribution, relative, choices })
+}
+
+/// An error's sentence in two: what is wrong, and what must be.
+fn in_two(text: &str) -> (&str, &str) {
+    text.rsplit_once("; ").unwrap_or((text, ""))
 }
 
 fn is_number(value: &NewValue) -> bool {
@@ -167,7 +179,7 @@ fn values(report: &mut Report, section: &Section) -> Option<Vec<NewValue>> {
 fn matrix(report: &mut Report, section: &Section) -> Option<Vec<Vec<f64>>> {
     let item = section.item("correlation")?;
     let number = |item: &Item| match &item.value {
-        Value::Float(number) | Value::Integer(number, _) => Some(*number),
+        Value::Float(number) | Value::Integer(number, _) if number.is_finite() => Some(*number),
         _ => None,
     };
     let row = |item: &Item| match &item.value {

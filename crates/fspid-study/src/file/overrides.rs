@@ -42,7 +42,7 @@ pub(crate) fn listed_in_words() -> String {
 
 /// As JSON Schema.
 pub(crate) fn listed_schema() -> serde_json::Value {
-    serde_json::json!({ "type": "array", "items": { "type": "string", "pattern": "=" } })
+    serde_json::json!({ "type": "array", "items": { "type": "string" } })
 }
 
 /// Reports a list of changes that is none.

@@ -286,7 +286,7 @@ fn key(name: &str) -> String {
 }
 
 /// A value in one line.
-fn written(value: &Value) -> String {
+pub(crate) fn written(value: &Value) -> String {
     match value {
         Value::Text(text) => quoted(text),
         Value::Integer(_, Some(exact)) => exact.to_string(),

@@ -4,6 +4,7 @@ use fspid_fuzzy::{Grid, Label};
 
 use crate::file::check::default_value;
 use crate::file::files::Files;
+use crate::file::rewrite;
 use crate::file::section::{Checked, Entry, Section};
 use crate::file::spec::{Key, Kind, Presence, SCENARIO, Table};
 
@@ -154,8 +155,9 @@ fn written(value: &Checked) -> String {
         }
         Checked::Grid(grid) => text(&lines(grid)),
         Checked::Defuzzifier(rule) => text(&rule.to_string()),
-        // Their own keys are written, one by one; scenarios have no values of other readers.
-        Checked::Item(_) | Checked::Section(_) | Checked::Sections(_) => String::new(),
+        Checked::Item(item) => rewrite::written(&item.value),
+        // Their own keys are written, one by one.
+        Checked::Section(_) | Checked::Sections(_) => String::new(),
     }
 }
 

@@ -10,7 +10,7 @@ use super::files::Files;
 use super::overrides::{self, Found, Setting, Step};
 use super::problem::Problems;
 use super::report::{Place, Report};
-use super::{Study, changed_document, check, spec};
+use super::{LoadError, Study, changed_document, check, spec};
 
 /// A place in a scenario, as `--set` names it: `controller.FSPID.nominal.kp`,
 /// `plant.preset.numerator[0]`.
@@ -92,6 +92,18 @@ pub struct Template {
 }
 
 impl Template {
+    /// Reads a scenario file, as [`load`](super::load).
+    ///
+    /// # Errors
+    /// A file that cannot be read, or everything that is wrong with it.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, LoadError> {
+        let text = super::read_text(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let extra = Extra { overrides, ..Extra::default() };
+        Self::parse(&text, &path.display().to_string(), Some(folder), &extra)
+            .map_err(LoadError::Problems)
+    }
+
     /// Reads a scenario from a text called `name` in messages, as [`parse_with`](super::parse_with).
     ///
     /// # Errors

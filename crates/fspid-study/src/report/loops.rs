@@ -52,6 +52,7 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
 fn verdict(found: &AnalysedLoop) -> Verdict {
     let (standing, word) = match (found.absent.is_some(), found.is_stable()) {
         (true, _) => (Standing::Fair, "No margins"),
+        (false, true) if found.has_poor_margins() => (Standing::Fair, "Stable, poor margins"),
         (false, true) => (Standing::Good, "Stable"),
         (false, false) => (Standing::Bad, "UNSTABLE"),
     };

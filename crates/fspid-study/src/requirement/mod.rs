@@ -71,7 +71,8 @@ impl Requirement {
     }
 
     /// How far within the limits a value is; negative outside.
-    pub(crate) fn slack(&self, value: f64) -> f64 {
+    #[must_use]
+    pub fn slack(&self, value: f64) -> f64 {
         let value = self.compared(value);
         let above = self.least.map(|least| value - least);
         let below = self.most.map(|most| most - value);

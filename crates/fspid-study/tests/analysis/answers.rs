@@ -28,6 +28,22 @@ fn a_loop_whose_gain_is_nowhere_1_has_no_phase_margin_and_says_why() {
 }
 
 #[test]
+fn a_stable_loop_with_poor_margins_is_told_apart_from_a_good_one() {
+    let step = include_str!("../../../../scenarios/747-pitch-step.toml");
+    let analysis = analysed(step, &[]);
+    let poor: Vec<bool> = analysis.loops.iter().map(|found| found.has_poor_margins()).collect();
+    let phase = |index: usize| analysis.loops[index].margins().expect("stable").phase_margin_deg;
+    assert_eq!(poor, [phase(0) < 45.0, phase(1) < 45.0, phase(2) < 45.0]);
+    assert!(poor[0] && !poor[2]);
+    let text = analysis.text();
+    assert_eq!(
+        text.matches("stable, margins below 6 dB or 45 deg with kp 3.5287").count(),
+        1,
+        "{text}"
+    );
+}
+
+#[test]
 fn the_delay_of_a_sensor_takes_from_the_margins() {
     let plain = margins(LOOP, &["loop.sample_period_s=0.01"]).expect("stable");
     let sensor = ["sensor.preset=\"ideal\"", "sensor.pitch.delay_s=0.03"];

@@ -4,6 +4,7 @@
 mod abuse;
 mod arrival;
 mod bad_values;
+mod dispersions;
 mod messages;
 mod overrides;
 mod reading;

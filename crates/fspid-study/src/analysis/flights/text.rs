@@ -34,24 +34,26 @@ fn empirical(answer: &EmpiricalAnswer) -> Vec<(&'static str, String)> {
 }
 
 fn flown_margins(margins: &EmpiricalMargins) -> Vec<(&'static str, String)> {
-    let db = |margin: &Margin| between(margin, |factor| format!("{:+.2} dB", decibels(factor)));
-    let gain = format!("gain {}; {}", db(&margins.gain_down), db(&margins.gain_up));
-    let delay = format!("delay {}", between(&margins.delay_s, |s| format!("{s:.4} s")));
+    let db = |margin: &Margin, way| {
+        between(margin, way, |factor| format!("{:+.2} dB", decibels(factor)))
+    };
+    let gain = format!("gain {}; {}", db(&margins.gain_down, "down"), db(&margins.gain_up, "up"));
+    let delay = format!("delay {}", between(&margins.delay_s, "up", |s| format!("{s:.4} s")));
     let lag = margins.phase.iter().map(|phase| {
-        let size = between(&phase.lag_rad, |rad| format!("{:.1} deg", degrees(rad)));
+        let size = between(&phase.lag_rad, "up", |rad| format!("{:.1} deg", degrees(rad)));
         format!("lag at {:.3} rad/s {size}", phase.at_rad_s)
     });
     let rest: Vec<String> = std::iter::once(delay).chain(lag).collect();
     vec![("flown margins", format!("{gain} ({} flights)", margins.flights)), ("", rest.join("; "))]
 }
 
-/// Where a flight ceases to hold, in words.
-fn between(margin: &Margin, shown: impl Fn(f64) -> String) -> String {
+/// Where a flight ceases to hold, in words; `way` is where it was looked for.
+fn between(margin: &Margin, way: &str, shown: impl Fn(f64) -> String) -> String {
     match margin {
         Margin::Between { holds, fails, .. } => {
             format!("holds at {}, fails at {}", shown(*holds), shown(*fails))
         }
-        Margin::Beyond { held } => format!("holds up to {} and further", shown(*held)),
+        Margin::Beyond { held } => format!("holds {way} to {} and further", shown(*held)),
     }
 }
 

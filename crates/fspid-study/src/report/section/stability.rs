@@ -59,16 +59,24 @@ fn row(
     study: &Study,
     (analysed, certified): (&AnalysedLoop, &Certified),
 ) -> Vec<Cell> {
-    let margin = |of: &dyn Fn(&Margins) -> f64, decimals| match analysed.margins() {
+    let margin = |of: &dyn Fn(&Margins) -> f64, decimals, least| match analysed.margins() {
+        Ok(margins) if of(&margins) < least => {
+            Cell { class: "unmet", ..Cell::number(fixed(of(&margins), decimals)) }
+        }
         Ok(margins) if of(&margins).is_finite() => Cell::number(fixed(of(&margins), decimals)),
         Ok(_) => Cell { class: "absent", ..Cell::text("without end") },
         Err(reason) => Cell { class: "absent", ..Cell::text(reason.to_string()) },
     };
-    let (class, verdict, why) = verdict(certified);
+    let (class, verdict, why) = match verdict(certified) {
+        ("met", verdict, why) if analysed.has_poor_margins() => {
+            ("absent", format!("{verdict}, poor margins"), why)
+        }
+        (class, verdict, why) => (class, verdict.to_owned(), why),
+    };
     vec![
         Cell::text(format!("Fig. {figure}, {}", analysed.name)),
-        margin(&Margins::smaller_gain_margin_db, 1),
-        margin(&|margins| margins.phase_margin_deg, 1),
+        margin(&Margins::smaller_gain_margin_db, 1, 6.0),
+        margin(&|margins| margins.phase_margin_deg, 1, 45.0),
         Cell { class, ..Cell::text(verdict) },
         Cell::text(why),
         Cell::text(flown(study, &analysed.name)),

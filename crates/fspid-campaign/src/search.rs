@@ -1,0 +1,290 @@
+//! The worst case inside the box of the dispersions, looked for on purpose.
+//!
+//! A search by differential evolution over the same unit cube that campaigns draw from, then downhill
+//! by a simplex. Distributions without limits are searched within three standard deviations. What is
+//! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
+
+use fspid_study::dispersion::{Dispersion, Distribution, Drawn, Normal};
+use fspid_study::tune::optimiser::{LShade, NelderMead, Optimiser, Start};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use crate::campaign::Campaign;
+use crate::engine::{self, FlightResult};
+use crate::error::CampaignError;
+use crate::replay::{changes, in_shell};
+use crate::rows::{measure_names, measured};
+
+/// Share of a normal distribution beyond three standard deviations, on one side.
+const TAIL: f64 = 0.001_349_898_031_630_094_6;
+/// Nearest to the ends of the cube, where no distribution is defined.
+const NEAREST: f64 = 1.0 / (1_u64 << 53) as f64;
+/// Cost of a flight that has no such measure, and of one that is lost: below every number that a measure has.
+const ABSENT: f64 = -1e200;
+const LOST: f64 = -1e300;
+/// Largest flights lost count by when they are lost, up to this time.
+const LONGEST_S: f64 = 1e12;
+
+/// What is looked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// A measure, by the name of its column, or the id of a requirement.
+    pub measure: String,
+    /// True where low values are bad. A requirement knows itself.
+    pub lowest: bool,
+    /// The controller; the first one if none is named.
+    pub controller: Option<String>,
+    /// How many flights may be flown.
+    pub budget: usize,
+    /// Seed of the search.
+    pub seed: u64,
+}
+
+/// The worst case that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// The controller.
+    pub controller: String,
+    /// The measure or requirement.
+    pub measure: String,
+    /// What is drawn there.
+    pub drawn: Vec<Drawn>,
+    /// The changes that make the scenario this one, as `--set` takes them.
+    pub changes: Vec<String>,
+    /// Value of the measure there; `None` for a flight that is lost or has none.
+    pub value: Option<f64>,
+    /// Value of the scenario as it is written.
+    pub nominal: Option<f64>,
+    /// Why the flight fails; empty where it does not.
+    pub reasons: Vec<String>,
+    /// How many flights were flown.
+    pub flown: usize,
+}
+
+/// Looks for the worst case of a campaign's scenario.
+///
+/// # Errors
+/// A measure or a controller that there is not, no budget, or a scenario that cannot be flown.
+pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, CampaignError> {
+    let target = Target::of(campaign, question)?;
+    let dimension = campaign.dimensions();
+    let polish = question.budget / 5;
+    let population = (10 * dimension).clamp(24, 200).min(question.budget.max(4));
+    let global = question.budget - polish;
+    let mut wide = LShade::new(dimension, population, global, question.seed, Start::Anywhere);
+    let mut flown = target.minimise(&mut wide, global);
+    let (point, cost) = wide.best();
+    let mut downhill = NelderMead::new(point, cost);
+    flown += target.minimise(&mut downhill, polish);
+    let (point, _) = downhill.best();
+    let drawn = campaign.drawn_at(&target.inside(point));
+    let nominal = target.flight_of(vec![campaign.template().study().clone()]).pop().flatten();
+    let worst = target.flight(&drawn);
+    let changes = changes(campaign, &drawn);
+    Ok(Worst {
+        controller: target.controller.clone(),
+        measure: question.measure.clone(),
+        value: worst.as_ref().and_then(|flight| target.value(flight)),
+        reasons: worst.map_or(Vec::new(), |flight| flight.reasons()),
+        nominal: nominal.and_then(|flight| target.value(&flight)),
+        changes,
+        drawn,
+        flown,
+    })
+}
+
+/// What is made worse.
+struct Target<'a> {
+    campaign: &'a Campaign,
+    question: &'a Question,
+    controller: String,
+    place: usize,
+    is_requirement: bool,
+    /// Share of each coordinate that is left out at both ends.
+    tails: Vec<f64>,
+}
+
+impl<'a> Target<'a> {
+    fn of(campaign: &'a Campaign, question: &'a Question) -> Result<Self, CampaignError> {
+        let study = campaign.template().study();
+        let controllers = &study.scenario.controllers;
+        let names: Vec<&str> = controllers.iter().map(|named| named.name.as_str()).collect();
+        let place = match &question.controller {
+            None => Some(0),
+            Some(name) => names.iter().position(|known| known == name),
+        };
+        let unknown = |what, found: &str, allowed: Vec<&str>| CampaignError::Number {
+            what,
+            found: format!("\"{found}\""),
+            allowed: allowed.join(", "),
+        };
+        let Some((place, name)) = place.and_then(|place| Some((place, *names.get(place)?))) else {
+            let found = question.controller.as_deref().unwrap_or_default();
+            return Err(unknown("the controller", found, names));
+        };
+        let ids: Vec<&str> = study.requirements.iter().map(|it| it.id.as_str()).collect();
+        let is_requirement = ids.contains(&question.measure.as_str());
+        if !is_requirement && !measure_names().any(|(name, _)| name == question.measure) {
+            let known = measure_names().map(|(name, _)| name).chain(ids).collect();
+            return Err(unknown("the measure", &question.measure, known));
+        }
+        if question.budget == 0 {
+            return Err(CampaignError::Number {
+                what: "the budget",
+                found: "0".to_owned(),
+                allowed: "1 flight or more".to_owned(),
+            });
+        }
+        let controller = name.to_owned();
+        let tails = campaign.in_cube(tails);
+        Ok(Self { campaign, question, controller, place, is_requirement, tails })
+    }
+
+    /// Asks, flies and tells until the allowance is spent; flights flown.
+    fn minimise(&self, optimiser: &mut dyn Optimiser, allowance: usize) -> usize {
+        let mut spent = 0;
+        while spent < allowance {
+            let mut points = optimiser.ask();
+            if points.is_empty() {
+                break;
+            }
+            spent += points.len();
+            let at_once = engine::at_once(self.campaign.template().study());
+            let costs = points.par_chunks_mut(at_once).flat_map_iter(|points| self.costs(points));
+            let costs: Vec<f64> = costs.collect();
+            optimiser.tell(&costs);
+        }
+        spent
+    }
+
+    fn costs(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        let drawn = points.iter().map(|point| self.campaign.drawn_at(&self.inside(point)));
+        let runs = self.campaign.fly_together((0..).zip(drawn));
+        runs.iter()
+            .map(|run| match &run.flights {
+                Ok(flights) => flights.get(self.place).map_or(0.0, |flight| self.cost(flight)),
+                // No scenario, no worst case of one.
+                Err(_) => f64::INFINITY,
+            })
+            .collect()
+    }
+
+    /// A point of the searched box as one of the open unit cube.
+    fn inside(&self, point: &[f64]) -> Vec<f64> {
+        let at =
+            |(x, tail): (&f64, &f64)| (tail + x * (1.0 - 2.0 * tail)).clamp(NEAREST, 1.0 - NEAREST);
+        point.iter().zip(&self.tails).map(at).collect()
+    }
+
+    /// Low for bad flights.
+    fn cost(&self, flight: &FlightResult) -> f64 {
+        if let Some(at_s) = flight.diverged_at_s() {
+            return LOST * (1.0 - at_s / LONGEST_S);
+        }
+        if flight.metrics.verdict.is_failure() {
+            return LOST * 0.5;
+        }
+        let Some(value) = self.value(flight) else {
+            return ABSENT;
+        };
+        if self.is_requirement {
+            return self.slack(flight).unwrap_or(ABSENT);
+        }
+        if self.question.lowest { value } else { -value }
+    }
+
+    fn value(&self, flight: &FlightResult) -> Option<f64> {
+        if !self.is_requirement {
+            return measured(flight, &self.question.measure)?.ok();
+        }
+        let mut judgements = flight.judgements.iter();
+        let judgement = judgements.find(|it| it.requirement.id == self.question.measure)?;
+        judgement.found.as_ref().ok().map(|case| case.value)
+    }
+
+    fn slack(&self, flight: &FlightResult) -> Option<f64> {
+        let mut judgements = flight.judgements.iter();
+        let judgement = judgements.find(|it| it.requirement.id == self.question.measure)?;
+        Some(judgement.requirement.slack(judgement.found.as_ref().ok()?.value))
+    }
+
+    fn flight(&self, drawn: &[Drawn]) -> Option<FlightResult> {
+        let study = self.campaign.study(drawn).ok()?;
+        self.flight_of(vec![study]).pop().flatten()
+    }
+
+    fn flight_of(&self, studies: Vec<fspid_study::file::Study>) -> Vec<Option<FlightResult>> {
+        let flown = engine::fly(&studies).into_iter();
+        flown.map(|flights| flights.ok()?.into_iter().nth(self.place)).collect()
+    }
+}
+
+/// What is left out at both ends of each coordinate of a dispersion.
+fn tails(dispersion: &Dispersion) -> Vec<f64> {
+    let of_normal = |normal: &Normal| match (normal.lower(), normal.upper()) {
+        (Some(_), Some(_)) => 0.0,
+        _ => TAIL,
+    };
+    match &dispersion.distribution {
+        Distribution::Normal(normal) => vec![of_normal(normal)],
+        // The coordinates are those of independent normals.
+        Distribution::Correlated(correlated) => vec![TAIL; correlated.entries().len()],
+        other => vec![0.0; other.dimensions()],
+    }
+}
+
+impl Worst {
+    /// The answer for people.
+    #[must_use]
+    pub fn text(&self, campaign: &Campaign) -> String {
+        let shown = |value: Option<f64>| {
+            value.map_or_else(|| "none".to_owned(), |value| format!("{value:.6}"))
+        };
+        let unit = match measure_names().find(|(name, _)| *name == self.measure) {
+            Some((_, "")) | None => String::new(),
+            Some((_, unit)) => format!(" {unit}"),
+        };
+        let mut out = format!(
+            "{}: worst {} found in {} flights: {}{unit} (as written: {}{unit})\n",
+            self.controller,
+            self.measure,
+            self.flown,
+            shown(self.value),
+            shown(self.nominal),
+        );
+        for reason in &self.reasons {
+            out.push_str(&format!("  fails: {reason}\n"));
+        }
+        for change in &self.changes {
+            out.push_str(&format!("  {change}\n"));
+        }
+        out.push_str(&format!("  again: {}\n", self.command(campaign)));
+        out.push_str("This flight is that bad; that none is worse is not proved.\n");
+        out
+    }
+
+    /// The answer for programs.
+    #[must_use]
+    pub fn json(&self, campaign: &Campaign) -> Value {
+        json!({
+            "schema": 1,
+            "controller": self.controller,
+            "measure": self.measure,
+            "value": self.value,
+            "nominal": self.nominal,
+            "reasons": self.reasons,
+            "changes": self.changes,
+            "flights": self.flown,
+            "command": self.command(campaign),
+        })
+    }
+
+    fn command(&self, campaign: &Campaign) -> String {
+        let plan = campaign.plan();
+        let mut command = format!("fspid simulate {}", in_shell(&plan.scenario_path));
+        for change in plan.overrides.iter().chain(&self.changes) {
+            command.push_str(&format!(" --set {}", in_shell(change)));
+        }
+        command
+    }
+}

@@ -1,0 +1,94 @@
+//! The search for the worst case finds the corner where it must be, and is the same each time.
+
+use std::path::Path;
+
+use fspid_campaign::sample::Sampling;
+use fspid_campaign::search::{self, Worst};
+use fspid_campaign::{Campaign, CampaignError, Folder, Question, local, plan};
+use fspid_study::dispersion::Drawn;
+
+fn campaign() -> Campaign {
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign.toml");
+    let question = Question {
+        scenario: &scenario,
+        overrides: &["loop.duration_s=5.0".to_owned()],
+        runs: 1,
+        seed: 1,
+        sampling: Sampling::Random,
+        shard_runs: None,
+    };
+    plan(&question, &Folder::new(Path::new("."))).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn asked(measure: &str) -> search::Question {
+    search::Question {
+        measure: measure.to_owned(),
+        lowest: false,
+        controller: Some("FSPID".to_owned()),
+        budget: 600,
+        seed: 3,
+    }
+}
+
+fn worst(question: &search::Question, threads: usize) -> Worst {
+    let campaign = campaign();
+    let found = local::in_threads(threads, || search::search(&campaign, question));
+    found.and_then(|found| found).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn number(drawn: &Drawn) -> f64 {
+    match drawn {
+        Drawn::Number(number) => *number,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_largest_overshoot_is_in_the_corner_of_least_damping_and_slowest_servo() {
+    let found = worst(&asked("overshoot_pct"), 0);
+    let [_, damping, _, servo] = found.drawn.as_slice() else { panic!("{found:?}") };
+    assert!(number(damping) < 0.72 && number(servo) > 0.19, "{found:?}");
+    // Chance does not come there: no run of two hundred is as bad.
+    let by_chance = {
+        let campaign = campaign();
+        let drawn = (0..200).map(|run| {
+            let mut point = vec![0.0; campaign.dimensions()];
+            let cube = fspid_campaign::sample::Cube::new(Sampling::Random, point.len(), 200, 9);
+            cube.expect("a cube").point(run, &mut point);
+            (run, campaign.drawn_at(&point))
+        });
+        let runs = campaign.fly_together(drawn);
+        let overshoot = runs.iter().map(|run| {
+            let flights = run.flights.as_ref().expect("flown");
+            flights[1].metrics.first_step().overshoot_pct.expect("measured")
+        });
+        overshoot.fold(0.0, f64::max)
+    };
+    assert!(found.value > Some(by_chance) && found.nominal < Some(by_chance), "{found:?}");
+    assert!(found.flown <= 600 + 8, "{}", found.flown);
+}
+
+#[test]
+fn the_search_is_the_same_on_any_number_of_threads() {
+    let question = search::Question { budget: 150, ..asked("phase_margin_deg") };
+    let alone = worst(&question, 1);
+    assert_eq!(worst(&question, 3), alone);
+    assert!(alone.value < alone.nominal, "{alone:?}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_with_what_can() {
+    let refused = |question: search::Question| {
+        let found = search::search(&campaign(), &question);
+        match found.expect_err("refused") {
+            CampaignError::Number { what, allowed, .. } => (what, allowed),
+            other => panic!("{other}"),
+        }
+    };
+    let (what, allowed) = refused(asked("overshot"));
+    assert!(what == "the measure" && allowed.contains("overshoot_pct"), "{allowed}");
+    let nobody = Some("nobody".to_owned());
+    let (what, allowed) = refused(search::Question { controller: nobody, ..asked("iae_deg_s") });
+    assert_eq!((what, allowed.as_str()), ("the controller", "CPID, FSPID"));
+    assert_eq!(refused(search::Question { budget: 0, ..asked("iae_deg_s") }).0, "the budget");
+}

@@ -1,0 +1,45 @@
+//! `fspid campaign replay`: one run again, with its trace.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::super::{Format, json_text};
+use super::{failure, planned};
+use crate::exit::{Failure, print};
+use fspid_campaign::{Folder, replay};
+use fspid_study::{output, report};
+
+/// Fly one run of a campaign again, bit for bit, and write its trace.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The campaign's folder.
+    folder: PathBuf,
+    /// Number of the run, from 0.
+    #[arg(long)]
+    run: u64,
+    /// Write the traces of all controllers to this CSV file.
+    #[arg(long, value_name = "OUT.csv")]
+    trace: Option<PathBuf>,
+    /// Write a report that opens offline in a browser.
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let campaign = planned(&Folder::new(&arguments.folder))?;
+    let replay = replay::replay(&campaign, arguments.run).map_err(failure)?;
+    if let Some(path) = &arguments.trace {
+        output::write(path, replay.simulation.csv())?;
+    }
+    if let Some(path) = &arguments.report {
+        output::write(path, report::of_simulation(&replay.study, &replay.simulation))?;
+    }
+    match arguments.format {
+        Format::Text => print(&replay.text(&campaign)),
+        Format::Json => print(&json_text(&replay.json(&campaign))),
+    }
+}

@@ -1,0 +1,40 @@
+//! `fspid campaign report`: what a file of rows says.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_campaign::report;
+use fspid_campaign::summary::{self, Summary, SummarySettings};
+use fspid_study::output;
+
+/// Say what a campaign found: how often it fails, with confidence bounds, and what that depends on.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The merged file of a campaign.
+    file: PathBuf,
+    /// Write a page that opens offline in a browser: distributions, envelopes, failure maps.
+    #[arg(long, value_name = "OUT.html")]
+    out: Option<PathBuf>,
+    /// How sure the intervals shall be.
+    #[arg(long, default_value_t = SummarySettings::default().confidence)]
+    confidence: f64,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let settings = SummarySettings { confidence: arguments.confidence };
+    let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;
+    if let Some(path) = &arguments.out {
+        output::write(path, report::page(&arguments.file, &summary).map_err(Failure::input)?)?;
+        note(format_args!("{}: written", path.display()));
+    }
+    match arguments.format {
+        Format::Text => print(&summary::text(&summary)),
+        Format::Json => print(&json_text(&summary::json(&summary))),
+    }
+}

@@ -1,0 +1,65 @@
+//! `fspid campaign run`: fly all of it here.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::progress::{Telling, told};
+use super::{Place, Planned, failure, planned};
+use crate::exit::{Failure, print};
+use fspid_campaign::local;
+
+/// Plan, fly and merge a campaign on this machine; again after an interruption, it goes on.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The scenario file; left out, the campaign that is planned in the folder goes on.
+    scenario: Option<PathBuf>,
+    #[command(flatten)]
+    planned: Planned,
+    #[command(flatten)]
+    place: Place,
+    /// Who flies. On a cluster: `campaign plan`, `campaign shard` and `campaign merge`.
+    #[arg(long, value_enum, default_value_t = Engine::Local)]
+    engine: Engine,
+    /// How many threads; 0 for as many as the machine has. The result is the same.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Say nothing while flying.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Who flies a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Engine {
+    /// This machine, on its threads.
+    Local,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = arguments.place.folder();
+    let campaign = match &arguments.scenario {
+        Some(scenario) => arguments.planned.campaign(scenario, &folder)?,
+        None => match arguments.planned.given() {
+            None => planned(&folder)?,
+            Some(option) => {
+                return Err(Failure::input(format_args!(
+                    "{option} goes with a scenario; without one the campaign in the folder goes on as it was planned"
+                )));
+            }
+        },
+    };
+    let Engine::Local = arguments.engine;
+    let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
+    let runs = campaign.plan().runs;
+    let flown =
+        told(telling, runs, |progress| local::run(&folder, &campaign, arguments.threads, progress));
+    let flown = flown.map_err(failure)?;
+    let merged = folder.merged_path();
+    print(&format!(
+        "{}: {runs} runs, {} rows\ndigest {}\n",
+        merged.display(),
+        runs * campaign.rows().of_run() as u64,
+        flown.digest,
+    ))
+}

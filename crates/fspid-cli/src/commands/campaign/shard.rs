@@ -1,0 +1,45 @@
+//! `fspid campaign shard`: fly one part.
+
+use clap::Args;
+
+use super::progress::{Telling, told};
+use super::{Place, failure};
+use crate::exit::{Failure, print};
+use fspid_campaign::shard::{self, Done};
+use fspid_campaign::{CampaignError, local};
+
+/// Fly one shard of a planned campaign, unless it is there whole; several machines may do so at once.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Number of the shard, from 0.
+    number: u64,
+    #[command(flatten)]
+    place: Place,
+    /// How many threads; 0 for as many as the machine has. The result is the same.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Say nothing while flying.
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = arguments.place.folder();
+    let campaign = arguments.place.campaign()?;
+    let number = arguments.number;
+    let plan = campaign.plan();
+    let most = plan.shards().saturating_sub(1);
+    let range = plan.shard(number).ok_or(CampaignError::NoShard { found: number, most });
+    let range = range.map_err(failure)?;
+    let _shared = folder.lock(false).map_err(failure)?;
+    let _alone = folder.lock_shard(range).map_err(failure)?;
+    let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
+    let done = told(telling, range.end - range.first, |progress| {
+        local::in_threads(arguments.threads, || shard::fly(&folder, &campaign, number, progress))?
+    });
+    let words = match done.map_err(failure)? {
+        Done::Flown => "flown",
+        Done::Found => "there already",
+    };
+    print(&format!("{}: {range}, {words}\n", folder.shard_path(range).display()))
+}

@@ -1,0 +1,204 @@
+//! `fspid campaign` as people, schedulers and accidents meet it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// A folder with the shipped campaign, its flights cut short.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(repository("scenarios/campaign.toml")).expect("shipped");
+    let short = text.replace("duration_s = 50.0", "duration_s = 5.0");
+    std::fs::write(folder.path().join("pitch.toml"), short).expect("written");
+    folder
+}
+
+fn command(arguments: &[&str], folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    command.args(arguments).current_dir(folder);
+    command
+}
+
+fn fspid(arguments: &[&str], folder: &Path) -> Output {
+    command(arguments, folder).output().expect("the program starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
+
+fn done(arguments: &[&str], folder: &Path) -> String {
+    let output = fspid(arguments, folder);
+    assert_eq!(code(&output), 0, "{arguments:?}\n{}", text(&output.stderr));
+    text(&output.stdout).to_owned()
+}
+
+const SMALL: [&str; 9] =
+    ["campaign", "run", "pitch.toml", "--runs", "40", "--seed", "5", "--shard-runs", "7"];
+/// Enough work that it is still going on when it is interrupted.
+const LARGE: [&str; 7] = ["campaign", "run", "pitch.toml", "--runs", "3000", "--shard-runs", "50"];
+
+fn with<'a>(arguments: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    arguments.iter().chain(more).copied().collect()
+}
+
+fn merged(folder: &Path, out: &str) -> Vec<u8> {
+    std::fs::read(folder.join(out).join("campaign.parquet")).expect("merged")
+}
+
+#[test]
+fn shards_flown_in_any_order_merge_to_the_file_of_a_run() {
+    let folder = folder();
+    let folder = folder.path();
+    let whole = done(&with(&SMALL, &["--out", "whole", "--quiet", "--threads", "1"]), folder);
+    let mut plan = SMALL;
+    plan[1] = "plan";
+    let planned = done(&with(&plan, &["--out", "parts"]), folder);
+    assert!(planned.contains("40 runs in 6 shards, numbered 0 to 5"), "{planned}");
+    let merge = ["campaign", "merge", "--out", "parts"];
+    let early = fspid(&merge, folder);
+    assert_eq!(code(&early), 2);
+    assert!(text(&early.stderr).contains("runs 0 to 39 are missing (40 in all)"));
+    for shard in ["4", "0", "2", "5", "1", "3", "3"] {
+        let told = done(&["campaign", "shard", shard, "--out", "parts", "--quiet"], folder);
+        assert!(told.contains("runs "), "{told}");
+    }
+    let answer = done(&merge, folder);
+    assert_eq!(merged(folder, "parts"), merged(folder, "whole"));
+    let digest = |answer: &str| answer.lines().last().map(str::to_owned);
+    assert_eq!(digest(&answer), digest(&whole));
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_can() {
+    let folder = folder();
+    let folder = folder.path();
+    done(&with(&SMALL, &["--out", "here", "--quiet"]), folder);
+    for (arguments, words) in [
+        (vec!["campaign", "shard", "6", "--out", "here"], "there is no shard 6; allowed is 0 to 5"),
+        (
+            vec!["campaign", "replay", "here", "--run", "40"],
+            "there is no run 40; allowed is 0 to 39",
+        ),
+        (vec!["campaign", "run", "--out", "here", "--runs", "9"], "--runs goes with a scenario"),
+        (vec!["campaign", "run", "--out", "nowhere"], "there is no campaign here"),
+        (
+            vec!["campaign", "run", "pitch.toml", "--runs", "0", "--out", "x"],
+            "the number of runs is 0",
+        ),
+        (
+            vec!["campaign", "plan", "pitch.toml", "--shard-runs", "65537", "--out", "x"],
+            "in a shard is 65537",
+        ),
+        (vec!["campaign", "run", "pitch.toml", "--out", "here"], "another campaign is there"),
+        (
+            vec!["campaign", "search", "pitch.toml", "--measure", "overshot"],
+            "the measure is \"overshot\"",
+        ),
+        (vec!["campaign", "run", "none.toml", "--out", "x"], "none.toml: cannot be read"),
+    ] {
+        let output = fspid(&arguments, folder);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(text(&output.stderr).contains(words), "{arguments:?}\n{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn a_replay_and_the_command_it_names_give_the_same_trace() {
+    let folder = folder();
+    let folder = folder.path();
+    done(&with(&SMALL, &["--out", "here", "--quiet"]), folder);
+    let told = done(&["campaign", "replay", "here", "--run", "31", "--trace", "one.csv"], folder);
+    let alone = told.lines().find_map(|line| line.trim().strip_prefix("alone: fspid "));
+    let program = env!("CARGO_BIN_EXE_fspid");
+    let line = format!("{program} {} --trace two.csv", alone.expect("a command"));
+    let shell = Command::new("sh").args(["-c", &line]).current_dir(folder).output();
+    assert!(shell.expect("a shell").status.success(), "{line}");
+    let read = |name: &str| std::fs::read(folder.join(name)).expect("a trace");
+    assert_eq!(read("one.csv"), read("two.csv"));
+}
+
+#[test]
+fn progress_is_plain_lines_where_nobody_watches_and_nothing_when_quiet() {
+    let folder = folder();
+    let loud = fspid(&with(&SMALL, &["--out", "loud"]), folder.path());
+    let told = text(&loud.stderr);
+    assert!(told.contains("40 of 40 runs") && told.contains("failed") && !told.contains('\r'));
+    let quiet = fspid(&with(&SMALL, &["--out", "quiet", "--quiet"]), folder.path());
+    assert_eq!(text(&quiet.stderr), "");
+}
+
+/// Waits until a campaign has finished some shards.
+fn after_shards(folder: &Path, out: &str, count: usize) {
+    let shards = folder.join(out).join("shards");
+    for _ in 0..2000 {
+        let files = std::fs::read_dir(&shards).into_iter().flatten().flatten();
+        let is_whole = |name: &str| name.ends_with(".parquet") && !name.starts_with('.');
+        if files.filter(|file| is_whole(&file.file_name().to_string_lossy())).count() >= count {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("no shard was finished");
+}
+
+fn started(out: &str, folder: &Path) -> Child {
+    let arguments = with(&LARGE, &["--out", out, "--quiet"]);
+    let mut command = command(&arguments, folder);
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts")
+}
+
+#[test]
+fn a_killed_campaign_goes_on_to_the_bytes_of_one_that_was_not() {
+    let folder = folder();
+    let folder = folder.path();
+    for (out, shards) in [("killed", 2), ("killed", 7)] {
+        let mut child = started(out, folder);
+        after_shards(folder, out, shards);
+        // The lock is held: a second one in the same folder is told so.
+        let second = fspid(&with(&LARGE, &["--out", out]), folder);
+        assert_eq!(code(&second), 2, "{}", text(&second.stdout));
+        assert!(text(&second.stderr).contains("another process is working on this campaign"));
+        // SIGKILL, which nobody can catch.
+        child.kill().expect("killed");
+        child.wait().expect("ended");
+    }
+    assert!(!folder.join("killed/campaign.parquet").exists());
+    done(&with(&LARGE, &["--out", "killed", "--quiet"]), folder);
+    done(&with(&LARGE, &["--out", "whole", "--quiet"]), folder);
+    assert_eq!(merged(folder, "killed"), merged(folder, "whole"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_campaign_and_a_full_disk_lose_nothing() {
+    let folder = folder();
+    let folder = folder.path();
+    let mut child = started("here", folder);
+    after_shards(folder, "here", 2);
+    let number = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &number]).status().expect("kill").success());
+    assert!(!child.wait().expect("ended").success());
+    // No file may grow beyond 4 KiB: the next part does not fit, as on a full disk.
+    let program = env!("CARGO_BIN_EXE_fspid");
+    let line = format!("trap '' XFSZ; ulimit -f 8; exec {program} {} --out here", LARGE.join(" "));
+    let full =
+        Command::new("sh").args(["-c", &line]).current_dir(folder).output().expect("a shell");
+    assert_eq!(code(&full), 4, "{}", text(&full.stderr));
+    let told = text(&full.stderr);
+    assert!(
+        told.contains("cannot write here/shards/") && told.contains("when it is run again"),
+        "{told}"
+    );
+    done(&with(&LARGE, &["--out", "here", "--quiet"]), folder);
+    done(&with(&LARGE, &["--out", "whole", "--quiet"]), folder);
+    assert_eq!(merged(folder, "here"), merged(folder, "whole"));
+}
