@@ -34,8 +34,14 @@ pub(super) struct ByParameter {
 pub(super) const MOST_FAILED: usize = 1500;
 pub(super) const MOST_PASSED: usize = 2000;
 
+/// Smallest and largest value of a parameter.
+pub(super) type Ends = (f64, f64);
+
+/// Places of two parameters: along columns, along rows.
+pub(super) type Pair = (usize, usize);
+
 /// Pairs of so many parameters, the first two first.
-pub(super) fn pairs(parameters: usize) -> Vec<(usize, usize)> {
+pub(super) fn pairs(parameters: usize) -> Vec<Pair> {
     let all = (0..parameters).flat_map(|b| (0..b).map(move |a| (a, b)));
     all.collect()
 }
@@ -43,7 +49,7 @@ pub(super) fn pairs(parameters: usize) -> Vec<(usize, usize)> {
 /// What is counted, and between which ends.
 pub(super) struct Counted {
     /// Smallest and largest value of each parameter.
-    pub(super) ends: Vec<(f64, f64)>,
+    pub(super) ends: Vec<Ends>,
     /// One a controller.
     pub(super) of: Vec<ByParameter>,
 }
@@ -131,11 +137,7 @@ pub(super) fn counted(
 }
 
 impl ByParameter {
-    fn add(
-        &mut self,
-        (values, ends, pairs): (&[f64], &[(f64, f64)], &[(usize, usize)]),
-        failed: bool,
-    ) {
+    fn add(&mut self, (values, ends, pairs): (&[f64], &[Ends], &[Pair]), failed: bool) {
         let bins = self.alone.first().map_or(1, Vec::len);
         let bin = |n: usize| place(values[n], ends[n], bins);
         for (n, counts) in self.alone.iter_mut().enumerate() {
@@ -157,12 +159,12 @@ impl ByParameter {
 }
 
 /// The bin of a value; the last one holds its upper end.
-fn place(value: f64, (lo, hi): (f64, f64), bins: usize) -> usize {
+fn place(value: f64, (lo, hi): Ends, bins: usize) -> usize {
     (((value - lo) / (hi - lo) * bins as f64) as usize).min(bins.saturating_sub(1))
 }
 
-fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, SummaryError> {
-    let mut found = vec![None::<(f64, f64)>; columns.len()];
+fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<Ends>>, SummaryError> {
+    let mut found = vec![None::<Ends>; columns.len()];
     let names: Vec<&str> = columns.iter().map(String::as_str).collect();
     for table in reader.columns(&names)? {
         let table = table?;
@@ -173,7 +175,7 @@ fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, 
             }
         }
     }
-    let wide = |(lo, hi): &(f64, f64)| lo < hi && (hi - lo).is_finite();
+    let wide = |(lo, hi): &Ends| lo < hi && (hi - lo).is_finite();
     Ok(found.into_iter().map(|ends| ends.filter(wide)).collect())
 }
 

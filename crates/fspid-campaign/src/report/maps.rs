@@ -132,7 +132,7 @@ impl What {
                 did: format!("of the {which} 5 %"),
                 did_not: "others".to_owned(),
                 sentence: format!(
-                    "Of no controller some flights failed and others not. Instead: where the flights with the {which} 5 % of {words} lie, each controller by itself."
+                    "No controller had both flights that failed and flights that did not. Instead: where the flights with the {which} 5 % of {words} lie, each controller by itself."
                 ),
             })
         })
@@ -316,7 +316,11 @@ impl Maps<'_> {
             passed,
             failed: of.failed.clone(),
         };
-        let caption = format!("{name}: runs over the two parameters that it depends on most.");
+        let mut caption = format!("{name}: runs over the two parameters that it depends on most.");
+        if of.failed.len() as u64 != failed || figure.passed.len() as u64 != all - failed {
+            // Those that failed are drawn first, so that none is missed that could be shown.
+            caption.push_str(" Not all are drawn, and of those that count more than of the others: how dense they are says nothing of shares.");
+        }
         Picture { name: format!("runs-{controller}"), svg: figure.render(), caption }
     }
 
