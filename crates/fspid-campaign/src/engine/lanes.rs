@@ -40,7 +40,8 @@ pub(super) fn fly(
 fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, SimError>> {
     in_lanes(memory, group).unwrap_or_else(|| {
         let alone = |flight: &Ready<'_>| {
-            single::record(memory.empty_trace(), flight.prepared, flight.controller)
+            let trace = memory.empty_trace(flight.prepared.timing().rows());
+            single::record(trace, flight.prepared, flight.controller)
         };
         group.iter().map(alone).collect()
     })
@@ -52,9 +53,10 @@ fn in_lanes(memory: &mut Memory, group: &[Ready<'_>]) -> Option<Vec<Result<Trace
         .map(|flight| Entrant { prepared: flight.prepared, controller: flight.controller })
         .collect();
     let recorder = &mut memory.recorder;
-    recorder.begin(group.first()?.prepared.timing().rows());
+    let rows = group.first()?.prepared.timing().rows();
+    recorder.begin(rows);
     let outcomes = fly_group::<LANES>(&entrants, |row: &Row<'_, LANES>| recorder.push(row)).ok()?;
-    let mut traces: Vec<Trace> = group.iter().map(|_| memory.empty_trace()).collect();
+    let mut traces: Vec<Trace> = group.iter().map(|_| memory.empty_trace(rows)).collect();
     let prepared: Vec<&Prepared> = group.iter().map(|flight| flight.prepared).collect();
     memory.recorder.fill(&mut traces, &prepared);
     let traces = traces.into_iter().zip(outcomes).map(|(mut trace, outcome)| {

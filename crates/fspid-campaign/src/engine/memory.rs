@@ -14,17 +14,23 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// A trace without samples, with the room that an earlier one had.
-    pub(super) fn empty_trace(&mut self) -> Trace {
-        let Some(mut trace) = self.traces.pop() else {
-            return new_trace();
-        };
-        let Trace { time_s, setpoint_rad, theta_rad, command_rad, elevator_rad, .. } = &mut trace;
-        for column in [time_s, setpoint_rad, theta_rad, command_rad, elevator_rad] {
+    /// A trace without samples and with room for so many, so that a flight asks for none.
+    pub(super) fn empty_trace(&mut self, rows: usize) -> Trace {
+        let kept = self.traces.pop().unwrap_or_else(new_trace);
+        let Trace { time_s, setpoint_rad, theta_rad, command_rad, elevator_rad, .. } = kept;
+        let room = |mut column: Vec<f64>| {
             column.clear();
+            column.reserve(rows);
+            column
+        };
+        Trace {
+            time_s: room(time_s),
+            setpoint_rad: room(setpoint_rad),
+            theta_rad: room(theta_rad),
+            command_rad: room(command_rad),
+            elevator_rad: room(elevator_rad),
+            ..new_trace()
         }
-        let Trace { time_s, setpoint_rad, theta_rad, command_rad, elevator_rad, .. } = trace;
-        Trace { time_s, setpoint_rad, theta_rad, command_rad, elevator_rad, ..new_trace() }
     }
 
     /// Takes a trace back that was measured.

@@ -42,6 +42,7 @@ pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
         fact("seed", head.seed.to_string()),
         fact("sampling", head.sampling.name().to_owned()),
         fact("controllers", names.join(", ")),
+        fact("folder in commands", cut(source.folder, 200)),
         fact("flown by", cut(&head.program, 60)),
         fact("this page by", here),
         fact("campaign", head.campaign.clone()),
@@ -57,13 +58,13 @@ pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
 /// The commands that make the file and the page again.
 pub(super) fn commands(source: &Source<'_>) -> String {
     let head = &source.summary.head;
-    let folder = quoted(source.settings.folder.as_deref().unwrap_or("DIR"));
+    let folder = quoted(source.folder);
     let set: String =
         head.changes.iter().map(|change| format!(" --set {}", quoted(change))).collect();
     let (runs, seed, sampling) = (head.runs, head.seed, head.sampling.name());
     format!(
-        "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {}",
-        quoted(&format!("{}/campaign.parquet", source.settings.folder.as_deref().unwrap_or("DIR")))
+        "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {} --out campaign.html",
+        quoted(&format!("{}/campaign.parquet", source.folder))
     )
 }
 

@@ -1,5 +1,6 @@
 //! Maps of failures over the parameters that matter most.
 
+use fspid_study::dispersion::Distribution;
 use fspid_study::figure::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, RunScatter, ShareCell, ShareMap,
 };
@@ -11,7 +12,9 @@ use super::words::{count, cut, number};
 use super::{Source, style};
 use crate::rows::REQUIREMENT;
 use crate::statistics::binomial::clopper_pearson;
-use crate::summary::{ControllerSummary, Influence, Sensitivity, SensitivityTarget, SummaryError};
+use crate::summary::{
+    ControllerSummary, Influence, Parameter, Sensitivity, SensitivityTarget, SummaryError,
+};
 use crate::table::Kind;
 
 /// Most parameters of maps, each pair of which has one.
@@ -132,7 +135,7 @@ impl What {
                 did: format!("of the {which} 5 %"),
                 did_not: "others".to_owned(),
                 sentence: format!(
-                    "Of no controller some flights failed and others not. Instead: where the flights with the {which} 5 % of {words} lie, each controller by itself."
+                    "No controller had both flights that failed and flights that did not. Instead: where the flights with the {which} 5 % of {words} lie, each controller by itself."
                 ),
             })
         })
@@ -156,7 +159,9 @@ fn controllers(source: &Source<'_>) -> Vec<usize> {
 /// Parameters that are numbers, those first that what is mapped depends on most.
 fn parameters(source: &Source<'_>, what: &What) -> Vec<String> {
     let head = source.summary.head.parameters.iter();
-    let numeric = head.filter(|it| matches!(it.kind, Kind::Float | Kind::Integer));
+    // A seed is a number whose size means nothing.
+    let is_seed = |it: &&Parameter| it.meaning.ends_with(&Distribution::Seed.to_string());
+    let numeric = head.filter(|it| matches!(it.kind, Kind::Float | Kind::Integer) && !is_seed(it));
     let mut found: Vec<(f64, &str)> =
         numeric.map(|it| (influence(source, what, &it.name), it.name.as_str())).collect();
     // A stable sort: of equal ones the first in the scenario stays first.
@@ -316,7 +321,11 @@ impl Maps<'_> {
             passed,
             failed: of.failed.clone(),
         };
-        let caption = format!("{name}: runs over the two parameters that it depends on most.");
+        let mut caption = format!("{name}: runs over the two parameters that it depends on most.");
+        if of.failed.len() as u64 != failed || figure.passed.len() as u64 != all - failed {
+            // Those that failed are drawn first, so that none is missed that could be shown.
+            caption.push_str(" Not all are drawn, and of those that count more than of the others: how dense they are says nothing of shares.");
+        }
         Picture { name: format!("runs-{controller}"), svg: figure.render(), caption }
     }
 

@@ -32,38 +32,33 @@ use fspid_study::report::campaign::CampaignPage;
 use crate::summary::{Summary, SummaryError, SummarySettings};
 use crate::table::Reader;
 
-/// What can be chosen about a page.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Settings {
-    /// Confidence of intervals and bounds.
-    pub summary: SummarySettings,
-    /// The campaign's folder as commands shall name it; `DIR` if none is given.
-    pub folder: Option<String>,
-}
+/// What commands call the campaign's folder where nobody says what it is called.
+const FOLDER: &str = "DIR";
 
-/// The page of the merged file at a path.
+/// The page of the merged file at a path, from its summary. Commands on it call the campaign's folder `DIR`.
 ///
 /// Runs are flown again on the threads of the pool that this is called in. If they cannot be (files that the
 /// scenario names are gone, another version of the program flew), the page says why in place of their figures.
 ///
 /// # Errors
 /// A file that cannot be read, is damaged, or is not that of a whole campaign.
-pub fn page(path: &Path, settings: &Settings) -> Result<String, SummaryError> {
-    page_of(path, &Summary::of(path, settings.summary)?, settings)
+pub fn page(path: &Path, summary: &Summary) -> Result<String, SummaryError> {
+    page_in(path, summary, FOLDER)
 }
 
-/// As [`page`], of a file that is summarised already.
+/// The same with commands that call the campaign's folder by a name, so that they can be pasted where the page is
+/// read.
 ///
 /// # Errors
-/// As there.
-pub fn page_of(
-    path: &Path,
-    summary: &Summary,
-    settings: &Settings,
-) -> Result<String, SummaryError> {
+/// As of [`page`].
+pub fn page_in(path: &Path, summary: &Summary, folder: &str) -> Result<String, SummaryError> {
     let reader = Reader::open(path)?;
-    let source = Source { summary, reader: &reader, settings };
-    Ok(source.page()?.render())
+    if summary.head.digest == reader.digest() {
+        return Ok(Source { summary, reader: &reader, folder }.page()?.render());
+    }
+    // Of another file: figures and words of two files must not stand on one page.
+    let own = Summary::of(path, SummarySettings { confidence: summary.head.confidence })?;
+    Ok(Source { summary: &own, reader: &reader, folder }.page()?.render())
 }
 
 /// What a page is made from.
@@ -71,7 +66,7 @@ pub fn page_of(
 struct Source<'a> {
     summary: &'a Summary,
     reader: &'a Reader,
-    settings: &'a Settings,
+    folder: &'a str,
 }
 
 impl Source<'_> {
@@ -98,8 +93,8 @@ impl Source<'_> {
 
     /// The command that flies a run again.
     fn replay(&self, run: u64) -> String {
-        let folder = self.settings.folder.as_deref().unwrap_or("DIR");
-        format!("fspid campaign replay {} --run {run} --trace run-{run}.csv", words::quoted(folder))
+        let folder = words::quoted(self.folder);
+        format!("fspid campaign replay {folder} --run {run} --trace run-{run}.csv")
     }
 
     /// Names of controllers, cut to a length that headings and legends have room for.

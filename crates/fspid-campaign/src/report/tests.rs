@@ -12,6 +12,8 @@ const STEP: &str = "[setpoint]\nkind = \"step\"\namplitude_deg = 1.0\n";
 const SINE: &str = "[setpoint]\nkind = \"sine\"\namplitude_deg = 1.0\nfrequency_hz = 0.2\n";
 const EFFECT: &str = "[[dispersion]]\nname = \"effect\"\npath = \"plant.preset.numerator[0]\"\ndistribution = \"uniform\"\nlower = 0.2\nupper = 4.0\nrelative = true\n";
 const DAMPING: &str = "[[dispersion]]\nname = \"damping\"\npath = \"plant.preset.denominator[1]\"\ndistribution = \"uniform\"\nlower = 0.4\nupper = 1.3\nrelative = true\n";
+const SEED: &str =
+    "[[dispersion]]\nname = \"noise\"\npath = \"sensor.seed\"\ndistribution = \"seed\"\n";
 const WORDS: &str = "[[dispersion]]\nname = \"law\"\npath = \"controller[0].derivative_on\"\ndistribution = \"choice\"\nvalues = [\"error\", \"measurement\"]\n";
 
 fn pid(name: &str) -> String {
@@ -53,10 +55,14 @@ fn fly(scenario: &Path, folder: &Folder, runs: u64) {
     local::run(folder, &campaign, 2, &Progress::default()).expect("flown");
 }
 
+fn summarised(path: &Path) -> Summary {
+    Summary::of(path, SummarySettings::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 impl Flown {
     fn page(&self) -> String {
-        let page = page(&self.folder.merged_path(), &Settings::default());
-        let page = page.unwrap_or_else(|error| panic!("{error}"));
+        let path = self.folder.merged_path();
+        let page = page(&path, &summarised(&path)).unwrap_or_else(|error| panic!("{error}"));
         assert!(!page.contains("class=\"failed\""), "a template failed");
         assert!(!page.contains("NaN") && !page.contains("<script") && !page.contains("src="));
         assert!(!page.contains("href=\"http"), "it needs nothing from outside");
@@ -96,8 +102,8 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let at = |text: &str| page.find(text).expect("it is there");
     assert!(at("flights failed") < at("Contents"));
     assert_eq!(flown.page(), page);
-    let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
-    let named = super::page(&flown.folder.merged_path(), &settings).expect("a page");
+    let path = flown.folder.merged_path();
+    let named = page_in(&path, &summarised(&path), "my runs").expect("a page");
     assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
 }
 
@@ -124,8 +130,12 @@ fn where_all_failed_or_none_did_the_worst_twentieth_is_mapped() {
 }
 
 #[test]
-fn parameters_that_are_no_numbers_have_no_map() {
+fn parameters_whose_size_means_nothing_have_no_map() {
     let page = flown(&[HEAD, STEP, &pid("CPID"), &at_most(30.0), WORDS], 40).page();
+    assert_says(&page, &["no parameter is a number"]);
+    // A seed is one, but says nothing.
+    let sensor = "[sensor]\npreset = \"irs\"\n";
+    let page = flown(&[HEAD, STEP, sensor, &pid("CPID"), &at_most(30.0), SEED], 40).page();
     assert_says(&page, &["no parameter is a number"]);
 }
 
@@ -248,8 +258,7 @@ fn curves_are_those_of_the_run_as_it_is_flown_alone() {
     let path = flown.folder.merged_path();
     let summary = Summary::of(&path, SummarySettings::default()).expect("a summary");
     let reader = Reader::open(&path).expect("a file");
-    let settings = Settings::default();
-    let source = Source { summary: &summary, reader: &reader, settings: &settings };
+    let source = Source { summary: &summary, reader: &reader, folder: "DIR" };
     let reflown = reflown::reflown(&source, &[vec![7], vec![]]).expect("flown again");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
@@ -270,7 +279,16 @@ fn a_file_alone_is_enough_where_the_scenario_names_no_others() {
     let home = tempfile::tempdir().expect("a folder");
     let moved = home.path().join("moved.parquet");
     std::fs::copy(flown.folder.merged_path(), &moved).expect("copied");
-    assert_eq!(page(&moved, &Settings::default()).expect("a page"), flown.page());
+    assert_eq!(page(&moved, &summarised(&moved)).expect("a page"), flown.page());
+}
+
+#[test]
+fn a_summary_of_another_file_is_not_put_on_the_page() {
+    let one = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 5);
+    let other = flown(&[HEAD, STEP, &pid("other"), EFFECT], 6);
+    let summary = summarised(&other.folder.merged_path());
+    let mixed = page(&one.folder.merged_path(), &summary).expect("a page");
+    assert_eq!(mixed, one.page());
 }
 
 #[test]
@@ -280,8 +298,7 @@ fn a_file_of_another_program_is_not_flown_again() {
     let mut summary = summary.expect("a summary");
     summary.head.program = "fspid 0.0.1".to_owned();
     let reader = Reader::open(flown.folder.merged_path()).expect("a file");
-    let settings = Settings::default();
-    let source = Source { summary: &summary, reader: &reader, settings: &settings };
+    let source = Source { summary: &summary, reader: &reader, folder: "DIR" };
     let page = source.page().expect("a page").render();
     assert_says(&page, &["could not be flown again: they were flown by fspid 0.0.1"]);
     assert_says(&page, &[&Plan::this_program()]);
