@@ -47,7 +47,7 @@ fn a_machine_is_measured_with_the_same_answers_on_any_number_of_threads() {
 
 #[test]
 fn people_get_a_table_with_units_and_a_word_on_the_spread() {
-    let output = bench(&[]);
+    let output = bench(&["--threads", "1"]);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).expect("UTF-8");
     for words in ["FSPID steps, side by side", "/s", "scaling", "spread is from quartile", "Digest"]

@@ -36,13 +36,13 @@ pub struct Effort {
 
 impl Effort {
     /// Some seconds.
-    pub const USUAL: Self = Self { rounds: 15, flights: 256, passes: 2 };
+    pub const USUAL: Self = Self { rounds: 15, flights: 256, passes: 4 };
     /// Less than a second.
-    pub const QUICK: Self = Self { rounds: 3, flights: 48, passes: 1 };
+    pub const QUICK: Self = Self { rounds: 3, flights: 64, passes: 1 };
 }
 
-/// Fewest flights of a round for each thread: eight groups.
-const FLIGHTS_OF_A_THREAD: u64 = 8 * fspid_sim::batch::LANES as u64;
+/// Fewest flights of a round for each thread: four groups.
+const FLIGHTS_OF_A_THREAD: u64 = 4 * fspid_sim::batch::LANES as u64;
 
 /// A kind of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -240,4 +240,36 @@ fn digest<'a>(answers: impl Iterator<Item = &'a String>) -> String {
         hasher.update(answer.as_bytes());
     }
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_that_gives_another_answer_is_no_measurement() {
+        let work = Work::new().expect("built in");
+        let one = pool(1).expect("a thread");
+        let effort = Effort { rounds: 1, flights: 1, passes: 1 };
+        let mut expected = None;
+        for _ in 0..2 {
+            let rate = measure(&work, Kind::StepBatch, (&one, effort), &mut expected);
+            assert!(rate.expect("the same answer") > 0.0);
+        }
+        let mut other = Some(in_words(0.5));
+        let refused = measure(&work, Kind::StepBatch, (&one, effort), &mut other);
+        let refused = refused.expect_err("another answer").to_string();
+        assert!(refused.contains("0.5 (3fe0000000000000)"), "{refused}");
+        assert!(refused.contains(&expected.expect("an answer")), "{refused}");
+    }
+
+    #[test]
+    fn the_scenario_is_one_that_scalar_and_batched_work_agree_on() {
+        let work = Work::new().expect("built in");
+        assert_eq!(work.fly_one_by_one().to_bits(), work.fly_in_lanes().to_bits());
+        assert_eq!(work.infer_one_by_one(1).to_bits(), work.infer_as_batch(1).to_bits());
+        assert_eq!((work.inferences(), work.steps()), (4096, 16 * 5001));
+        let table = work.fly(9).expect("flown");
+        assert_eq!(table.rows(), 9);
+    }
 }

@@ -22,8 +22,8 @@ pub const SCENARIO: &str = include_str!("scenario.toml");
 const SEED: u64 = 1;
 /// Inputs of a pass of inferences: answers and inputs stay in the nearest caches.
 const INPUTS: usize = 4096;
-/// Flights whose steps are counted: four groups in lanes.
-const LOOPS: u64 = 4 * LANES as u64;
+/// Flights whose steps are counted: two groups in lanes.
+const LOOPS: u64 = 2 * LANES as u64;
 
 /// Everything that is needed, read and prepared once.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! `fspid bench`: how fast this machine is.
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use fspid_campaign::bench::{Bench, Effort};
 
 use super::{Format, json_text};
@@ -21,7 +22,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// How many threads "all" are; 0 for as many as this machine runs at once.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = RangedU64ValueParser::<usize>::new().range(0..=1024))]
     threads: usize,
     /// Less than a second of measuring, and less certain.
     #[arg(long)]
