@@ -7,7 +7,7 @@ use fspid_study::dispersion::{Dispersion, Distribution, Drawn};
 use fspid_study::file::{NewValue, SettingPath, Study, Template};
 use rayon::prelude::*;
 
-use crate::engine;
+use crate::engine::{self, Memory};
 use crate::error::CampaignError;
 use crate::plan::{Plan, Range};
 use crate::rows::{Rows, Run};
@@ -179,14 +179,15 @@ impl Campaign {
     pub fn fly(&self, range: Range, progress: &Progress) -> Result<Table, CampaignError> {
         let at_once = engine::at_once(self.template.study()) as u64;
         let groups = (range.end.saturating_sub(range.first)).div_ceil(at_once);
-        let fly = |group: u64| {
+        let fly = |memory: &mut Memory, group: u64| {
             let first = range.first + group * at_once;
             let numbers = first..(first + at_once).min(range.end);
-            let runs = self.fly_together(numbers.map(|number| (number, self.drawn(number))));
+            let drawn = numbers.map(|number| (number, self.drawn(number)));
+            let runs = self.fly_with(memory, drawn);
             progress.add(&runs);
             self.rows.table(&runs)
         };
-        let tables: Vec<_> = (0..groups).into_par_iter().map(fly).collect();
+        let tables: Vec<_> = (0..groups).into_par_iter().map_init(Memory::default, fly).collect();
         let mut whole = Table::new(std::sync::Arc::clone(self.rows.schema()));
         for table in tables {
             whole.append(&table?)?;
@@ -196,6 +197,14 @@ impl Campaign {
 
     /// Flies a few runs side by side.
     pub fn fly_together(&self, drawn: impl Iterator<Item = (u64, Vec<Drawn>)>) -> Vec<Run> {
+        self.fly_with(&mut Memory::default(), drawn)
+    }
+
+    fn fly_with(
+        &self,
+        memory: &mut Memory,
+        drawn: impl Iterator<Item = (u64, Vec<Drawn>)>,
+    ) -> Vec<Run> {
         let mut runs = Vec::new();
         let mut studies = Vec::new();
         for (number, drawn) in drawn {
@@ -208,7 +217,7 @@ impl Campaign {
             };
             runs.push(Run { number, drawn, flights });
         }
-        let flown = engine::fly(&studies);
+        let flown = engine::fly_with(memory, &studies);
         let waiting = runs.iter_mut().filter(|run| run.flights.is_ok());
         for (run, flights) in waiting.zip(flown) {
             run.flights = flights.map_err(|error| error.to_string());

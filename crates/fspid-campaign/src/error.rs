@@ -158,10 +158,7 @@ impl CampaignError {
     /// True where something could not be written; else the input is what is wrong.
     #[must_use]
     pub fn is_of_output(&self) -> bool {
-        match self {
-            Self::Output(_) | Self::Io { .. } | Self::Write { .. } => true,
-            _ => false,
-        }
+        matches!(self, Self::Output(_) | Self::Io { .. } | Self::Write { .. })
     }
 
     /// The same, with the file that could not be written where that is what is wrong.

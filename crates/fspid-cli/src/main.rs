@@ -42,6 +42,7 @@ enum Command {
     Surface(commands::surface::Arguments),
     Audit(commands::audit::Arguments),
     Aircraft(commands::aircraft::Arguments),
+    Bench(commands::bench::Arguments),
     Schema(commands::schema::Arguments),
 }
 
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
         Command::Surface(arguments) => commands::surface::run(&arguments),
         Command::Audit(arguments) => commands::audit::run(&arguments),
         Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
     };
     match done {

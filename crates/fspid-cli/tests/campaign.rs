@@ -127,6 +127,35 @@ fn a_replay_and_the_command_it_names_give_the_same_trace() {
 }
 
 #[test]
+fn a_report_says_how_often_it_fails_as_text_json_and_page() {
+    let folder = folder();
+    let folder = folder.path();
+    done(&with(&SMALL, &["--out", "here", "--quiet"]), folder);
+    let file = "here/campaign.parquet";
+    let told = done(&["campaign", "report", file, "--out", "page.html"], folder);
+    assert!(told.contains("fails 0 of 40: at most"), "{told}");
+    let page = std::fs::read_to_string(folder.join("page.html")).expect("written");
+    assert!(page.contains("<span>here</span> <span>--run</span>"), "a replay names the folder");
+    assert!(
+        !page.contains("http://")
+            || page.matches("http").count() == page.matches("http://www.w3.org").count()
+    );
+    let json = done(&["campaign", "report", file, "--format", "json"], folder);
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["schema"], 1);
+    for (arguments, words) in [
+        (vec!["campaign", "report", "pitch.toml"], "pitch.toml"),
+        (vec!["campaign", "report", "none.parquet"], "none.parquet"),
+        (vec!["campaign", "report", file, "--confidence", "1.5"], "1.5"),
+        (vec!["campaign", "report", "here/shards/000000000-000000006.parquet"], "000000000"),
+    ] {
+        let output = fspid(&arguments, folder);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
 fn progress_is_plain_lines_where_nobody_watches_and_nothing_when_quiet() {
     let folder = folder();
     let loud = fspid(&with(&SMALL, &["--out", "loud"]), folder.path());

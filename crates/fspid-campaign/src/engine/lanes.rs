@@ -4,7 +4,7 @@ use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
 use fspid_sim::{Controller, Prepared, SimError, Trace};
 use fspid_study::file::Study;
 
-use super::recorder::Recorder;
+use super::memory::Memory;
 use super::single;
 
 /// A flight, with its place among the studies.
@@ -17,6 +17,7 @@ struct Ready<'a> {
 
 /// Flies the controller at `place` of each study; `None` where there is no flight.
 pub(super) fn fly(
+    memory: &mut Memory,
     studies: &[Study],
     prepared: &[Result<Prepared, SimError>],
     place: usize,
@@ -28,7 +29,7 @@ pub(super) fn fly(
     let ready: Vec<Ready<'_>> = ready.collect();
     let mut traces: Vec<Option<Result<Trace, SimError>>> = vec![None; studies.len()];
     for group in ready.chunks(LANES) {
-        for (flight, trace) in group.iter().zip(fly_together(group)) {
+        for (flight, trace) in group.iter().zip(fly_together(memory, group)) {
             traces[flight.place] = Some(trace);
         }
     }
@@ -36,23 +37,29 @@ pub(super) fn fly(
 }
 
 /// Up to as many flights as there are lanes; one by one where they cannot fly side by side.
-fn fly_together(group: &[Ready<'_>]) -> Vec<Result<Trace, SimError>> {
-    in_lanes(group).unwrap_or_else(|| {
-        let alone = |flight: &Ready<'_>| single::trace(flight.prepared, flight.controller);
+fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, SimError>> {
+    in_lanes(memory, group).unwrap_or_else(|| {
+        let alone = |flight: &Ready<'_>| {
+            single::record(memory.empty_trace(), flight.prepared, flight.controller)
+        };
         group.iter().map(alone).collect()
     })
 }
 
-fn in_lanes(group: &[Ready<'_>]) -> Option<Vec<Result<Trace, SimError>>> {
+fn in_lanes(memory: &mut Memory, group: &[Ready<'_>]) -> Option<Vec<Result<Trace, SimError>>> {
     let entrants: Vec<Entrant<'_>> = group
         .iter()
         .map(|flight| Entrant { prepared: flight.prepared, controller: flight.controller })
         .collect();
-    let rows = group.first()?.prepared.timing().rows();
-    let mut recorder = Recorder::<LANES>::with_room(rows);
+    let recorder = &mut memory.recorder;
+    recorder.begin(group.first()?.prepared.timing().rows());
     let outcomes = fly_group::<LANES>(&entrants, |row: &Row<'_, LANES>| recorder.push(row)).ok()?;
-    let traces = outcomes.into_iter().zip(group).enumerate().map(|(lane, (outcome, flight))| {
-        outcome.map(|outcome| recorder.trace(lane, flight.prepared, outcome))
+    let mut traces: Vec<Trace> = group.iter().map(|_| memory.empty_trace()).collect();
+    let prepared: Vec<&Prepared> = group.iter().map(|flight| flight.prepared).collect();
+    memory.recorder.fill(&mut traces, &prepared);
+    let traces = traces.into_iter().zip(outcomes).map(|(mut trace, outcome)| {
+        trace.outcome = outcome?;
+        Ok(trace)
     });
     Some(traces.collect())
 }

@@ -4,16 +4,19 @@
 //! judged by the same functions as a single study. No trace outlives its measures.
 
 mod lanes;
+mod memory;
 mod recorder;
 mod single;
 
 use fspid_core::Faults;
 use fspid_sim::stability::instability;
-use fspid_sim::{Exit, Outcome, Prepared, SimError, Trace};
+use fspid_sim::{Exit, Prepared, SimError, Trace};
 use fspid_study::file::Study;
-use fspid_study::metrics::{CommandEffort, FlightMetrics};
+use fspid_study::metrics::{CommandEffort, FlightMetrics, largest_error_rad};
 use fspid_study::requirement::{Judgement, judge};
 use fspid_study::simulation::ControllerResult;
+
+pub use memory::Memory;
 
 /// What one controller's flight comes to, without its trace.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +55,15 @@ pub fn at_once(study: &Study) -> usize {
 /// the same controllers in the same order; in every number they may differ.
 #[must_use]
 pub fn fly(studies: &[Study]) -> Vec<Result<Vec<FlightResult>, SimError>> {
+    fly_with(&mut Memory::default(), studies)
+}
+
+/// The same with the memory of flights before, which does not show in the answer.
+#[must_use]
+pub fn fly_with(
+    memory: &mut Memory,
+    studies: &[Study],
+) -> Vec<Result<Vec<FlightResult>, SimError>> {
     let prepared: Vec<_> = studies.iter().map(|study| study.scenario.prepare()).collect();
     let mut traces: Vec<Result<Vec<Trace>, SimError>> = prepared
         .iter()
@@ -59,13 +71,13 @@ pub fn fly(studies: &[Study]) -> Vec<Result<Vec<FlightResult>, SimError>> {
         .collect();
     let controllers = studies.iter().map(|study| study.scenario.controllers.len()).max();
     for place in 0..controllers.unwrap_or(0) {
-        let flown = lanes::fly(studies, &prepared, place);
+        let flown = lanes::fly(memory, studies, &prepared, place);
         for (traces, flown) in traces.iter_mut().zip(flown) {
             keep(traces, flown);
         }
     }
     let measured = studies.iter().zip(&prepared).zip(traces);
-    measured.map(|((study, prepared), traces)| measure(study, prepared, traces?)).collect()
+    measured.map(|((study, prepared), traces)| measure(memory, study, prepared, traces?)).collect()
 }
 
 /// Adds a trace to those of its study; the first error stays.
@@ -79,6 +91,7 @@ fn keep(traces: &mut Result<Vec<Trace>, SimError>, flown: Option<Result<Trace, S
 }
 
 fn measure(
+    memory: &mut Memory,
     study: &Study,
     prepared: &Result<Prepared, SimError>,
     traces: Vec<Trace>,
@@ -100,25 +113,30 @@ fn measure(
         let (mine, others) = std::mem::take(&mut judgements).into_iter().partition(is_mine);
         judgements = others;
         first = false;
-        flight(result, mine, scenario.timing.dt_s())
+        flight(memory, result, mine, scenario.timing.dt_s())
     });
     Ok(flights.collect())
 }
 
-fn flight(result: ControllerResult, judgements: Vec<Judgement>, dt_s: f64) -> FlightResult {
+fn flight(
+    memory: &mut Memory,
+    result: ControllerResult,
+    judgements: Vec<Judgement>,
+    dt_s: f64,
+) -> FlightResult {
     let ControllerResult { name, trace, metrics } = result;
-    let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs());
-    FlightResult {
+    let flight = FlightResult {
         controller: name,
         metrics,
-        // Written so that NaN is the largest.
-        largest_error_rad: errors.fold(0.0, |most, error| if error <= most { most } else { error }),
+        largest_error_rad: largest_error_rad(&trace.setpoint_rad, &trace.theta_rad),
         elevator: CommandEffort::of(&trace.elevator_rad, dt_s),
         saturated_share: trace.saturated_samples as f64 / trace.rows().max(1) as f64,
         faults: trace.faults,
         exit: trace.exit,
         judgements,
-    }
+    };
+    memory.take_back(trace);
+    flight
 }
 
 impl FlightResult {
@@ -147,25 +165,5 @@ impl FlightResult {
             )
         });
         lost.into_iter().chain(unmet).collect()
-    }
-}
-
-/// A trace with room for what measures need, and nothing else.
-fn empty_trace(prepared: &Prepared) -> Trace {
-    let rows = prepared.timing().rows();
-    let column = || Vec::with_capacity(rows);
-    Trace {
-        time_s: column(),
-        setpoint_rad: column(),
-        theta_rad: column(),
-        q_rad_s: Vec::new(),
-        command_rad: column(),
-        elevator_rad: column(),
-        gains: Vec::new(),
-        columns: Vec::new(),
-        exit: None,
-        outcome: Outcome::Completed,
-        saturated_samples: 0,
-        faults: Faults::NONE,
     }
 }

@@ -2,14 +2,16 @@
 
 use fspid_core::Faults;
 use fspid_sim::batch::Row;
-use fspid_sim::{Outcome, Prepared, Trace};
-
-use super::empty_trace;
+use fspid_sim::{Prepared, Trace};
 
 /// Columns of a trace that is measured.
 pub(super) const COLUMNS: usize = 5;
 
+/// Rows that are handed to their lanes at once: they stay in the nearest cache until the last lane has its own.
+const BLOCK: usize = 64;
+
 /// Columns of up to `W` flights, one entry a sample.
+#[derive(Debug)]
 pub(super) struct Recorder<const W: usize> {
     theta_rad: Vec<[f64; W]>,
     command_rad: Vec<[f64; W]>,
@@ -20,16 +22,13 @@ pub(super) struct Recorder<const W: usize> {
 }
 
 impl<const W: usize> Recorder<W> {
-    pub(super) fn with_room(rows: usize) -> Self {
-        let column = || Vec::with_capacity(rows);
-        Self {
-            theta_rad: column(),
-            command_rad: column(),
-            elevator_rad: column(),
-            rows: [0; W],
-            saturated: [0; W],
-            faults: [Faults::NONE; W],
+    /// Forgets the flights before and makes room for others.
+    pub(super) fn begin(&mut self, rows: usize) {
+        for column in [&mut self.theta_rad, &mut self.command_rad, &mut self.elevator_rad] {
+            column.clear();
+            column.reserve(rows);
         }
+        (self.rows, self.saturated, self.faults) = ([0; W], [0; W], [Faults::NONE; W]);
     }
 
     /// Adds a sample of all lanes.
@@ -48,22 +47,45 @@ impl<const W: usize> Recorder<W> {
         }
     }
 
-    /// The trace of a lane's flight.
-    pub(super) fn trace(&self, lane: usize, prepared: &Prepared, outcome: Outcome) -> Trace {
-        let rows = self.rows[lane];
-        let timing = prepared.timing();
-        let of_lane = |column: &mut Vec<f64>, all: &[[f64; W]]| {
-            column.extend(all.iter().take(rows).map(|values| values[lane]));
-        };
-        let mut trace = empty_trace(prepared);
-        trace.time_s.extend((0..rows).map(|k| timing.time_s(k)));
-        trace.setpoint_rad.extend(prepared.setpoint_rad().iter().take(rows));
-        of_lane(&mut trace.theta_rad, &self.theta_rad);
-        of_lane(&mut trace.command_rad, &self.command_rad);
-        of_lane(&mut trace.elevator_rad, &self.elevator_rad);
-        trace.outcome = outcome;
-        trace.saturated_samples = self.saturated[lane];
-        trace.faults = self.faults[lane];
-        trace
+    /// Fills the empty traces of the lanes, one for each flight that is there.
+    pub(super) fn fill(&self, traces: &mut [Trace], flights: &[&Prepared]) {
+        for (lane, (trace, prepared)) in traces.iter_mut().zip(flights).enumerate() {
+            let rows = self.rows[lane];
+            let timing = prepared.timing();
+            trace.time_s.extend((0..rows).map(|k| timing.time_s(k)));
+            trace.setpoint_rad.extend(prepared.setpoint_rad().iter().take(rows));
+            trace.saturated_samples = self.saturated[lane];
+            trace.faults = self.faults[lane];
+        }
+        self.fill_column(&self.theta_rad, traces, |trace| &mut trace.theta_rad);
+        self.fill_column(&self.command_rad, traces, |trace| &mut trace.command_rad);
+        self.fill_column(&self.elevator_rad, traces, |trace| &mut trace.elevator_rad);
+    }
+
+    fn fill_column(
+        &self,
+        all: &[[f64; W]],
+        traces: &mut [Trace],
+        column: impl Fn(&mut Trace) -> &mut Vec<f64>,
+    ) {
+        for (block, rows) in all.chunks(BLOCK).enumerate() {
+            for (lane, trace) in traces.iter_mut().enumerate() {
+                let rest = self.rows[lane].saturating_sub(block * BLOCK);
+                column(trace).extend(rows.iter().take(rest).map(|values| values[lane]));
+            }
+        }
+    }
+}
+
+impl<const W: usize> Default for Recorder<W> {
+    fn default() -> Self {
+        Self {
+            theta_rad: Vec::new(),
+            command_rad: Vec::new(),
+            elevator_rad: Vec::new(),
+            rows: [0; W],
+            saturated: [0; W],
+            faults: [Faults::NONE; W],
+        }
     }
 }

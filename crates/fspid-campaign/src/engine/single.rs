@@ -4,11 +4,12 @@ use std::ops::ControlFlow;
 
 use fspid_sim::{Controller, Exit, Prepared, SimError, Trace, fly};
 
-use super::empty_trace;
-
-/// One flight, recorded as far as measures need it.
-pub(super) fn trace(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
-    let mut trace = empty_trace(prepared);
+/// One flight, recorded in an empty trace as far as measures need it.
+pub(super) fn record(
+    mut trace: Trace,
+    prepared: &Prepared,
+    controller: &Controller,
+) -> Result<Trace, SimError> {
     let timing = prepared.timing();
     let outcome = fly(prepared, controller, |instant| {
         trace.time_s.push(timing.time_s(instant.k));

@@ -3,6 +3,7 @@
 pub(crate) mod aircraft;
 pub(crate) mod analyse;
 pub(crate) mod audit;
+pub(crate) mod bench;
 pub(crate) mod campaign;
 pub(crate) mod certify;
 pub(crate) mod check;

@@ -46,6 +46,16 @@ pub(super) fn angles_rad(poles: &[Complex]) -> Vec<f64> {
 }
 
 impl SampledLoop {
+    /// Spectral radius of a closed loop that is not stable, `None` for one that is: what [`margins`](Self::margins)
+    /// says of it, without margins, which take some ten times as long.
+    ///
+    /// # Errors
+    /// Poles that rounding may carry across the unit circle; eigenvalues that do not converge.
+    pub fn unstable_radius(&self) -> Result<Option<f64>, LtiError> {
+        let (_, spectral_radius, stable) = self.verdict()?;
+        Ok((!stable).then_some(spectral_radius))
+    }
+
     /// Poles of the closed loop and whether it is stable, which it only is if rounding cannot tell otherwise.
     pub(super) fn verdict(&self) -> Result<(Vec<Complex>, f64, bool), LtiError> {
         let poles = self.closed_poles()?;

@@ -151,6 +151,44 @@ pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, A
     }
 }
 
+/// Whether a plant that lasts is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Held {
+    /// From when the plant is that one, s.
+    pub(crate) from_s: f64,
+    /// Why it is not.
+    pub(crate) verdict: Result<(), Absent>,
+}
+
+/// Whether a controller holds each plant at its gains at rest: what [`AnalysedLoop`] says of it, without margins. None
+/// where there are no gains at rest.
+pub(crate) fn held_at_rest(
+    scenario: &Scenario,
+    controller: &Controller,
+) -> Result<Vec<Held>, SimError> {
+    let Some(gains) = equilibrium(controller).gains() else {
+        return Ok(Vec::new());
+    };
+    let plants = lasting_plants(scenario)?;
+    let held = plants.iter().map(|(from_s, plant)| {
+        let open = open_loop(scenario, plant, (controller, gains), BreakPoint::default())?;
+        Ok(Held { from_s: *from_s, verdict: verdict(&open)? })
+    });
+    held.collect()
+}
+
+/// Whether a loop is stable; one of which rounding hides the answer is not called so.
+fn verdict(open: &SampledLoop) -> Result<Result<(), Absent>, SimError> {
+    match open.unstable_radius() {
+        Ok(None) => Ok(Ok(())),
+        Ok(Some(spectral_radius)) => Ok(Err(Absent::Unstable { spectral_radius })),
+        Err(LtiError::Blurred { spectral_radius, .. }) => {
+            Ok(Err(Absent::Undecided { spectral_radius }))
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
 /// How bad margins are: the smaller, the worse; unstable before all others.
 pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
     match margins {
@@ -180,4 +218,42 @@ pub(crate) fn open_loop(
     let shell = controller.shell();
     let memory = Memory::of_gains(gains, shell);
     LoopModel::of(scenario, plant, shell, memory)?.open(gains, point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file;
+
+    const STEP: &str = include_str!("../../../../scenarios/plant-change.toml");
+
+    #[test]
+    fn a_loop_is_held_where_it_has_margins_and_not_for_the_same_reason_where_it_has_none() {
+        let mut unstable = 0;
+        for factor in [0.01, 1.0, 10.0, 100.0] {
+            let study = file::parse(STEP, "change.toml", None, &[]).expect("a scenario");
+            for named in &study.scenario.controllers {
+                let gains = named.controller.nominal();
+                let scaled = Gains { kp: gains.kp * factor, ..gains };
+                let pid = fspid_core::Pid::new(scaled, *named.controller.shell()).expect("allowed");
+                let fixed = NamedController {
+                    name: named.name.clone(),
+                    controller: Controller::Fixed(pid),
+                };
+                for named in [named, &fixed] {
+                    let question = Question { map_points: 0, ..Question::default() };
+                    let analysed =
+                        AnalysedLoop::of(&study.scenario, named, question).expect("a loop");
+                    let plants = analysed.plants.iter().map(|plant| Held {
+                        from_s: plant.from_s,
+                        verdict: plant.margins.map(|_| ()),
+                    });
+                    let held = held_at_rest(&study.scenario, &named.controller).expect("a loop");
+                    assert!(held.iter().copied().eq(plants), "{held:?}");
+                    unstable += held.iter().filter(|held| held.verdict.is_err()).count();
+                }
+            }
+        }
+        assert!(unstable > 0, "no loop was unstable");
+    }
 }

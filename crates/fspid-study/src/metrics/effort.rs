@@ -3,6 +3,14 @@
 //! By the rectangle rule over all samples, $\int f \, dt \approx T \sum_k f_k$; the time in the
 //! weighted integrals starts anew at each step of the command.
 
+use super::extreme::{extreme, largest_of_both};
+
+/// $\max |r_k - \theta_k|$, rad; NaN is passed over, but no sample of a trace is NaN.
+#[must_use]
+pub fn largest_error_rad(setpoint_rad: &[f64], theta_rad: &[f64]) -> f64 {
+    largest_of_both(setpoint_rad, theta_rad, |setpoint, theta| (setpoint - theta).abs())
+}
+
 /// Integrals of the error $e = r - \theta$.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorIntegrals {
@@ -20,12 +28,23 @@ impl ErrorIntegrals {
     /// Of the errors of samples `dt_s` apart; `restarts` are the samples at which time starts anew.
     #[must_use]
     pub fn of(errors_rad: impl Iterator<Item = f64>, dt_s: f64, restarts: &[usize]) -> Self {
+        Self::with_sum_of_squares(errors_rad, dt_s, restarts).0
+    }
+
+    /// As [`of`](Self::of), with $\sum e_k^2$, rad².
+    pub(super) fn with_sum_of_squares(
+        errors_rad: impl Iterator<Item = f64>,
+        dt_s: f64,
+        restarts: &[usize],
+    ) -> (Self, f64) {
         let mut sums = [0.0; 4];
         let mut start = 0;
-        let mut restarts = restarts.iter().copied().peekable();
+        let mut restarts = restarts.iter().copied();
+        let mut next = restarts.next().unwrap_or(usize::MAX);
         for (k, error) in errors_rad.enumerate() {
-            if let Some(restart) = restarts.next_if(|&restart| restart <= k) {
-                start = restart;
+            if k >= next {
+                start = next;
+                next = restarts.next().unwrap_or(usize::MAX);
             }
             let time_s = (k - start) as f64 * dt_s;
             let square = error * error;
@@ -34,8 +53,9 @@ impl ErrorIntegrals {
                 *sum += term;
             }
         }
+        let [.., squares, _] = sums;
         let [iae_rad_s, itae_rad_s2, ise_rad2_s, itse_rad2_s2] = sums.map(|sum| sum * dt_s);
-        Self { iae_rad_s, itae_rad_s2, ise_rad2_s, itse_rad2_s2 }
+        (Self { iae_rad_s, itae_rad_s2, ise_rad2_s, itse_rad2_s2 }, squares)
     }
 }
 
@@ -54,11 +74,12 @@ impl CommandEffort {
     /// Of the commands of samples `dt_s` apart.
     #[must_use]
     pub fn of(commands_rad: &[f64], dt_s: f64) -> Self {
-        let changes = || commands_rad.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let change = |before: f64, after: f64| (after - before).abs();
+        let after = commands_rad.get(1..).unwrap_or_default();
         Self {
-            variation_rad: changes().sum(),
-            largest_rad: commands_rad.iter().fold(0.0, |largest, u| u.abs().max(largest)),
-            fastest_rad_s: changes().fold(0.0, f64::max) / dt_s,
+            variation_rad: commands_rad.iter().zip(after).map(|(u, next)| change(*u, *next)).sum(),
+            largest_rad: extreme(commands_rad, 0.0, |largest, u| u.abs().max(largest.abs())),
+            fastest_rad_s: largest_of_both(commands_rad, after, change) / dt_s,
         }
     }
 }

@@ -113,16 +113,13 @@ impl FlightMetrics {
         let restarts: Vec<usize> =
             edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
         let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
+        let (integrals, squares) =
+            ErrorIntegrals::with_sum_of_squares(errors, timing.dt_s(), &restarts);
+        let measured = absence.map_or(Ok(()), Err);
         Self {
             verdict: failed.unwrap_or_else(|| verdict(&edges)),
-            integrals: match absence {
-                Some(reason) => Err(reason),
-                None => Ok(ErrorIntegrals::of(errors, timing.dt_s(), &restarts)),
-            },
-            rms_error_rad: match absence {
-                Some(reason) => Err(reason),
-                None => Ok(rms_error_rad(trace)),
-            },
+            integrals: measured.map(|()| integrals),
+            rms_error_rad: measured.map(|()| (squares / trace.rows() as f64).sqrt()),
             effort: match absence {
                 Some(reason) => Err(reason),
                 None => Ok(CommandEffort::of(&trace.command_rad, timing.dt_s())),
@@ -145,12 +142,6 @@ impl FlightMetrics {
     pub fn of_step(&self, index: usize, measure: impl Fn(&StepMetrics) -> Measured) -> Measured {
         self.edges.get(index).map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
     }
-}
-
-fn rms_error_rad(trace: &Trace) -> f64 {
-    let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
-    let squares: f64 = errors.map(|error| error * error).sum();
-    (squares / trace.rows() as f64).sqrt()
 }
 
 fn edge_metrics(

@@ -4,6 +4,7 @@
 //! $y_n = (y - y_i) / (y_f - y_i)$; both are given, never guessed from the data. Crossings are
 //! interpolated between samples. Definitions as in MATLAB's `stepinfo`, but for those two points.
 
+use super::extreme::{all_finite, extreme};
 use super::{Absent, Measured};
 
 /// Risen is 90 % of the way.
@@ -87,7 +88,7 @@ impl StepMetrics {
         if !usable {
             return Self::absent(Absent::NoStep);
         }
-        if window.response.iter().chain(window.time_s).any(|value| !value.is_finite()) {
+        if !(all_finite(window.response) && all_finite(window.time_s)) {
             return Self::absent(Absent::NotFinite);
         }
         let way: Vec<f64> = window.response.iter().map(|y| (y - window.from) / step).collect();
@@ -104,8 +105,8 @@ struct Normalised<'a> {
 
 impl Normalised<'_> {
     fn measure(&self, step: f64) -> StepMetrics {
-        let highest = self.way.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = self.way.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = extreme(self.way, f64::NEG_INFINITY, f64::max);
+        let lowest = extreme(self.way, f64::INFINITY, f64::min);
         let last = self.way.last().copied().unwrap_or(0.0);
         let largest_error = (highest - 1.0).abs().max((lowest - 1.0).abs());
         let risen = self.after_rise();
@@ -117,8 +118,8 @@ impl Normalised<'_> {
             overshoot_pct: Ok((100.0 * (highest - 1.0)).max(0.0)),
             undershoot_pct: Ok((-100.0 * lowest).max(0.0)),
             // The crossing itself, at 90 %, is part of what follows it.
-            settling_min: risen.map(|way| way.iter().copied().fold(RISEN, f64::min)),
-            settling_max: risen.map(|way| way.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+            settling_min: risen.map(|way| extreme(way, RISEN, f64::min)),
+            settling_max: risen.map(|way| extreme(way, f64::NEG_INFINITY, f64::max)),
             peak: Ok(peak * step.abs()),
             peak_time_s: Ok(peak_time_s),
             final_error_pct: Ok(100.0 * (1.0 - last) * step.signum()),
@@ -178,12 +179,8 @@ impl Normalised<'_> {
 
     /// Largest distance from the start, and when, refined by a parabola where there are neighbours.
     fn peak(&self) -> (f64, f64) {
-        let mut top = 0;
-        for (k, way) in self.way.iter().enumerate() {
-            if way.abs() > self.way[top].abs() {
-                top = k;
-            }
-        }
+        let farthest = extreme(self.way, 0.0, |one, other| one.abs().max(other.abs()));
+        let top = self.way.iter().position(|way| way.abs() >= farthest).unwrap_or(0);
         let plain = (self.way[top].abs(), self.time_s[top] - self.start_s());
         if top == 0 || top + 1 >= self.way.len() {
             return plain;

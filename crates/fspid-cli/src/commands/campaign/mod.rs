@@ -4,6 +4,7 @@ mod merge;
 mod plan;
 mod progress;
 mod replay;
+mod report;
 mod run;
 mod search;
 mod shard;
@@ -33,12 +34,14 @@ enum Command {
     Plan(plan::Arguments),
     Shard(shard::Arguments),
     Merge(merge::Arguments),
+    Report(report::Arguments),
     Replay(replay::Arguments),
     Search(search::Arguments),
 }
 
 const HELP: &str = "Examples:
   fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
+  fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
   fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID
 On a cluster: plan once, fly each shard anywhere, merge:
@@ -79,6 +82,7 @@ whole stays, and the merged file has the same bytes as without the interruption.
 Examples:
   fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
   fspid campaign run --out robust                  # go on where it was interrupted
+  fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
   fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID --budget 5000
   python -c \"import pandas; print(pandas.read_parquet('robust/campaign.parquet').describe())\"
@@ -90,6 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Plan(arguments) => plan::run(arguments),
         Command::Shard(arguments) => shard::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
         Command::Replay(arguments) => replay::run(arguments),
         Command::Search(arguments) => search::run(arguments),
     }

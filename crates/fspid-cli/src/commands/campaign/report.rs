@@ -30,7 +30,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let settings = SummarySettings { confidence: arguments.confidence };
     let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;
     if let Some(path) = &arguments.out {
-        output::write(path, report::page(&arguments.file, &summary).map_err(Failure::input)?)?;
+        let folder = arguments.file.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = Some(folder.map_or(".".to_owned(), |folder| folder.display().to_string()));
+        let settings = report::Settings { summary: settings, folder };
+        let page = report::page_of(&arguments.file, &summary, &settings).map_err(Failure::input)?;
+        output::write(path, page)?;
         note(format_args!("{}: written", path.display()));
     }
     match arguments.format {

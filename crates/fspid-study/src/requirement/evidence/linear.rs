@@ -3,7 +3,7 @@
 use fspid_lti::{Mode, Stability};
 use fspid_sim::{NamedController, Scenario, SimError};
 
-use crate::analysis::{Analysis, Margins, PlantLoop, Question, decibels};
+use crate::analysis::{Analysis, Margins, PlantLoop, Question, decibels, held_at_rest};
 use crate::metrics::{Absent, Measure};
 use crate::requirement::{Case, NotEvaluated, Place, PlantAt, Requirement};
 use crate::simulation::ControllerResult;
@@ -37,6 +37,23 @@ pub(super) fn with_place(reason: Absent, place: Place) -> NotEvaluated {
         }
         reason => NotEvaluated::Absent(reason),
     }
+}
+
+/// Refuses a controller that does not hold one of its plants at rest. Where there is no linear loop, there is nothing
+/// but the flight.
+pub(super) fn require_stability(
+    scenario: &Scenario,
+    named: &NamedController,
+) -> Result<(), NotEvaluated> {
+    let Ok(held) = held_at_rest(scenario, &named.controller) else {
+        return Ok(());
+    };
+    let several = held.len() > 1;
+    for (index, held) in held.into_iter().enumerate() {
+        let plant = several.then_some(PlantAt { index, from_s: held.from_s });
+        held.verdict.map_err(|reason| with_place(reason, Place { plant, ..Place::default() }))?;
+    }
+    Ok(())
 }
 
 /// The loops of a controller with every plant of its scenario; with maps of frozen gains where they have points.

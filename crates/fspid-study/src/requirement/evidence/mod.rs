@@ -22,6 +22,9 @@ pub struct Evidence<'a> {
     study: &'a Study,
     named: &'a NamedController,
     result: &'a ControllerResult,
+    /// Whether the loops are stable, asked of every flight.
+    held: OnceCell<Result<(), NotEvaluated>>,
+    /// The loops with their margins, which take ten times as long.
     loops: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
     /// The same with maps of frozen gains, which take a hundred times as long.
     mapped: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
@@ -34,7 +37,14 @@ impl<'a> Evidence<'a> {
     /// Evidence of a flight of one of a study's controllers.
     #[must_use]
     pub fn new(study: &'a Study, named: &'a NamedController, result: &'a ControllerResult) -> Self {
-        Self { study, named, result, loops: OnceCell::new(), mapped: OnceCell::new() }
+        Self {
+            study,
+            named,
+            result,
+            held: OnceCell::new(),
+            loops: OnceCell::new(),
+            mapped: OnceCell::new(),
+        }
     }
 
     /// Name of the controller.
@@ -65,11 +75,9 @@ impl<'a> Evidence<'a> {
 
     /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.
     fn require_stability(&self) -> Result<(), NotEvaluated> {
-        // Where there is no linear loop, there is nothing but the flight.
-        let Ok(loops) = self.loops() else {
-            return Ok(());
-        };
-        loops.iter().try_for_each(|plant| plant.require_stability().map(|_| ()))
+        let scenario = &self.study.scenario;
+        let held = self.held.get_or_init(|| linear::require_stability(scenario, self.named));
+        held.clone()
     }
 
     fn loops(&self) -> Result<&[PlantEvidence], NotEvaluated> {
