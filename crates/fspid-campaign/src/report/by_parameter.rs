@@ -34,14 +34,8 @@ pub(super) struct ByParameter {
 pub(super) const MOST_FAILED: usize = 1500;
 pub(super) const MOST_PASSED: usize = 2000;
 
-/// Smallest and largest value of a parameter.
-pub(super) type Ends = (f64, f64);
-
-/// Places of two parameters: along columns, along rows.
-pub(super) type Pair = (usize, usize);
-
 /// Pairs of so many parameters, the first two first.
-pub(super) fn pairs(parameters: usize) -> Vec<Pair> {
+pub(super) fn pairs(parameters: usize) -> Vec<(usize, usize)> {
     let all = (0..parameters).flat_map(|b| (0..b).map(move |a| (a, b)));
     all.collect()
 }
@@ -49,7 +43,7 @@ pub(super) fn pairs(parameters: usize) -> Vec<Pair> {
 /// What is counted, and between which ends.
 pub(super) struct Counted {
     /// Smallest and largest value of each parameter.
-    pub(super) ends: Vec<Ends>,
+    pub(super) ends: Vec<(f64, f64)>,
     /// One a controller.
     pub(super) of: Vec<ByParameter>,
 }
@@ -108,10 +102,10 @@ pub(super) fn counted(
 ) -> Result<Option<Counted>, SummaryError> {
     let columns: Vec<String> = parameters.iter().map(|name| format!("{PARAMETER}{name}")).collect();
     let Some(ends) = ends(reader, &columns)? else { return Ok(None) };
-    let pairs = pairs(parameters.len());
+    let axes = Axes { ends, pairs: pairs(parameters.len()) };
     let empty = ByParameter {
         alone: vec![vec![Counts::default(); bins]; parameters.len()],
-        together: vec![vec![vec![Counts::default(); bins]; bins]; pairs.len()],
+        together: vec![vec![vec![Counts::default(); bins]; bins]; axes.pairs.len()],
         ..ByParameter::default()
     };
     let mut of = vec![empty; controllers.max(1)];
@@ -129,21 +123,27 @@ pub(super) fn counted(
             let values: Vec<f64> =
                 (0..columns.len()).map(|n| value(n).unwrap_or(f64::NAN)).collect();
             if values.iter().all(|value| value.is_finite()) {
-                of[place].add((&values, &ends, &pairs), failed);
+                of[place].add(&values, &axes, failed);
             }
         }
     }
-    Ok(Some(Counted { ends, of }))
+    Ok(Some(Counted { ends: axes.ends, of }))
+}
+
+/// The ends of each parameter, and which pairs of parameters are counted together.
+struct Axes {
+    ends: Vec<(f64, f64)>,
+    pairs: Vec<(usize, usize)>,
 }
 
 impl ByParameter {
-    fn add(&mut self, (values, ends, pairs): (&[f64], &[Ends], &[Pair]), failed: bool) {
+    fn add(&mut self, values: &[f64], axes: &Axes, failed: bool) {
         let bins = self.alone.first().map_or(1, Vec::len);
-        let bin = |n: usize| place(values[n], ends[n], bins);
+        let bin = |n: usize| place(values[n], axes.ends[n], bins);
         for (n, counts) in self.alone.iter_mut().enumerate() {
             counts[bin(n)].add(failed);
         }
-        for (grid, (a, b)) in self.together.iter_mut().zip(pairs) {
+        for (grid, (a, b)) in self.together.iter_mut().zip(&axes.pairs) {
             grid[bin(*b)][bin(*a)].add(failed);
         }
         if let [x, y, ..] = *values {
@@ -159,12 +159,12 @@ impl ByParameter {
 }
 
 /// The bin of a value; the last one holds its upper end.
-fn place(value: f64, (lo, hi): Ends, bins: usize) -> usize {
+fn place(value: f64, (lo, hi): (f64, f64), bins: usize) -> usize {
     (((value - lo) / (hi - lo) * bins as f64) as usize).min(bins.saturating_sub(1))
 }
 
-fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<Ends>>, SummaryError> {
-    let mut found = vec![None::<Ends>; columns.len()];
+fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, SummaryError> {
+    let mut found = vec![None::<(f64, f64)>; columns.len()];
     let names: Vec<&str> = columns.iter().map(String::as_str).collect();
     for table in reader.columns(&names)? {
         let table = table?;
@@ -175,7 +175,7 @@ fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<Ends>>, Summar
             }
         }
     }
-    let wide = |(lo, hi): &Ends| lo < hi && (hi - lo).is_finite();
+    let wide = |(lo, hi): &(f64, f64)| lo < hi && (hi - lo).is_finite();
     Ok(found.into_iter().map(|ends| ends.filter(wide)).collect())
 }
 

@@ -32,33 +32,42 @@ use fspid_study::report::campaign::CampaignPage;
 use crate::summary::{Summary, SummaryError, SummarySettings};
 use crate::table::Reader;
 
-/// What commands call the campaign's folder where nobody says what it is called.
-const FOLDER: &str = "DIR";
+/// What can be chosen about a page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Confidence of intervals and bounds.
+    pub summary: SummarySettings,
+    /// The campaign's folder as commands shall name it; `DIR` if none is given.
+    pub folder: Option<String>,
+}
 
-/// The page of the merged file at a path, from its summary. Commands on it call the campaign's folder `DIR`.
+/// The page of the merged file at a path.
 ///
 /// Runs are flown again on the threads of the pool that this is called in. If they cannot be (files that the
 /// scenario names are gone, another version of the program flew), the page says why in place of their figures.
 ///
 /// # Errors
 /// A file that cannot be read, is damaged, or is not that of a whole campaign.
-pub fn page(path: &Path, summary: &Summary) -> Result<String, SummaryError> {
-    page_in(path, summary, FOLDER)
+pub fn page(path: &Path, settings: &Settings) -> Result<String, SummaryError> {
+    page_of(path, &Summary::of(path, settings.summary)?, settings)
 }
 
-/// The same with commands that call the campaign's folder by a name, so that they can be pasted where the page is
-/// read.
+/// As [`page`], of a file that is summarised already. The summary of another file is not used.
 ///
 /// # Errors
-/// As of [`page`].
-pub fn page_in(path: &Path, summary: &Summary, folder: &str) -> Result<String, SummaryError> {
+/// As there.
+pub fn page_of(
+    path: &Path,
+    summary: &Summary,
+    settings: &Settings,
+) -> Result<String, SummaryError> {
     let reader = Reader::open(path)?;
-    if summary.head.digest == reader.digest() {
-        return Ok(Source { summary, reader: &reader, folder }.page()?.render());
+    if summary.head.digest != reader.digest() {
+        // Figures and words of two files must not stand on one page.
+        return page(path, settings);
     }
-    // Of another file: figures and words of two files must not stand on one page.
-    let own = Summary::of(path, SummarySettings { confidence: summary.head.confidence })?;
-    Ok(Source { summary: &own, reader: &reader, folder }.page()?.render())
+    let folder = settings.folder.as_deref().unwrap_or("DIR");
+    Ok(Source { summary, reader: &reader, folder }.page()?.render())
 }
 
 /// What a page is made from.

@@ -62,7 +62,7 @@ fn summarised(path: &Path) -> Summary {
 impl Flown {
     fn page(&self) -> String {
         let path = self.folder.merged_path();
-        let page = page(&path, &summarised(&path)).unwrap_or_else(|error| panic!("{error}"));
+        let page = page(&path, &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
         assert!(!page.contains("class=\"failed\""), "a template failed");
         assert!(!page.contains("NaN") && !page.contains("<script") && !page.contains("src="));
         assert!(!page.contains("href=\"http"), "it needs nothing from outside");
@@ -103,7 +103,8 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     assert!(at("flights failed") < at("Contents"));
     assert_eq!(flown.page(), page);
     let path = flown.folder.merged_path();
-    let named = page_in(&path, &summarised(&path), "my runs").expect("a page");
+    let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
+    let named = super::page(&path, &settings).expect("a page");
     assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
 }
 
@@ -279,7 +280,7 @@ fn a_file_alone_is_enough_where_the_scenario_names_no_others() {
     let home = tempfile::tempdir().expect("a folder");
     let moved = home.path().join("moved.parquet");
     std::fs::copy(flown.folder.merged_path(), &moved).expect("copied");
-    assert_eq!(page(&moved, &summarised(&moved)).expect("a page"), flown.page());
+    assert_eq!(super::page(&moved, &Settings::default()).expect("a page"), flown.page());
 }
 
 #[test]
@@ -287,7 +288,8 @@ fn a_summary_of_another_file_is_not_put_on_the_page() {
     let one = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 5);
     let other = flown(&[HEAD, STEP, &pid("other"), EFFECT], 6);
     let summary = summarised(&other.folder.merged_path());
-    let mixed = page(&one.folder.merged_path(), &summary).expect("a page");
+    let mixed = page_of(&one.folder.merged_path(), &summary, &Settings::default());
+    let mixed = mixed.expect("a page");
     assert_eq!(mixed, one.page());
 }
 

@@ -31,8 +31,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;
     if let Some(path) = &arguments.out {
         let folder = arguments.file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.map_or(".".to_owned(), |folder| folder.display().to_string());
-        let page = report::page_in(&arguments.file, &summary, &folder).map_err(Failure::input)?;
+        let folder = Some(folder.map_or(".".to_owned(), |folder| folder.display().to_string()));
+        let settings = report::Settings { summary: settings, folder };
+        let page = report::page_of(&arguments.file, &summary, &settings).map_err(Failure::input)?;
         output::write(path, page)?;
         note(format_args!("{}: written", path.display()));
     }
