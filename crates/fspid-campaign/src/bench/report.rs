@@ -10,6 +10,9 @@ use super::{Bench, Kind, Rates, instruction_set, program};
 /// it are what other programs on the machine make of the same work.
 pub(super) const LARGE_SPREAD_PCT: f64 = 15.0;
 
+/// Independent work that scales worse than this, in per cent, does not have the processors to itself.
+const SMALL_SCALING_PCT: f64 = 75.0;
+
 impl Bench {
     /// The rate that stands for a kind: of one thread, but of all threads for flights, 1/s.
     #[must_use]
@@ -135,6 +138,15 @@ impl Bench {
             self.effort.rounds,
             self.digest.get(..16).unwrap_or(&self.digest)
         );
+        // Inferences share nothing between threads, so that only the machine can hold them up.
+        let scaling_pct = self.scaling_pct(Kind::InferenceScalar);
+        if scaling_pct < SMALL_SCALING_PCT {
+            let _ = writeln!(
+                text,
+                "warning: {} threads make {scaling_pct:.0} % of what as many processors would: some are busy with something else, or are no whole processors",
+                self.threads
+            );
+        }
         if self.is_noisy() {
             let _ = writeln!(
                 text,
