@@ -108,7 +108,6 @@ fn is_no_worse(kind: Kind, rows_of: &str) {
     for name in ["sphere", "rosenbrock", "rastrigin", "ackley"] {
         let these: Vec<&Row> = rows.iter().filter(|row| row.function == name).collect();
         let ours = median(SEEDS.map(|seed| reached(kind, name, these[0].budget, seed)));
-        println!("{} {name}: {ours:e}", kind.name());
         for row in these {
             let what = (kind.name(), name, &row.library);
             assert!(ours.max(FOUND) <= row.median.max(FOUND), "{what:?}: {ours} {}", row.median);
@@ -179,7 +178,6 @@ fn volume(name: &str, budget: usize, seed: u64) -> f64 {
 fn nsga_ii_dominates_no_less_than_that_of_a_library() {
     for row in rows().iter().filter(|row| row.optimiser == NsgaII::NAME) {
         let ours = median(SEEDS.map(|seed| volume(&row.function, row.budget, seed)));
-        println!("{}: {ours}", row.function);
         assert!(ours >= row.median, "{}: {ours} {}", row.function, row.median);
     }
 }
@@ -246,6 +244,8 @@ fn a_search_written_and_read_at_any_moment_goes_on_with_the_same_bits() {
             parted.tell(&holed_costs(&candidates));
             parted = resumed(&*parted);
             assert_eq!(whole.best(), parted.best(), "{name}");
+            let (one, other) = (whole.snapshot(), parted.snapshot());
+            assert_eq!(format!("{one:?}"), format!("{other:?}"), "{name}");
         }
         assert_eq!((whole.stop(), whole.spent()), (parted.stop(), parted.spent()));
     }

@@ -61,26 +61,31 @@ pub(super) fn fronts(objectives: &[&[f64]]) -> Vec<Vec<usize>> {
 pub(super) fn crowding(objectives: &[&[f64]], front: &[usize]) -> Vec<f64> {
     let mut distance = vec![0.0; front.len()];
     let kinds = front.first().map_or(0, |&i| objectives[i].len());
-    for kind in 0..kinds {
-        let value = |place: usize| objectives[front[place]][kind];
-        let mut order: Vec<usize> = (0..front.len()).collect();
-        order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
-        let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
-            continue;
-        };
-        let extent = value(last) - value(first);
-        (distance[first], distance[last]) = (f64::INFINITY, f64::INFINITY);
-        // Nothing to share out where all are equal or one is infinite.
-        if extent > 0.0 && extent.is_finite() {
-            for three in order.windows(3) {
-                distance[three[1]] += (value(three[2]) - value(three[0])) / extent;
-            }
-        }
+    let along = |kind: usize| front.iter().map(|&i| objectives[i][kind]).collect::<Vec<f64>>();
+    for values in (0..kinds).map(along) {
+        crowd_along(&values, &mut distance);
     }
     for repeated in repeated(objectives, front) {
         distance[repeated] = 0.0;
     }
     distance
+}
+
+/// Adds what one objective contributes.
+fn crowd_along(values: &[f64], distance: &mut [f64]) {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
+        return;
+    };
+    let extent = values[last] - values[first];
+    (distance[first], distance[last]) = (f64::INFINITY, f64::INFINITY);
+    // Nothing to share out where all are equal or one is infinite.
+    if extent > 0.0 && extent.is_finite() {
+        for three in order.windows(3) {
+            distance[three[1]] += (values[three[2]] - values[three[0]]) / extent;
+        }
+    }
 }
 
 /// Places in the front of what stands there already.
