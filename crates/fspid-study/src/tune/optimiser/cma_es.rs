@@ -23,6 +23,9 @@ const SMALLEST_STEP: f64 = 1e-12;
 const FLAT: f64 = 1e-12;
 /// Condition of the covariance at which a double has no digits left for its least axis.
 const WORST_CONDITION: f64 = 1e14;
+/// A step grows at most by this factor in a generation; the tutorial has no limit, and it takes a
+/// population of hundreds to reach this one.
+const MOST_GROWTH: f64 = std::f64::consts::E;
 /// Member whose random numbers place a restart: none of a population has so many.
 const RESTART: usize = u32::MAX as usize;
 
@@ -233,7 +236,7 @@ impl Run {
             *path = (1.0 - s.c_c) * *path + gain * y;
         }
         self.learn(&s, ranked, steady);
-        self.step *= libm::exp((s.c_sigma / s.damping) * (length / s.chi - 1.0)).min(E_ONE);
+        self.step *= libm::exp((s.c_sigma / s.damping) * (length / s.chi - 1.0)).min(MOST_GROWTH);
         if self.generations.is_multiple_of(s.lazy) {
             self.decompose();
         }
@@ -301,9 +304,6 @@ impl Run {
         self.history.len() >= self.memory() && high - low <= FLAT
     }
 }
-
-/// A step grows at most by this factor in a generation.
-const E_ONE: f64 = std::f64::consts::E;
 
 impl Optimiser for CmaEs {
     fn ask(&mut self) -> Vec<Vec<f64>> {

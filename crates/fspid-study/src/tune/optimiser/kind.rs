@@ -79,6 +79,7 @@ impl Kind {
             Self::LShade => 18 * n,
             Self::Pso => 40,
             Self::Ga => 30,
+            // Corners; it has no choice.
             Self::NelderMead => n + 1,
         }
     }
