@@ -11,8 +11,10 @@ use super::random::Random;
 use super::variation::Variation;
 use super::{Optimiser, Start, Stop};
 
+/// Wider than the indices 15 and 20 in common use: of those tried these were no worse than the
+/// library's medians on all four test functions with each of four sets of twenty seeds.
 const VARIATION: Variation =
-    Variation { crossover_index: 15.0, mutation_index: 20.0, crossover: 0.9 };
+    Variation { crossover_index: 5.0, mutation_index: 15.0, crossover: 0.9 };
 
 /// Parents and their children.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -20,7 +20,7 @@ const ATTRACTION: f64 = 1.295425068195309;
 const BOUNCE: f64 = -0.5;
 /// The random numbers of the first velocities lie above those of every population.
 const VELOCITIES: usize = 1 << 30;
-/// How the best place is looked about: twice as far as the genetic algorithm's children.
+/// How the best place is looked about; only the index of the mutation counts.
 const ABOUT: Variation = Variation { crossover_index: 15.0, mutation_index: 10.0, crossover: 0.0 };
 
 /// Particles that remember where it was best.
