@@ -1,8 +1,12 @@
 //! L-SHADE: differential evolution that learns its factors from its successes and shrinks its
 //! population as the budget runs out (Tanabe and Fukunaga, IEEE CEC 2014).
 
-use super::Optimiser;
+use serde::{Deserialize, Serialize};
+
+use super::kind::Snapshot;
+use super::member::{Member, first_points, in_cube, least, sane, within};
 use super::random::Random;
+use super::{Optimiser, Start, Stop};
 
 /// Remembered means of successful factors.
 const MEMORY: usize = 6;
@@ -18,9 +22,9 @@ const FIRST_CROSSOVER: f64 = 0.8;
 const SPREAD: f64 = 0.1;
 
 /// A population that moves by differences of its own members.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LShade {
-    members: Vec<(Vec<f64>, f64)>,
+    members: Vec<Member>,
     archive: Vec<Vec<f64>>,
     trials: Vec<Trial>,
     memory: [(f64, f64); MEMORY],
@@ -32,20 +36,11 @@ pub struct LShade {
     spent: usize,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Trial {
     point: Vec<f64>,
     factor: f64,
     crossover: f64,
-}
-
-/// Where a population begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start<'a> {
-    /// Anywhere in the cube.
-    Anywhere,
-    /// At a point, the others normally distributed about it with this standard deviation.
-    About(&'a [f64], f64),
 }
 
 impl LShade {
@@ -59,19 +54,9 @@ impl LShade {
         start: Start<'_>,
     ) -> Self {
         let population = population.max(SMALLEST);
-        let member = |index: usize| {
-            let mut random = Random::of(seed, 0, index);
-            let point: Vec<f64> = match start {
-                Start::Anywhere => (0..dimension).map(|_| random.unit()).collect(),
-                Start::About(point, _) if index == 0 => point.to_vec(),
-                Start::About(point, spread) => {
-                    point.iter().map(|x| (x + spread * random.normal()).clamp(0.0, 1.0)).collect()
-                }
-            };
-            (point, f64::INFINITY)
-        };
+        let points = first_points(population, dimension, seed, start);
         Self {
-            members: (0..population).map(member).collect(),
+            members: points.into_iter().map(Member::unknown).collect(),
             archive: Vec::new(),
             trials: Vec::new(),
             memory: [(FIRST_FACTOR, FIRST_CROSSOVER); MEMORY],
@@ -84,10 +69,24 @@ impl LShade {
         }
     }
 
+    pub(super) fn is_sound(&self) -> bool {
+        let n = self.members.first().map_or(0, |member| member.point.len());
+        let factors = |trial: &Trial| trial.factor.is_finite() && trial.crossover.is_finite();
+        let remembered = |(factor, crossover): &(f64, f64)| *factor > 0.0 && crossover.is_finite();
+        self.members.len() >= SMALLEST
+            && self.first_population >= self.members.len()
+            && self.budget > 0
+            && self.oldest < MEMORY
+            && self.members.iter().all(|member| member.is_sound(n))
+            && self.archive.iter().all(|point| in_cube(point, n))
+            && self.trials.iter().all(|trial| in_cube(&trial.point, n) && factors(trial))
+            && self.memory.iter().all(remembered)
+    }
+
     /// Indices of the members, best first.
     fn ranking(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.members.len()).collect();
-        order.sort_by(|&a, &b| self.members[a].1.total_cmp(&self.members[b].1));
+        order.sort_by(|&a, &b| self.members[a].cost.total_cmp(&self.members[b].cost));
         order
     }
 
@@ -102,9 +101,9 @@ impl LShade {
             }
         };
         let leaders = ((LEADERS * self.members.len() as f64).round() as usize).max(2);
-        let leader = &self.members[ranking[random.below(leaders.min(ranking.len()))]].0;
+        let leader = &self.members[ranking[random.below(leaders.min(ranking.len()))]].point;
         let (other, beaten) = self.two_others(&mut random, index);
-        let own = &self.members[index].0;
+        let own = &self.members[index].point;
         let always = random.below(own.len());
         let point = (0..own.len())
             .map(|j| {
@@ -130,10 +129,10 @@ impl LShade {
             second = (second + 1) % (count + self.archive.len());
         }
         let second = match second.checked_sub(count) {
-            None => &self.members[second].0,
+            None => &self.members[second].point,
             Some(beaten) => &self.archive[beaten],
         };
-        (&self.members[first].0, second)
+        (&self.members[first].point, second)
     }
 
     /// Moves the means towards what succeeded, weighted by how much it gained.
@@ -167,44 +166,39 @@ impl LShade {
     }
 }
 
-/// A coordinate that left the cube stops half way from where it was to the side.
-fn within(from: f64, to: f64) -> f64 {
-    if to < 0.0 {
-        0.5 * from
-    } else if to > 1.0 {
-        0.5 * (1.0 + from)
-    } else {
-        to
-    }
-}
-
 impl Optimiser for LShade {
     fn ask(&mut self) -> Vec<Vec<f64>> {
-        self.trials = if self.generation == 0 {
-            let first = |(point, _): &(Vec<f64>, f64)| {
-                let point = point.clone();
-                Trial { point, factor: FIRST_FACTOR, crossover: FIRST_CROSSOVER }
+        if self.stop().is_some() {
+            return Vec::new();
+        }
+        if self.trials.is_empty() {
+            self.trials = if self.generation == 0 {
+                let first = |member: &Member| {
+                    let point = member.point.clone();
+                    Trial { point, factor: FIRST_FACTOR, crossover: FIRST_CROSSOVER }
+                };
+                self.members.iter().map(first).collect()
+            } else {
+                let ranking = self.ranking();
+                (0..self.members.len()).map(|index| self.trial(index, &ranking)).collect()
             };
-            self.members.iter().map(first).collect()
-        } else {
-            let ranking = self.ranking();
-            (0..self.members.len()).map(|index| self.trial(index, &ranking)).collect()
-        };
-        self.generation += 1;
+            self.generation += 1;
+        }
         self.trials.iter().map(|trial| trial.point.clone()).collect()
     }
 
     fn tell(&mut self, costs: &[f64]) {
-        self.spent += costs.len();
-        let mut successes = Vec::new();
         let trials = std::mem::take(&mut self.trials);
-        for (member, (trial, &cost)) in self.members.iter_mut().zip(trials.into_iter().zip(costs)) {
-            if cost < member.1 && self.generation > 1 {
-                successes.push((member.1.min(f64::MAX) - cost, trial.factor, trial.crossover));
-                self.archive.push(std::mem::take(&mut member.0));
+        self.spent += costs.len().min(trials.len());
+        let costs = sane(costs, trials.len());
+        let mut successes = Vec::new();
+        for (member, (trial, cost)) in self.members.iter_mut().zip(trials.into_iter().zip(costs)) {
+            if cost < member.cost && self.generation > 1 {
+                successes.push((member.cost.min(f64::MAX) - cost, trial.factor, trial.crossover));
+                self.archive.push(std::mem::take(&mut member.point));
             }
-            if cost <= member.1 {
-                *member = (trial.point, cost);
+            if cost <= member.cost {
+                *member = Member { point: trial.point, cost };
             }
         }
         self.learn(&successes);
@@ -212,7 +206,18 @@ impl Optimiser for LShade {
     }
 
     fn best(&self) -> (&[f64], f64) {
-        let best = self.members.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or((&[], f64::INFINITY), |(point, cost)| (point, *cost))
+        self.members.get(least(&self.members)).map_or((&[], f64::INFINITY), Member::borrowed)
+    }
+
+    fn spent(&self) -> usize {
+        self.spent
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        (self.spent >= self.budget).then_some(Stop::Budget)
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        Snapshot::LShade(self.clone())
     }
 }
