@@ -148,6 +148,8 @@ impl<'a> Target<'a> {
             if points.is_empty() {
                 break;
             }
+            // The last generation is cut to what is left.
+            points.truncate(allowance - spent);
             spent += points.len();
             let at_once = engine::at_once(self.campaign.template().study());
             let costs = points.par_chunks_mut(at_once).flat_map_iter(|points| self.costs(points));
