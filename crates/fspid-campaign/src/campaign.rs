@@ -58,10 +58,10 @@ impl Progress {
         self.found.fetch_add(runs, Ordering::Relaxed);
     }
 
-    fn add(&self, runs: &[Run]) {
+    fn add(&self, runs: &[Run], controllers: usize) {
         let failed = |run: &Run| match &run.flights {
-            Ok(flights) => flights.iter().filter(|flight| !flight.reasons().is_empty()).count(),
-            Err(_) => 1,
+            Ok(flights) => flights.iter().filter(|flight| flight.is_failed()).count(),
+            Err(_) => controllers,
         };
         let failed: usize = runs.iter().map(failed).sum();
         self.flown.fetch_add(runs.len() as u64, Ordering::Relaxed);
@@ -121,8 +121,8 @@ impl Campaign {
     }
 
     /// What a function says of the coordinates of each dispersion, in the order of the cube's.
-    pub(crate) fn in_cube(&self, of: impl Fn(&Dispersion) -> Vec<f64>) -> Vec<f64> {
-        let mut all = vec![0.0; self.dimensions()];
+    pub(crate) fn in_cube<T: Clone + Default>(&self, of: impl Fn(&Dispersion) -> Vec<T>) -> Vec<T> {
+        let mut all = vec![T::default(); self.dimensions()];
         for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
             for (place, value) in all.iter_mut().skip(first).zip(of(dispersion)) {
                 *place = value;
@@ -184,7 +184,7 @@ impl Campaign {
             let numbers = first..(first + at_once).min(range.end);
             let drawn = numbers.map(|number| (number, self.drawn(number)));
             let runs = self.fly_with(memory, drawn);
-            progress.add(&runs);
+            progress.add(&runs, self.rows.of_run());
             self.rows.table(&runs)
         };
         let tables: Vec<_> = (0..groups).into_par_iter().map_init(Memory::default, fly).collect();

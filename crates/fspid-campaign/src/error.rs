@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use fspid_study::file::Problems;
-use fspid_study::output::OutputError;
+use fspid_study::output::{OutputError, in_words};
 use thiserror::Error;
 
 use crate::plan::Range;
@@ -163,10 +163,12 @@ impl CampaignError {
 
     /// The same, with the file that could not be written where that is what is wrong.
     pub(crate) fn of_writing(self, path: &Path) -> Self {
-        let Self::Table(error @ (TableError::Write { .. } | TableError::Failed)) = self else {
-            return self;
+        let reason = match &self {
+            Self::Table(error @ (TableError::Write { .. } | TableError::Failed)) => reason(error),
+            Self::Output(error) => in_words(&error.reason),
+            _ => return self,
         };
-        Self::Write { path: path.to_owned(), reason: reason(&error) }
+        Self::Write { path: path.to_owned(), reason }
     }
 }
 
@@ -176,8 +178,5 @@ fn reason(error: &TableError) -> String {
     while let Some(source) = innermost.source() {
         innermost = source;
     }
-    match innermost.downcast_ref::<io::Error>().map(io::Error::kind) {
-        Some(io::ErrorKind::StorageFull) => "the disk is full".to_owned(),
-        _ => innermost.to_string(),
-    }
+    innermost.downcast_ref::<io::Error>().map_or_else(|| innermost.to_string(), in_words)
 }

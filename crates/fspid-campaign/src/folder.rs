@@ -12,13 +12,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use fspid_study::file::read_text;
-use fspid_study::output;
+use fspid_study::output::{self, UNFINISHED};
 
 use crate::error::CampaignError;
 use crate::plan::{Plan, Range};
-
-/// What new files are called until they are whole.
-pub(crate) const UNFINISHED: &str = ".fspid-";
 
 /// A campaign's folder.
 #[derive(Clone, Debug, PartialEq, Eq)]

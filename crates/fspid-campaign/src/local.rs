@@ -1,5 +1,7 @@
 //! A campaign flown on this machine: shard after shard on all threads, then merged.
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
@@ -53,7 +55,11 @@ pub fn in_threads<T: Send>(
     threads: usize,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, CampaignError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| CampaignError::Threads(error.to_string()))?;
-    Ok(pool.install(work))
+    Ok(pool(threads)?.install(work))
+}
+
+/// A pool of so many threads; 0 for as many as the machine has.
+pub(crate) fn pool(threads: usize) -> Result<ThreadPool, CampaignError> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| CampaignError::Threads(error.to_string()))
 }

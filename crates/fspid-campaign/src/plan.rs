@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use fspid_study::file::{Extra, Template};
 use serde_json::{Value, json};
-use sha2::{Digest as _, Sha256};
 
 use crate::error::CampaignError;
 use crate::rows;
 use crate::sample::Sampling;
+use crate::table::Digest;
 
 /// Version of the plan's format.
 const SCHEMA: u64 = 1;
@@ -75,15 +75,9 @@ impl Plan {
     /// What names the campaign: a digest of everything that decides about its results.
     #[must_use]
     pub fn id(&self) -> String {
-        let mut hasher = Sha256::new();
         let numbers = [self.runs.to_string(), self.seed.to_string(), rows::FORMAT.to_string()];
         let texts = [self.scenario_digest.as_str(), self.sampling.name(), self.program.as_str()];
-        for text in texts.into_iter().chain(numbers.iter().map(String::as_str)) {
-            hasher.update((text.len() as u64).to_le_bytes());
-            hasher.update(text.as_bytes());
-        }
-        let bytes = hasher.finalize();
-        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+        Digest::of_texts(texts.into_iter().chain(numbers.iter().map(String::as_str))).to_string()
     }
 
     /// How many shards.

@@ -2,27 +2,26 @@
 
 use fspid_study::dispersion::Drawn;
 use fspid_study::file::Study;
+use fspid_study::shell;
 use fspid_study::simulation::Simulation;
 use serde_json::{Value, json};
 
 use crate::campaign::Campaign;
-use crate::engine;
 use crate::error::CampaignError;
-use crate::rows::Run;
 
 /// A run flown again.
 #[derive(Clone, Debug)]
 pub struct Replay {
     /// Number of the run.
     pub number: u64,
+    /// What it draws.
+    pub drawn: Vec<Drawn>,
     /// The changes that make the campaign's scenario this run's, as `--set` takes them.
     pub changes: Vec<String>,
     /// The run's scenario.
     pub study: Study,
     /// Its flight, with traces.
     pub simulation: Simulation,
-    /// What the campaign keeps of it.
-    pub run: Run,
 }
 
 /// Flies run `number` again.
@@ -38,14 +37,8 @@ pub fn replay(campaign: &Campaign, number: u64) -> Result<Replay, CampaignError>
     let refused = |reason| CampaignError::Refused { run: number, reason };
     let study = campaign.study(&drawn).map_err(refused)?;
     let simulation = Simulation::of(&study).map_err(|error| refused(error.to_string()))?;
-    let flown = engine::fly(std::slice::from_ref(&study)).pop();
-    let flights = match flown {
-        Some(Ok(flights)) => Ok(flights),
-        Some(Err(error)) => Err(error.to_string()),
-        None => Ok(Vec::new()),
-    };
-    let changes = changes(campaign, &campaign.drawn(number));
-    Ok(Replay { number, changes, study, simulation, run: Run { number, drawn, flights } })
+    let changes = changes(campaign, &drawn);
+    Ok(Replay { number, drawn, changes, study, simulation })
 }
 
 impl Replay {
@@ -53,17 +46,21 @@ impl Replay {
     #[must_use]
     pub fn text(&self, campaign: &Campaign) -> String {
         let mut out = format!("run {} of {}\n", self.number, campaign.plan().scenario_path);
-        for (name, drawn) in names(campaign).zip(&self.run.drawn) {
+        for (name, drawn) in names(campaign).zip(&self.drawn) {
             out.push_str(&format!("  {name} = {}\n", shown(drawn)));
         }
-        out.push_str(&format!("  alone: {}\n\n{}", self.command(campaign), self.simulation.text()));
+        out.push_str(&format!(
+            "  alone: {}\n\n{}",
+            command(campaign, &self.changes),
+            self.simulation.text()
+        ));
         out
     }
 
     /// The answer for programs.
     #[must_use]
     pub fn json(&self, campaign: &Campaign) -> Value {
-        let drawn = names(campaign).zip(&self.run.drawn).map(|(name, drawn)| {
+        let drawn = names(campaign).zip(&self.drawn).map(|(name, drawn)| {
             let value = match drawn {
                 Drawn::Number(number) => json!(number),
                 Drawn::Whole(whole) => json!(whole),
@@ -77,21 +74,21 @@ impl Replay {
             "campaign": campaign.plan().id(),
             "parameters": drawn.collect::<serde_json::Map<_, _>>(),
             "changes": self.changes,
-            "command": self.command(campaign),
+            "command": command(campaign, &self.changes),
             "simulation": self.simulation.json(),
         })
     }
+}
 
-    /// The command that flies this run without its campaign.
-    #[must_use]
-    pub fn command(&self, campaign: &Campaign) -> String {
-        let plan = campaign.plan();
-        let mut command = format!("fspid simulate {}", in_shell(&plan.scenario_path));
-        for change in plan.overrides.iter().chain(&self.changes) {
-            command.push_str(&format!(" --set {}", in_shell(change)));
-        }
-        command
+/// The command that flies a campaign's scenario with changes, without the campaign.
+#[must_use]
+pub fn command(campaign: &Campaign, changes: &[String]) -> String {
+    let plan = campaign.plan();
+    let mut command = format!("fspid simulate {}", shell::word(&plan.scenario_path));
+    for change in plan.overrides.iter().chain(changes) {
+        command.push_str(&format!(" --set {}", shell::word(change)));
     }
+    command
 }
 
 /// Names of what is drawn.
@@ -105,15 +102,6 @@ fn shown(drawn: &Drawn) -> String {
         Drawn::Whole(whole) => whole.to_string(),
         Drawn::Text(text) => text.clone(),
     }
-}
-
-/// A word as a shell takes it: in quotes where it needs them.
-pub(crate) fn in_shell(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:+".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
 }
 
 /// What draws change in the scenario, as `--set` takes it.

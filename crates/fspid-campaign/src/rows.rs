@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use fspid_study::dispersion::{Dispersion, Drawn};
 use fspid_study::file::Study;
-use fspid_study::metrics::{CommandEffort, ErrorIntegrals, Measured, StepMetrics, Verdict};
+use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
 use fspid_study::requirement::{Judgement, Requirement};
 use fspid_study::units::degrees;
 
@@ -25,6 +25,10 @@ pub const CONTROLLER: &str = "controller";
 pub const FAILED: &str = "failed";
 /// Column of the verdict in a word.
 pub const VERDICT: &str = "verdict";
+/// Column of the time at which a flight diverged.
+pub const DIVERGED_AT: &str = "diverged_at_s";
+/// Column of the time at which an aircraft left the range of its model.
+pub const LEFT_VALIDITY_AT: &str = "left_validity_at_s";
 /// Column of the reasons of a failure.
 pub const REASONS: &str = "reasons";
 /// What the names of columns of drawn numbers begin with.
@@ -45,63 +49,78 @@ pub struct Run {
     pub flights: Result<Vec<FlightResult>, String>,
 }
 
+/// Which values of a measure are bad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bad {
+    /// High ones, as of overshoot.
+    High,
+    /// Low ones, as of a margin.
+    Low,
+}
+
 /// A measure of a flight that has a column.
 struct MeasureColumn {
     name: &'static str,
     unit: &'static str,
+    /// Which values are bad, whatever is asked; none where both sides are, or neither.
+    bad: Option<Bad>,
     meaning: &'static str,
-    value: fn(&FlightResult) -> Measured,
+    value: fn(&FlightResult) -> Option<f64>,
 }
+
+const HIGH: Option<Bad> = Some(Bad::High);
+const LOW: Option<Bad> = Some(Bad::Low);
 
 const fn measure(
     (name, unit): (&'static str, &'static str),
-    value: fn(&FlightResult) -> Measured,
+    bad: Option<Bad>,
+    value: fn(&FlightResult) -> Option<f64>,
     meaning: &'static str,
 ) -> MeasureColumn {
-    MeasureColumn { name, unit, meaning, value }
+    MeasureColumn { name, unit, bad, meaning, value }
 }
 
 fn first(flight: &FlightResult) -> StepMetrics {
     flight.metrics.first_step()
 }
 
-fn integral(flight: &FlightResult, value: fn(ErrorIntegrals) -> f64) -> Measured {
-    flight.metrics.integrals.map(value)
+fn integral(flight: &FlightResult, value: fn(ErrorIntegrals) -> f64) -> Option<f64> {
+    flight.metrics.integrals.ok().map(value)
 }
 
-fn command(flight: &FlightResult, value: fn(CommandEffort) -> f64) -> Measured {
-    flight.metrics.effort.map(value)
+fn command(flight: &FlightResult, value: fn(CommandEffort) -> f64) -> Option<f64> {
+    flight.metrics.effort.ok().map(value)
 }
 
 /// Of a flight that can be measured at all.
-fn of_whole(flight: &FlightResult, value: fn(&FlightResult) -> f64) -> Measured {
-    flight.metrics.effort.map(|_| value(flight))
+fn of_whole(flight: &FlightResult, value: fn(&FlightResult) -> f64) -> Option<f64> {
+    flight.metrics.effort.ok().map(|_| value(flight))
 }
 
 #[rustfmt::skip] // a table: one row a measure
 const MEASURES: [MeasureColumn; 22] = [
-    measure(("rise_time_s", "s"), |f| first(f).rise_time_s, "10 % to 90 % of the first step of the command"),
-    measure(("settling_time_s", "s"), |f| first(f).settling_time_s, "until the response to the first step stays within 2 % of it"),
-    measure(("transient_time_s", "s"), |f| first(f).transient_time_s, "until the response to the first step stays within 2 % of its largest error"),
-    measure(("overshoot_pct", "%"), |f| first(f).overshoot_pct, "beyond the set-point after the first step, of the step"),
-    measure(("undershoot_pct", "%"), |f| first(f).undershoot_pct, "first the wrong way after the first step, of the step"),
-    measure(("final_error_pct", "%"), |f| first(f).final_error_pct, "left at the end of the first step's window, of the step; positive below the set-point"),
-    measure(("peak_deg", "deg"), |f| first(f).peak.map(degrees), "largest distance from where the first step began"),
-    measure(("peak_time_s", "s"), |f| first(f).peak_time_s, "time of the peak after the first step"),
-    measure(("iae_deg_s", "deg s"), |f| integral(f, |i| degrees(i.iae_rad_s)), "integral of the size of the error over the flight"),
-    measure(("itae_deg_s2", "deg s²"), |f| integral(f, |i| degrees(i.itae_rad_s2)), "the same, weighted with the time since the last step"),
-    measure(("ise_deg2_s", "deg² s"), |f| integral(f, |i| degrees(degrees(i.ise_rad2_s))), "integral of the squared error over the flight"),
-    measure(("itse_deg2_s2", "deg² s²"), |f| integral(f, |i| degrees(degrees(i.itse_rad2_s2))), "the same, weighted with the time since the last step"),
-    measure(("rms_error_deg", "deg"), |f| f.metrics.rms_error_rad.map(degrees), "root mean square of the error over the flight"),
-    measure(("largest_error_deg", "deg"), |f| of_whole(f, |f| degrees(f.largest_error_rad)), "largest size of the error"),
-    measure(("command_variation_deg", "deg"), |f| command(f, |e| degrees(e.variation_rad)), "way of the command: sum of the sizes of its changes"),
-    measure(("largest_command_deg", "deg"), |f| command(f, |e| degrees(e.largest_rad)), "largest size of the command"),
-    measure(("command_rate_deg_s", "deg/s"), |f| command(f, |e| degrees(e.fastest_rad_s)), "fastest change of the command from sample to sample"),
-    measure(("elevator_travel_deg", "deg"), |f| of_whole(f, |f| degrees(f.elevator.variation_rad)), "way of the elevator: sum of the sizes of its changes"),
-    measure(("largest_elevator_deg", "deg"), |f| of_whole(f, |f| degrees(f.elevator.largest_rad)), "largest size of the elevator deflection"),
-    measure(("elevator_rate_deg_s", "deg/s"), |f| of_whole(f, |f| degrees(f.elevator.fastest_rad_s)), "fastest change of the elevator from sample to sample"),
-    measure(("saturated_pct", "%"), |f| of_whole(f, |f| 100.0 * f.saturated_share), "samples whose command was cut by the controller's own limits"),
-    measure(("left_validity_at_s", "s"), |f| f.exit.map_or(Err(fspid_study::metrics::Absent::NoStep), |exit| Ok(exit.at_s)), "when an aircraft first left the range of its model; empty if it did not"),
+    measure(("rise_time_s", "s"), HIGH, |f| first(f).rise_time_s.ok(), "10 % to 90 % of the first step of the command"),
+    measure(("settling_time_s", "s"), HIGH, |f| first(f).settling_time_s.ok(), "until the response to the first step stays within 2 % of it"),
+    measure(("transient_time_s", "s"), HIGH, |f| first(f).transient_time_s.ok(), "until the response to the first step stays within 2 % of its largest error"),
+    measure(("overshoot_pct", "%"), HIGH, |f| first(f).overshoot_pct.ok(), "beyond the set-point after the first step, of the step"),
+    measure(("undershoot_pct", "%"), HIGH, |f| first(f).undershoot_pct.ok(), "first the wrong way after the first step, of the step"),
+    measure(("final_error_pct", "%"), None, |f| first(f).final_error_pct.ok(), "left at the end of the first step's window, of the step; positive below the set-point"),
+    measure(("peak_deg", "deg"), None, |f| first(f).peak.ok().map(degrees), "largest distance from where the first step began"),
+    measure(("peak_time_s", "s"), None, |f| first(f).peak_time_s.ok(), "time of the peak after the first step"),
+    measure(("iae_deg_s", "deg s"), HIGH, |f| integral(f, |i| degrees(i.iae_rad_s)), "integral of the size of the error over the flight"),
+    measure(("itae_deg_s2", "deg s²"), HIGH, |f| integral(f, |i| degrees(i.itae_rad_s2)), "the same, weighted with the time since the last step"),
+    measure(("ise_deg2_s", "deg² s"), HIGH, |f| integral(f, |i| degrees(degrees(i.ise_rad2_s))), "integral of the squared error over the flight"),
+    measure(("itse_deg2_s2", "deg² s²"), HIGH, |f| integral(f, |i| degrees(degrees(i.itse_rad2_s2))), "the same, weighted with the time since the last step"),
+    measure(("rms_error_deg", "deg"), HIGH, |f| f.metrics.rms_error_rad.ok().map(degrees), "root mean square of the error over the flight"),
+    measure(("largest_error_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.largest_error_rad)), "largest size of the error"),
+    measure(("command_variation_deg", "deg"), HIGH, |f| command(f, |e| degrees(e.variation_rad)), "way of the command: sum of the sizes of its changes"),
+    measure(("largest_command_deg", "deg"), HIGH, |f| command(f, |e| degrees(e.largest_rad)), "largest size of the command"),
+    measure(("command_rate_deg_s", "deg/s"), HIGH, |f| command(f, |e| degrees(e.fastest_rad_s)), "fastest change of the command from sample to sample"),
+    measure(("elevator_travel_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.variation_rad)), "way of the elevator: sum of the sizes of its changes"),
+    measure(("largest_elevator_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.largest_rad)), "largest size of the elevator deflection"),
+    measure(("elevator_rate_deg_s", "deg/s"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.fastest_rad_s)), "fastest change of the elevator from sample to sample"),
+    measure(("saturated_pct", "%"), HIGH, |f| of_whole(f, |f| 100.0 * f.saturated_share), "samples whose command was cut by the controller's own limits"),
+    measure((LEFT_VALIDITY_AT, "s"), LOW, |f| f.exit.map(|exit| exit.at_s), "when an aircraft first left the range of its model; empty if it did not"),
 ];
 
 /// Names of the columns of measures, with their units.
@@ -109,11 +128,16 @@ pub fn measure_names() -> impl Iterator<Item = (&'static str, &'static str)> {
     MEASURES.iter().map(|measure| (measure.name, measure.unit))
 }
 
-/// A measure of a flight by the name of its column; `None` for another name.
+/// A measure of a flight by the name of its column; `None` where it has none.
 #[must_use]
-pub fn measured(flight: &FlightResult, name: &str) -> Option<Measured> {
-    let measure = MEASURES.iter().find(|measure| measure.name == name)?;
-    Some((measure.value)(flight))
+pub fn measured(flight: &FlightResult, name: &str) -> Option<f64> {
+    (MEASURES.iter().find(|measure| measure.name == name)?.value)(flight)
+}
+
+/// Which values of a measure are bad, by the name of its column, where that is known.
+#[must_use]
+pub fn bad_side(name: &str) -> Option<Bad> {
+    MEASURES.iter().find(|measure| measure.name == name)?.bad
 }
 
 /// The rows of a campaign: which columns they have, and how they are filled.
@@ -193,7 +217,7 @@ impl Rows {
             flight.and_then(FlightResult::diverged_at_s).into(),
         ];
         cells.extend(run.drawn.iter().map(cell));
-        let measure = |measure: &MeasureColumn| flight.and_then(|it| (measure.value)(it).ok());
+        let measure = |measure: &MeasureColumn| flight.and_then(|it| (measure.value)(it));
         cells.extend(MEASURES.iter().map(|column| Cell::from(measure(column))));
         for requirement in &self.requirements {
             let judgement = flight.and_then(|flight| judged(flight, requirement));
@@ -217,7 +241,7 @@ fn head() -> Vec<Column> {
         column(
             FAILED,
             Kind::Boolean,
-            "true for a flight that diverged, an unstable loop, a requirement that is not met, and a run whose numbers make no scenario",
+            "true for a flight that diverged, an unstable loop, a requirement that is not met, a run whose numbers make no scenario; where nothing is required of the controller, also for a step that was not settled",
         ),
         column(
             VERDICT,
@@ -225,7 +249,7 @@ fn head() -> Vec<Column> {
             "settled, not settled, flown (no step to settle), diverged, unstable, or refused",
         ),
         column(REASONS, Kind::Text, "why it failed; empty where it did not"),
-        column("diverged_at_s", Kind::Float, "when the flight diverged").unit("s"),
+        column(DIVERGED_AT, Kind::Float, "when the flight diverged").unit("s"),
     ]
 }
 

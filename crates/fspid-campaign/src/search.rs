@@ -4,25 +4,25 @@
 //! by a simplex. Distributions without limits are searched within three standard deviations. What is
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
-use fspid_study::dispersion::{Dispersion, Distribution, Drawn, Normal};
-use fspid_study::tune::optimiser::{LShade, NelderMead, Optimiser, Start};
+use fspid_study::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
+use fspid_study::tune::optimiser::{LShade, NelderMead, Optimiser, Start, minimise};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::campaign::Campaign;
 use crate::engine::{self, FlightResult};
 use crate::error::CampaignError;
-use crate::replay::{changes, in_shell};
+use crate::replay::{changes, command};
 use crate::rows::{measure_names, measured};
 
-/// Share of a normal distribution beyond three standard deviations, on one side.
-const TAIL: f64 = 0.001_349_898_031_630_094_6;
+/// How far distributions without limits are searched, in standard deviations.
+const FARTHEST: f64 = 3.0;
 /// Nearest to the ends of the cube, where no distribution is defined.
 const NEAREST: f64 = 1.0 / (1_u64 << 53) as f64;
 /// Cost of a flight that has no such measure, and of one that is lost: below every number that a measure has.
 const ABSENT: f64 = -1e200;
 const LOST: f64 = -1e300;
-/// Largest flights lost count by when they are lost, up to this time.
+/// Of lost flights those count as worse that are lost earlier; no flight lasts this long.
 const LONGEST_S: f64 = 1e12;
 
 /// What is looked for.
@@ -72,10 +72,10 @@ pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, Campaig
     let population = (10 * dimension).clamp(24, 200).min(question.budget.max(4));
     let global = question.budget - polish;
     let mut wide = LShade::new(dimension, population, global, question.seed, Start::Anywhere);
-    let mut flown = target.minimise(&mut wide, global);
+    let mut flown = target.search(&mut wide, global);
     let (point, cost) = wide.best();
     let mut downhill = NelderMead::new(point, cost);
-    flown += target.minimise(&mut downhill, polish);
+    flown += target.search(&mut downhill, polish);
     let (point, _) = downhill.best();
     let drawn = campaign.drawn_at(&target.inside(point));
     let nominal = target.flight_of(vec![campaign.template().study().clone()]).pop().flatten();
@@ -100,8 +100,8 @@ struct Target<'a> {
     controller: String,
     place: usize,
     is_requirement: bool,
-    /// Share of each coordinate that is left out at both ends.
-    tails: Vec<f64>,
+    /// Share of each coordinate that is left out at its lower and upper end.
+    tails: Vec<[f64; 2]>,
 }
 
 impl<'a> Target<'a> {
@@ -140,23 +140,13 @@ impl<'a> Target<'a> {
         Ok(Self { campaign, question, controller, place, is_requirement, tails })
     }
 
-    /// Asks, flies and tells until the allowance is spent; flights flown.
-    fn minimise(&self, optimiser: &mut dyn Optimiser, allowance: usize) -> usize {
-        let mut spent = 0;
-        while spent < allowance {
-            let mut points = optimiser.ask();
-            if points.is_empty() {
-                break;
-            }
-            // The last generation is cut to what is left.
-            points.truncate(allowance - spent);
-            spent += points.len();
-            let at_once = engine::at_once(self.campaign.template().study());
-            let costs = points.par_chunks_mut(at_once).flat_map_iter(|points| self.costs(points));
-            let costs: Vec<f64> = costs.collect();
-            optimiser.tell(&costs);
-        }
-        spent
+    /// Makes it as bad as can be found; flights flown.
+    fn search(&self, optimiser: &mut dyn Optimiser, budget: usize) -> usize {
+        let at_once = engine::at_once(self.campaign.template().study());
+        minimise(optimiser, budget, f64::NEG_INFINITY, |points| {
+            points.par_chunks(at_once).flat_map_iter(|points| self.costs(points)).collect()
+        });
+        optimiser.spent()
     }
 
     fn costs(&self, points: &[Vec<f64>]) -> Vec<f64> {
@@ -173,8 +163,9 @@ impl<'a> Target<'a> {
 
     /// A point of the searched box as one of the open unit cube.
     fn inside(&self, point: &[f64]) -> Vec<f64> {
-        let at =
-            |(x, tail): (&f64, &f64)| (tail + x * (1.0 - 2.0 * tail)).clamp(NEAREST, 1.0 - NEAREST);
+        let at = |(x, [lower, upper]): (&f64, &[f64; 2])| {
+            (lower + x * (1.0 - lower - upper)).clamp(NEAREST, 1.0 - NEAREST)
+        };
         point.iter().zip(&self.tails).map(at).collect()
     }
 
@@ -186,18 +177,18 @@ impl<'a> Target<'a> {
         if flight.metrics.verdict.is_failure() {
             return LOST * 0.5;
         }
-        let Some(value) = self.value(flight) else {
-            return ABSENT;
+        let cost = match self.is_requirement {
+            true => self.slack(flight),
+            false => {
+                self.value(flight).map(|value| if self.question.lowest { value } else { -value })
+            }
         };
-        if self.is_requirement {
-            return self.slack(flight).unwrap_or(ABSENT);
-        }
-        if self.question.lowest { value } else { -value }
+        cost.filter(|cost| !cost.is_nan()).unwrap_or(ABSENT)
     }
 
     fn value(&self, flight: &FlightResult) -> Option<f64> {
         if !self.is_requirement {
-            return measured(flight, &self.question.measure)?.ok();
+            return measured(flight, &self.question.measure);
         }
         let mut judgements = flight.judgements.iter();
         let judgement = judgements.find(|it| it.requirement.id == self.question.measure)?;
@@ -221,17 +212,15 @@ impl<'a> Target<'a> {
     }
 }
 
-/// What is left out at both ends of each coordinate of a dispersion.
-fn tails(dispersion: &Dispersion) -> Vec<f64> {
-    let of_normal = |normal: &Normal| match (normal.lower(), normal.upper()) {
-        (Some(_), Some(_)) => 0.0,
-        _ => TAIL,
-    };
+/// What is left out at the ends of each coordinate of a dispersion: the sides on which there is no limit.
+fn tails(dispersion: &Dispersion) -> Vec<[f64; 2]> {
+    let tail = standard_normal::below(-FARTHEST);
+    let without = |limit: Option<f64>| if limit.is_none() { tail } else { 0.0 };
     match &dispersion.distribution {
-        Distribution::Normal(normal) => vec![of_normal(normal)],
-        // The coordinates are those of independent normals.
-        Distribution::Correlated(correlated) => vec![TAIL; correlated.entries().len()],
-        other => vec![0.0; other.dimensions()],
+        Distribution::Normal(normal) => vec![[without(normal.lower()), without(normal.upper())]],
+        // The coordinates are those of independent normals, whatever limits their mixtures have.
+        Distribution::Correlated(correlated) => vec![[tail; 2]; correlated.entries().len()],
+        other => vec![[0.0; 2]; other.dimensions()],
     }
 }
 
@@ -260,7 +249,7 @@ impl Worst {
         for change in &self.changes {
             out.push_str(&format!("  {change}\n"));
         }
-        out.push_str(&format!("  again: {}\n", self.command(campaign)));
+        out.push_str(&format!("  again: {}\n", command(campaign, &self.changes)));
         out.push_str("This flight is that bad; that none is worse is not proved.\n");
         out
     }
@@ -277,16 +266,7 @@ impl Worst {
             "reasons": self.reasons,
             "changes": self.changes,
             "flights": self.flown,
-            "command": self.command(campaign),
+            "command": command(campaign, &self.changes),
         })
-    }
-
-    fn command(&self, campaign: &Campaign) -> String {
-        let plan = campaign.plan();
-        let mut command = format!("fspid simulate {}", in_shell(&plan.scenario_path));
-        for change in plan.overrides.iter().chain(&self.changes) {
-            command.push_str(&format!(" --set {}", in_shell(change)));
-        }
-        command
     }
 }

@@ -1,12 +1,14 @@
 //! Parts of a campaign: a Parquet file for a range of runs, whole or not there.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
+
+use fspid_study::output;
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
-use crate::folder::{Folder, UNFINISHED};
+use crate::folder::Folder;
 use crate::plan::{Plan, Range};
 use crate::table::{Reader, Table, Writer};
 
@@ -51,7 +53,7 @@ pub fn fly(
     Ok(Done::Flown)
 }
 
-/// True for a part that holds what it should, to the last byte.
+/// True for a part that holds what it should, in every cell.
 fn is_whole(path: &Path, campaign: &Campaign, range: Range) -> bool {
     let Ok(part) = Part::open(path) else {
         return false;
@@ -87,39 +89,12 @@ pub(crate) fn provenance(plan: &Plan) -> Vec<(String, String)> {
     vec![(CAMPAIGN_KEY.to_owned(), plan.id()), (PROGRAM_KEY.to_owned(), plan.program.clone())]
 }
 
-/// Writes a file beside its place, flushes it to the disk and renames it.
+/// Writes a file of a campaign, whole or not at all.
 pub(crate) fn write_whole<T>(
     path: &Path,
     contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, CampaignError>,
 ) -> Result<T, CampaignError> {
-    let failed = |error: io::Error| {
-        let reason = match error.kind() {
-            io::ErrorKind::StorageFull => "the disk is full".to_owned(),
-            _ => error.to_string(),
-        };
-        CampaignError::Write { path: path.to_owned(), reason }
-    };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder).map_err(failed)?;
-    let mut buffered = BufWriter::new(file.as_file());
-    let answer = contents(&mut buffered).map_err(|error| error.of_writing(path))?;
-    buffered.into_inner().map_err(|error| failed(error.into_error()))?;
-    file.as_file().sync_all().map_err(failed)?;
-    readable(file.as_file()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    // The rename itself; not every file system knows how, and the file is safe without.
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(answer)
-}
-
-/// Lets others read the file, as the user's mask allows: new files beside it are private.
-fn readable(file: &File) -> io::Result<()> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        file.set_permissions(fs::Permissions::from_mode(0o644))?;
-    }
-    Ok(())
+    output::write_by(path, contents).map_err(|error| error.of_writing(path))
 }
 
 /// A part of a campaign, opened.

@@ -62,9 +62,12 @@ fn flights_side_by_side_are_measured_as_single_simulations_are() {
     for (study, flights) in studies.iter().zip(flown) {
         let flights = flights.expect("it flies");
         let simulation = Simulation::of(study).expect("it flies");
+        // What is asked of the aircraft alone is judged once, and concerns every controller.
         let judgements: Vec<_> = flights.iter().flat_map(|it| it.judgements.clone()).collect();
-        assert_eq!(judgements.len(), simulation.judgements.len());
+        let of_aircraft = flights.len() - 1;
+        assert_eq!(judgements.len(), simulation.judgements.len() + of_aircraft);
         assert!(judgements.iter().all(|judgement| simulation.judgements.contains(judgement)));
+        assert!(simulation.judgements.iter().all(|judgement| judgements.contains(judgement)));
         for (flight, result) in flights.iter().zip(&simulation.results) {
             assert_eq!(flight.controller, result.name);
             assert_eq!(flight.metrics, result.metrics);
@@ -128,4 +131,27 @@ fn flights_allocate_nothing_while_they_fly() {
         };
         assert_eq!(count(8.0), count(4.0));
     }
+}
+
+#[test]
+fn an_aircraft_that_is_not_what_is_required_fails_every_controller() {
+    let asked = "\n[[requirement]]\nmeasure = \"phugoid_damping\"\nleast = 0.99\n";
+    let flights = alone(template(&format!("{STEP}{asked}")).study());
+    assert_eq!(flights.len(), 3);
+    assert!(flights.iter().all(FlightResult::is_failed), "{flights:?}");
+}
+
+/// It counted as well where nothing was asked of it.
+#[test]
+fn a_flight_that_does_not_settle_has_failed_where_nothing_is_required() {
+    let short = template(STEP).with(&[(&path("loop.duration_s"), NewValue::Number(2.0))]);
+    let flights = alone(&short.expect("a scenario"));
+    for flight in &flights {
+        assert!(flight.is_failed(), "{flight:?}");
+        assert_eq!(flight.reasons(), ["not settled within 2 s"]);
+    }
+    let asked = format!("{STEP}\n[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 99.0\n");
+    let short = template(&asked).with(&[(&path("loop.duration_s"), NewValue::Number(2.0))]);
+    let flights = alone(&short.expect("a scenario"));
+    assert!(flights.iter().all(|flight| !flight.is_failed() && flight.reasons().is_empty()));
 }

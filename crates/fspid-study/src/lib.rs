@@ -28,6 +28,7 @@ pub mod report;
 pub mod reproduce;
 pub mod requirement;
 pub mod rows;
+pub mod shell;
 pub mod simulation;
 pub mod tune;
 pub mod units;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 /// A file or folder that could not be written. Nothing at the path has changed.
@@ -16,18 +16,24 @@ pub struct OutputError {
 
 impl fmt::Display for OutputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "cannot write {}: ", self.path.display())?;
-        // The system's own words would name the new file beside it, which nobody knows.
-        match self.reason.kind() {
-            io::ErrorKind::StorageFull => f.write_str("the disk is full")?,
-            io::ErrorKind::NotFound => f.write_str("its folder does not exist")?,
-            io::ErrorKind::PermissionDenied => f.write_str("permission denied")?,
-            io::ErrorKind::ReadOnlyFilesystem => f.write_str("the file system is read-only")?,
-            io::ErrorKind::IsADirectory => f.write_str("it is a folder")?,
-            _ => write!(f, "{}", self.reason)?,
-        }
-        f.write_str("; nothing there was changed")
+        let reason = in_words(&self.reason);
+        write!(f, "cannot write {}: {reason}; nothing there was changed", self.path.display())
     }
+}
+
+/// Why a file could not be written; the system's own words would name the new file beside it, which
+/// nobody knows.
+#[must_use]
+pub fn in_words(reason: &io::Error) -> String {
+    match reason.kind() {
+        io::ErrorKind::StorageFull => "the disk is full",
+        io::ErrorKind::NotFound => "its folder does not exist",
+        io::ErrorKind::PermissionDenied => "permission denied",
+        io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
+        io::ErrorKind::IsADirectory => "it is a folder",
+        _ => return reason.to_string(),
+    }
+    .to_owned()
 }
 
 impl std::error::Error for OutputError {}
@@ -37,37 +43,59 @@ impl std::error::Error for OutputError {}
 /// # Errors
 /// [`OutputError`] with the path; an existing file is then as it was.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
+    write_by(path, |file| {
+        file.write_all(contents.as_ref())
+            .map_err(|reason| OutputError { path: path.to_owned(), reason })
+    })
+}
+
+/// As [`write`], of what a function writes piece by piece. Nothing there is changed where it fails.
+///
+/// # Errors
+/// The function's own, and [`OutputError`].
+pub fn write_by<T, E: From<OutputError>>(
+    path: &Path,
+    contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, E>,
+) -> Result<T, E> {
     let failed = |reason| OutputError { path: path.to_owned(), reason };
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
     if path.is_dir() {
-        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
+        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")).into());
     }
     // A device or pipe is written as it is: it has nothing that could be lost.
     if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
-        return File::options()
-            .write(true)
-            .open(path)
-            .and_then(|mut file| file.write_all(contents.as_ref()))
-            .map_err(failed);
+        let file = File::options().write(true).open(path).map_err(failed)?;
+        return filled(&file, contents, failed);
     }
-    new_file_in(folder)
-        .and_then(|mut file| {
-            file.write_all(contents.as_ref())?;
-            file.as_file().sync_all()?;
-            file.persist(path).map_err(|error| error.error)?;
-            // The rename itself; not every file system knows how, and the file is safe without.
-            let _ = File::open(folder).and_then(|folder| folder.sync_all());
-            Ok(())
-        })
-        .map_err(failed)
+    let file = new_file_in(folder).map_err(failed)?;
+    let answer = filled(file.as_file(), contents, failed)?;
+    file.as_file().sync_all().map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    // The rename itself; not every file system knows how, and the file is safe without.
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    Ok(answer)
 }
+
+fn filled<T, E: From<OutputError>>(
+    file: &File,
+    contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, E>,
+    failed: impl Fn(io::Error) -> OutputError,
+) -> Result<T, E> {
+    let mut buffered = BufWriter::new(file);
+    let answer = contents(&mut buffered)?;
+    buffered.flush().map_err(failed)?;
+    Ok(answer)
+}
+
+/// What the names of files begin with until they are whole.
+pub const UNFINISHED: &str = ".fspid-";
 
 fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".fspid-");
+    builder.prefix(UNFINISHED);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;

@@ -16,11 +16,11 @@ pub use rates::Rates;
 pub use work::{SCENARIO, Work};
 
 use fspid_sim::batch::InstructionSet;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use sha2::{Digest as _, Sha256};
+use rayon::ThreadPool;
 
-use crate::error::CampaignError;
+use crate::local::pool;
 use crate::plan::Plan;
+use crate::table::Digest;
 use clock::timed;
 
 /// How long to measure.
@@ -160,14 +160,9 @@ impl Bench {
             effort,
             threads: all.current_num_threads(),
             measurements: measurements.collect(),
-            digest: digest(answers.iter().flatten()),
+            digest: Digest::of_texts(answers.iter().flatten().map(String::as_str)).to_string(),
         })
     }
-}
-
-fn pool(threads: usize) -> Result<ThreadPool, CampaignError> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|error| CampaignError::Threads(error.to_string()))
 }
 
 /// Does a round of a kind of work and answers its rate, 1/s.
@@ -194,7 +189,7 @@ fn measure(
         Kind::Flights => {
             let (table, time_s) = timed(|| pool.install(|| work.fly(flights)));
             let first = table?.slice(0..usize::try_from(effort.flights).unwrap_or(0))?;
-            (vec![crate::table::Digest::of(&first).to_string()], time_s)
+            (vec![Digest::of(&first).to_string()], time_s)
         }
     };
     for answer in &answers {
@@ -231,15 +226,6 @@ fn differs(what: &'static str, expected: &str, found: &str) -> Result<(), BenchE
         return Ok(());
     }
     Err(BenchError::Differs { what, expected: expected.to_owned(), found: found.to_owned() })
-}
-
-fn digest<'a>(answers: impl Iterator<Item = &'a String>) -> String {
-    let mut hasher = Sha256::new();
-    for answer in answers {
-        hasher.update((answer.len() as u64).to_le_bytes());
-        hasher.update(answer.as_bytes());
-    }
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -35,8 +35,8 @@ pub struct FlightResult {
     pub faults: Faults,
     /// When an aircraft first left the range of its model, if it did.
     pub exit: Option<Exit>,
-    /// The requirements that concern it, in the order of the study; those of the aircraft alone stand
-    /// with the first controller.
+    /// The requirements that concern it, in the order of the study; those of the aircraft alone concern
+    /// every controller.
     pub judgements: Vec<Judgement>,
 }
 
@@ -104,15 +104,12 @@ fn measure(
         Ok(ControllerResult { name: named.name.clone(), trace, metrics })
     });
     let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
-    let mut judgements = judge(study, &results);
-    let mut first = true;
+    let judgements = judge(study, &results);
     let flights = results.into_iter().map(|result| {
-        let is_mine = |judgement: &Judgement| {
-            judgement.controller == result.name || (first && judgement.is_of_aircraft())
+        let concerns = |judgement: &&Judgement| {
+            judgement.controller == result.name || judgement.is_of_aircraft()
         };
-        let (mine, others) = std::mem::take(&mut judgements).into_iter().partition(is_mine);
-        judgements = others;
-        first = false;
+        let mine = judgements.iter().filter(concerns).cloned().collect();
         flight(memory, result, mine, scenario.timing.dt_s())
     });
     Ok(flights.collect())
@@ -149,12 +146,24 @@ impl FlightResult {
         }
     }
 
+    /// True for a flight that has [`reasons`](Self::reasons) to be called failed.
+    #[must_use]
+    pub fn is_failed(&self) -> bool {
+        self.is_lost() || self.judgements.iter().any(|judgement| !judgement.met)
+    }
+
+    /// A loop that diverged or is unstable; where nothing is required of it, also one that did not settle.
+    fn is_lost(&self) -> bool {
+        let verdict = self.metrics.verdict;
+        if self.judgements.is_empty() { !verdict.is_good() } else { verdict.is_failure() }
+    }
+
     /// Why the flight counts as failed: a loop that diverged or is unstable, requirements that are not
-    /// met. Empty for a flight that is well.
+    /// met; where nothing is required of the controller, a step that it did not settle. Empty for a flight
+    /// that is well.
     #[must_use]
     pub fn reasons(&self) -> Vec<String> {
-        let verdict = &self.metrics.verdict;
-        let lost = verdict.is_failure().then(|| verdict.to_string());
+        let lost = self.is_lost().then(|| self.metrics.verdict.to_string());
         let unmet = self.judgements.iter().filter(|judgement| !judgement.met).map(|judgement| {
             let requirement = &judgement.requirement;
             format!(

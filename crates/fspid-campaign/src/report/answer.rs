@@ -51,7 +51,7 @@ pub(super) fn items(source: &Source<'_>) -> Vec<Item> {
         "failing",
         failing(source),
         format!(
-            "Probability that a flight fails: estimates with their exact {} intervals (Clopper and Pearson); where none failed, up to the one-sided bound. A flight fails if it diverges, if its loop is unstable, if a requirement is not met, or if its numbers make no scenario.",
+            "Probability that a flight fails: estimates with their exact {} intervals (Clopper and Pearson); where none failed, up to the one-sided bound. A flight fails if it diverges, if its loop is unstable, if a requirement is not met, or if its numbers make no scenario; where nothing is required of its controller, also if it does not settle.",
             percent(summary.head.confidence)
         ),
     )];
@@ -64,7 +64,7 @@ pub(super) fn items(source: &Source<'_>) -> Vec<Item> {
         }
     } else {
         items.push(Item::Text(
-            "The scenario has no requirements: a flight fails if it diverges or its loop is unstable.".to_owned(),
+            "The scenario has no requirements: a flight fails if it diverges, if it does not settle, or if its loop of fixed gains is unstable.".to_owned(),
         ));
     }
     items

@@ -1,9 +1,10 @@
 //! Which campaign it is, and how it is made again.
 
 use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item};
+use fspid_study::shell;
 
 use super::Source;
-use super::words::{count, cut, quoted};
+use super::words::{count, cut};
 use crate::plan::Plan;
 
 /// Longest text of a scenario that is shown whole, in bytes: beyond, a page would be longer than its figures.
@@ -58,13 +59,13 @@ pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
 /// The commands that make the file and the page again.
 pub(super) fn commands(source: &Source<'_>) -> String {
     let head = &source.summary.head;
-    let folder = quoted(source.folder);
+    let folder = shell::word(source.folder);
     let set: String =
-        head.changes.iter().map(|change| format!(" --set {}", quoted(change))).collect();
+        head.changes.iter().map(|change| format!(" --set {}", shell::word(change))).collect();
     let (runs, seed, sampling) = (head.runs, head.seed, head.sampling.name());
     format!(
         "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {} --out campaign.html",
-        quoted(&format!("{}/campaign.parquet", source.folder))
+        shell::word(&format!("{}/campaign.parquet", source.folder))
     )
 }
 

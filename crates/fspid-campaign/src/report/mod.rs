@@ -102,7 +102,7 @@ impl Source<'_> {
 
     /// The command that flies a run again.
     fn replay(&self, run: u64) -> String {
-        let folder = words::quoted(self.folder);
+        let folder = fspid_study::shell::word(self.folder);
         format!("fspid campaign replay {folder} --run {run} --trace run-{run}.csv")
     }
 

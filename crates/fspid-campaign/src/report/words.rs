@@ -29,13 +29,6 @@ pub(super) fn probability(found: &Probability, confidence: f64) -> String {
     words.split_once(": ").map_or("not judged", |(_, sure)| sure).to_owned()
 }
 
-/// A word as a shell takes it.
-pub(super) fn quoted(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,[]".contains(c);
-    let bare = !text.is_empty() && text.chars().all(plain) && !text.contains('[');
-    if bare { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
-}
-
 /// At most so many characters, with an ellipsis where some are left out.
 pub(super) fn cut(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
@@ -101,15 +94,6 @@ mod tests {
         };
         assert_eq!(words(0, 3000), "at most 0.10 % (95 %)");
         assert_eq!(words(0, 0), "not judged");
-    }
-
-    #[test]
-    fn folders_and_changes_pass_through_a_shell() {
-        assert_eq!(quoted("out/robust-1"), "out/robust-1");
-        assert_eq!(quoted("it's here"), "'it'\\''s here'");
-        assert_eq!(quoted("a;rm -rf *"), "'a;rm -rf *'");
-        assert_eq!(quoted(""), "''");
-        assert_eq!(quoted("plant.numerator[0]=1.0"), "'plant.numerator[0]=1.0'");
     }
 
     #[test]

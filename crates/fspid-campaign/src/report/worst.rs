@@ -64,5 +64,6 @@ fn severity(run: &FailedRun) -> String {
         (Severity::Unstable, _) => "unstable loop".to_owned(),
         (Severity::Refused, _) => "no scenario".to_owned(),
         (Severity::RequirementsNotMet, _) => "requirements not met".to_owned(),
+        (Severity::NotSettled, _) => "not settled".to_owned(),
     }
 }

@@ -1,5 +1,6 @@
 //! The parts of a summary, as plain data.
 
+pub use crate::rows::Bad;
 use crate::sample::Sampling;
 use crate::statistics::quantile::Interval;
 use crate::statistics::rank::Correlation;
@@ -189,15 +190,6 @@ pub struct MeasureSummary {
     pub is_event: bool,
 }
 
-/// Which values of a measure are bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bad {
-    /// High ones, as of overshoot.
-    High,
-    /// Low ones, as of a margin.
-    Low,
-}
-
 /// A value and the run that it is from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
@@ -244,6 +236,8 @@ pub enum Severity {
     Refused,
     /// Requirements are not met.
     RequirementsNotMet,
+    /// Nothing is required, and a step was not settled.
+    NotSettled,
 }
 
 /// What something depends on.
@@ -288,6 +282,12 @@ pub enum Note {
     RunsNotIndependent {
         /// How the points were chosen.
         sampling: Sampling,
+    },
+    /// Nothing is required of a controller: its flights fail where they diverge or do not settle, and
+    /// nobody asked whether a self-tuning loop is stable at rest.
+    NothingRequired {
+        /// Name of the controller.
+        controller: String,
     },
     /// On a Sobol' sequence the correction of shares takes off too much where nothing else than parameters differs:
     /// the truth lies between [`Share::fraction`] and [`Share::uncorrected`].

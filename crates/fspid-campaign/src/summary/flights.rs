@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::data::{FailedRun, Severity, VerdictCount};
-use super::source::{DIVERGED_AT, Source};
+use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
-use crate::rows::{CONTROLLER, FAILED, REASONS, REFUSED, RUN, VERDICT};
+use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, REASONS, REFUSED, RUN, VERDICT};
 use crate::table::{Kind, Table, TableError, Values};
 
 /// Verdicts from good to bad.
@@ -139,6 +139,10 @@ impl Flights {
             "diverged" => Severity::Diverged,
             "unstable" => Severity::Unstable,
             REFUSED => Severity::Refused,
+            // Alone among the reasons where nothing is required, and never among those of requirements.
+            verdict @ "not settled" if ending.reasons.is_some_and(|it| it.starts_with(verdict)) => {
+                Severity::NotSettled
+            }
             _ => Severity::RequirementsNotMet,
         };
         let at_s = |at_s: Option<f64>| at_s.unwrap_or(f64::INFINITY);

@@ -221,6 +221,7 @@ fn note(it: &Note) -> Value {
     let more = match it {
         Note::RunsNotIndependent { sampling } => vec![("sampling", json!(sampling.name()))],
         Note::SharesOvercorrected => Vec::new(),
+        Note::NothingRequired { controller } => vec![("controller", json!(controller))],
         Note::FirstRunsOnly { used, of } => vec![("runs_used", json!(used)), ("runs", json!(of))],
         Note::Missing { controller, measures } | Note::NotFinite { controller, measures } => {
             vec![("controller", json!(controller)), ("measures", counted(measures))]

@@ -107,6 +107,10 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
     }
     for controller in controllers {
         let name = || controller.name.clone();
+        let judged: u64 = controller.requirements.iter().map(|it| it.not_met.of).sum();
+        if judged == 0 && controller.refused.count < head.runs {
+            notes.push(Note::NothingRequired { controller: name() });
+        }
         let of = |number: fn(&MeasureSummary) -> u64| -> Vec<(String, u64)> {
             let counts = controller.measures.iter().map(|it| (it.name.clone(), number(it)));
             counts.filter(|(_, number)| *number > 0).collect()

@@ -2,37 +2,16 @@
 
 use std::cmp::Ordering;
 
-use super::data::{Bad, Extreme, Limits, MeasureSummary, QuantileSummary};
-use super::source::{DIVERGED_AT, Source};
+use super::data::{Extreme, Limits, MeasureSummary, QuantileSummary};
+use super::source::Source;
 use super::{EXTREMES, QUANTILES, SENSITIVITY_RUNS, SummaryError};
+use crate::rows::{Bad, DIVERGED_AT, LEFT_VALIDITY_AT, bad_side};
 use crate::statistics::quantile::{interval, quantile};
 use crate::statistics::{Histogram, Moments, Sorted, StatisticsError};
 use crate::table;
 
 /// Times of what is not to happen.
-const EVENTS: [&str; 2] = [DIVERGED_AT, "left_validity_at_s"];
-
-/// Measures of which high values are bad, whatever is asked. The others are bad on both sides or on none.
-const HIGH_IS_BAD: [&str; 18] = [
-    "rise_time_s",
-    "settling_time_s",
-    "transient_time_s",
-    "overshoot_pct",
-    "undershoot_pct",
-    "iae_deg_s",
-    "itae_deg_s2",
-    "ise_deg2_s",
-    "itse_deg2_s2",
-    "rms_error_deg",
-    "largest_error_deg",
-    "command_variation_deg",
-    "largest_command_deg",
-    "command_rate_deg_s",
-    "elevator_travel_deg",
-    "largest_elevator_deg",
-    "elevator_rate_deg_s",
-    "saturated_pct",
-];
+const EVENTS: [&str; 2] = [DIVERGED_AT, LEFT_VALIDITY_AT];
 
 /// Beyond so many distances of the quartiles from the quartiles, a histogram only counts. Of normal values that is
 /// beyond 7 standard deviations; of a few flights that all but diverged, it keeps the others from being one bar.
@@ -144,25 +123,16 @@ fn histogram(sorted: &Sorted) -> Option<Histogram> {
 
 fn bad(name: &str, limits: Option<Limits>) -> Option<Bad> {
     match limits {
-        _ if EVENTS.contains(&name) => Some(Bad::Low),
-        _ if HIGH_IS_BAD.contains(&name) => Some(Bad::High),
+        _ if name == DIVERGED_AT => Some(Bad::Low),
         Some(Limits { least: Some(_), most: None }) => Some(Bad::Low),
         Some(Limits { least: None, most: Some(_) }) => Some(Bad::High),
-        _ => None,
+        _ => bad_side(name),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_name_whose_bad_side_is_known_is_that_of_a_column() {
-        let known: Vec<&str> = crate::rows::measure_names().map(|(name, _)| name).collect();
-        for name in HIGH_IS_BAD.iter().chain(EVENTS.iter().filter(|name| **name != DIVERGED_AT)) {
-            assert!(known.contains(name), "{name}");
-        }
-    }
 
     #[test]
     fn equal_extremes_are_those_of_the_first_runs() {

@@ -37,7 +37,7 @@ fn tallies(source: &Source, asked: &Asked) -> Result<Vec<Tally>, SummaryError> {
         for (met, value) in booleans(&table, &met)?.iter().zip(table.floats(&value)?) {
             if let Some(tally) = tallies.get_mut(row % of_run) {
                 tally.add(*met, *value);
-                tally.keep(asked.limits, value.map(|value| ((row / of_run) as u64, value)));
+                tally.keep(asked, value.map(|value| ((row / of_run) as u64, value)));
             }
             row += 1;
         }
@@ -57,14 +57,14 @@ impl Tally {
     }
 
     /// Keeps a value if it is worse than those so far.
-    fn keep(&mut self, limits: Limits, found: Option<(u64, f64)>) {
+    fn keep(&mut self, asked: &Asked, found: Option<(u64, f64)>) {
         let Some((run, value)) = found else {
             return;
         };
-        let Some(outside) = limits.outside(value) else {
+        let Some(outside) = asked.outside(value) else {
             return;
         };
-        let before = self.worst.and_then(|worst| limits.outside(worst.value));
+        let before = self.worst.and_then(|worst| asked.outside(worst.value));
         if before.is_none_or(|before| outside > before) {
             self.worst = Some(Extreme { run, value });
         }

@@ -2,18 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use fspid_study::metrics::Measure;
 use serde_json::Value;
 
 use super::data::{Head, Limits, Parameter};
 use super::{NotMerged, SummaryError, SummarySettings};
 use crate::merge::PLAN_KEY;
-use crate::rows::{CONTROLLER, FAILED, PARAMETER, REASONS, REQUIREMENT, RUN, VERDICT};
+use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, PARAMETER, REASONS, REQUIREMENT, RUN, VERDICT};
 use crate::sample::Sampling;
 use crate::shard::{CAMPAIGN_KEY, PROGRAM_KEY};
 use crate::table::{Column, Kind, Reader, Table, Values};
 
-/// Column of the time at which a flight diverged.
-pub(super) const DIVERGED_AT: &str = "diverged_at_s";
 /// Ends of the names of a requirement's columns.
 const VALUE: &str = ".value";
 const MET: &str = ".met";
@@ -39,6 +38,12 @@ impl Asked {
     /// Name of the column of what was found.
     pub(super) fn value(&self) -> String {
         format!("{REQUIREMENT}{}{VALUE}", self.id)
+    }
+
+    /// How far a value is outside of the limits, as requirements are judged.
+    pub(super) fn outside(&self, value: f64) -> Option<f64> {
+        let measure = Measure::from_name(&self.measure);
+        self.limits.outside(measure.map_or(value, |measure| measure.compared(value)))
     }
 
     /// Name of the column of whether that is enough.
@@ -227,6 +232,20 @@ mod tests {
         assert_eq!(read("0.1 to 2"), (Some(0.1), Some(2.0)));
         assert_eq!(read("stable"), (None, None));
         assert_eq!(read(""), (None, None));
+    }
+
+    /// An error that is left below the set-point is negative, and was the best of all.
+    #[test]
+    fn an_error_that_is_left_is_as_bad_below_as_above() {
+        let asked = |measure: &str| Asked {
+            id: String::new(),
+            measure: measure.to_owned(),
+            unit: "%".to_owned(),
+            required: String::new(),
+            limits: Limits { least: None, most: Some(2.0) },
+        };
+        assert_eq!(asked("final_error_pct").outside(-50.0), Some(48.0));
+        assert_eq!(asked("overshoot_pct").outside(-50.0), Some(-52.0));
     }
 
     #[test]

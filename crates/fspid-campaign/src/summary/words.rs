@@ -111,6 +111,7 @@ impl Severity {
             Self::Unstable => "unstable",
             Self::Refused => "refused",
             Self::RequirementsNotMet => "requirements not met",
+            Self::NotSettled => "not settled",
         }
     }
 }
@@ -121,6 +122,7 @@ impl Note {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::RunsNotIndependent { .. } => "runs-not-independent",
+            Self::NothingRequired { .. } => "nothing-required",
             Self::SharesOvercorrected => "shares-overcorrected",
             Self::FirstRunsOnly { .. } => "first-runs-only",
             Self::Missing { .. } => "missing",
@@ -147,6 +149,11 @@ impl fmt::Display for Note {
                      then usually too wide, which is not guaranteed."
                 )
             }
+            Self::NothingRequired { controller } => write!(
+                f,
+                "{controller}: nothing is required of it. Its flights fail where they diverge or do not settle, or \
+                 where a loop of fixed gains is unstable; of gains that move, ask `measure = \"stable\"`."
+            ),
             Self::SharesOvercorrected => f.write_str(
                 "Shares of the variance are corrected as for independent runs, which takes off too much on a \
                  Sobol' sequence: the truth lies between the corrected and the uncorrected share.",

@@ -41,11 +41,14 @@ impl Digest {
 
     /// The digest of metadata: each key and value with its length.
     pub(super) fn of_metadata(metadata: &[(String, String)]) -> Self {
+        Self::of_texts(metadata.iter().flat_map(|(key, value)| [key.as_str(), value.as_str()]))
+    }
+
+    /// The digest of some texts, each with its length.
+    #[must_use]
+    pub fn of_texts<'a>(texts: impl IntoIterator<Item = &'a str>) -> Self {
         let mut bytes = Vec::new();
-        for (key, value) in metadata {
-            put_text(&mut bytes, key);
-            put_text(&mut bytes, value);
-        }
+        texts.into_iter().for_each(|text| put_text(&mut bytes, text));
         Self(Sha256::digest(&bytes).into())
     }
 

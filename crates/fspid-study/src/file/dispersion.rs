@@ -5,7 +5,7 @@ use crate::dispersion::{
     Uniform,
 };
 use crate::file::document::{Item, Value};
-use crate::file::problem::{Problem, Problems};
+use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::dispersion::{
@@ -311,23 +311,26 @@ impl Template {
     /// # Errors
     /// Everything that is wrong then, each with the value that made it so.
     pub fn check_dispersions(&self) -> Result<Vec<Vec<f64>>, Problems> {
-        let mut problems = Vec::new();
+        let mut report = self.report();
         let mut nominal = Vec::new();
         for (index, dispersion) in self.study().dispersions.iter().enumerate() {
-            let place = format!("dispersion[{index}]");
-            match self.nominal(dispersion) {
+            let path = format!("dispersion[{index}]");
+            let wrong = match self.nominal(dispersion) {
                 Ok(numbers) => {
-                    problems.extend(self.at_ends(dispersion, &numbers, &place));
+                    let wrong = self.at_ends(dispersion, &numbers);
                     nominal.push(numbers);
+                    wrong
                 }
-                Err(path) => problems.push(problem(
-                    &place,
+                Err(path) => Some((
                     format!("there is no number at `{path}` that a factor could go with"),
                     "a path to a number that is written in the scenario or in a file that it names; or relative = false",
                 )),
+            };
+            if let Some((message, allowed)) = wrong {
+                report.missing(self.place_of(&path), &path, message, allowed);
             }
         }
-        if problems.is_empty() { Ok(nominal) } else { Err(Problems::new(self.name(), problems, 0)) }
+        report.finish(self.name()).map(|_| nominal)
     }
 
     /// The numbers at all paths of a relative dispersion, or the path without one.
@@ -341,7 +344,8 @@ impl Template {
         paths.map(number).collect()
     }
 
-    fn at_ends(&self, dispersion: &Dispersion, nominal: &[f64], place: &str) -> Option<Problem> {
+    /// What is wrong at an end of what is drawn, and what would be right.
+    fn at_ends(&self, dispersion: &Dispersion, nominal: &[f64]) -> Option<(String, &'static str)> {
         for drawn in dispersion.ends() {
             let values = dispersion.values(&drawn, nominal);
             let shown: Vec<String> =
@@ -351,11 +355,11 @@ impl Template {
                 Err(problems) => {
                     let message = format!("{shown} is not allowed: {}", problems.first_in_a_line());
                     let allowed = "limits (`lower`, `upper`) within what the scenario allows";
-                    return Some(problem(place, message, allowed));
+                    return Some((message, allowed));
                 }
                 Ok(study) if !same_shape(self.study(), &study) => {
                     let message = format!("{shown} changes the controllers");
-                    return Some(problem(place, message, "numbers and names of what flies"));
+                    return Some((message, "numbers and names of what flies"));
                 }
                 Ok(_) => {}
             }
@@ -370,16 +374,4 @@ fn same_shape(one: &crate::file::Study, other: &crate::file::Study) -> bool {
         study.scenario.controllers.iter().map(|named| named.name.clone()).collect()
     };
     names(one) == names(other)
-}
-
-fn problem(path: &str, message: String, allowed: &str) -> Problem {
-    Problem {
-        origin: None,
-        path: path.to_owned(),
-        line: 1,
-        column: 1,
-        message,
-        found: String::new(),
-        allowed: allowed.to_owned(),
-    }
 }

@@ -134,6 +134,20 @@ impl Template {
         &self.study
     }
 
+    /// A report of its own about the texts that were read.
+    pub(super) fn report(&self) -> Report {
+        self.report.clone()
+    }
+
+    /// Where a part of the scenario stands; its beginning if it is not there.
+    pub(super) fn place_of(&self, path: &str) -> Place {
+        let steps = overrides::steps(path).unwrap_or_default();
+        match overrides::find(&self.document, &steps, "") {
+            Found::Here(item) => item.place,
+            _ => self.document.place,
+        }
+    }
+
     /// What the scenario is called in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name

@@ -225,6 +225,13 @@ impl Measure {
         Self::ALL.into_iter().find(|measure| measure.name() == name)
     }
 
+    /// What of a value is compared with limits: of the error that is left its size, of everything else
+    /// the value itself.
+    #[must_use]
+    pub fn compared(self, value: f64) -> f64 {
+        if self == Self::FinalError { value.abs() } else { value }
+    }
+
     /// Its value for one step, or why there is none; only what the paper claims is measured of a step alone.
     ///
     /// # Errors

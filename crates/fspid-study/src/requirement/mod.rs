@@ -64,7 +64,7 @@ impl Requirement {
     /// True for a value within the limits; false for NaN.
     #[must_use]
     pub fn is_met_by(&self, value: f64) -> bool {
-        let value = self.compared(value);
+        let value = self.measure.compared(value);
         let above = self.least.is_none_or(|least| value >= least);
         let below = self.most.is_none_or(|most| value <= most);
         above && below && !value.is_nan()
@@ -73,18 +73,13 @@ impl Requirement {
     /// How far within the limits a value is; negative outside.
     #[must_use]
     pub fn slack(&self, value: f64) -> f64 {
-        let value = self.compared(value);
+        let value = self.measure.compared(value);
         let above = self.least.map(|least| value - least);
         let below = self.most.map(|most| most - value);
         above
             .into_iter()
             .chain(below)
             .fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
-    }
-
-    /// The error that is left counts by its size; everything else as it is.
-    fn compared(&self, value: f64) -> f64 {
-        if self.measure == Measure::FinalError { value.abs() } else { value }
     }
 
     /// The limits in words, with the unit: "at least 45 deg", "0.3 to 2".

@@ -6,6 +6,7 @@ use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
 use crate::metrics::{Family, Measure};
 use crate::requirement::{Judgement, Origin, set};
+use crate::shell;
 
 /// Width of a paragraph in characters.
 const WIDTH: usize = 100;
@@ -49,7 +50,7 @@ impl Verification {
         for (index, row) in rows.iter().enumerate() {
             push(&mut out, &columns(row, &widths));
             if let Some(replay) = replays.and_then(|replays| replays.get(index)) {
-                push(&mut out, &format!("      replay: fspid verify {}", shell_word(replay)));
+                push(&mut out, &format!("      replay: fspid verify {}", shell::word(replay)));
             }
         }
         out
@@ -195,16 +196,6 @@ fn visible(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// A path that a shell takes as one word.
-fn shell_word(path: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./\\:".contains(c);
-    if path.chars().all(is_plain) {
-        path.to_owned()
-    } else {
-        format!("'{}'", path.replace('\'', "'\\''"))
-    }
-}
-
 /// A text in lines that are not too long, with a mark before it.
 fn paragraph(text: &str) -> String {
     let mut out = String::from("- ");
@@ -236,8 +227,8 @@ mod tests {
 
     #[test]
     fn a_path_with_blanks_or_quotes_is_one_word_for_a_shell() {
-        assert_eq!(shell_word("a/b-1.toml"), "a/b-1.toml");
-        assert_eq!(shell_word("a b/it's.toml"), "'a b/it'\\''s.toml'");
+        assert_eq!(shell::word("a/b-1.toml"), "a/b-1.toml");
+        assert_eq!(shell::word("a b/it's.toml"), "'a b/it'\\''s.toml'");
     }
 
     #[test]

@@ -91,6 +91,9 @@ fn a_dispersion_that_would_make_the_scenario_wrong_is_found_before_a_campaign() 
     let normal = "path = \"actuator.time_constant_s\"\ndistribution = \"normal\"\nmean = 0.1\nstandard_deviation = 0.05";
     let problems = template(normal).check_dispersions().expect_err("negative times").to_string();
     assert!(problems.contains("dispersion[0]: actuator.time_constant_s=-0.0"), "{problems}");
+    let line =
+        scenario(normal).lines().position(|line| line == "[[dispersion]]").expect("there") + 1;
+    assert!(problems.starts_with(&format!("x.toml:{line}:")), "its own line {line}: {problems}");
     assert!(problems.contains("`lower`, `upper`"), "{problems}");
     let cut = format!("{normal}\nlower = 0.01");
     assert_eq!(template(&cut).check_dispersions(), Ok(vec![Vec::new()]));
