@@ -41,7 +41,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     }
     let unstable = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
     match (unstable, found.plants.len()) {
-        (0, _) if found.has_poor_margins() => format!("stable, {POOR_MARGINS} {gains}"),
+        (0, _) if found.has_poor_margins() => format!("stable {gains}; {POOR_MARGINS}"),
         (0, _) => format!("stable {gains}"),
         (_, 1) => format!("UNSTABLE {gains}"),
         (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}"),

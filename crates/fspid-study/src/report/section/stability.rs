@@ -61,7 +61,7 @@ fn row(
 ) -> Vec<Cell> {
     let margin = |of: &dyn Fn(&Margins) -> f64, decimals, least| match analysed.margins() {
         Ok(margins) if of(&margins) < least => {
-            Cell { class: "unmet", ..Cell::number(fixed(of(&margins), decimals)) }
+            Cell { class: "number unmet", ..Cell::number(fixed(of(&margins), decimals)) }
         }
         Ok(margins) if of(&margins).is_finite() => Cell::number(fixed(of(&margins), decimals)),
         Ok(_) => Cell { class: "absent", ..Cell::text("without end") },
