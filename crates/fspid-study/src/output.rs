@@ -49,7 +49,7 @@ pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError>
     })
 }
 
-/// As [`write`], of what a function writes piece by piece. Nothing there is changed where it fails.
+/// As [`write()`], of what a function writes piece by piece. Nothing there is changed where it fails.
 ///
 /// # Errors
 /// The function's own, and [`OutputError`].
