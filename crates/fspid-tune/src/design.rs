@@ -42,10 +42,10 @@ pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneErr
     Ok(())
 }
 
-/// True for a text with a list of changes of its own.
+/// True for a text with a list of changes of its own, which stands before its first table.
 fn has_list(text: &str) -> bool {
-    text.lines()
-        .any(|line| line.trim_start().starts_with("set ") || line.trim_start().starts_with("set="))
+    let lines = text.lines().map(str::trim_start).take_while(|line| !line.starts_with('['));
+    lines.filter_map(|line| line.split_once('=')).any(|(key, _)| key.trim() == "set")
 }
 
 /// The scenario with the values of a point in place of its marks; `heading` comes first, as comments.

@@ -134,9 +134,19 @@ impl Problem {
         flights.iter().map(|mine| Score::over(mine, &weights, judged)).collect()
     }
 
+    /// Why flights of a candidate have no value, each with its case.
+    #[must_use]
+    pub fn reasons_of_loss(&self, point: &[f64]) -> Vec<String> {
+        self.reasons_where(point, |flight| flight.values.is_empty())
+    }
+
     /// Why flights of a candidate have no value or break requirements, each with its case.
     #[must_use]
     pub fn reasons(&self, point: &[f64]) -> Vec<String> {
+        self.reasons_where(point, |_| true)
+    }
+
+    fn reasons_where(&self, point: &[f64], tells: fn(&FlightScore) -> bool) -> Vec<String> {
         let flights = self.flown(std::slice::from_ref(&point.to_vec()));
         let mut told = Vec::new();
         for ((case, run), flight) in self.jobs().zip(flights.into_iter().flatten()) {
@@ -144,7 +154,9 @@ impl Problem {
                 1 => case.name.clone(),
                 _ => format!("{}, run {run}", case.name),
             };
-            told.extend(flight.reasons.iter().map(|reason| format!("    {which}: {reason}")));
+            if tells(&flight) {
+                told.extend(flight.reasons.iter().map(|reason| format!("    {which}: {reason}")));
+            }
         }
         told
     }

@@ -121,7 +121,7 @@ impl<'a> Search<'a> {
         let start = problem.space().start();
         let score = problem.scores(std::slice::from_ref(&start)).pop();
         let Some(score) = score.filter(|score| effort.anywhere || !score.values.is_empty()) else {
-            return Err(TuneError::Start { reasons: problem.reasons(&start) });
+            return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start) });
         };
         let running = started(problem, &effort, &start);
         let trials = vec![Trial { generation: 0, point: start, score }];

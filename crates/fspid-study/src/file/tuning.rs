@@ -8,6 +8,9 @@ use crate::file::section::Section;
 use crate::file::spec::FRONT;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
 
+/// Share of the flights that counts in a tail, unless another is asked for.
+const USUAL_SHARE: f64 = 0.2;
+
 /// The tuning of a scenario whose controllers have these names.
 pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> Option<Tuning> {
     check_controller(report, section, "controller", names);
@@ -30,7 +33,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
     }
     let over = match section.text("over")? {
         "worst" => Over::Worst,
-        "tail" => Over::Tail { share: section.number("share")? },
+        "tail" => Over::Tail { share: section.number("share").unwrap_or(USUAL_SHARE) },
         _ => Over::Mean,
     };
     if section.given("share") && !matches!(over, Over::Tail { .. }) {

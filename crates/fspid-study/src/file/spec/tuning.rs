@@ -57,11 +57,10 @@ pub(super) static TUNING: Table = plain(
             Default::Word("mean"),
             "What of the costs of all flights counts: their mean, the worst, or the mean of the worst `share`.",
         ),
-        defaulted(
+        optional(
             "share",
             Kind::Number { unit: "", range: Range::PositiveUpTo(1.0) },
-            Default::Number(0.2),
-            "Share of the flights that counts where `over` is \"tail\".",
+            "Share of the flights that counts where `over` is \"tail\"; 0.2 if left out.",
         ),
         RUNS,
         RUN_SEED,
