@@ -3,7 +3,7 @@
 use fspid_core::{Derivative, Gains, SetpointWeights, Shell};
 use fspid_sim::Scenario;
 
-use super::formula;
+use super::formula::{self, Computed};
 use super::isa::Isa;
 use super::model::{Fit, FittedModel, Model};
 use super::process::Process;
@@ -162,6 +162,7 @@ impl Work<'_> {
             starts.push(lqr::state_feedback(&fitted.model, weights)?);
         }
         starts.extend(ultimate.map(|point| lqr::calm_start(point.gain)));
+        starts.extend(lqr::damped_starts());
         let ([kp, ki, rate_gain_s], search) = lqr::least_cost(&self.process, weights, &starts)?;
         let shell = Shell {
             rate_gain_s,
@@ -183,7 +184,7 @@ impl Work<'_> {
     /// Gains of a formula, with set-point weight and filter.
     fn finished(
         self,
-        given: formula::Given,
+        given: Computed,
         identified: Identified,
         mut warnings: Vec<String>,
     ) -> Result<Derived, RuleError> {
@@ -217,7 +218,7 @@ impl Work<'_> {
     }
 }
 
-fn by_ultimate(rule: Rule, point: &UltimatePoint, form: Form) -> formula::Given {
+fn by_ultimate(rule: Rule, point: &UltimatePoint, form: Form) -> Computed {
     match rule {
         Rule::ZieglerNichols => formula::ziegler_nichols(point, form),
         _ => formula::tyreus_luyben(point, form),

@@ -104,6 +104,7 @@ fn model(fitted: &FittedModel) -> Value {
     json!({
         "equation": fitted.model.equation(),
         "parameters": parameters.collect::<Vec<_>>(),
+        "relative_dead_time": fitted.model.relative_dead_time(),
         "fitted_to": fitted.how,
         "fit_error": fitted.fit_error,
         "band_rad_s": fitted.band_rad_s,

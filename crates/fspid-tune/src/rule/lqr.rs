@@ -26,6 +26,9 @@ const DOUBLINGS: usize = 40;
 /// Share of the ultimate gain from which the search begins where the model's gains do not hold the loop.
 const CALM: [f64; 2] = [0.2, 0.02];
 
+/// Rate and proportional gains that are tried last, three a decade; the integral's is a tenth.
+const DAMPED: [f64; 10] = [0.03, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+
 /// How the least cost was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LqrSearch {
@@ -194,4 +197,9 @@ fn descend(
 pub(super) fn calm_start(ultimate_gain: f64) -> [f64; 3] {
     let [proportional, integral] = CALM;
     [proportional * ultimate_gain, integral * ultimate_gain, 0.0]
+}
+
+/// Gains with a rate loop, small ones first, for a loop that no proportional gain holds.
+pub(super) fn damped_starts() -> impl Iterator<Item = [f64; 3]> {
+    DAMPED.into_iter().map(|gain| [gain, 0.1 * gain, gain])
 }

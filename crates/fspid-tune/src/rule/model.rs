@@ -100,6 +100,15 @@ impl Model {
         }
     }
 
+    /// Relative dead time $L / (L + T)$ of a lag: 0 where the lag dominates, 1 where the dead time does.
+    #[must_use]
+    pub fn relative_dead_time(&self) -> Option<f64> {
+        match *self {
+            Self::Lag { time_s, dead_s, .. } => Some(dead_s / (dead_s + time_s)),
+            _ => None,
+        }
+    }
+
     /// Value at a frequency, rad/s.
     #[must_use]
     pub fn at(&self, omega_rad_s: f64) -> Complex {

@@ -174,7 +174,10 @@ fn push_model(out: &mut String, fitted: &FittedModel) {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         format!("{name} {value:.4}{unit}")
     });
-    let values = values.collect::<Vec<_>>().join(", ");
+    let mut values = values.collect::<Vec<_>>().join(", ");
+    if let Some(relative) = fitted.model.relative_dead_time() {
+        let _ = write!(values, "; L/(L + T) {relative:.3}");
+    }
     let [low, high] = fitted.band_rad_s;
     line(out, format_args!("  model              {}: {values}", fitted.model.equation()));
     line(
