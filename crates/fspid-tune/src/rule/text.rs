@@ -71,7 +71,12 @@ impl Design {
 
     fn push_gains(&self, out: &mut String) {
         let gains = self.gains;
-        let text = format!("kp {:.4}, ki {:.4} 1/s, kd {:.4} s", gains.kp, gains.ki, gains.kd);
+        let mut text = format!("kp {:.4}", gains.kp);
+        for (name, gain, unit) in [("ki", gains.ki, "1/s"), ("kd", gains.kd, "s")] {
+            if gain != 0.0 {
+                let _ = write!(text, ", {name} {gain:.4} {unit}");
+            }
+        }
         let isa = self.isa().filter(|_| self.form != Form::P);
         let times = isa.map_or(String::new(), |isa| {
             let derivative =
