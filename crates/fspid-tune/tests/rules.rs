@@ -376,6 +376,17 @@ fn an_aircraft_is_tuned_at_its_trim_and_its_relay_is_flown() {
 }
 
 #[test]
+fn a_relay_settles_behind_a_noisy_sensor_too() {
+    let study = parsed(include_str!("../../../scenarios/gallery/sensor-mems.toml"));
+    let found = made(&study, Rule::AutotuneRelay, &Options::default());
+    let exact = found.identified.ultimate.expect("an ultimate point");
+    let relay = found.identified.relay.expect("an experiment");
+    assert!(relay.cycles < 100, "{relay:?}");
+    assert!(close(relay.period_s, exact.period_s, 0.15), "{relay:?} {exact:?}");
+    assert!(found.warnings.iter().any(|it| it.contains("scatters")), "{:?}", found.warnings);
+}
+
+#[test]
 fn a_rate_loop_is_part_of_the_process_and_lets_the_rules_go_further() {
     let shell = Shell { rate_gain_s: 1.5, ..Shell::sampled_every(0.01) };
     let with = Options { shell: Some(shell), ..in_form(Form::Pi) };

@@ -117,6 +117,7 @@ fn relay(found: &RelayExperiment) -> Value {
         "hysteresis_deg": degrees(found.hysteresis_rad),
         "oscillation_deg": degrees(found.oscillation_rad),
         "offset_deg": degrees(found.offset_rad),
+        "scatter": found.scatter,
         "period_s": found.period_s,
         "cycles": found.cycles,
         "settled_s": found.settled_s,

@@ -12,8 +12,15 @@ use super::ultimate::UltimatePoint;
 
 /// Cycles that are averaged, and compared with as many before.
 const CYCLES: usize = 4;
+/// Of many cycles this share is averaged: noise of a sensor takes more than four to average out.
+const SHARE: usize = 4;
 /// Change of mean period and amplitude from one group to the next at which the oscillation has settled.
 const SETTLED: f64 = 0.005;
+/// After so many cycles noise keeps the means from settling any better, and a change within one standard error of the
+/// difference of two means is let pass.
+const PATIENCE: usize = 40;
+/// Scatter of the amplitude from cycle to cycle that is warned of.
+const SCATTER: f64 = 0.05;
 /// Share of half a period that the elevator may be on its way at its rate limit without being warned of.
 const TRAVEL: f64 = 0.1;
 /// Difference from the exact ultimate point that is warned of.
@@ -32,6 +39,8 @@ pub struct RelayExperiment {
     pub period_s: f64,
     /// How far the oscillation lies off zero, rad.
     pub offset_rad: f64,
+    /// Standard deviation of the amplitude from cycle to cycle, over its mean.
+    pub scatter: f64,
     /// Cycles until it had settled.
     pub cycles: usize,
     /// When, s.
@@ -54,6 +63,15 @@ impl Cycle {
     fn amplitude_rad(&self) -> f64 {
         0.5 * (self.highest_rad - self.lowest_rad)
     }
+}
+
+/// Means over the last cycles.
+#[derive(Clone, Copy)]
+struct Settled {
+    period_samples: f64,
+    amplitude_rad: f64,
+    middle_rad: f64,
+    scatter: f64,
 }
 
 /// The relay and what it has seen.
@@ -85,16 +103,34 @@ impl Relay {
     }
 
     /// Means of samples, amplitude and middle over the last cycles, if those before were the same.
-    fn settled(&self) -> Option<[f64; 3]> {
-        let recent = self.cycles.len().checked_sub(2 * CYCLES + 1)?;
+    fn settled(&self) -> Option<Settled> {
         // The first cycle begins at rest and is never compared.
-        let (before, last) = self.cycles.get(recent + 1..)?.split_at(CYCLES);
-        let [before, last] = [before, last].map(means);
-        let [period, amplitude, _] = last;
-        let same = (before[0] - period).abs() <= SETTLED * period
-            && (before[1] - amplitude).abs() <= SETTLED * amplitude;
-        same.then_some(last)
+        let (_, cycles) = self.cycles.split_first()?;
+        let group = CYCLES.max(cycles.len() / SHARE);
+        let recent = cycles.len().checked_sub(2 * group)?;
+        let (before, last) = cycles.get(recent..)?.split_at(group);
+        let (before, found) = (means(before), means(last));
+        let [period, amplitude, _] = found;
+        let scatter = scatter(last, amplitude);
+        let noise = scatter * (2.0 / group as f64).sqrt();
+        let change = if cycles.len() < PATIENCE { SETTLED } else { SETTLED.max(noise) };
+        let same = (before[0] - period).abs() <= change * period
+            && (before[1] - amplitude).abs() <= change * amplitude;
+        same.then(|| Settled {
+            period_samples: period,
+            amplitude_rad: amplitude,
+            middle_rad: found[2],
+            scatter,
+        })
     }
+}
+
+/// Standard deviation of the amplitude from cycle to cycle, over its mean.
+fn scatter(cycles: &[Cycle], mean_rad: f64) -> f64 {
+    let off = |cycle: &Cycle| {
+        (cycle.amplitude_rad() / mean_rad - 1.0) * (cycle.amplitude_rad() / mean_rad - 1.0)
+    };
+    (cycles.iter().map(off).sum::<f64>() / cycles.len().max(1) as f64).sqrt()
 }
 
 fn means(cycles: &[Cycle]) -> [f64; 3] {
@@ -130,8 +166,8 @@ pub(super) fn experiment(
         &prepared,
         |sample| relay.borrow_mut().answer(sample.measurement_rad),
         |instant| match relay.borrow().settled() {
-            Some(means) => {
-                found = Some((means, instant.k));
+            Some(settled) => {
+                found = Some((settled, instant.k));
                 ControlFlow::Break(())
             }
             None => ControlFlow::Continue(()),
@@ -141,16 +177,17 @@ pub(super) fn experiment(
         return Err(RuleError::RelayDiverged { at_s });
     }
     let cycles = relay.borrow().cycles.len();
-    let Some(([samples, oscillation_rad, offset_rad], k)) = found else {
+    let Some((settled, k)) = found else {
         return Err(RuleError::NoOscillation { longest_s, cycles });
     };
+    let oscillation_rad = settled.amplitude_rad;
     // Written so that NaN is refused.
     if !(oscillation_rad > hysteresis_rad) {
         let amplitude_rad = oscillation_rad;
         return Err(RuleError::RelayTooSmall { amplitude_rad, hysteresis_rad });
     }
     let along = (oscillation_rad * oscillation_rad - hysteresis_rad * hysteresis_rad).sqrt();
-    let period_s = samples * dt_s;
+    let period_s = settled.period_samples * dt_s;
     let gain = 4.0 * amplitude_rad / (PI * along);
     let lead_rad = libm::asin(hysteresis_rad / oscillation_rad);
     Ok(RelayExperiment {
@@ -158,7 +195,8 @@ pub(super) fn experiment(
         hysteresis_rad,
         oscillation_rad,
         period_s,
-        offset_rad,
+        offset_rad: settled.middle_rad,
+        scatter: settled.scatter,
         cycles,
         settled_s: k as f64 * dt_s,
         phase_deg: fspid_study::units::degrees(lead_rad) - 180.0,
@@ -205,6 +243,12 @@ impl RelayExperiment {
             warnings.push(format!(
                 "the elevator needs {travel_s:.3} s of each half period of {:.3} s to follow the relay: its rate limit is in the result",
                 0.5 * self.period_s
+            ));
+        }
+        if self.scatter > SCATTER {
+            warnings.push(format!(
+                "the amplitude scatters by {:.0} % from cycle to cycle: noise or drift of the sensor is in the result, and a larger relay amplitude would drown it",
+                100.0 * self.scatter
             ));
         }
         if self.offset_rad.abs() > TRAVEL * self.oscillation_rad {
