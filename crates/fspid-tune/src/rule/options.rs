@@ -104,9 +104,9 @@ pub struct Options {
 const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
 
 impl Default for Options {
-    /// A derivative filter of Td/10 (Åström and Hägglund's usual 2 to 20), poles damped like a Butterworth pair, a
-    /// degree of pitch error as dear as one of elevator and as half a degree that lasts two seconds on top, a relay of
-    /// 1 deg with a hysteresis of a fiftieth of it.
+    /// A derivative filter of Td/10 (2 to 20 are usual, Åström and Hägglund), poles damped like a Butterworth pair, a
+    /// degree of pitch error as dear as a degree of command and as an integral of two degree seconds, a relay of 1 deg
+    /// with a hysteresis of a fiftieth of it.
     fn default() -> Self {
         Self {
             form: None,
