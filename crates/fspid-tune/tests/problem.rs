@@ -133,7 +133,7 @@ fn a_lost_flight_costs_more_than_a_broken_requirement_and_that_more_than_any_all
         problem.reasons(&points[1])
     );
     assert!(
-        problem.reasons(&points[3])[0].contains("unstable"),
+        problem.reasons(&points[3])[0].contains("diverged"),
         "{:?}",
         problem.reasons(&points[3])
     );
