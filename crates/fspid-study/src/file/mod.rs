@@ -47,7 +47,7 @@ use crate::file::report::Report;
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
-pub use build::Airframe;
+pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
@@ -71,6 +71,8 @@ pub struct Study {
     pub airframes: Vec<Airframe>,
     /// What differs from run to run of a campaign.
     pub dispersions: Vec<Dispersion>,
+    /// Gains that no setting states, because a schedule or a design makes them.
+    pub derived_gains: Vec<DerivedGains>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -82,12 +84,13 @@ pub struct Study {
 impl Study {
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
-        let Built { scenario, requirements, airframes, dispersions } = built;
+        let Built { scenario, requirements, airframes, dispersions, derived_gains } = built;
         Self {
             scenario,
             requirements,
             airframes,
             dispersions,
+            derived_gains,
             settings: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),
@@ -194,9 +197,18 @@ pub fn parse_with(
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
     let (built, settings) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    let Built { scenario, requirements, airframes, dispersions } = built;
+    let Built { scenario, requirements, airframes, dispersions, derived_gains } = built;
     let digest = files.finish();
-    Ok(Study { scenario, requirements, airframes, dispersions, settings, digest, warnings })
+    Ok(Study {
+        scenario,
+        requirements,
+        airframes,
+        dispersions,
+        derived_gains,
+        settings,
+        digest,
+        warnings,
+    })
 }
 
 fn read(

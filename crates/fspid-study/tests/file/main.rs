@@ -8,6 +8,7 @@ mod dispersions;
 mod messages;
 mod overrides;
 mod reading;
+mod schedule;
 mod schema;
 mod settings;
 

@@ -8,6 +8,7 @@ use fspid_core::{
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
+use super::schedule::{self, Pressure};
 use super::{data, judged, rad};
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -19,19 +20,21 @@ pub(super) fn controller(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    dt_s: f64,
+    (dt_s, pressure): (f64, Pressure),
 ) -> Option<Controller> {
+    let factor = schedule::factor(report, section, pressure);
     if section.kind == "p" {
         let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
         let shell =
             Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
+        let (gains, shell) = schedule::scaled(report, section, factor?, (gains, shell))?;
         return judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed);
     }
     let (gains, filter_s) = gains(report, section);
     let shell = shell(report, section, (dt_s, filter_s));
     if section.kind == "pid" {
-        let pid = Pid::new(gains?, shell?);
-        return placed(report, section, pid).map(Controller::Fixed);
+        let (gains, shell) = schedule::scaled(report, section, factor?, (gains?, shell?))?;
+        return placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed);
     }
     let tuner = tuner(report, files, section, gains);
     let fspid = Fspid::new(tuner?, shell?);

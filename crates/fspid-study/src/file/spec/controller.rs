@@ -1,6 +1,7 @@
 //! The controllers.
 
 use super::data::GRIDS;
+use super::schedule::SCHEDULE;
 use super::{
     ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
     finite, not_negative, optional, plain, positive, required,
@@ -15,7 +16,7 @@ pub(super) static CONTROLLER: Table = Table {
             name: "p",
             table: plain(
                 "Proportional, with an optional inner loop of pitch rate.",
-                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN]],
+                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN, SCHEDULE]],
             ),
         },
         Variant {
@@ -28,6 +29,7 @@ pub(super) static CONTROLLER: Table = Table {
                         optional("ki", finite("1/s"), "Integral gain; 0 if left out."),
                         optional("kd", finite("s"), "Derivative gain; 0 if left out."),
                         optional("isa", Kind::Table(&ISA), "The gains in ISA form."),
+                        SCHEDULE,
                     ],
                     SHELL,
                 ],

@@ -19,6 +19,7 @@ pub(crate) mod dispersion;
 mod flight;
 mod requirement;
 mod scenario;
+mod schedule;
 mod sensor;
 mod signal;
 mod tables;
