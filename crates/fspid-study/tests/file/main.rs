@@ -5,6 +5,7 @@ mod abuse;
 mod arrival;
 mod bad_values;
 mod dispersions;
+mod lqi;
 mod messages;
 mod overrides;
 mod reading;

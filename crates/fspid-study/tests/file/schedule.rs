@@ -54,6 +54,7 @@ fn problems(text: &str, set: &[&str]) -> String {
 fn factor(study: &Study) -> (f64, f64) {
     match study.derived_gains.first().expect("it is scheduled").source {
         GainSource::Schedule { dynamic_pressure_pa, factor } => (factor, dynamic_pressure_pa),
+        GainSource::Regulator => panic!("it is a schedule"),
     }
 }
 

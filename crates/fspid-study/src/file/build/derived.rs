@@ -30,6 +30,8 @@ pub enum GainSource {
         /// The factor.
         factor: f64,
     },
+    /// A linear-quadratic regulator of a model and weights.
+    Regulator,
 }
 
 impl std::fmt::Display for GainSource {
@@ -39,6 +41,7 @@ impl std::fmt::Display for GainSource {
                 f,
                 "those of the file times {factor:.6}: schedule at a dynamic pressure of {dynamic_pressure_pa:.2} Pa"
             ),
+            Self::Regulator => f.write_str("linear-quadratic regulator of its design model"),
         }
     }
 }
@@ -58,16 +61,26 @@ pub(super) fn derived(
     controller: &Controller,
     pressure: Pressure,
 ) -> Option<DerivedGains> {
-    let Pressure::OfTrim(dynamic_pressure_pa) = pressure else {
-        return None;
-    };
-    section.section("schedule")?;
-    // It was sound when the controller was built.
-    let factor = schedule::factor(&mut Report::default(), section, pressure)?;
+    let source = source(section, pressure)?;
     Some(DerivedGains {
         controller: section.text("name")?.to_owned(),
         gains: controller.nominal(),
         rate_gain_s: controller.shell().rate_gain_s,
-        source: GainSource::Schedule { dynamic_pressure_pa, factor },
+        source,
     })
+}
+
+fn source(section: &Section, pressure: Pressure) -> Option<GainSource> {
+    if section.kind == "lqi" {
+        return Some(GainSource::Regulator);
+    }
+    section.section("schedule")?;
+    // It was sound when the controller was built.
+    let factor = schedule::factor(&mut Report::default(), section, pressure)?;
+    match pressure {
+        Pressure::OfTrim(dynamic_pressure_pa) => {
+            Some(GainSource::Schedule { dynamic_pressure_pa, factor })
+        }
+        Pressure::Unknown | Pressure::None => None,
+    }
 }

@@ -7,6 +7,7 @@ mod controller;
 pub(crate) mod data;
 mod derived;
 mod flight;
+mod lqi;
 mod schedule;
 mod sensor;
 mod signal;

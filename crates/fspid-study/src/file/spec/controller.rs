@@ -1,6 +1,7 @@
 //! The controllers.
 
 use super::data::GRIDS;
+use super::lqi::LQI;
 use super::schedule::SCHEDULE;
 use super::{
     ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
@@ -31,7 +32,8 @@ pub(super) static CONTROLLER: Table = Table {
                         optional("isa", Kind::Table(&ISA), "The gains in ISA form."),
                         SCHEDULE,
                     ],
-                    SHELL,
+                    TERMS,
+                    ENDS,
                 ],
                 choices: &[Choice {
                     ways: &[
@@ -56,7 +58,8 @@ pub(super) static CONTROLLER: Table = Table {
                         optional("nominal_isa", Kind::Table(&ISA), "The same in ISA form."),
                     ],
                     TUNER,
-                    SHELL,
+                    TERMS,
+                    ENDS,
                 ],
                 choices: &[Choice {
                     ways: &[
@@ -66,6 +69,13 @@ pub(super) static CONTROLLER: Table = Table {
                 }],
                 variants: &[],
             },
+        },
+        Variant {
+            name: "lqi",
+            table: plain(
+                "Linear-quadratic regulator with integral action, of a model of pitching.",
+                &[LQI, ENDS],
+            ),
         },
     ],
 };
@@ -100,8 +110,8 @@ static ISA: Table = plain(
     ]],
 );
 
-/// Everything of a PID controller but its gains.
-const SHELL: &[Key] = &[
+/// How the terms of a PID controller are formed.
+const TERMS: &[Key] = &[
     RATE_GAIN,
     optional(
         "setpoint_weights",
@@ -125,6 +135,10 @@ const SHELL: &[Key] = &[
         Default::Word("bumpless"),
         "Sum of ki·e, or ki times the sum of e as the paper has it.",
     ),
+];
+
+/// Where a controller with an integral ends: its limits, and which samples it believes.
+const ENDS: &[Key] = &[
     optional(
         "anti_windup",
         Kind::Table(&ANTI_WINDUP),

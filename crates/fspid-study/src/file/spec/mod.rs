@@ -17,6 +17,7 @@ mod controller;
 mod data;
 pub(crate) mod dispersion;
 mod flight;
+mod lqi;
 mod requirement;
 mod scenario;
 mod schedule;
