@@ -12,4 +12,5 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod anfis;
 pub mod rule;
