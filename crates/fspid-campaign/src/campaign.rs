@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use fspid_study::dispersion::{Dispersion, Distribution, Drawn};
-use fspid_study::file::{NewValue, SettingPath, Study, Template};
+use fspid_study::dispersion::Drawn;
+use fspid_study::file::{Study, Template};
 use rayon::prelude::*;
 
+use crate::draws::Draws;
 use crate::engine::{self, Memory};
 use crate::error::CampaignError;
 use crate::plan::{Plan, Range};
 use crate::rows::{Rows, Run};
-use crate::sample::Cube;
 use crate::table::Table;
 
 /// A planned campaign with its scenario read.
@@ -19,12 +19,8 @@ use crate::table::Table;
 pub struct Campaign {
     plan: Plan,
     template: Template,
-    cube: Cube,
+    draws: Draws,
     rows: Rows,
-    /// The first coordinate of each dispersion.
-    first: Vec<usize>,
-    /// The number that stands in the scenario at each path of each dispersion, where draws are relative.
-    nominal: Vec<Vec<f64>>,
 }
 
 /// How far a campaign is; may be read while it flies.
@@ -88,12 +84,9 @@ impl Campaign {
         if study.dispersions.is_empty() {
             return Err(CampaignError::NothingDispersed { path: plan.scenario_path });
         }
-        let dimensions = study.dispersions.iter().map(Dispersion::dimensions).sum();
-        let cube = Cube::new(plan.sampling, dimensions, plan.runs, plan.seed)?;
         let rows = Rows::of(study)?;
-        let nominal = template.check_dispersions().map_err(CampaignError::Scenario)?;
-        let first = first_coordinates(&template.study().dispersions);
-        Ok(Self { cube, rows, first, nominal, plan, template })
+        let draws = Draws::new(&template, plan.sampling, plan.runs, plan.seed)?;
+        Ok(Self { draws, rows, plan, template })
     }
 
     /// The plan.
@@ -114,53 +107,16 @@ impl Campaign {
         &self.rows
     }
 
-    /// How many numbers between 0 and 1 decide about a run.
+    /// What its runs draw.
     #[must_use]
-    pub fn dimensions(&self) -> usize {
-        self.template.study().dispersions.iter().map(Dispersion::dimensions).sum()
-    }
-
-    /// What a function says of the coordinates of each dispersion, in the order of the cube's.
-    pub(crate) fn in_cube<T: Clone + Default>(&self, of: impl Fn(&Dispersion) -> Vec<T>) -> Vec<T> {
-        let mut all = vec![T::default(); self.dimensions()];
-        for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
-            for (place, value) in all.iter_mut().skip(first).zip(of(dispersion)) {
-                *place = value;
-            }
-        }
-        all
+    pub fn draws(&self) -> &Draws {
+        &self.draws
     }
 
     /// What run `number` draws.
     #[must_use]
     pub fn drawn(&self, number: u64) -> Vec<Drawn> {
-        let mut point = vec![0.0; self.dimensions()];
-        self.cube.point(number, &mut point);
-        self.drawn_at(&point)
-    }
-
-    /// What is drawn at a point of the unit cube.
-    #[must_use]
-    pub fn drawn_at(&self, point: &[f64]) -> Vec<Drawn> {
-        let mut drawn = Vec::new();
-        for (dispersion, &first) in self.template.study().dispersions.iter().zip(&self.first) {
-            let mine = point.get(first..first + dispersion.dimensions()).unwrap_or_default();
-            dispersion.draw(mine, &mut drawn);
-        }
-        drawn
-    }
-
-    /// The values that draws put into the scenario.
-    #[must_use]
-    pub fn values(&self, drawn: &[Drawn]) -> Vec<(&SettingPath, NewValue)> {
-        let mut rest = drawn;
-        let mut values = Vec::new();
-        for (dispersion, nominal) in self.template.study().dispersions.iter().zip(&self.nominal) {
-            let (mine, others) = rest.split_at(dispersion.names().count().min(rest.len()));
-            rest = others;
-            values.extend(dispersion.values(mine, nominal));
-        }
-        values
+        self.draws.drawn(number)
     }
 
     /// The scenario of a run.
@@ -168,7 +124,7 @@ impl Campaign {
     /// # Errors
     /// Why its numbers make no scenario.
     pub fn study(&self, drawn: &[Drawn]) -> Result<Study, String> {
-        let built = self.template.with(&self.values(drawn));
+        let built = self.template.with(&self.draws.values(drawn));
         built.map_err(|problems| problems.first_in_a_line())
     }
 
@@ -224,19 +180,4 @@ impl Campaign {
         }
         runs
     }
-}
-
-/// The first coordinate of each dispersion. Seeds come last: the last dimensions of an even sequence
-/// are its least even ones, and what a seed does with them nobody can tell.
-fn first_coordinates(dispersions: &[Dispersion]) -> Vec<usize> {
-    let is_seed = |dispersion: &Dispersion| matches!(dispersion.distribution, Distribution::Seed);
-    let mut order: Vec<usize> = (0..dispersions.len()).collect();
-    order.sort_by_key(|&index| is_seed(&dispersions[index]));
-    let mut first = vec![0; dispersions.len()];
-    let mut next = 0;
-    for index in order {
-        first[index] = next;
-        next += dispersions[index].dimensions();
-    }
-    first
 }

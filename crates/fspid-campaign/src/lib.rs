@@ -14,6 +14,7 @@
 
 pub mod bench;
 mod campaign;
+mod draws;
 pub mod engine;
 mod error;
 mod folder;
@@ -32,6 +33,7 @@ pub mod summary;
 pub mod table;
 
 pub use campaign::{Campaign, Progress};
+pub use draws::Draws;
 pub use error::CampaignError;
 pub use folder::{Folder, Lock};
 pub use merge::{PLAN_KEY, merge};

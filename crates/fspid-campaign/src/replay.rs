@@ -107,6 +107,6 @@ fn shown(drawn: &Drawn) -> String {
 /// What draws change in the scenario, as `--set` takes it.
 #[must_use]
 pub fn changes(campaign: &Campaign, drawn: &[Drawn]) -> Vec<String> {
-    let values = campaign.values(drawn);
+    let values = campaign.draws().values(drawn);
     values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect()
 }

@@ -67,7 +67,7 @@ pub struct Worst {
 /// A measure or a controller that there is not, no budget, or a scenario that cannot be flown.
 pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, CampaignError> {
     let target = Target::of(campaign, question)?;
-    let dimension = campaign.dimensions();
+    let dimension = campaign.draws().dimensions();
     let polish = question.budget / 5;
     let population = (10 * dimension).clamp(24, 200).min(question.budget.max(4));
     let global = question.budget - polish;
@@ -77,7 +77,7 @@ pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, Campaig
     let mut downhill = NelderMead::new(point, cost);
     flown += target.search(&mut downhill, polish);
     let (point, _) = downhill.best();
-    let drawn = campaign.drawn_at(&target.inside(point));
+    let drawn = campaign.draws().drawn_at(&target.inside(point));
     let nominal = target.flight_of(vec![campaign.template().study().clone()]).pop().flatten();
     let worst = target.flight(&drawn);
     let changes = changes(campaign, &drawn);
@@ -136,7 +136,7 @@ impl<'a> Target<'a> {
             });
         }
         let controller = name.to_owned();
-        let tails = campaign.in_cube(tails);
+        let tails = campaign.draws().in_cube(tails);
         Ok(Self { campaign, question, controller, place, is_requirement, tails })
     }
 
@@ -150,7 +150,7 @@ impl<'a> Target<'a> {
     }
 
     fn costs(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        let drawn = points.iter().map(|point| self.campaign.drawn_at(&self.inside(point)));
+        let drawn = points.iter().map(|point| self.campaign.draws().drawn_at(&self.inside(point)));
         let runs = self.campaign.fly_together((0..).zip(drawn));
         runs.iter()
             .map(|run| match &run.flights {

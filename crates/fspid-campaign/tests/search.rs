@@ -52,10 +52,10 @@ fn the_largest_overshoot_is_in_the_corner_of_least_damping_and_slowest_servo() {
     let by_chance = {
         let campaign = campaign();
         let drawn = (0..200).map(|run| {
-            let mut point = vec![0.0; campaign.dimensions()];
+            let mut point = vec![0.0; campaign.draws().dimensions()];
             let cube = fspid_campaign::sample::Cube::new(Sampling::Random, point.len(), 200, 9);
             cube.expect("a cube").point(run, &mut point);
-            (run, campaign.drawn_at(&point))
+            (run, campaign.draws().drawn_at(&point))
         });
         let runs = campaign.fly_together(drawn);
         let overshoot = runs.iter().map(|run| {

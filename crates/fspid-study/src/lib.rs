@@ -31,5 +31,6 @@ pub mod rows;
 pub mod shell;
 pub mod simulation;
 pub mod tune;
+pub mod tuning;
 pub mod units;
 pub mod verify;

@@ -13,4 +13,19 @@
 )]
 
 pub mod anfis;
+pub mod design;
+mod error;
+pub mod history;
+mod problem;
 pub mod rule;
+mod score;
+mod search;
+mod space;
+mod tuned;
+
+pub use error::TuneError;
+pub use problem::{Problem, Source};
+pub use score::{FORBIDDEN, Score};
+pub use search::{Effort, Search, State, Trial, stop_in_words};
+pub use space::Space;
+pub use tuned::Tuned;

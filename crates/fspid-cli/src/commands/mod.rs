@@ -13,10 +13,12 @@ pub(crate) mod explain;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
+mod progress;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
 pub(crate) mod surface;
+pub(crate) mod tune;
 pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};

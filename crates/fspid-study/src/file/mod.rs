@@ -22,6 +22,7 @@ mod dispersion;
 pub(crate) mod document;
 mod extra;
 pub(crate) mod files;
+mod mark;
 mod overrides;
 mod preset;
 pub(crate) mod problem;
@@ -34,6 +35,7 @@ mod setting;
 pub(crate) mod spec;
 pub(crate) mod tables;
 mod template;
+mod tuning;
 
 use std::fmt;
 use std::path::Path;
@@ -44,6 +46,7 @@ use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::file::report::Report;
+use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
@@ -58,6 +61,7 @@ pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
+pub(crate) use setting::grid_text;
 pub use template::{NewValue, SettingPath, Template};
 
 /// A scenario with what its file asks of it.
@@ -73,6 +77,12 @@ pub struct Study {
     pub dispersions: Vec<Dispersion>,
     /// Gains that no setting states, because a schedule or a design makes them.
     pub derived_gains: Vec<DerivedGains>,
+    /// Places that are marked free for tuning, in the order of the file.
+    pub marks: Vec<Mark>,
+    /// How the marked places are chosen.
+    pub tuning: Option<Tuning>,
+    /// Where tuned controllers are compared.
+    pub contest: Option<Contest>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -84,13 +94,24 @@ pub struct Study {
 impl Study {
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
-        let Built { scenario, requirements, airframes, dispersions, derived_gains } = built;
+        let Built {
+            scenario,
+            requirements,
+            airframes,
+            dispersions,
+            derived_gains,
+            tuning,
+            contest,
+        } = built;
         Self {
             scenario,
             requirements,
             airframes,
             dispersions,
             derived_gains,
+            marks: Vec::new(),
+            tuning,
+            contest,
             settings: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),
@@ -196,19 +217,9 @@ pub fn parse_with(
     let study = read(&mut report, &mut files, text, extra);
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
-    let (built, settings) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
-    let Built { scenario, requirements, airframes, dispersions, derived_gains } = built;
+    let (built, settings, marks) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
     let digest = files.finish();
-    Ok(Study {
-        scenario,
-        requirements,
-        airframes,
-        dispersions,
-        derived_gains,
-        settings,
-        digest,
-        warnings,
-    })
+    Ok(Study { settings, digest, warnings, marks, ..Study::without_text(built) })
 }
 
 fn read(
@@ -216,22 +227,22 @@ fn read(
     files: &mut Files<'_>,
     text: &str,
     extra: &Extra<'_>,
-) -> Option<(Built, Vec<Setting>)> {
-    let document = changed_document(report, files, text, extra)?;
+) -> Option<(Built, Vec<Setting>, Vec<Mark>)> {
+    let (document, marks) = changed_document(report, files, text, extra)?;
     let section = check::table(report, &spec::SCENARIO, &document, "")?;
     let built = build::scenario(report, files, &section);
     files.report_unused_changes(report);
     let built = built?;
-    Some((built, setting::settings(files, &section)))
+    Some((built, setting::settings(files, &section), marks))
 }
 
-/// The document with what comes from outside.
+/// The document with what comes from outside, and the marks that were in it.
 fn changed_document(
     report: &mut Report,
     files: &mut Files<'_>,
     text: &str,
     extra: &Extra<'_>,
-) -> Option<document::Item> {
+) -> Option<(document::Item, Vec<Mark>)> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
         let place = report::Place { source, start: 0, end: 0 };
@@ -245,7 +256,8 @@ fn changed_document(
         overrides::apply(report, files, &mut document, text);
     }
     extra::apply(report, files, &mut document, extra);
-    Some(document)
+    let marks = mark::take(report, &mut document);
+    Some((document, marks))
 }
 
 /// A commented scenario to begin with.

@@ -100,6 +100,27 @@ fn single(report: &mut Report, section: &Section) -> Option<Requirement> {
     })
 }
 
+/// The measure of an objective; its limit says which side is bad, so that the worst case is the one that
+/// counts.
+pub(crate) fn objective_requirement(
+    report: &mut Report,
+    section: &Section,
+    (index, is_minimised): (usize, bool),
+) -> Option<Requirement> {
+    let measure = section.text("measure").and_then(Measure::from_name)?;
+    let conditions = conditions(section);
+    check_conditions(report, section, measure, &conditions);
+    Some(Requirement {
+        id: format!("objective[{index}]"),
+        controller: None,
+        measure,
+        least: (!is_minimised).then_some(0.0),
+        most: is_minimised.then_some(0.0),
+        conditions,
+        origin: Origin::default(),
+    })
+}
+
 /// The limits; a measure that is 1 or 0 has its own.
 fn limits(report: &mut Report, section: &Section, measure: Measure) -> (Option<f64>, Option<f64>) {
     let (least, most) = (section.number("least"), section.number("most"));

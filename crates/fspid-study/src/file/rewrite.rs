@@ -39,7 +39,7 @@ pub(crate) fn replay(
     let (mut report, mut files) = (Report::default(), Files::new(None));
     // The requirement is written out; those of sets and files are not needed.
     let extra = Extra { overrides: extra.overrides, ..Extra::default() };
-    let document = super::changed_document(&mut report, &mut files, text, &extra)?;
+    let (document, _) = super::changed_document(&mut report, &mut files, text, &extra)?;
     let Value::Table(mut members) = document.value else {
         return None;
     };

@@ -2,14 +2,52 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::file::mark;
 use crate::file::preset::rule_table_names;
 use crate::file::spec::{Choice, Default, Key, Kind, Presence, Range, SCENARIO, Table, Way};
 
 /// The JSON Schema (draft 2020-12) of scenario files.
 #[must_use]
 pub fn schema() -> Value {
-    schema_of(&SCENARIO, "fspid scenario")
+    let mut schema = schema_of(&SCENARIO, "fspid scenario");
+    if let Some(tables) = schema.get_mut("properties").and_then(Value::as_object_mut) {
+        tables
+            .iter_mut()
+            .filter(|(name, _)| !mark::FIXED.contains(&name.as_str()))
+            .for_each(|(_, table)| allow_marks(table));
+    }
+    schema["$defs"] = mark::schemas();
+    schema
 }
+
+/// Lets a mark stand in place of every number and every grid of rules.
+fn allow_marks(schema: &mut Value) {
+    match schema {
+        Value::Object(words) => {
+            let of = match words.get("type").and_then(Value::as_str) {
+                Some("number") => Some("mark"),
+                Some("string") if words.contains_key(GRID_WORD) => Some("rules"),
+                _ => None,
+            };
+            words.values_mut().for_each(allow_marks);
+            if let Some(of) = of {
+                let kept = ["description", "default"]
+                    .into_iter()
+                    .filter_map(|word| words.remove_entry(word))
+                    .collect::<Map<String, Value>>();
+                words.remove(GRID_WORD);
+                let plain = Value::Object(std::mem::replace(words, kept));
+                let marked = json!({ "$ref": format!("#/$defs/{of}") });
+                words.insert("anyOf".to_owned(), json!([plain, marked]));
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(allow_marks),
+        _ => {}
+    }
+}
+
+/// Tells grids of rules from other texts, until marks are allowed.
+const GRID_WORD: &str = "x-grid";
 
 /// The JSON Schema (draft 2020-12) of files with these keys.
 pub(crate) fn schema_of(spec: &'static Table, title: &str) -> Value {
@@ -118,7 +156,7 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
                 table(grids),
             ] })
         }
-        Kind::Grid => json!({ "type": "string" }),
+        Kind::Grid => json!({ "type": "string", GRID_WORD: true }),
         Kind::Defuzzifier => {
             json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid|left-end|vertices):[0-9]+)$" })
         }

@@ -125,7 +125,11 @@ fn join(path: &str, name: &str) -> String {
 
 /// The step to a table of a list: its name where a path can hold it, its number elsewhere.
 fn step(section: &Section, index: usize) -> String {
-    let name = section.text("name").unwrap_or_default();
+    named_step(section.text("name").unwrap_or_default(), index)
+}
+
+/// The step to the entry of a list that has this name, or none.
+pub(crate) fn named_step(name: &str, index: usize) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let fits = (1..=LONGEST_NAME).contains(&name.chars().count())
         && !name.contains(|c| c == '"' || is_hidden(c));
@@ -153,7 +157,7 @@ fn written(value: &Checked) -> String {
             let values: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
             numbers(&values)
         }
-        Checked::Grid(grid) => text(&lines(grid)),
+        Checked::Grid(grid) => text(&grid_text(grid)),
         Checked::Defuzzifier(rule) => text(&rule.to_string()),
         Checked::Item(item) => rewrite::written(&item.value),
         // Their own keys are written, one by one.
@@ -201,7 +205,7 @@ fn text(value: &str) -> String {
 }
 
 /// A grid as seven lines of seven labels.
-fn lines(grid: &Grid) -> String {
+pub(crate) fn grid_text(grid: &Grid) -> String {
     let row = |error| Label::ALL.map(|change| grid.at(error, change).name()).join(" ");
     Label::ALL.map(row).join("\n")
 }

@@ -10,6 +10,8 @@ use super::files::Files;
 use super::overrides::{self, Found, Setting, Step};
 use super::problem::Problems;
 use super::report::{Place, Report};
+use crate::tuning::Mark;
+
 use super::{LoadError, Study, changed_document, check, spec};
 
 /// A place in a scenario, as `--set` names it: `controller.FSPID.nominal.kp`,
@@ -116,7 +118,7 @@ impl Template {
     ) -> Result<Self, Problems> {
         let study = super::parse_with(text, name, folder, extra)?;
         let (mut report, mut files) = (Report::default(), Files::new(folder));
-        let document = changed_document(&mut report, &mut files, text, extra);
+        let document = changed_document(&mut report, &mut files, text, extra).map(|(it, _)| it);
         Ok(Self {
             name: name.to_owned(),
             folder: folder.map(Path::to_owned),
@@ -171,6 +173,33 @@ impl Template {
         Ok(Study::without_text(built))
     }
 
+    /// The scenario with one controller alone, and without what it says of tuning and of other controllers.
+    ///
+    /// # Errors
+    /// A controller that there is not.
+    pub fn only(&self, controller: &str) -> Result<Self, Problems> {
+        let mut one = self.clone();
+        if let Value::Table(members) = &mut one.document.value {
+            members.retain(|member| !["tuning", "contest"].contains(&member.name.as_str()));
+            for member in members {
+                let Value::Array(items) = &mut member.item.value else {
+                    continue;
+                };
+                match member.name.as_str() {
+                    "controller" => items.retain(|item| text_at(item, "name") == Some(controller)),
+                    "requirement" => items.retain(|item| {
+                        text_at(item, "controller").is_none_or(|name| name == controller)
+                    }),
+                    _ => {}
+                }
+            }
+        }
+        let is_mine = |mark: &&Mark| mark.controller().is_none_or(|name| name == controller);
+        let marks = self.study.marks.iter().filter(is_mine).cloned().collect();
+        one.study = Study { marks, ..one.with(&[])? };
+        Ok(one)
+    }
+
     /// The number at a place, in the scenario or in a file that it names; `None` where there is none.
     #[must_use]
     pub fn number_at(&self, path: &SettingPath) -> Option<f64> {
@@ -207,6 +236,16 @@ fn setting(report: &mut Report, path: &SettingPath, value: &NewValue) -> Setting
     let source = report.add_source(Some(origin.clone()), &text);
     let place = Place { source, start: 0, end: text.len() };
     Setting { origin, item: Item { place, value: value.value() } }
+}
+
+fn text_at<'a>(item: &'a Item, key: &str) -> Option<&'a str> {
+    let Value::Table(members) = &item.value else {
+        return None;
+    };
+    match members.iter().find(|member| member.name == key).map(|member| &member.item.value) {
+        Some(Value::Text(text)) => Some(text),
+        _ => None,
+    }
 }
 
 fn number(item: &Item) -> Option<f64> {

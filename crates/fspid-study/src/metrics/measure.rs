@@ -36,8 +36,16 @@ pub enum Measure {
     RmsError,
     /// Largest error, deg.
     LargestError,
+    /// Integral of the size of the error, deg s.
+    ErrorIntegral,
+    /// The same weighted with the time since the last step, deg s².
+    TimedErrorIntegral,
     /// Largest command, deg.
     LargestCommand,
+    /// Way of the command, deg.
+    CommandVariation,
+    /// Way of the elevator, deg.
+    ElevatorTravel,
     /// Fastest command, deg/s.
     CommandRate,
     /// Fastest elevator, deg/s.
@@ -112,7 +120,7 @@ const fn row(
 
 /// One row a measure, in the order of the enumeration.
 #[rustfmt::skip] // a table: one row a measure
-const ROWS: [Row; 31] = {
+const ROWS: [Row; 35] = {
     use Family::{Airframe, Flight, Frozen, Loop, Step};
     use Measure as M;
     [
@@ -124,7 +132,11 @@ const ROWS: [Row; 31] = {
         row(M::RecoveryTime, ("recovery_time_s", "s"), Step, &["within_deg", "from_s", "to_s"], "time until the error stays within the band, counted from the step or from from_s"),
         row(M::RmsError, ("rms_error_deg", "deg"), Flight, TIMES, "root mean square of the error"),
         row(M::LargestError, ("largest_error_deg", "deg"), Flight, TIMES, "largest size of the error"),
+        row(M::ErrorIntegral, ("iae_deg_s", "deg s"), Flight, &[], "integral of the size of the error"),
+        row(M::TimedErrorIntegral, ("itae_deg_s2", "deg s²"), Flight, &[], "the same, weighted with the time since the last step"),
         row(M::LargestCommand, ("largest_command_deg", "deg"), Flight, &[], "largest size of the command"),
+        row(M::CommandVariation, ("command_variation_deg", "deg"), Flight, &[], "way of the command: sum of the sizes of its changes"),
+        row(M::ElevatorTravel, ("elevator_travel_deg", "deg"), Flight, &[], "way of the elevator: sum of the sizes of its changes"),
         row(M::CommandRate, ("command_rate_deg_s", "deg/s"), Flight, &[], "largest change of the command from sample to sample, per second"),
         row(M::ElevatorRate, ("elevator_rate_deg_s", "deg/s"), Flight, &[], "largest change of the elevator from sample to sample, per second"),
         row(M::Saturated, ("saturated_pct", "%"), Flight, &[], "samples whose command the controller's own limits cut"),
@@ -267,7 +279,8 @@ mod tests {
                 "" => continue,
                 "%" => "_pct",
                 "dB" => "_db",
-                "deg/s" => "_deg_s",
+                "deg/s" | "deg s" => "_deg_s",
+                "deg s²" => "_deg_s2",
                 "rad/s" => "_rad_s",
                 "rad/s² per g" => "_rad_s2_per_g",
                 "s" => "_s",

@@ -9,6 +9,28 @@ pub enum Scale {
     Logarithmic,
 }
 
+impl Scale {
+    /// Value at `unit` of the way from the lower to the upper bound.
+    #[must_use]
+    pub fn between(self, lower: f64, upper: f64, unit: f64) -> f64 {
+        let value = match self {
+            Self::Linear => lower + unit * (upper - lower),
+            Self::Logarithmic => lower * libm::exp(unit * libm::log(upper / lower)),
+        };
+        value.clamp(lower, upper)
+    }
+
+    /// How far `value` is on the way from the lower to the upper bound, from 0 to 1.
+    #[must_use]
+    pub fn unit(self, lower: f64, upper: f64, value: f64) -> f64 {
+        let unit = match self {
+            Self::Linear => (value - lower) / (upper - lower),
+            Self::Logarithmic => libm::log(value / lower) / libm::log(upper / lower),
+        };
+        unit.clamp(0.0, 1.0)
+    }
+}
+
 /// A parameter and its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
@@ -25,22 +47,12 @@ pub struct Parameter {
 impl Parameter {
     /// Value at `unit` of the way from the lower to the upper bound.
     fn at(&self, unit: f64) -> f64 {
-        let value = match self.scale {
-            Scale::Linear => self.lower + unit * (self.upper - self.lower),
-            Scale::Logarithmic => self.lower * libm::exp(unit * libm::log(self.upper / self.lower)),
-        };
-        value.clamp(self.lower, self.upper)
+        self.scale.between(self.lower, self.upper, unit)
     }
 
     /// How far `value` is on the way from the lower to the upper bound, from 0 to 1.
     fn unit(&self, value: f64) -> f64 {
-        let unit = match self.scale {
-            Scale::Linear => (value - self.lower) / (self.upper - self.lower),
-            Scale::Logarithmic => {
-                libm::log(value / self.lower) / libm::log(self.upper / self.lower)
-            }
-        };
-        unit.clamp(0.0, 1.0)
+        self.scale.unit(self.lower, self.upper, value)
     }
 }
 

@@ -6,6 +6,7 @@ mod arrival;
 mod bad_values;
 mod dispersions;
 mod lqi;
+mod marks;
 mod messages;
 mod overrides;
 mod reading;
@@ -30,11 +31,18 @@ pub(crate) fn text(path: &str) -> String {
 pub(crate) fn shipped() -> Vec<(String, String)> {
     let mut names = scenarios_in("");
     names.extend(scenarios_in("gallery/"));
+    names.extend(scenarios_in("tuning/"));
     let read = |name: String| {
         let text = text(&format!("scenarios/{name}"));
         (name, text)
     };
     names.into_iter().map(read).collect()
+}
+
+/// Names and texts of the scenarios with marks.
+pub(crate) fn marked() -> Vec<(String, String)> {
+    let named = |name: String| (name.clone(), text(&format!("scenarios/{name}")));
+    scenarios_in("tuning/").into_iter().map(named).collect()
 }
 
 /// Names of the scenarios in a folder of `scenarios`, in order, with the folder.

@@ -20,6 +20,11 @@ fn word_fault(
     let is_valid = |rule: &&Value| fault(rule, value, path).is_none();
     let good = match word.as_str() {
         "items" => return items_fault(rule, value, path),
+        // Within the document only.
+        "$ref" => {
+            let name = rule.as_str().expect("a text").trim_start_matches("#/$defs/");
+            return fault(&file::schema()["$defs"][name], value, path);
+        }
         "properties" => return properties_fault(rule, value, path),
         "allOf" => return list().iter().find_map(|rule| fault(rule, value, path)),
         "anyOf" => list().iter().any(|rule| is_valid(&rule)),
@@ -56,7 +61,7 @@ fn is_allowed(word: &str, rule: &Value, value: &Value) -> bool {
     let bound = || rule.as_f64().expect("a number");
     let size = || value.as_array().map_or(0, Vec::len) as f64;
     match word {
-        "$schema" | "title" | "description" | "default" => true,
+        "$schema" | "$defs" | "title" | "description" | "default" => true,
         "type" => match rule.as_str() {
             Some("object") => value.is_object(),
             Some("array") => value.is_array(),

@@ -33,8 +33,12 @@ fn walk(table: &Table, path: &str, keys: &mut BTreeMap<String, Value>) {
     };
     for (name, value) in table {
         match value {
+            // A mark flies as its start.
+            Value::Table(mark) if mark.contains_key("tune") => {
+                keys.insert(join(name), mark["start"].clone());
+            }
             Value::Table(table) => walk(table, &join(name), keys),
-            Value::Array(items) if items.iter().all(Value::is_table) => {
+            Value::Array(items) if !items.is_empty() && items.iter().all(Value::is_table) => {
                 for (index, table) in items.iter().filter_map(Value::as_table).enumerate() {
                     let step = match table.get("name").and_then(Value::as_str) {
                         Some(name) if name.contains(' ') => format!(".\"{name}\""),

@@ -1,37 +1,11 @@
-//! How far a campaign is, for people: a line that moves on a terminal, plain lines in a file.
+//! How far a campaign is, for people.
 
-use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use fspid_campaign::Progress;
 
-/// How often the line on a terminal is drawn anew.
-const REDRAW: Duration = Duration::from_millis(200);
-/// How often a plain line is written.
-const LINE: Duration = Duration::from_secs(10);
-
-/// How progress is told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Telling {
-    /// Not at all.
-    Nothing,
-    /// In one line that moves.
-    Line,
-    /// In plain lines, seldom.
-    Lines,
-}
-
-impl Telling {
-    /// What suits standard error.
-    pub(super) fn for_standard_error() -> Self {
-        if io::stderr().is_terminal() { Self::Line } else { Self::Lines }
-    }
-
-    fn period(self) -> Duration {
-        if self == Self::Line { REDRAW } else { LINE }
-    }
-}
+use super::super::progress::{Telling, answer_after, duration, grouped, tell};
 
 /// Works and tells how far it is on standard error.
 pub(super) fn told<T>(telling: Telling, runs: u64, work: impl FnOnce(&Progress) -> T) -> T {
@@ -56,24 +30,6 @@ pub(super) fn told<T>(telling: Telling, runs: u64, work: impl FnOnce(&Progress) 
     })
 }
 
-fn tell(telling: Telling, line: &str) {
-    let mut out = io::stderr().lock();
-    // A closed standard error is no reason to stop flying.
-    let _ = match telling {
-        Telling::Line => write!(out, "\r\x1b[K{line}"),
-        _ => writeln!(out, "{line}"),
-    };
-    let _ = out.flush();
-}
-
-/// The last line stays.
-fn answer_after(telling: Telling, line: &str) {
-    tell(telling, line);
-    if telling == Telling::Line {
-        let _ = writeln!(io::stderr());
-    }
-}
-
 fn line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
     let (flown, found) = (progress.flown(), progress.found());
     let seconds = elapsed.as_secs_f64();
@@ -94,39 +50,9 @@ fn line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
     parts.join(", ")
 }
 
-/// A number with its digits in groups of three.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-fn duration(seconds: f64) -> String {
-    let seconds = seconds.ceil().min(1e9) as u64;
-    let (hours, minutes) = (seconds / 3600, seconds / 60 % 60);
-    match (hours, minutes) {
-        (0, 0) => format!("{seconds} s"),
-        (0, _) => format!("{minutes} min {} s", seconds % 60),
-        _ => format!("{hours} h {minutes} min"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_and_times_are_written_for_people() {
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1 000", "1 234 567"]);
-        let times = [0.2, 59.0, 61.0, 3600.0 * 25.0].map(duration);
-        assert_eq!(times, ["1 s", "59 s", "1 min 1 s", "25 h 0 min"]);
-    }
 
     #[test]
     fn work_that_is_told_gives_its_answer_and_ends() {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::progress::{Telling, told};
+use super::super::progress::Telling;
+use super::progress::told;
 use super::{Place, Planned, failure, planned};
 use crate::exit::{Failure, print};
 use fspid_campaign::local;

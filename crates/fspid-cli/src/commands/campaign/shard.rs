@@ -2,7 +2,8 @@
 
 use clap::Args;
 
-use super::progress::{Telling, told};
+use super::super::progress::Telling;
+use super::progress::told;
 use super::{Place, failure};
 use crate::exit::{Failure, print};
 use fspid_campaign::shard::{self, Done};

@@ -27,7 +27,9 @@ use crate::file::overrides;
 use crate::file::report::Report;
 use crate::file::requirement::requirements;
 use crate::file::section::Section;
+use crate::file::tuning::{contest, tuning};
 use crate::requirement::Requirement;
+use crate::tuning::{Contest, Tuning};
 use crate::units::radians as rad;
 
 /// A scenario with what is asked of it.
@@ -37,6 +39,8 @@ pub(crate) struct Built {
     pub(crate) airframes: Vec<Airframe>,
     pub(crate) dispersions: Vec<Dispersion>,
     pub(crate) derived_gains: Vec<DerivedGains>,
+    pub(crate) tuning: Option<Tuning>,
+    pub(crate) contest: Option<Contest>,
 }
 
 /// The scenario with its requirements; every part that the check left sound is built even where
@@ -82,6 +86,8 @@ pub(crate) fn scenario(
     let asked = section.sections("requirement");
     let requirements = requirements(report, files, asked, &names);
     let dispersions = dispersions(report, section.sections("dispersion"));
+    let tuning = section.section("tuning").and_then(|part| tuning(report, part, &names));
+    let contest = section.section("contest").and_then(|part| contest(report, part, &names));
     let airframes = airframe::airframes(files, section, flown.as_ref());
     let scenario = Scenario {
         name: section.text("name")?.to_owned(),
@@ -97,7 +103,7 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    Some(Built { scenario, requirements, airframes, dispersions, derived_gains })
+    Some(Built { scenario, requirements, airframes, dispersions, derived_gains, tuning, contest })
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.

@@ -24,11 +24,13 @@ mod schedule;
 mod sensor;
 mod signal;
 mod tables;
+mod tuning;
 
 pub(crate) use aircraft::AIRCRAFT_FILE;
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
 pub(crate) use requirement::{REQUIREMENT_FILE, SET_FILE};
 pub(crate) use scenario::SCENARIO;
+pub(crate) use tuning::FRONT;
 
 /// Largest size of an angle, in degrees: where a flight has diverged.
 pub(crate) const ANGLE_LIMIT_DEG: f64 = 1e6;

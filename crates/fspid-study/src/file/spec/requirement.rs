@@ -11,11 +11,11 @@ pub(crate) const SPEEDS: [&str; 4] = ["normal", "below", "limit", "beyond"];
 /// Words for the category of flight.
 pub(crate) const CATEGORIES: [&str; 3] = ["A", "B", "C"];
 
-const MEASURE: Kind = Kind::Word(&Measure::NAMES);
+pub(super) const MEASURE: Kind = Kind::Word(&Measure::NAMES);
 const MEASURE_DOC: &str = "What is measured; `fspid verify --help` lists all. The worst step, plant or frozen gain counts.";
 const LEVEL: Kind = Kind::Integer { least: 1, most: 3 };
 
-/// Limits, and what counts.
+/// Limits.
 const LIMITS: &[Key] = &[
     optional(
         "least",
@@ -23,6 +23,10 @@ const LIMITS: &[Key] = &[
         "Smallest value that is met, in the unit of the measure; the limit itself is met.",
     ),
     optional("most", not_negative(""), "Largest value that is met, in the unit of the measure."),
+];
+
+/// What counts.
+pub(super) const CONDITIONS: &[Key] = &[
     optional(
         "step_deg",
         positive("deg"),
@@ -108,7 +112,7 @@ const WITH_SET: &[&str] = &["level", "category", "speed", "first_aeroelastic_mod
 /// A requirement of a scenario.
 pub(super) static REQUIREMENT: Table = Table {
     doc: "Limits of a measure that every controller, or one, must meet; or a ready set of them.",
-    groups: &[ASKED, LIMITS, ORIGIN, OF_SET, WHERE],
+    groups: &[ASKED, LIMITS, CONDITIONS, ORIGIN, OF_SET, WHERE],
     choices: &[Choice {
         ways: &[
             Way { required: &["measure"], optional: WITH_MEASURE },
@@ -164,6 +168,7 @@ static LINE: Table = plain(
             optional("note", Kind::Text, "What else should be known."),
         ],
         LIMITS,
+        CONDITIONS,
         &[
             optional("air", AIR, "Only in this air."),
             optional("level", LEVEL, "Only at this level."),

@@ -8,6 +8,7 @@ use super::flight::AIRCRAFT;
 use super::requirement::REQUIREMENT;
 use super::sensor::SENSOR;
 use super::signal::{DISTURBANCE, SETPOINT};
+use super::tuning::{CONTEST, TUNING};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
     positive, required,
@@ -70,6 +71,16 @@ pub(crate) static SCENARIO: Table = Table {
             "dispersion",
             Kind::Tables { table: &DISPERSION, least: 0, most: 1000 },
             "What differs from run to run of `fspid campaign`.",
+        ),
+        optional(
+            "tuning",
+            Kind::Table(&TUNING),
+            "How `fspid tune` chooses the numbers that are marked free.",
+        ),
+        optional(
+            "contest",
+            Kind::Table(&CONTEST),
+            "Where `fspid contest` compares tuned controllers.",
         ),
         optional(
             overrides::KEY,

@@ -6,7 +6,7 @@ use fspid_sim::air::WindKind;
 use fspid_sim::{Timing, Trace};
 
 use crate::file::Study;
-use crate::metrics::{Absent, CommandEffort, EdgeMetrics, FlightMetrics, Measure};
+use crate::metrics::{Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics, Measure};
 use crate::requirement::{Air, Case, Conditions, NotEvaluated, Place, Requirement, StepAt};
 use crate::simulation::ControllerResult;
 use crate::units::degrees;
@@ -203,10 +203,20 @@ impl Flown<'_> {
         let effort = |of: fn(&CommandEffort) -> f64| {
             self.metrics.effort.map(|effort| of(&effort)).map_err(NotEvaluated::from)
         };
+        let integral = |of: fn(&ErrorIntegrals) -> f64| {
+            self.metrics.integrals.map(|found| of(&found)).map_err(NotEvaluated::from)
+        };
         let nowhere = |value: f64| Case { value, place: Place::default() };
         match requirement.measure {
             Measure::RmsError => Ok(nowhere(self.rms_deg(time))),
             Measure::LargestError => Ok(self.largest_error(time)),
+            Measure::ErrorIntegral => Ok(nowhere(degrees(integral(|i| i.iae_rad_s)?))),
+            Measure::TimedErrorIntegral => Ok(nowhere(degrees(integral(|i| i.itae_rad_s2)?))),
+            Measure::CommandVariation => Ok(nowhere(degrees(effort(|e| e.variation_rad)?))),
+            Measure::ElevatorTravel => {
+                let elevator = CommandEffort::of(&self.trace.elevator_rad, dt_s);
+                Ok(nowhere(degrees(elevator.variation_rad)))
+            }
             Measure::LargestCommand => Ok(nowhere(degrees(effort(|e| e.largest_rad)?))),
             Measure::CommandRate => Ok(nowhere(degrees(effort(|e| e.fastest_rad_s)?))),
             Measure::ElevatorRate => {

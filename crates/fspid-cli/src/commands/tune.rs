@@ -1,0 +1,224 @@
+//! `fspid tune`: the free numbers of a scenario, chosen.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::{Format, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_campaign::local;
+use fspid_study::output;
+use fspid_study::shell::word;
+use fspid_tune::{Effort, Problem, Search, Source, State, TuneError, Tuned, design, history};
+
+/// How often the state of a search is saved.
+const SAVED_EVERY: Duration = Duration::from_secs(2);
+
+/// Choose the numbers of a scenario that are marked free, so that its flights become good.
+///
+/// Mark numbers with `{ tune = [0.1, 10.0], scale = "log", start = 1.0 }`, say under [[tuning.objective]] what
+/// shall become small, and under [[tuning.case]] on what to fly. Requirements of the scenario are limits
+/// that come before any cost. The same seed gives the same design on any number of threads; a search that
+/// was interrupted goes on where it was when the same command is given again.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scenario file.
+    scenario: PathBuf,
+    /// The controller; needed only where several have free numbers.
+    #[arg(long, value_name = "NAME")]
+    controller: Option<String>,
+    /// How to search: cma-es, de, l-shade, pso, ga, nelder-mead, or nsga-ii for trade-offs; by default as
+    /// the scenario says.
+    #[arg(long, value_name = "NAME")]
+    optimiser: Option<String>,
+    /// How many candidates to fly; by default as the scenario says.
+    #[arg(long, value_name = "N")]
+    budget: Option<usize>,
+    /// Seed of the search; by default as the scenario says.
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Candidates of a generation; by default what serves the optimiser.
+    #[arg(long, value_name = "N")]
+    population: Option<usize>,
+    /// Begin anywhere within the bounds, and not about the start.
+    #[arg(long)]
+    anywhere: bool,
+    /// Write the design: the scenario with what was found in place of the marks.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Write every candidate as a row of a Parquet file.
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
+    /// Set a value before anything is read, e.g. `--set loop.duration_s=30`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// How many threads; 0 for as many as the machine has. The result is the same.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Say nothing of the progress.
+    #[arg(long)]
+    quiet: bool,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source =
+        Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+    let problem = Problem::new(&source, arguments.controller.as_deref()).map_err(failure)?;
+    if let Some(out) = &arguments.out {
+        design::check_place(&source, out).map_err(failure)?;
+    }
+    let effort = effort(arguments, &problem);
+    let tuned = local::in_threads(arguments.threads, || search(arguments, &problem, &effort));
+    let (tuned, best) = tuned.map_err(|error| Failure::input(error))?.map_err(failure)?;
+    let answer = match arguments.format {
+        Format::Text => tuned.text(),
+        Format::Json => json_text(&tuned.json()),
+    };
+    print(&answer)?;
+    if let Some(out) = &arguments.out {
+        let heading = tuned.heading(&command(arguments, &effort));
+        let text = design::text(&source, problem.space(), &best, &heading).map_err(failure)?;
+        output::write(out, text)?;
+        remove(&state_path(out));
+        note(format_args!("wrote {}", out.display()));
+    }
+    match tuned.is_allowed() {
+        true => Ok(()),
+        false => Err(Failure::not_met(
+            "no candidate came back from every flight and met every requirement",
+        )),
+    }
+}
+
+fn failure(error: TuneError) -> Failure {
+    match error {
+        TuneError::Output(_) | TuneError::History(_) => Failure::output(error),
+        _ => Failure::input(error),
+    }
+}
+
+fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
+    let tuning = problem.tuning();
+    Effort {
+        optimiser: arguments.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
+        budget: arguments.budget.unwrap_or(tuning.budget),
+        seed: arguments.seed.unwrap_or(tuning.seed),
+        population: arguments.population,
+        anywhere: arguments.anywhere,
+    }
+}
+
+/// Searches to the end; what was found, and the best point.
+fn search(
+    arguments: &Arguments,
+    problem: &Problem,
+    effort: &Effort,
+) -> Result<(Tuned, Vec<f64>), TuneError> {
+    let saved = arguments.out.as_deref().map(state_path);
+    let mut search = begun(problem, effort, saved.as_deref())?;
+    let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
+    let begun_at = (Instant::now(), search.spent());
+    let (mut told, mut kept) = (Instant::now(), Instant::now());
+    let stop = loop {
+        if let Some(stop) = search.advance() {
+            break stop;
+        }
+        if telling != Telling::Nothing && told.elapsed() >= telling.period() {
+            told = Instant::now();
+            tell(telling, &line(&search, begun_at));
+        }
+        if let Some(path) = &saved
+            && kept.elapsed() >= SAVED_EVERY
+        {
+            output::write(path, json_text(&state_json(&search.state())))?;
+            kept = Instant::now();
+        }
+    };
+    if telling != Telling::Nothing {
+        answer_after(telling, &line(&search, begun_at));
+    }
+    if let Some(path) = &arguments.history {
+        history::write(path, problem, &search)?;
+    }
+    let tuned = Tuned::of(problem, &search, stop);
+    Ok((tuned, search.best().point.clone()))
+}
+
+fn begun<'a>(
+    problem: &'a Problem,
+    effort: &Effort,
+    saved: Option<&Path>,
+) -> Result<Search<'a>, TuneError> {
+    let Some(path) = saved.filter(|path| path.exists()) else {
+        return Search::begin(problem, effort.clone());
+    };
+    let name = path.display().to_string();
+    let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(output::in_words(&error)))?;
+    let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let search = Search::resume(problem, effort, state, &name)?;
+    note(format_args!("going on after {} candidates, from {name}", grouped(search.spent() as u64)));
+    Ok(search)
+}
+
+fn state_json(state: &State) -> serde_json::Value {
+    serde_json::to_value(state).unwrap_or_default()
+}
+
+/// Where the state of a search lies while it goes on.
+fn state_path(out: &Path) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push(".state.json");
+    PathBuf::from(name)
+}
+
+/// The state of a search that is over is of no use any more.
+fn remove(path: &Path) {
+    if path.exists() && std::fs::remove_file(path).is_err() {
+        note(format_args!("warning: {} could not be removed", path.display()));
+    }
+}
+
+fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {
+    let (spent, budget) = (search.spent(), search.effort().budget);
+    let mut parts =
+        vec![format!("{} of {} candidates", grouped(spent as u64), grouped(budget as u64))];
+    let score = &search.best().score;
+    parts.push(match score.is_allowed() {
+        true => format!("best cost {:.6}", score.cost),
+        false => format!("none allowed yet, violation {:.4}", score.violation),
+    });
+    let seconds = start.elapsed().as_secs_f64();
+    let flown = spent.saturating_sub(before);
+    if flown > 0 && spent < budget {
+        let left = (budget - spent) as f64 * seconds / flown as f64;
+        parts.push(format!("{} left", duration(left)));
+    }
+    parts.join(", ")
+}
+
+/// The command that makes the design again.
+fn command(arguments: &Arguments, effort: &Effort) -> String {
+    let name = arguments.scenario.file_name().map(|name| name.to_string_lossy().into_owned());
+    let mut words = vec!["fspid tune".to_owned(), word(&name.unwrap_or_default())];
+    let mut option = |name: &str, value: &str| words.push(format!("--{name} {}", word(value)));
+    if let Some(controller) = &arguments.controller {
+        option("controller", controller);
+    }
+    option("optimiser", &effort.optimiser);
+    option("budget", &effort.budget.to_string());
+    option("seed", &effort.seed.to_string());
+    if let Some(population) = effort.population {
+        option("population", &population.to_string());
+    }
+    arguments.overrides.iter().for_each(|change| option("set", change));
+    if effort.anywhere {
+        words.push("--anywhere".to_owned());
+    }
+    words.join(" ")
+}

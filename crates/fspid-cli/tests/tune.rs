@@ -1,0 +1,244 @@
+//! `fspid tune` as engineers, interruptions and mistakes meet it.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const SCENARIO: &str = r#"schema = 1
+name = "to be tuned"
+
+[plant]
+preset = "navion-paper"
+
+[actuator]
+time_constant_s = 0.1
+
+[loop]
+sample_period_s = 0.02
+duration_s = 4.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 2.0
+
+# The gains that are looked for.
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = { tune = [0.1, 10.0], scale = "log", start = 1.0 } # command per error
+ki = { tune = [0.01, 5.0], scale = "log", start = 0.5 }
+kd = { tune = [0.01, 1.0], scale = "log", start = 0.1 }
+derivative_filter_s = 0.05
+derivative_on = "measurement"
+
+[[requirement]]
+measure = "overshoot_pct"
+most = 25.0
+
+[tuning]
+budget = 60
+
+[[tuning.case]]
+name = "weak elevator"
+set = ["plant.preset.numerator[0]=9.0"]
+
+[[tuning.case]]
+name = "as it is"
+set = []
+
+[[tuning.objective]]
+measure = "iae_deg_s"
+
+[[tuning.objective]]
+measure = "elevator_travel_deg"
+weight = 0.05
+"#;
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("pitch.toml"), SCENARIO).expect("written");
+    folder
+}
+
+fn fspid(arguments: &[&str], folder: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    command.args(arguments).current_dir(folder).output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
+
+fn done(arguments: &[&str], folder: &Path) -> String {
+    let output = fspid(arguments, folder);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}\n{}", text(&output.stderr));
+    text(&output.stdout).to_owned()
+}
+
+fn refused(arguments: &[&str], folder: &Path) -> String {
+    let output = fspid(arguments, folder);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}\n{}", text(&output.stdout));
+    text(&output.stderr).to_owned()
+}
+
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).expect("it was written")
+}
+
+#[test]
+fn a_design_is_the_scenario_with_numbers_in_place_of_marks_and_flies() {
+    let folder = folder();
+    let folder = folder.path();
+    let told = done(&["tune", "pitch.toml", "--out", "design.toml"], folder);
+    assert!(told.contains("cma-es with seed 1, 60 candidates of 2 flights"), "{told}");
+    let design = String::from_utf8(read(folder, "design.toml")).expect("UTF-8");
+    assert!(
+        design.starts_with("# Controller \"PID\" was tuned by: fspid tune pitch.toml"),
+        "{design}"
+    );
+    assert!(design.contains("# command per error") && !design.contains("tune = ["), "{design}");
+    let flown = done(&["simulate", "design.toml"], folder);
+    assert!(flown.contains("settled"), "{flown}");
+    assert!(!folder.join("design.toml.state.json").exists());
+}
+
+#[test]
+fn every_optimiser_ends_below_the_start_and_on_any_number_of_threads_the_same() {
+    let folder = folder();
+    let folder = folder.path();
+    for optimiser in ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "nsga-ii"] {
+        let run = |threads: &str, out: &str| {
+            let arguments = [
+                "tune",
+                "pitch.toml",
+                "--optimiser",
+                optimiser,
+                "--threads",
+                threads,
+                "--out",
+                out,
+                "--history",
+                "history.parquet",
+                "--quiet",
+                "--format",
+                "json",
+            ];
+            let answer = done(&arguments, folder);
+            (answer, read(folder, out), read(folder, "history.parquet"))
+        };
+        let one = run("1", "one.toml");
+        let three = run("3", "three.toml");
+        assert_eq!((&one.0, &one.2), (&three.0, &three.2), "{optimiser}");
+        assert_eq!(one.1, three.1, "{optimiser}");
+        let answer: serde_json::Value = serde_json::from_str(&one.0).expect("JSON");
+        let cost = |of: &str| answer[of]["cost"].as_f64().unwrap_or(f64::INFINITY);
+        assert!(cost("best") < cost("start"), "{optimiser}: {answer:#}");
+        assert_eq!(answer["hypervolume"].is_number(), optimiser == "nsga-ii", "{answer:#}");
+        assert_eq!(answer["front"].is_array(), optimiser == "nsga-ii", "{answer:#}");
+    }
+}
+
+#[test]
+fn a_search_that_was_killed_goes_on_to_the_same_design_and_history() {
+    let folder = folder();
+    let folder = folder.path();
+    let arguments = |out: &'static str, history: &'static str| {
+        ["tune", "pitch.toml", "--budget", "4000", "--out", out, "--history", history]
+    };
+    let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
+        .args(arguments("cut.toml", "cut.parquet"))
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let state = folder.join("cut.toml.state.json");
+    let begun = Instant::now();
+    while !state.exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("it still searches");
+    child.wait().expect("it ended");
+    assert!(state.exists() && !folder.join("cut.toml").exists());
+    // Another search does not take its state.
+    let other = refused(&["tune", "pitch.toml", "--seed", "9", "--out", "cut.toml"], folder);
+    assert!(other.contains("cut.toml.state.json") && other.contains("another search"), "{other}");
+    let output = fspid(&arguments("cut.toml", "cut.parquet"), folder);
+    assert!(text(&output.stderr).contains("going on after"), "{}", text(&output.stderr));
+    done(&arguments("whole.toml", "whole.parquet"), folder);
+    assert_eq!(read(folder, "cut.toml"), read(folder, "whole.toml"));
+    assert_eq!(read(folder, "cut.parquet"), read(folder, "whole.parquet"));
+    assert!(!state.exists());
+}
+
+#[test]
+fn what_is_wrong_is_told_before_anything_runs() {
+    let folder = folder();
+    let folder = folder.path();
+    let with = |from: &str, to: &str| {
+        assert!(SCENARIO.contains(from), "{from}");
+        std::fs::write(folder.join("wrong.toml"), SCENARIO.replace(from, to)).expect("written");
+    };
+    let tune = ["tune", "wrong.toml", "--out", "design.toml"];
+    for (from, to, message) in [
+        ("tune = [0.1, 10.0]", "tune = [10.0, 0.1]", "the bounds hold no number between them"),
+        ("[tuning]\nbudget = 60", "[tuning]\nbudget = 0", "tuning.budget: out of range"),
+        (
+            "derivative_filter_s = 0.05",
+            "derivative_filter_s = { tune = [-0.1, 0.1], start = 0.05 }",
+            "derivative_filter_s: -0.1 is not allowed",
+        ),
+        ("start = 1.0 }", "start = 10.0 }", "the start has no cost"),
+        ("measure = \"iae_deg_s\"", "measure = \"phugoid_damping\"", "the start has no cost"),
+        ("numerator[0]=9.0", "numerator[7]=9.0", "case \"weak elevator\" makes the scenario wrong"),
+    ] {
+        with(from, to);
+        let told = refused(&tune, folder);
+        assert!(told.contains(message), "{from} -> {to}: {told}");
+    }
+    for (arguments, message) in [
+        (["--budget", "0"], "the budget is 0; allowed is 1 candidate or more"),
+        (["--optimiser", "cmaes"], "the optimiser is \"cmaes\"; allowed is cma-es"),
+        (["--controller", "FSPID"], "the controller is \"FSPID\"; allowed is PID"),
+        (["--set", "controller.PID.kq=1"], "did you mean"),
+    ] {
+        let told = refused(&["tune", "pitch.toml", arguments[0], arguments[1]], folder);
+        assert!(told.contains(message), "{arguments:?}: {told}");
+    }
+    assert!(!folder.join("design.toml").exists());
+}
+
+#[test]
+fn a_best_candidate_that_breaks_a_requirement_is_not_called_good() {
+    let folder = folder();
+    let folder = folder.path();
+    let hard = SCENARIO.replace(
+        "measure = \"overshoot_pct\"\nmost = 25.0",
+        "measure = \"rise_time_s\"\nmost = 0.001",
+    );
+    std::fs::write(folder.join("hard.toml"), hard).expect("written");
+    let output = fspid(&["tune", "hard.toml", "--out", "design.toml"], folder);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("not good enough"), "{}", text(&output.stdout));
+    let design = String::from_utf8(read(folder, "design.toml")).expect("UTF-8");
+    assert!(design.contains("# NOT GOOD ENOUGH"), "{design}");
+}
+
+#[test]
+fn changes_from_outside_stand_in_the_design() {
+    let folder = folder();
+    let folder = folder.path();
+    let arguments = [
+        "tune",
+        "pitch.toml",
+        "--set",
+        "loop.duration_s=3",
+        "--set",
+        "controller.PID.derivative_filter_s={ tune = [0.01, 0.1] }",
+        "--out",
+        "design.toml",
+    ];
+    done(&arguments, folder);
+    let checked = done(&["check", "design.toml"], folder);
+    assert!(checked.contains("151 samples"), "{checked}");
+}

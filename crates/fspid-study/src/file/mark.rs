@@ -1,0 +1,325 @@
+//! Marks: `{ tune = [0.1, 10.0], scale = "log" }` in place of a number, `{ tune = "rules", ... }` in place
+//! of a grid of rules. A mark flies as its start; it is taken out of the document before the check.
+
+use fspid_fuzzy::{Grid, Label};
+
+use crate::file::document::{Item, Member, Value};
+use crate::file::problem::{Problems, nearest};
+use crate::file::report::{Place, Report};
+use crate::file::setting::{grid_text, named_step};
+use crate::file::{SettingPath, Template};
+use crate::tune::Scale;
+use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark};
+
+/// The key that makes a table a mark.
+const KEY: &str = "tune";
+/// Words for the scale.
+const SCALES: [(Scale, &str); 2] = [(Scale::Linear, "linear"), (Scale::Logarithmic, "log")];
+const NUMBER_KEYS: [&str; 3] = [KEY, "scale", "start"];
+const GRID_KEYS: [&str; 6] = [KEY, "start", "reach", "symmetric", "at_rest", "monotone"];
+/// Top-level tables in which nothing can be free.
+pub(crate) const FIXED: [&str; 5] = ["requirement", "dispersion", "tuning", "contest", "set"];
+
+/// JSON Schemas of the two kinds of marks.
+pub(crate) fn schemas() -> serde_json::Value {
+    let scales = SCALES.map(|(_, name)| name);
+    let orders = Monotone::NAMES.map(|(_, name)| name);
+    serde_json::json!({
+        "mark": {
+            "description": "A number that `fspid tune` may choose; it flies as its start.",
+            "type": "object",
+            "properties": {
+                KEY: { "description": "[lower, upper]", "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 },
+                "scale": { "description": "How it is spread.", "type": "string", "enum": scales, "default": "linear" },
+                "start": { "description": "Where the search begins; the middle if left out.", "type": "number" },
+            },
+            "required": [KEY],
+            "additionalProperties": false,
+        },
+        "rules": {
+            "description": "A grid of rules whose labels `fspid tune` may choose.",
+            "type": "object",
+            "properties": {
+                KEY: { "const": "rules" },
+                "start": { "description": "Seven lines of seven labels.", "type": "string" },
+                "reach": { "description": "How many labels a cell may move.", "type": "integer", "minimum": 1, "maximum": 6, "default": 2 },
+                "symmetric": { "description": "A fall is answered as a rise.", "type": "boolean", "default": true },
+                "at_rest": { "description": "The label of no error and no change.", "type": "string", "enum": Label::ALL.map(Label::name) },
+                "monotone": { "description": "How labels run from the middle outwards.", "type": "string", "enum": orders, "default": "no" },
+            },
+            "required": [KEY, "start"],
+            "additionalProperties": false,
+        },
+    })
+}
+
+/// Takes the marks out of a document and leaves their starts.
+pub(crate) fn take(report: &mut Report, document: &mut Item) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    let mut walk = Walk { report, marks: &mut marks, controller: None };
+    walk.inside(document, "");
+    // Tables know their keys in alphabetical order only.
+    marks.sort_by_key(|mark| (mark.bytes.start, mark.path.text().to_owned()));
+    marks
+}
+
+struct Walk<'a> {
+    report: &'a mut Report,
+    marks: &'a mut Vec<Mark>,
+    /// Name of the controller that is walked through.
+    controller: Option<String>,
+}
+
+impl Walk<'_> {
+    fn inside(&mut self, item: &mut Item, path: &str) {
+        match &mut item.value {
+            Value::Table(members) => {
+                for member in members {
+                    let inner = match path {
+                        "" => bare(&member.name),
+                        path => format!("{path}.{}", bare(&member.name)),
+                    };
+                    self.visit(&mut member.item, &inner);
+                }
+            }
+            Value::Array(items) => {
+                for (index, item) in items.iter_mut().enumerate() {
+                    let inner = format!("{path}{}", named_step(name_of(item), index));
+                    if path == "controller" {
+                        self.controller = Some(name_of(item).to_owned());
+                    }
+                    self.visit(item, &inner);
+                }
+                if path == "controller" {
+                    self.controller = None;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn visit(&mut self, item: &mut Item, path: &str) {
+        let Value::Table(members) = &item.value else {
+            return self.inside(item, path);
+        };
+        if !members.iter().any(|member| member.name == KEY) {
+            return self.inside(item, path);
+        }
+        if !self.report.text(item.place).starts_with('{') {
+            let allowed = "{ tune = [lower, upper] } in braces after the `=`";
+            self.report.missing(item.place, path, "a mark in a table of its own", allowed);
+        }
+        let mark = Fields { report: self.report, members, place: item.place, path };
+        let root = path.split(['.', '[']).next().unwrap_or_default();
+        if FIXED.contains(&root) {
+            mark.report.missing(item.place, path, "nothing can be tuned here", "a value");
+        }
+        let Some(free) = mark.free() else {
+            // A number that no check refuses, so that the mark's problem is the only one.
+            item.value = Value::Float(1.0);
+            return;
+        };
+        item.value = match &free {
+            Free::Number(number) => Value::Float(number.start),
+            Free::Grid(grid) => Value::Text(grid_text(&grid.start)),
+        };
+        if let Some(path) = SettingPath::parse(path) {
+            let bytes =
+                if item.place.source == 0 { item.place.start..item.place.end } else { 0..0 };
+            self.marks.push(Mark { path, free, controller: self.controller.clone(), bytes });
+        }
+    }
+}
+
+/// A name as a step of a path.
+fn bare(name: &str) -> String {
+    let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
+    if is_bare && !name.is_empty() { name.to_owned() } else { format!("\"{name}\"") }
+}
+
+fn name_of(item: &Item) -> &str {
+    let Value::Table(members) = &item.value else {
+        return "";
+    };
+    match members.iter().find(|member| member.name == "name").map(|member| &member.item.value) {
+        Some(Value::Text(name)) => name,
+        _ => "",
+    }
+}
+
+/// The keys of a mark.
+struct Fields<'a> {
+    report: &'a mut Report,
+    members: &'a [Member],
+    place: Place,
+    path: &'a str,
+}
+
+impl Fields<'_> {
+    fn member(&self, name: &str) -> Option<&Item> {
+        self.members.iter().find(|member| member.name == name).map(|member| &member.item)
+    }
+
+    fn free(self) -> Option<Free> {
+        let before = self.report.count();
+        let is_grid = matches!(self.member(KEY).map(|item| &item.value), Some(Value::Text(_)));
+        let mut fields = self;
+        fields.check_keys(if is_grid { &GRID_KEYS } else { &NUMBER_KEYS });
+        let free = match is_grid {
+            true => fields.grid().map(Free::Grid),
+            false => fields.number().map(Free::Number),
+        };
+        free.filter(|_| fields.report.count() == before)
+    }
+
+    fn check_keys(&mut self, known: &[&str]) {
+        for member in self.members.iter().filter(|it| !known.contains(&it.name.as_str())) {
+            let meant = nearest(&member.name, known).map(|it| format!("; did you mean `{it}`?"));
+            let message = format!("unknown key of a mark{}", meant.unwrap_or_default());
+            self.report.missing(member.place, self.path, message, known.join(", "));
+        }
+    }
+
+    fn wrong(&mut self, key: &str, message: &str, allowed: &str) {
+        let place = self.member(key).map_or(self.place, |item| item.place);
+        self.report.value(place, &format!("{}.{key}", self.path), message, allowed);
+    }
+
+    fn number(&mut self) -> Option<NumberMark> {
+        const BOUNDS: &str = "[lower, upper], two finite numbers with lower below upper";
+        let bounds = match self.member(KEY).map(|item| &item.value) {
+            Some(Value::Array(items)) => items.iter().map(number_of).collect::<Option<Vec<f64>>>(),
+            _ => None,
+        };
+        let Some([lower, upper]) = bounds.as_deref() else {
+            self.wrong(KEY, "no bounds", BOUNDS);
+            return None;
+        };
+        let (lower, upper) = (*lower, *upper);
+        if !(lower < upper && (upper - lower).is_finite()) {
+            self.wrong(KEY, "the bounds hold no number between them", BOUNDS);
+            return None;
+        }
+        let scale = self.word("scale", &SCALES, Scale::Linear)?;
+        if scale == Scale::Logarithmic && !(lower > 0.0) {
+            self.wrong(
+                "scale",
+                "a logarithmic scale needs bounds above 0",
+                "\"linear\", or a lower bound above 0",
+            );
+            return None;
+        }
+        let start = match self.member("start") {
+            None => scale.between(lower, upper, 0.5),
+            Some(item) => match number_of(item) {
+                Some(start) if (lower..=upper).contains(&start) => start,
+                _ => {
+                    self.wrong(
+                        "start",
+                        "not within the bounds",
+                        &format!("{lower:?} to {upper:?}"),
+                    );
+                    return None;
+                }
+            },
+        };
+        Some(NumberMark { lower, upper, scale, start })
+    }
+
+    /// The word of a key, or the default.
+    fn word<T: Copy>(&mut self, key: &str, known: &[(T, &str)], default: T) -> Option<T> {
+        let Some(item) = self.member(key) else {
+            return Some(default);
+        };
+        let found = match &item.value {
+            Value::Text(text) => known.iter().find(|(_, name)| name == text),
+            _ => None,
+        };
+        if found.is_none() {
+            let allowed: Vec<String> = known.iter().map(|(_, it)| format!("\"{it}\"")).collect();
+            self.wrong(key, "unknown word", &allowed.join(", "));
+        }
+        found.map(|(value, _)| *value)
+    }
+
+    fn grid(&mut self) -> Option<GridMark> {
+        if self.word(KEY, &[((), "rules")], ()).is_none() {
+            return None;
+        }
+        let start = match self.member("start").map(|item| &item.value) {
+            Some(Value::Text(text)) => Grid::parse(text),
+            _ => {
+                self.wrong(
+                    "start",
+                    "missing key",
+                    "seven lines of seven labels out of NB NM NS ZO PS PM PB",
+                );
+                return None;
+            }
+        };
+        let start = match start {
+            Ok(start) => start,
+            Err(error) => {
+                self.wrong("start", &error.to_string(), "");
+                return None;
+            }
+        };
+        let reach = match self.member("reach").map(|item| &item.value) {
+            None => 2,
+            Some(Value::Integer(_, Some(reach @ 1..=6))) => *reach as u8,
+            Some(_) => {
+                self.wrong("reach", "no number of labels", "a whole number from 1 to 6");
+                return None;
+            }
+        };
+        let symmetric = match self.member("symmetric").map(|item| &item.value) {
+            None => true,
+            Some(Value::Boolean(symmetric)) => *symmetric,
+            Some(_) => {
+                self.wrong("symmetric", "wrong type", "true or false");
+                return None;
+            }
+        };
+        let labels = Label::ALL.map(|label| (Some(label), label.name()));
+        let at_rest = self.word("at_rest", &labels, None)?;
+        let monotone = self.word("monotone", &Monotone::NAMES, Monotone::No)?;
+        let mark = GridMark { start, reach, symmetric, at_rest, monotone };
+        if !mark.start_is_allowed() {
+            let allowed = "a grid that is symmetric, at rest and monotone as the mark asks";
+            self.wrong("start", "the grid does not keep what is asked of it", allowed);
+            return None;
+        }
+        Some(mark)
+    }
+}
+
+fn number_of(item: &Item) -> Option<f64> {
+    match item.value {
+        Value::Float(number) | Value::Integer(number, _) if number.is_finite() => Some(number),
+        _ => None,
+    }
+}
+
+impl Template {
+    /// Tries each mark alone at the ends of what may stand there, so that no search begins that its bounds
+    /// make wrong.
+    ///
+    /// # Errors
+    /// Everything that is wrong then, each at its mark.
+    pub fn check_marks(&self) -> Result<(), Problems> {
+        let mut report = self.report();
+        for mark in &self.study().marks {
+            let wrong = mark.ends().into_iter().find_map(|end| {
+                let problems = self.with(&[(&mark.path, end.clone())]).err()?;
+                Some((end, problems.first_in_a_line()))
+            });
+            if let Some((end, problem)) = wrong {
+                let path = mark.path.text();
+                let message = format!("{end} is not allowed: {problem}");
+                let allowed = "bounds within what the scenario allows";
+                report.missing(self.place_of(path), path, message, allowed);
+            }
+        }
+        report.finish(self.name()).map(|_| ())
+    }
+}

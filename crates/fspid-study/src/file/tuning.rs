@@ -1,0 +1,129 @@
+//! Tuning and contest as files have them.
+
+use crate::file::document::{Item, Value};
+use crate::file::overrides;
+use crate::file::report::Report;
+use crate::file::requirement::objective_requirement;
+use crate::file::section::Section;
+use crate::file::spec::FRONT;
+use crate::tuning::{Case, Contest, Objective, Over, Tuning};
+
+/// Share of the flights that counts in a tail, unless another is asked for.
+const USUAL_SHARE: f64 = 0.2;
+
+/// The tuning of a scenario whose controllers have these names.
+pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> Option<Tuning> {
+    check_controller(report, section, "controller", names);
+    let sections = section.sections("objective");
+    let objectives: Vec<Objective> = sections
+        .iter()
+        .filter(|part| part.sound)
+        .enumerate()
+        .filter_map(|(index, part)| objective(report, part, index))
+        .collect();
+    let optimiser = section.text("optimiser")?.to_owned();
+    if optimiser == FRONT && objectives.len() < 2 && sections.len() < 2 {
+        let message = "a front needs two objectives";
+        report.value(
+            section.at("optimiser"),
+            &section.path("optimiser"),
+            message,
+            "two [[tuning.objective]] or more",
+        );
+    }
+    let over = match section.text("over")? {
+        "worst" => Over::Worst,
+        "tail" => Over::Tail { share: section.number("share").unwrap_or(USUAL_SHARE) },
+        _ => Over::Mean,
+    };
+    if section.given("share") && !matches!(over, Over::Tail { .. }) {
+        let message = "says nothing where `over` is not \"tail\"";
+        report.value(section.at("share"), &section.path("share"), message, "over = \"tail\"");
+    }
+    Some(Tuning {
+        optimiser,
+        budget: section.integer("budget")? as usize,
+        seed: section.integer("seed")? as u64,
+        controller: section.text("controller").map(str::to_owned),
+        over,
+        runs: section.integer("runs")? as u64,
+        run_seed: section.integer("run_seed")? as u64,
+        cases: cases(report, section.sections("case")),
+        objectives,
+    })
+}
+
+/// The contest of a scenario whose controllers have these names.
+pub(crate) fn contest(report: &mut Report, section: &Section, names: &[&str]) -> Option<Contest> {
+    check_controller(report, section, "against", names);
+    Some(Contest {
+        seeds: section.integer("seeds")? as u64,
+        cases: cases(report, section.sections("case")),
+        runs: section.integer("runs")? as u64,
+        run_seed: section.integer("run_seed")? as u64,
+        against: section.text("against").map(str::to_owned),
+    })
+}
+
+fn check_controller(report: &mut Report, section: &Section, key: &str, names: &[&str]) {
+    if let Some(name) = section.text(key)
+        && !names.contains(&name)
+    {
+        let message = "no controller has this name";
+        report.value(section.at(key), &section.path(key), message, names.join(", "));
+    }
+}
+
+fn objective(report: &mut Report, section: &Section, index: usize) -> Option<Objective> {
+    let weight = section.number("weight")?;
+    if weight == 0.0 {
+        let message = "an objective that costs nothing";
+        report.value(
+            section.at("weight"),
+            &section.path("weight"),
+            message,
+            "a finite number other than 0",
+        );
+        return None;
+    }
+    let requirement = objective_requirement(report, section, (index, weight > 0.0))?;
+    Some(Objective { requirement, weight, reference: section.number("reference") })
+}
+
+fn cases(report: &mut Report, sections: &[Section]) -> Vec<Case> {
+    for (index, section) in sections.iter().enumerate() {
+        let earlier = sections.get(..index).unwrap_or_default();
+        let name = section.text("name");
+        if let Some(twin) = earlier.iter().find(|it| name.is_some() && it.text("name") == name) {
+            let message = format!("the name is taken by {}", twin.path);
+            report.value(section.at("name"), &section.path("name"), message, "a name of its own");
+        }
+    }
+    sections.iter().filter(|section| section.sound).filter_map(|it| case(report, it)).collect()
+}
+
+fn case(report: &mut Report, section: &Section) -> Option<Case> {
+    let item = section.item("set")?;
+    let set = texts(item);
+    if set.is_none() {
+        let allowed = overrides::listed_in_words();
+        report.value(item.place, &section.path("set"), "no list of changes", allowed);
+    }
+    Some(Case {
+        name: section.text("name")?.to_owned(),
+        group: section.text("group").unwrap_or_default().to_owned(),
+        set: set?,
+        weight: section.number("weight")?,
+    })
+}
+
+fn texts(item: &Item) -> Option<Vec<String>> {
+    let Value::Array(items) = &item.value else {
+        return None;
+    };
+    let text = |item: &Item| match &item.value {
+        Value::Text(text) => Some(text.clone()),
+        _ => None,
+    };
+    items.iter().map(text).collect()
+}

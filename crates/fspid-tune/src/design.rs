@@ -1,0 +1,99 @@
+//! A design: the scenario's own text with what was found in place of the marks.
+
+use fspid_study::file::{Extra, NewValue, Template, read_text};
+use fspid_study::tuning::{Free, Mark};
+
+use crate::error::TuneError;
+use crate::problem::{Source, folder_of};
+use crate::space::Space;
+
+/// The text of a scenario file without its byte order mark.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(crate) fn text_of(source: &Source) -> Result<String, TuneError> {
+    let text = read_text(&source.path)?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
+}
+
+/// Checks that a design of this scenario can lie in another folder, before anything is searched.
+///
+/// # Errors
+/// A file that would not be found from there, or changes that the text has no room for.
+pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneError> {
+    let text = text_of(source)?;
+    let extra = Extra { overrides: &source.overrides, ..Extra::default() };
+    let name = out.display().to_string();
+    if Template::parse(&text, &name, Some(folder_of(out)), &extra).is_err() {
+        return Err(TuneError::Value {
+            what: "--out",
+            found: name,
+            allowed: "a file in the folder of the scenario, which names files relative to itself"
+                .to_owned(),
+        });
+    }
+    if !source.overrides.is_empty() && has_list(&text) {
+        return Err(TuneError::Value {
+            what: "--set",
+            found: "given together with a scenario that has a `set` of its own".to_owned(),
+            allowed: "one of the two, so that the design can hold it".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// True for a text with a list of changes of its own, which stands before its first table.
+fn has_list(text: &str) -> bool {
+    let lines = text.lines().map(str::trim_start).take_while(|line| !line.starts_with('['));
+    lines.filter_map(|line| line.split_once('=')).any(|(key, _)| key.trim() == "set")
+}
+
+/// The scenario with the values of a point in place of its marks; `heading` comes first, as comments.
+///
+/// # Errors
+/// A scenario that cannot be read any more.
+pub fn text(
+    source: &Source,
+    space: &Space,
+    point: &[f64],
+    heading: &[String],
+) -> Result<String, TuneError> {
+    let original = text_of(source)?;
+    let values = space.values(point);
+    let mut places: Vec<(&Mark, &NewValue)> =
+        space.marks().iter().zip(values.iter().map(|(_, value)| value)).collect();
+    places.sort_by_key(|(mark, _)| mark.bytes().start);
+    let mut body = String::new();
+    let mut from = 0;
+    let mut changes: Vec<String> = source.overrides.clone();
+    for (mark, value) in places {
+        let bytes = mark.bytes();
+        if bytes.is_empty() {
+            // The mark came from outside; it was set there, and its value is set after it.
+            changes.push(format!("{}={value}", mark.path.text()));
+            continue;
+        }
+        body.push_str(original.get(from..bytes.start).unwrap_or_default());
+        body.push_str(&written(mark, value));
+        from = bytes.end;
+    }
+    body.push_str(original.get(from..).unwrap_or_default());
+    let mut out = String::new();
+    for line in heading {
+        out.push_str(&format!("# {line}\n"));
+    }
+    if !changes.is_empty() {
+        let quoted: Vec<String> = changes.iter().map(|change| format!("{change:?}")).collect();
+        out.push_str(&format!("set = [{}]\n", quoted.join(", ")));
+    }
+    out.push_str(&body);
+    Ok(out)
+}
+
+/// A value as a person would write it; a grid in lines.
+fn written(mark: &Mark, value: &NewValue) -> String {
+    match (&mark.free, value) {
+        (Free::Grid(_), NewValue::Text(text)) => format!("\"\"\"\n{text}\n\"\"\""),
+        _ => value.to_string(),
+    }
+}

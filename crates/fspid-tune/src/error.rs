@@ -1,0 +1,95 @@
+//! What can be wrong with a tuning.
+
+use fspid_campaign::CampaignError;
+use fspid_campaign::table::TableError;
+use fspid_study::file::{LoadError, Problems};
+use fspid_study::output::OutputError;
+use thiserror::Error;
+
+/// Why a tuning or a contest could not begin or go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TuneError {
+    /// The scenario is wrong.
+    #[error("{0}")]
+    Scenario(#[from] Problems),
+    /// The scenario cannot be read.
+    #[error("{0}")]
+    Unreadable(#[from] LoadError),
+    /// A case makes the scenario wrong.
+    #[error("case \"{case}\" makes the scenario wrong:\n{problems}")]
+    Case {
+        /// Name of the case.
+        case: String,
+        /// What is wrong then.
+        problems: Box<LoadError>,
+    },
+    /// The scenario says nothing of tuning.
+    #[error(
+        "{path}: it does not say what a good flight is\n    add it, for instance:\n\n        [[tuning.objective]]\n        measure = \"iae_deg_s\"\n\n        [[tuning.objective]]\n        measure = \"elevator_travel_deg\"\n        weight = 0.1\n"
+    )]
+    NoObjective {
+        /// The scenario.
+        path: String,
+    },
+    /// Nothing is marked free.
+    #[error(
+        "{path}: no number of controller \"{controller}\" is marked free\n    mark some, for instance:\n\n        kp = {{ tune = [0.1, 10.0], scale = \"log\", start = 1.0 }}\n"
+    )]
+    NothingFree {
+        /// The scenario.
+        path: String,
+        /// The controller.
+        controller: String,
+    },
+    /// Several controllers have free numbers.
+    #[error("several controllers have free numbers: {}; name one with --controller or `tuning.controller`", names.join(", "))]
+    WhichController {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// A word or number that is not allowed.
+    #[error("{what} is {found}; allowed is {allowed}")]
+    Value {
+        /// What it is.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// The start does not fly, or has no value of the objective.
+    #[error(
+        "the start has no cost, so that a search from it would be blind:\n{}\n    give the marks a `start` that flies in every case, or begin anywhere with --anywhere",
+        reasons.join("\n")
+    )]
+    Start {
+        /// Why, flight by flight.
+        reasons: Vec<String>,
+    },
+    /// Draws or threads.
+    #[error("{0}")]
+    Campaign(#[from] CampaignError),
+    /// A saved state that is not of this search, or that cannot be read.
+    #[error("{path}: {reason}; move it away to begin anew")]
+    State {
+        /// Path of the state.
+        path: String,
+        /// Why it cannot be used.
+        reason: String,
+    },
+    /// The history cannot be made.
+    #[error("{0}")]
+    History(#[from] TableError),
+    /// A file cannot be written.
+    #[error("{0}")]
+    Output(#[from] OutputError),
+    /// Nothing that the search tried can be flown.
+    #[error("none of {tried} candidates could be flown in every case; the best one: {reason}")]
+    NothingFlies {
+        /// How many there were.
+        tried: usize,
+        /// What was wrong with the best.
+        reason: String,
+    },
+}

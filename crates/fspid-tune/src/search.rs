@@ -1,0 +1,336 @@
+//! A search, generation by generation: it can be stopped, written and gone on with, with the same bits.
+
+use fspid_study::tune::optimiser::{
+    Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::error::TuneError;
+use crate::problem::Problem;
+use crate::score::Score;
+
+/// How wide the first candidates lie about the start, as a share of the cube.
+const SPREAD: f64 = 0.2;
+/// Candidates of a generation of the front's optimiser, unless asked otherwise.
+const FRONT_POPULATION: usize = 40;
+
+/// How a search is made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Effort {
+    /// Name of the optimiser.
+    pub optimiser: String,
+    /// Candidates that are flown, the start not counted.
+    pub budget: usize,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Candidates of a generation; what the optimiser is used to where it is left open.
+    pub population: Option<usize>,
+    /// Whether the first candidates lie anywhere, and not about the start.
+    pub anywhere: bool,
+}
+
+impl Effort {
+    /// Names of the optimisers.
+    #[must_use]
+    pub fn optimisers() -> Vec<&'static str> {
+        Kind::NAMES.iter().map(|(_, name)| *name).chain([NsgaII::NAME]).collect()
+    }
+
+    fn check(&self, objectives: usize) -> Result<(), TuneError> {
+        let wrong = |what, found: String, allowed: &str| {
+            Err(TuneError::Value { what, found, allowed: allowed.to_owned() })
+        };
+        if self.budget == 0 {
+            return wrong("the budget", "0".to_owned(), "1 candidate or more");
+        }
+        if !Self::optimisers().contains(&self.optimiser.as_str()) {
+            let found = format!("\"{}\"", self.optimiser);
+            return wrong("the optimiser", found, &Self::optimisers().join(", "));
+        }
+        if self.optimiser == NsgaII::NAME && objectives < 2 {
+            let found = format!("\"{}\" with one objective", NsgaII::NAME);
+            return wrong(
+                "the optimiser",
+                found,
+                "another one, or two [[tuning.objective]] or more",
+            );
+        }
+        if self.population.is_some_and(|count| count < 2) {
+            return wrong("the population", "below 2".to_owned(), "2 candidates or more");
+        }
+        Ok(())
+    }
+}
+
+/// A candidate that was flown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Generation, from 0 for the start alone.
+    pub generation: u64,
+    /// Its place in the unit cube.
+    pub point: Vec<f64>,
+    /// What it is worth.
+    pub score: Score,
+}
+
+/// The optimiser at work.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Engine {
+    One(Snapshot),
+    Front(NsgaII),
+}
+
+/// Everything of a search but its problem, as plain data.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct State {
+    /// Version of this format.
+    schema: u32,
+    /// Digest of everything that decides about the search.
+    of: String,
+    effort: Effort,
+    generation: u64,
+    engine: Engine,
+    trials: Vec<Trial>,
+}
+
+const STATE_SCHEMA: u32 = 1;
+
+enum Running {
+    One(Box<dyn Optimiser>),
+    Front(NsgaII),
+}
+
+/// A search for the best numbers of a problem.
+pub struct Search<'a> {
+    problem: &'a Problem,
+    effort: Effort,
+    running: Running,
+    generation: u64,
+    trials: Vec<Trial>,
+    best: usize,
+}
+
+impl<'a> Search<'a> {
+    /// A search at its beginning; the start is flown.
+    ///
+    /// # Errors
+    /// An effort that is none, or a start without a cost (unless candidates begin anywhere).
+    pub fn begin(problem: &'a Problem, effort: Effort) -> Result<Self, TuneError> {
+        effort.check(problem.tuning().objectives.len())?;
+        let start = problem.space().start();
+        let score = problem.scores(std::slice::from_ref(&start)).pop();
+        let Some(score) = score.filter(|score| effort.anywhere || !score.values.is_empty()) else {
+            return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start) });
+        };
+        let running = started(problem, &effort, &start);
+        let trials = vec![Trial { generation: 0, point: start, score }];
+        Ok(Self { problem, effort, running, generation: 0, trials, best: 0 })
+    }
+
+    /// A search that goes on where its state was saved.
+    ///
+    /// # Errors
+    /// A state of another search, or one that no search can have been in; `path` is told.
+    pub fn resume(
+        problem: &'a Problem,
+        effort: &Effort,
+        state: State,
+        path: &str,
+    ) -> Result<Self, TuneError> {
+        let wrong = |reason: String| TuneError::State { path: path.to_owned(), reason };
+        if state.schema != STATE_SCHEMA {
+            return Err(wrong("it was saved by another version".to_owned()));
+        }
+        if state.of != problem.digest() || state.effort != *effort {
+            return Err(wrong("it is the state of another search".to_owned()));
+        }
+        let dimension = problem.space().dimension();
+        let is_sound = |trial: &Trial| {
+            trial.point.len() == dimension
+                && trial.point.iter().all(|x| (0.0..=1.0).contains(x))
+                && !trial.score.cost.is_nan()
+        };
+        if state.trials.is_empty() || !state.trials.iter().all(is_sound) {
+            return Err(wrong("its trials do not fit together".to_owned()));
+        }
+        let running = match state.engine {
+            Engine::One(snapshot) => {
+                Running::One(snapshot.resume().map_err(|error| wrong(error.to_string()))?)
+            }
+            Engine::Front(front) => {
+                Running::Front(front.resumed().map_err(|error| wrong(error.to_string()))?)
+            }
+        };
+        let mut search = Self {
+            problem,
+            effort: state.effort,
+            running,
+            generation: state.generation,
+            trials: state.trials,
+            best: 0,
+        };
+        search.find_best(0);
+        Ok(search)
+    }
+
+    /// Its state between two generations.
+    #[must_use]
+    pub fn state(&self) -> State {
+        State {
+            schema: STATE_SCHEMA,
+            of: self.problem.digest(),
+            effort: self.effort.clone(),
+            generation: self.generation,
+            engine: match &self.running {
+                Running::One(optimiser) => Engine::One(optimiser.snapshot()),
+                Running::Front(front) => Engine::Front(front.clone()),
+            },
+            trials: self.trials.clone(),
+        }
+    }
+
+    /// Flies one more generation; answers why the search is over, if it is.
+    pub fn advance(&mut self) -> Option<Stop> {
+        let left = self.effort.budget.saturating_sub(self.spent());
+        if left == 0 {
+            return Some(Stop::Budget);
+        }
+        let mut points = match &mut self.running {
+            Running::One(optimiser) => optimiser.ask(),
+            Running::Front(front) => front.ask(),
+        };
+        if points.is_empty() {
+            return Some(self.stop().unwrap_or(Stop::Collapsed));
+        }
+        points.truncate(left);
+        let scores = self.problem.scores(&points);
+        match &mut self.running {
+            Running::One(optimiser) => {
+                optimiser.tell(&scores.iter().map(|score| score.cost).collect::<Vec<_>>());
+            }
+            Running::Front(front) => {
+                front
+                    .tell(&scores.iter().map(|score| score.objectives.clone()).collect::<Vec<_>>());
+            }
+        }
+        self.generation += 1;
+        let generation = self.generation;
+        let from = self.trials.len();
+        let trials = points.into_iter().zip(scores);
+        self.trials.extend(trials.map(|(point, score)| Trial { generation, point, score }));
+        self.find_best(from);
+        (self.spent() >= self.effort.budget).then_some(Stop::Budget)
+    }
+
+    fn stop(&self) -> Option<Stop> {
+        match &self.running {
+            Running::One(optimiser) => optimiser.stop(),
+            Running::Front(front) => front.stop(),
+        }
+    }
+
+    fn find_best(&mut self, from: usize) {
+        for (index, trial) in self.trials.iter().enumerate().skip(from) {
+            if trial.score.cost < self.trials[self.best].score.cost {
+                self.best = index;
+            }
+        }
+    }
+
+    /// How it is made.
+    #[must_use]
+    pub fn effort(&self) -> &Effort {
+        &self.effort
+    }
+
+    /// Candidates flown so far, the start not counted.
+    #[must_use]
+    pub fn spent(&self) -> usize {
+        self.trials.len().saturating_sub(1)
+    }
+
+    /// Every candidate flown so far, the start first.
+    #[must_use]
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
+    }
+
+    /// The one that costs least.
+    #[must_use]
+    pub fn best(&self) -> &Trial {
+        &self.trials[self.best]
+    }
+
+    /// The trade-offs that no other candidate beats, in ascending order of the first objective; one entry
+    /// where there is one objective or the search is for one cost.
+    #[must_use]
+    pub fn front(&self) -> Vec<&Trial> {
+        let allowed: Vec<&Trial> = self.trials.iter().filter(|it| it.score.is_allowed()).collect();
+        if matches!(self.running, Running::One(_)) {
+            return vec![self.best()];
+        }
+        let costs = |trial: &Trial| trial.score.objectives.clone();
+        let beats = |one: &Trial, other: &Trial| {
+            let pairs = || one.score.objectives.iter().zip(&other.score.objectives);
+            pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b)
+        };
+        let mut front: Vec<&Trial> = Vec::new();
+        for trial in allowed {
+            if front.iter().any(|other| beats(other, trial) || costs(other) == costs(trial)) {
+                continue;
+            }
+            front.retain(|other| !beats(trial, other));
+            front.push(trial);
+        }
+        let first = |trial: &Trial| trial.score.objectives.first().copied().unwrap_or(0.0);
+        front.sort_by(|a, b| first(a).total_cmp(&first(b)));
+        front
+    }
+
+    /// Volume between the front and the references of the objectives, in their costs; the worst of the
+    /// first candidates stands for a reference that is left out. None where the search is for one cost.
+    #[must_use]
+    pub fn front_volume(&self) -> Option<f64> {
+        let Running::Front(_) = self.running else {
+            return None;
+        };
+        let first = self.trials.iter().filter(|it| it.generation <= 1 && it.score.is_allowed());
+        let first: Vec<&Trial> = first.collect();
+        let reference = self.problem.tuning().objectives.iter().enumerate().map(|(index, it)| {
+            let worst = first.iter().map(|trial| trial.score.objectives[index]);
+            let worst = worst.fold(f64::NEG_INFINITY, f64::max);
+            it.reference.map_or(worst, |value| it.weight * value)
+        });
+        let reference: Vec<f64> = reference.collect();
+        let points: Vec<&[f64]> =
+            self.front().into_iter().map(|it| it.score.objectives.as_slice()).collect();
+        Some(hypervolume(&points, &reference))
+    }
+}
+
+fn started(problem: &Problem, effort: &Effort, start: &[f64]) -> Running {
+    let dimension = problem.space().dimension();
+    let kind = Kind::from_name(&effort.optimiser);
+    let usual = kind.map_or(FRONT_POPULATION, |kind| kind.usual_population(dimension));
+    // A generation that takes all of the budget learns nothing.
+    let most = (effort.budget / 4).max(4);
+    let population = effort.population.unwrap_or(usual.min(most));
+    let plan = Plan { dimension, population, budget: effort.budget, seed: effort.seed };
+    let about = if effort.anywhere { Start::Anywhere } else { Start::About(start, SPREAD) };
+    match kind {
+        Some(kind) => Running::One(kind.start(plan, about)),
+        None => Running::Front(NsgaII::new(plan, problem.tuning().objectives.len(), about)),
+    }
+}
+
+/// A stop in words.
+#[must_use]
+pub fn stop_in_words(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Budget => "the budget is spent",
+        Stop::Target => "the cost wanted was reached",
+        Stop::NoProgress => "the candidates no longer differ in cost",
+        Stop::Collapsed => "the candidates no longer differ at all",
+    }
+}

@@ -1,0 +1,275 @@
+//! What a search found, for people and programs.
+
+use fspid_study::tune::optimiser::Stop;
+use fspid_study::tuning::{Free, Over};
+use serde_json::{Value, json};
+
+use crate::problem::Problem;
+use crate::search::{Search, Trial, stop_in_words};
+
+/// How near to a bound a number counts as at it, as a share of the way between the bounds.
+const AT_BOUND: f64 = 1e-3;
+/// Most entries of a front that are told to people.
+const MOST_OF_FRONT: usize = 20;
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Tuned {
+    /// Name of the controller.
+    pub controller: String,
+    /// How it was searched.
+    pub effort: crate::search::Effort,
+    /// Why the search is over.
+    pub stop: Stop,
+    /// Candidates flown, the start not counted.
+    pub spent: usize,
+    /// Flights of a candidate.
+    pub flights: usize,
+    /// The start.
+    pub start: Trial,
+    /// The best candidate.
+    pub best: Trial,
+    /// What is wrong with flights of the best one; empty where all is well.
+    pub reasons: Vec<String>,
+    /// The trade-offs, where a front was searched.
+    pub front: Vec<Trial>,
+    /// Volume of the front.
+    pub front_volume: Option<f64>,
+    rows: Vec<Row>,
+    objectives: Vec<(String, &'static str)>,
+    front_numbers: Vec<Vec<f64>>,
+    over: Over,
+}
+
+/// A number that was free.
+#[derive(Clone, Debug)]
+struct Row {
+    name: String,
+    start: f64,
+    found: f64,
+    /// Bounds and whether the number found lies at one of them; none for labels of rules.
+    bounds: Option<(f64, f64, bool)>,
+}
+
+impl Tuned {
+    /// Of a search that is over.
+    #[must_use]
+    pub fn of(problem: &Problem, search: &Search<'_>, stop: Stop) -> Self {
+        let (start, best) = (search.trials()[0].clone(), search.best().clone());
+        let front: Vec<Trial> = search.front().into_iter().cloned().collect();
+        let objectives = problem.tuning().objectives.iter().map(|objective| {
+            let measure = objective.requirement.measure;
+            (measure.name().to_owned(), measure.unit())
+        });
+        let reasons = match best.score.is_allowed() {
+            true => Vec::new(),
+            false => problem.reasons(&best.point),
+        };
+        Self {
+            controller: problem.controller().to_owned(),
+            effort: search.effort().clone(),
+            stop,
+            spent: search.spent(),
+            flights: problem.flights(),
+            rows: rows(problem, &start, &best),
+            front_numbers: front.iter().map(|it| problem.space().numbers(&it.point)).collect(),
+            start,
+            best,
+            reasons,
+            front,
+            front_volume: search.front_volume(),
+            objectives: objectives.collect(),
+            over: problem.tuning().over,
+        }
+    }
+
+    /// True where every flight of the best candidate came back and met its requirements.
+    #[must_use]
+    pub fn is_allowed(&self) -> bool {
+        self.best.score.is_allowed()
+    }
+
+    /// The answer for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let effort = &self.effort;
+        let mut out = format!(
+            "{}: {} with seed {}, {} candidates of {} flight{}; {}\n",
+            self.controller,
+            effort.optimiser,
+            effort.seed,
+            self.spent,
+            self.flights,
+            if self.flights == 1 { "" } else { "s" },
+            stop_in_words(self.stop),
+        );
+        out.push_str(&format!("\n  {:<44}{:>14}{:>14}\n", self.over_in_words(), "start", "found"));
+        for (index, (name, unit)) in self.objectives.iter().enumerate() {
+            let value = |trial: &Trial| shown(trial.score.values.get(index).copied());
+            let name = if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") };
+            out.push_str(&format!(
+                "  {name:<44}{:>14}{:>14}\n",
+                value(&self.start),
+                value(&self.best)
+            ));
+        }
+        let cost = |trial: &Trial| match trial.score.is_allowed() {
+            true => shown(Some(trial.score.cost)),
+            false => "not allowed".to_owned(),
+        };
+        out.push_str(&format!(
+            "  {:<44}{:>14}{:>14}\n",
+            "cost",
+            cost(&self.start),
+            cost(&self.best)
+        ));
+        out.push_str(&format!("\n  {:<44}{:>14}{:>14}  bounds\n", "free number", "start", "found"));
+        for row in &self.rows {
+            let (start, found) = (shown(Some(row.start)), shown(Some(row.found)));
+            let bounds = match row.bounds {
+                None => String::new(),
+                Some((lower, upper, at)) => {
+                    let note = if at { "; the bound is active" } else { "" };
+                    format!("{lower} to {upper}{note}")
+                }
+            };
+            out.push_str(&format!("  {:<44}{start:>14}{found:>14}  {bounds}\n", row.name));
+        }
+        self.tell_front(&mut out);
+        if !self.reasons.is_empty() {
+            out.push_str("\nThe best candidate is not good enough:\n");
+            self.reasons.iter().for_each(|reason| out.push_str(&format!("{reason}\n")));
+        }
+        out
+    }
+
+    fn tell_front(&self, out: &mut String) {
+        let Some(volume) = self.front_volume else {
+            return;
+        };
+        let names: Vec<&str> = self.objectives.iter().map(|(name, _)| name.as_str()).collect();
+        out.push_str(&format!(
+            "\n{} trade-offs, hypervolume {}; {}:\n",
+            self.front.len(),
+            shown(Some(volume)),
+            names.join(", ")
+        ));
+        for trial in self.front.iter().take(MOST_OF_FRONT) {
+            let values = trial.score.values.iter().map(|value| shown(Some(*value)));
+            out.push_str(&format!("  {}\n", values.collect::<Vec<_>>().join(", ")));
+        }
+        if self.front.len() > MOST_OF_FRONT {
+            out.push_str("  and more, in the history and the JSON\n");
+        }
+        out.push_str("The design is the one with the least weighted sum.\n");
+    }
+
+    fn over_in_words(&self) -> String {
+        match self.over {
+            Over::Mean => "mean over the flights".to_owned(),
+            Over::Worst => "worst of the flights".to_owned(),
+            Over::Tail { share } => {
+                format!("mean over the worst {} % of the flights", 100.0 * share)
+            }
+        }
+    }
+
+    /// What a design says of itself in its first lines.
+    #[must_use]
+    pub fn heading(&self, command: &str) -> Vec<String> {
+        let values: Vec<String> = self
+            .objectives
+            .iter()
+            .zip(&self.best.score.values)
+            .map(|((name, _), value)| format!("{name} {}", shown(Some(*value))))
+            .collect();
+        let mut lines = vec![
+            format!("Controller \"{}\" was tuned by: {command}", self.controller),
+            format!(
+                "{} candidates, {}; {}: {}",
+                self.spent,
+                stop_in_words(self.stop),
+                self.over_in_words(),
+                values.join(", ")
+            ),
+        ];
+        if !self.is_allowed() {
+            lines.push("NOT GOOD ENOUGH: flights are lost or requirements are broken.".to_owned());
+        }
+        lines
+    }
+
+    /// The answer for programs.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let effort = &self.effort;
+        let score = |trial: &Trial| {
+            json!({
+                "cost": trial.score.is_allowed().then_some(trial.score.cost),
+                "allowed": trial.score.is_allowed(),
+                "violation": trial.score.violation,
+                "objectives": trial.score.values,
+            })
+        };
+        let parameters = self.rows.iter().map(|row| {
+            json!({
+                "path": row.name,
+                "start": row.start,
+                "value": row.found,
+                "bounds": row.bounds.map(|(lower, upper, _)| [lower, upper]),
+                "at_bound": row.bounds.is_some_and(|(_, _, at)| at),
+            })
+        });
+        let front = self.front.iter().zip(&self.front_numbers).map(
+            |(trial, numbers)| json!({ "objectives": trial.score.values, "parameters": numbers }),
+        );
+        json!({
+            "schema": 1,
+            "controller": self.controller,
+            "optimiser": effort.optimiser,
+            "budget": effort.budget,
+            "seed": effort.seed,
+            "candidates": self.spent,
+            "flights_per_candidate": self.flights,
+            "stop": self.stop,
+            "measures": self.objectives.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+            "start": score(&self.start),
+            "best": score(&self.best),
+            "parameters": parameters.collect::<Vec<_>>(),
+            "front": self.front_volume.map(|_| front.collect::<Vec<_>>()),
+            "hypervolume": self.front_volume,
+            "reasons": self.reasons.iter().map(|reason| reason.trim()).collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn rows(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Row> {
+    let space = problem.space();
+    let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
+        Free::Number(number) => vec![Some((number.lower, number.upper))],
+        Free::Grid(_) => vec![None; mark.dimensions()],
+    });
+    let numbers = space.numbers(&start.point).into_iter().zip(space.numbers(&best.point));
+    let rows = space.names().into_iter().zip(numbers).zip(bounds).zip(&best.point);
+    rows.map(|(((name, (start, found)), bounds), unit)| {
+        let at = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
+        Row { name, start, found, bounds: bounds.map(|(lower, upper)| (lower, upper, at)) }
+    })
+    .collect()
+}
+
+/// A number in five digits.
+fn shown(value: Option<f64>) -> String {
+    let Some(value) = value else {
+        return "none".to_owned();
+    };
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let digits = (4.0 - libm::floor(libm::log10(value.abs().max(1e-3)))).clamp(0.0, 7.0);
+        let text = format!("{value:.*}", digits as usize);
+        return match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        };
+    }
+    format!("{value:.4e}")
+}
