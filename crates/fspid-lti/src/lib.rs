@@ -38,6 +38,7 @@ mod error;
 mod exponential;
 mod frequency;
 mod hold;
+mod integral_regulator;
 mod matrix;
 mod mode;
 mod polynomial;
@@ -55,6 +56,9 @@ pub use error::LtiError;
 pub use exponential::exponential;
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
 pub use hold::zero_order_hold;
+pub use integral_regulator::{
+    DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator,
+};
 pub use matrix::Matrix;
 pub use mode::{Mode, continuous_pole};
 pub use polynomial::{DEGREE_LIMIT, Polynomial};

@@ -32,6 +32,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             .check_dispersions()
             .map_err(Failure::input)?;
     }
+    for gains in &study.derived_gains {
+        note(format_args!("gains of {gains}"));
+    }
     let scenario = &study.scenario;
     print(&format!(
         "{}: good; {} with {} controller(s), {} samples of {} s, digest {}\n",

@@ -50,7 +50,7 @@ use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
-pub use build::Airframe;
+pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
@@ -75,6 +75,8 @@ pub struct Study {
     pub airframes: Vec<Airframe>,
     /// What differs from run to run of a campaign.
     pub dispersions: Vec<Dispersion>,
+    /// Gains that no setting states, because a schedule or a design makes them.
+    pub derived_gains: Vec<DerivedGains>,
     /// Places that are marked free for tuning, in the order of the file.
     pub marks: Vec<Mark>,
     /// How the marked places are chosen.
@@ -92,12 +94,21 @@ pub struct Study {
 impl Study {
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
-        let Built { scenario, requirements, airframes, dispersions, tuning, contest } = built;
+        let Built {
+            scenario,
+            requirements,
+            airframes,
+            dispersions,
+            derived_gains,
+            tuning,
+            contest,
+        } = built;
         Self {
             scenario,
             requirements,
             airframes,
             dispersions,
+            derived_gains,
             marks: Vec::new(),
             tuning,
             contest,

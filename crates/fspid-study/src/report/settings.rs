@@ -1,7 +1,8 @@
 //! Every setting that a flight had, whether its file gave it or a default filled it in.
 
+use super::number::significant;
 use super::page::{Cell, Table};
-use crate::file::Setting;
+use crate::file::{DerivedGains, Setting};
 
 /// Tables whose settings stand in a table of their own.
 const CONTROLLERS: &str = "controller";
@@ -20,6 +21,21 @@ pub(super) fn of_controllers(settings: &[Setting]) -> Vec<Table> {
         table(name, name, settings.iter().copied())
     };
     settings.chunk_by(|a, b| a.table == b.table).map(one).collect()
+}
+
+/// The gains that fly where no setting states them; none without such a controller.
+pub(super) fn derived(gains: &[DerivedGains]) -> Option<Table> {
+    let caption = "Gains that fly, where a schedule or a design makes them.";
+    let head = ["controller", "kp", "ki, 1/s", "kd, s", "rate gain, s", "from"];
+    let mut table = Table::new(caption, &head).in_cards();
+    for DerivedGains { controller, gains, rate_gain_s, source } in gains {
+        let mut row = vec![Cell::text(controller)];
+        let numbers = [gains.kp, gains.ki, gains.kd, *rate_gain_s];
+        row.extend(numbers.map(|number| Cell::number(significant(number, 6))));
+        row.push(Cell::text(source.to_string()));
+        table.push(row);
+    }
+    (!gains.is_empty()).then_some(table)
 }
 
 fn is_of_controller(setting: &Setting) -> bool {

@@ -183,6 +183,7 @@ impl User<'_> {
             part => "settings",
             flight => settings::of_flight(settings),
             controllers => settings::of_controllers(settings),
+            derived => settings::derived(&self.study.derived_gains),
         };
         Section::of("settings", "Settings", "user", context)
     }

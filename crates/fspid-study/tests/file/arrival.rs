@@ -5,6 +5,7 @@ use fspid_core::{
     InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
 use fspid_sim::signal::{Disturbance, Entry, Interpolation, Profile, Shape};
 use fspid_sim::{
     Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario, Servo, SimError,
@@ -97,6 +98,20 @@ fn tuned_isa(isa: Gains<f64>) -> Controller {
     Controller::SelfTuning(Fspid::new(tuner, isa_shell()).expect("allowed"))
 }
 
+fn regulator(anti_windup: AntiWindup<f64>) -> Controller {
+    let model = DampedIntegrator { damping_per_s: 2.0, power_per_s2: 4.0 };
+    let weights = IntegralWeights { integral_per_s2: 4.0, position: 5.0, rate_s2: 0.5 };
+    let found = integral_regulator(model, weights).expect("allowed");
+    let shell = Shell {
+        rate_gain_s: found.rate_s,
+        anti_windup,
+        setpoint_weights: SetpointWeights { proportional: 0.3, derivative: 1.0 },
+        derivative: Derivative { filter_s: 0.0 },
+        ..full_shell()
+    };
+    pid(Gains { kp: found.position, ki: 2.0, kd: 0.0 }, shell)
+}
+
 fn controllers() -> Vec<NamedController> {
     let isa = Gains { kp: 1.0, ki: 1.0 / 5.0, kd: 0.1 };
     let p = Shell { rate_gain_s: 0.1, ..Shell::sampled_every(0.01) };
@@ -106,6 +121,8 @@ fn controllers() -> Vec<NamedController> {
         named("isa", pid(isa, isa_shell())),
         named("fspid", tuned()),
         named("fspid isa", tuned_isa(isa)),
+        named("lqi", regulator(full_shell().anti_windup)),
+        named("lqi tracking", regulator(isa_shell().anti_windup)),
     ]
 }
 

@@ -5,10 +5,12 @@ mod abuse;
 mod arrival;
 mod bad_values;
 mod dispersions;
+mod lqi;
 mod marks;
 mod messages;
 mod overrides;
 mod reading;
+mod schedule;
 mod schema;
 mod settings;
 

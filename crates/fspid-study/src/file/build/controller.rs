@@ -8,7 +8,8 @@ use fspid_core::{
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
-use super::{data, judged, rad};
+use super::schedule::{self, Pressure};
+use super::{data, judged, lqi, rad};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
@@ -19,19 +20,24 @@ pub(super) fn controller(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    dt_s: f64,
+    (dt_s, pressure): (f64, Pressure),
 ) -> Option<Controller> {
+    if section.kind == "lqi" {
+        return lqi::controller(report, section, dt_s);
+    }
+    let factor = schedule::factor(report, section, pressure);
     if section.kind == "p" {
         let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
         let shell =
             Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
+        let (gains, shell) = schedule::scaled(report, section, factor?, (gains, shell))?;
         return judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed);
     }
     let (gains, filter_s) = gains(report, section);
     let shell = shell(report, section, (dt_s, filter_s));
     if section.kind == "pid" {
-        let pid = Pid::new(gains?, shell?);
-        return placed(report, section, pid).map(Controller::Fixed);
+        let (gains, shell) = schedule::scaled(report, section, factor?, (gains?, shell?))?;
+        return placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed);
     }
     let tuner = tuner(report, files, section, gains);
     let fspid = Fspid::new(tuner?, shell?);
@@ -39,7 +45,11 @@ pub(super) fn controller(
 }
 
 /// The controller, or its conflict at the setting that is in it.
-fn placed<T>(report: &mut Report, section: &Section, result: Result<T, ConfigError>) -> Option<T> {
+pub(super) fn placed<T>(
+    report: &mut Report,
+    section: &Section,
+    result: Result<T, ConfigError>,
+) -> Option<T> {
     let key = match result {
         Err(ConfigError::Conflict { .. }) => "anti_windup",
         _ => "name",
@@ -81,16 +91,7 @@ fn shell(
     section: &Section,
     (dt_s, isa_filter_s): (f64, Option<f64>),
 ) -> Option<Shell<f64>> {
-    let limits = match section.interval("output_limits_deg") {
-        Some((lower, upper)) => {
-            let limits = Limits::new("output limits", rad(lower), rad(upper));
-            Some(judged(report, (section, "output_limits_deg"), limits)?)
-        }
-        None => None,
-    };
-    let guard = Guard::new(rad(section.number("sample_guard_deg")?));
-    let guard = judged(report, (section, "sample_guard_deg"), guard);
-    let anti_windup = anti_windup(report, section, limits.is_some());
+    let ends = ends(report, section, dt_s);
     let weights = weights(report, section);
     let filter_s = filter(report, section, isa_filter_s);
     Some(Shell {
@@ -101,6 +102,23 @@ fn shell(
             "literal" => IntegralForm::Literal,
             _ => IntegralForm::Bumpless,
         },
+        ..ends?
+    })
+}
+
+/// A shell with limits, anti-windup and guard alone.
+pub(super) fn ends(report: &mut Report, section: &Section, dt_s: f64) -> Option<Shell<f64>> {
+    let limits = match section.interval("output_limits_deg") {
+        Some((lower, upper)) => {
+            let limits = Limits::new("output limits", rad(lower), rad(upper));
+            Some(judged(report, (section, "output_limits_deg"), limits)?)
+        }
+        None => None,
+    };
+    let guard = Guard::new(rad(section.number("sample_guard_deg")?));
+    let guard = judged(report, (section, "sample_guard_deg"), guard);
+    let anti_windup = anti_windup(report, section, limits.is_some());
+    Some(Shell {
         anti_windup: anti_windup?,
         limits,
         slew_rad_s: section.number("slew_limit_deg_s").map(rad),

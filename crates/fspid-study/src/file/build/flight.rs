@@ -29,6 +29,8 @@ pub(super) struct Way {
     pub(super) course: Course,
     pub(super) span_m: f64,
     pub(super) gravity_m_s2: f64,
+    /// At the trim, before any wind.
+    pub(super) dynamic_pressure_pa: f64,
 }
 
 /// What flies, of the scenario's `plant` or `aircraft`.
@@ -69,7 +71,9 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
         _ => plant.into(),
     };
     let gravity_m_s2 = aircraft.environment().gravity_m_s2;
-    let way = Way { course: course(part, target)?, span_m, gravity_m_s2 };
+    let density_kg_m3 = aircraft.environment().air_at(target.altitude_m).density_kg_m3;
+    let dynamic_pressure_pa = 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s;
+    let way = Way { course: course(part, target)?, span_m, gravity_m_s2, dynamic_pressure_pa };
     Some(Flown { plant, way: Some(way) })
 }
 

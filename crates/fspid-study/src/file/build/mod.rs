@@ -5,15 +5,20 @@ mod air;
 mod airframe;
 mod controller;
 pub(crate) mod data;
+mod derived;
 mod flight;
+mod lqi;
+mod schedule;
 mod sensor;
 mod signal;
 mod timing;
 
 use actuator::Drive;
 pub use airframe::Airframe;
+pub use derived::{DerivedGains, GainSource};
 use flight::Flown;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
+use schedule::Pressure;
 
 use crate::dispersion::Dispersion;
 use crate::file::dispersion::dispersions;
@@ -33,6 +38,7 @@ pub(crate) struct Built {
     pub(crate) requirements: Vec<Requirement>,
     pub(crate) airframes: Vec<Airframe>,
     pub(crate) dispersions: Vec<Dispersion>,
+    pub(crate) derived_gains: Vec<DerivedGains>,
     pub(crate) tuning: Option<Tuning>,
     pub(crate) contest: Option<Contest>,
 }
@@ -71,7 +77,8 @@ pub(crate) fn scenario(
         (flown.as_ref().map(|flown| &flown.plant), timing, servo),
     );
     let surroundings = surroundings(report, section, (flown.as_ref(), drive));
-    let controllers = controllers(report, files, section, timing);
+    let pressure = Pressure::of(section, flown.as_ref());
+    let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     if let Some(timing) = timing {
         timing::check_memory(report, section, timing);
     }
@@ -96,7 +103,7 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    Some(Built { scenario, requirements, airframes, dispersions, tuning, contest })
+    Some(Built { scenario, requirements, airframes, dispersions, derived_gains, tuning, contest })
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.
@@ -165,8 +172,8 @@ fn controllers(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    timing: Option<Timing>,
-) -> Vec<NamedController> {
+    (timing, pressure): (Option<Timing>, Pressure),
+) -> (Vec<NamedController>, Vec<DerivedGains>) {
     let parts = section.sections("controller");
     for (index, part) in parts.iter().enumerate() {
         let earlier = parts.get(..index).unwrap_or_default();
@@ -180,13 +187,16 @@ fn controllers(
     }
     // A period stands in where the loop is wrong, so that the controllers are judged all the same.
     let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
-    let mut controllers = Vec::new();
+    let (mut controllers, mut derived_gains) = (Vec::new(), Vec::new());
     for part in parts.iter().filter(|part| part.sound) {
         let name = part.text("name").unwrap_or_default().to_owned();
-        let controller = controller::controller(report, files, part, dt_s);
-        controllers.extend(controller.map(|controller| NamedController { name, controller }));
+        let controller = controller::controller(report, files, part, (dt_s, pressure));
+        if let Some(controller) = controller {
+            derived_gains.extend(derived::derived(part, &controller, pressure));
+            controllers.push(NamedController { name, controller });
+        }
     }
-    controllers
+    (controllers, derived_gains)
 }
 
 /// True for a plant of another order.

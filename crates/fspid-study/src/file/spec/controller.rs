@@ -1,6 +1,8 @@
 //! The controllers.
 
 use super::data::GRIDS;
+use super::lqi::LQI;
+use super::schedule::SCHEDULE;
 use super::{
     ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
     finite, not_negative, optional, plain, positive, required,
@@ -15,7 +17,7 @@ pub(super) static CONTROLLER: Table = Table {
             name: "p",
             table: plain(
                 "Proportional, with an optional inner loop of pitch rate.",
-                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN]],
+                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN, SCHEDULE]],
             ),
         },
         Variant {
@@ -28,8 +30,10 @@ pub(super) static CONTROLLER: Table = Table {
                         optional("ki", finite("1/s"), "Integral gain; 0 if left out."),
                         optional("kd", finite("s"), "Derivative gain; 0 if left out."),
                         optional("isa", Kind::Table(&ISA), "The gains in ISA form."),
+                        SCHEDULE,
                     ],
-                    SHELL,
+                    TERMS,
+                    ENDS,
                 ],
                 choices: &[Choice {
                     ways: &[
@@ -54,7 +58,8 @@ pub(super) static CONTROLLER: Table = Table {
                         optional("nominal_isa", Kind::Table(&ISA), "The same in ISA form."),
                     ],
                     TUNER,
-                    SHELL,
+                    TERMS,
+                    ENDS,
                 ],
                 choices: &[Choice {
                     ways: &[
@@ -64,6 +69,13 @@ pub(super) static CONTROLLER: Table = Table {
                 }],
                 variants: &[],
             },
+        },
+        Variant {
+            name: "lqi",
+            table: plain(
+                "Linear-quadratic regulator with integral action, of a model of pitching.",
+                &[LQI, ENDS],
+            ),
         },
     ],
 };
@@ -98,8 +110,8 @@ static ISA: Table = plain(
     ]],
 );
 
-/// Everything of a PID controller but its gains.
-const SHELL: &[Key] = &[
+/// How the terms of a PID controller are formed.
+const TERMS: &[Key] = &[
     RATE_GAIN,
     optional(
         "setpoint_weights",
@@ -123,6 +135,10 @@ const SHELL: &[Key] = &[
         Default::Word("bumpless"),
         "Sum of ki·e, or ki times the sum of e as the paper has it.",
     ),
+];
+
+/// Where a controller with an integral ends: its limits, and which samples it believes.
+const ENDS: &[Key] = &[
     optional(
         "anti_windup",
         Kind::Table(&ANTI_WINDUP),
