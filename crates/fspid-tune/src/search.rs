@@ -9,8 +9,9 @@ use crate::error::TuneError;
 use crate::problem::Problem;
 use crate::score::Score;
 
-/// How wide the first candidates lie about the start, as a share of the cube.
-const SPREAD: f64 = 0.2;
+/// How wide the first candidates lie about the start, as a share of the cube. On the scenario of the gallery a
+/// spread of 0.2 lost the allowed region of two seeds in four within 400 candidates; 0.05 and 0.1 none.
+const SPREAD: f64 = 0.1;
 /// Candidates of a generation of the front's optimiser, unless asked otherwise.
 const FRONT_POPULATION: usize = 40;
 
