@@ -242,3 +242,43 @@ fn changes_from_outside_stand_in_the_design() {
     let checked = done(&["check", "design.toml"], folder);
     assert!(checked.contains("151 samples"), "{checked}");
 }
+
+#[test]
+fn a_rule_gives_gains_and_a_start_for_the_search() {
+    let folder = folder();
+    let folder = folder.path();
+    for rule in [
+        "ziegler-nichols",
+        "tyreus-luyben",
+        "simc",
+        "lambda",
+        "amigo",
+        "itae",
+        "pole-placement",
+        "lqr",
+        "autotune-relay",
+    ] {
+        let output = fspid(&["tune", "pitch.toml", "--rule", rule, "--out", "start.toml"], folder);
+        let told = text(&output.stdout);
+        assert!(
+            told.contains("formula") && told.contains("closed loop"),
+            "{rule}: {told}\n{}",
+            text(&output.stderr)
+        );
+        // A rule whose gains do not hold the aircraft says so, and is no success.
+        assert_eq!(
+            output.status.code(),
+            Some(if told.contains("NOT HELD") { 1 } else { 0 }),
+            "{told}"
+        );
+        let start = String::from_utf8(read(folder, "start.toml")).expect("UTF-8");
+        assert!(start.contains("tune = [0.1, 10.0]"), "{start}");
+        done(&["check", "start.toml"], folder);
+    }
+    let json = done(&["tune", "pitch.toml", "--rule", "simc", "--format", "json"], folder);
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert!(json["gains"]["kp"].as_f64().is_some_and(|kp| kp > 0.0), "{json:#}");
+    let told = refused(&["tune", "pitch.toml", "--rule", "cohen-coon"], folder);
+    assert!(told.contains("allowed is ziegler-nichols, tyreus-luyben"), "{told}");
+    assert!(done(&["tune", "pitch.toml", "--rule", "list"], folder).lines().count() == 9);
+}

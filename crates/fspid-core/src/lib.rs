@@ -44,6 +44,7 @@ mod guard;
 mod integral;
 mod limits;
 mod pid;
+mod sees;
 mod shell;
 mod state;
 mod tuner;
@@ -54,8 +55,11 @@ pub use guard::{Faults, Guard};
 pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
+pub use sees::{ModelState, ReferenceModel, Sees, SetPlaces};
 pub use shell::{Derivative, SetpointWeights, Shell};
 pub use state::{Previous, Sample, State, Step};
-pub use tuner::{Change, DeadZone, ErrorSign, InputScale, Law, SelfTuner, TunerSettings};
+pub use tuner::{
+    Change, DeadZone, ErrorSign, Followers, InputScale, InputSets, Law, SelfTuner, TunerSettings,
+};
 
 pub use fspid_fuzzy as fuzzy;

@@ -4,9 +4,10 @@ use fspid_fuzzy::Real;
 
 use crate::error::ConfigError;
 use crate::gains::Gains;
+use crate::sees::ModelState;
 use crate::shell::Shell;
 use crate::state::{Sample, State, Step};
-use crate::tuner::SelfTuner;
+use crate::tuner::{SelfTuner, Tuned};
 
 /// A PID controller with fixed gains (`ki = kd = 0`: the paper's proportional controller).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +39,9 @@ impl<R: Real> Pid<R> {
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
-        match self.shell.admitted(sample) {
-            Ok(sample) => self.shell.step(state, sample, self.gains),
+        let no_model = ModelState::at(R::ZERO);
+        match self.shell.admitted(sample, self.shell.uses_rate()) {
+            Ok(sample) => self.shell.step(state, sample, (self.gains, no_model)),
             Err(fault) => self.shell.hold(state, fault, self.gains),
         }
     }
@@ -64,7 +66,7 @@ impl<R: Real> Fspid<R> {
     /// period, which would throw the gains beyond their nominal values, is one.
     pub fn new(tuner: SelfTuner<R>, shell: Shell<R>) -> Result<Self, ConfigError> {
         shell.check()?;
-        tuner.check_leakage(shell.dt_s)?;
+        tuner.check_period(shell.dt_s)?;
         Ok(Self { tuner, shell })
     }
 
@@ -82,19 +84,28 @@ impl<R: Real> Fspid<R> {
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
         let nominal = self.tuner.nominal();
-        let sample = match self.shell.admitted(sample) {
+        let sample = match self.shell.admitted(sample, self.uses_rate()) {
             Ok(sample) => sample,
             Err(fault) => return self.shell.hold(state, fault, nominal),
         };
-        let error_rad = sample.setpoint_rad - sample.measurement_rad;
-        let delta_rad = state.error_delta(error_rad);
-        let answer = self.tuner.gains(state.gains(), error_rad, delta_rad, self.shell.dt_s);
-        match answer {
-            Ok((gains, fault)) => {
+        match self.tuner.tuned(state, sample, self.shell.dt_s) {
+            Ok(Tuned { gains, model, fault }) => {
                 state.latch(fault);
-                self.shell.step(state, sample, gains)
+                self.tuner.shell_at(&self.shell, gains).step(state, sample, (gains, model))
             }
             Err(fault) => self.shell.hold(state, fault, nominal),
         }
+    }
+
+    /// True if a sample's pitch rate matters: to the rate loop, or to the supervisor.
+    pub fn uses_rate(&self) -> bool {
+        self.shell.uses_rate()
+            || self.tuner.sees_rate()
+            || self.tuner.settings().followers.rate_gain != R::ZERO
+    }
+
+    /// Everything but the gains, as it is at these gains: with what follows them.
+    pub fn shell_at(&self, gains: Gains<R>) -> Shell<R> {
+        self.tuner.shell_at(&self.shell, gains)
     }
 }

@@ -7,6 +7,7 @@ use crate::gains::Gains;
 use crate::guard::{Faults, Guard};
 use crate::integral::{AntiWindup, IntegralForm, Integrator};
 use crate::limits::Limits;
+use crate::sees::ModelState;
 use crate::state::{Previous, Sample, State, Step};
 
 /// Weights of the set-point in the proportional and derivative terms; 1 for plain error feedback.
@@ -120,12 +121,12 @@ impl<R: Real> Shell<R> {
         Ok(())
     }
 
-    /// The sample as this controller uses it, or its fault. Without a rate loop the rate is zero:
-    /// one that is not used cannot be at fault.
+    /// The sample as this controller uses it, or its fault. Where the rate is not used it is zero:
+    /// then it cannot be at fault.
     #[inline(always)]
-    pub(crate) fn admitted(&self, sample: Sample<R>) -> Result<Sample<R>, Faults> {
+    pub(crate) fn admitted(&self, sample: Sample<R>, uses_rate: bool) -> Result<Sample<R>, Faults> {
         let mut used = sample;
-        if self.rate_gain_s == R::ZERO {
+        if !uses_rate {
             used.rate_rad_s = R::ZERO;
         }
         self.guard.fault(used).map_or(Ok(used), Err)
@@ -145,11 +146,21 @@ impl<R: Real> Shell<R> {
         }
     }
 
-    /// One sample with the gains of the moment. `sample` has been [admitted](Self::admitted).
+    /// True if the command depends on the pitch rate.
+    pub(crate) fn uses_rate(&self) -> bool {
+        self.rate_gain_s != R::ZERO
+    }
+
+    /// One sample with the gains of the moment; `model` is to be remembered. `sample` has been [admitted](Self::admitted).
     ///
     /// Either the whole memory moves on, or none of it (overflow: held and latched).
     #[inline(always)]
-    pub(crate) fn step(&self, state: &mut State<R>, sample: Sample<R>, gains: Gains<R>) -> Step<R> {
+    pub(crate) fn step(
+        &self,
+        state: &mut State<R>,
+        sample: Sample<R>,
+        (gains, model): (Gains<R>, ModelState<R>),
+    ) -> Step<R> {
         let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
         let weights = self.setpoint_weights;
         let error_rad = setpoint_rad - measurement_rad;
@@ -170,12 +181,14 @@ impl<R: Real> Shell<R> {
         // Not only what is infinite: from a memory near overflow the way to any other sample would
         // overflow, however good that sample, and the output would be held for ever.
         let steepest = [error_rad / self.dt_s, derivative_input_rad / self.dt_s];
-        let clear = leave(RATE_ROOM, steepest) && leave(INTEGRAL_ROOM, [wound, integral]);
+        let clear = leave(RATE_ROOM, steepest)
+            && leave(INTEGRAL_ROOM, [wound, integral])
+            && leave(RATE_ROOM, [model.pitch_rad, model.rate_rad_s]);
         // Before the limits, which would turn an overflow into a number.
         if !(clear && free_rad.is_finite()) {
             return self.hold(state, Faults::OVERFLOW, gains);
         }
-        let previous = Previous { error_rad, derivative_input_rad, gains };
+        let previous = Previous { error_rad, derivative_input_rad, gains, model };
         *state = State {
             command_rad,
             integral,

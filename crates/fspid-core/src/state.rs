@@ -4,6 +4,7 @@ use fspid_fuzzy::Real;
 
 use crate::gains::Gains;
 use crate::guard::Faults;
+use crate::sees::ModelState;
 
 /// What a controller is given at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +57,8 @@ pub struct Previous<R> {
     pub derivative_input_rad: R,
     /// The gains it was answered with.
     pub gains: Gains<R>,
+    /// The reference model at the next sample; zeros for a controller without one.
+    pub model: ModelState<R>,
 }
 
 impl<R: Real> State<R> {

@@ -5,6 +5,9 @@ use fspid_fuzzy::{Real, Supervisor};
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
+use crate::sees::{ModelState, Sees, SetPlaces};
+use crate::shell::{SetpointWeights, Shell};
+use crate::state::{Previous, Sample, State};
 
 /// Which difference the supervisor sees as its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,7 +59,8 @@ impl<R> Law<R> {
 pub struct InputScale<R> {
     /// Supervisor units per radian of error.
     pub error_per_rad: R,
-    /// Supervisor units per rad/s (or per rad and sample) of change.
+    /// Supervisor units per rad/s (or per rad and sample) of change, or of whatever it [`Sees`] in
+    /// the place of the change.
     pub change_per_rad: R,
 }
 
@@ -69,17 +73,62 @@ pub struct DeadZone<R> {
     pub change_rad: R,
 }
 
+/// What else moves with the gains, by how much per unit of their distance from nominal:
+///
+/// $$ b = b' + s_b (k_p - k_p'), \qquad k_r = k_r' + s_r (k_d - k_d') $$
+///
+/// Nothing new has to be remembered, and the limits of the gains bound both. The derivative and the rate
+/// loop act alike, but the gyro has less noise than a difference of angles: with a small $k_d$ and a
+/// large $s_r$ the rules for $k_d$ move the rate loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followers<R> {
+    /// $s_b$, of the set-point weight in the proportional term.
+    pub setpoint_weight: R,
+    /// $s_r$, of the gain of the pitch-rate loop.
+    pub rate_gain: R,
+}
+
+impl<R: Real> Followers<R> {
+    /// Nothing follows.
+    pub const NONE: Self = Self { setpoint_weight: R::ZERO, rate_gain: R::ZERO };
+}
+
+/// Where the sets of the supervisor's inputs lie; evenly where nothing is said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputSets<R> {
+    /// Of the error.
+    pub error: Option<SetPlaces<R>>,
+    /// Of the change, or whatever is seen in its place.
+    pub change: Option<SetPlaces<R>>,
+}
+
+impl<R: Real> InputSets<R> {
+    /// Even sets.
+    pub const EVEN: Self = Self { error: None, change: None };
+
+    /// True if both are even.
+    pub fn are_even(&self) -> bool {
+        self.error.is_none() && self.change.is_none()
+    }
+}
+
 /// Everything about a self-tuner but its rules and its nominal gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TunerSettings<R> {
     /// Sign of the supervisor's error and its change.
     pub error_sign: ErrorSign,
-    /// Rate or difference.
+    /// What the supervisor sees beside the error.
+    pub sees: Sees<R>,
+    /// Rate or difference, where it sees the change.
     pub change: Change,
     /// Factors before the supervisor.
     pub input_scale: InputScale<R>,
+    /// Where the sets of its inputs lie.
+    pub input_sets: InputSets<R>,
     /// Factors behind the supervisor, gain by gain.
     pub output_scale: Gains<R>,
+    /// What else moves with the gains.
+    pub followers: Followers<R>,
     /// Memoryless or accumulating.
     pub law: Law<R>,
     /// Bounds of the total gains.
@@ -93,9 +142,12 @@ impl<R: Real> TunerSettings<R> {
     pub fn literal() -> Self {
         Self {
             error_sign: ErrorSign::default(),
+            sees: Sees::ErrorAndChange,
             change: Change::default(),
             input_scale: InputScale { error_per_rad: R::ONE, change_per_rad: R::ONE },
+            input_sets: InputSets::EVEN,
             output_scale: Gains { kp: R::ONE, ki: R::ONE, kd: R::ONE },
+            followers: Followers::NONE,
             law: Law::Memoryless,
             gain_limits: None,
             dead_zone: None,
@@ -108,6 +160,8 @@ impl<R: Real> TunerSettings<R> {
         finite("output_scale kp", self.output_scale.kp)?;
         finite("output_scale ki", self.output_scale.ki)?;
         finite("output_scale kd", self.output_scale.kd)?;
+        finite("set-point weight per kp", self.followers.setpoint_weight)?;
+        finite("rate_gain per kd", self.followers.rate_gain)?;
         if let Law::Accumulating { leakage_per_s } = self.law {
             not_negative("leakage, 1/s", leakage_per_s)?;
         }
@@ -117,6 +171,24 @@ impl<R: Real> TunerSettings<R> {
         }
         Ok(())
     }
+
+    /// True where a change of the error is what the supervisor sees, its sets are even and nothing but
+    /// the gains moves: the structure that proofs and gains along a trajectory are written for.
+    pub fn is_plain(&self) -> bool {
+        self.sees == Sees::ErrorAndChange
+            && self.input_sets.are_even()
+            && self.followers == Followers::NONE
+    }
+}
+
+/// What a self-tuner makes of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tuned<R> {
+    pub(crate) gains: Gains<R>,
+    /// The reference model at the next sample.
+    pub(crate) model: ModelState<R>,
+    /// To be latched.
+    pub(crate) fault: Faults,
 }
 
 /// The gains of the moment from error and change of error.
@@ -161,8 +233,11 @@ impl<R: Real> SelfTuner<R> {
         &self.supervisor
     }
 
-    /// Refuses a leakage that would overshoot within one sample.
-    pub(crate) fn check_leakage(&self, dt_s: R) -> Result<(), ConfigError> {
+    /// Refuses a leakage that would overshoot within one sample, and a reference model too fast for it.
+    pub(crate) fn check_period(&self, dt_s: R) -> Result<(), ConfigError> {
+        if let Sees::ErrorAndModelError(model) = self.settings.sees {
+            model.check(dt_s)?;
+        }
         if let Law::Accumulating { leakage_per_s } = self.settings.law {
             let good = leakage_per_s * dt_s <= R::ONE;
             let allowed = "at most one per sample period";
@@ -196,6 +271,7 @@ impl<R: Real> SelfTuner<R> {
     /// Scaled increments for inputs as the supervisor sees them.
     #[inline(always)]
     fn inferred(&self, error: R, change: R) -> Result<(Gains<R>, Faults), Faults> {
+        let (error, change) = self.bent(error, change);
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
@@ -204,30 +280,69 @@ impl<R: Real> SelfTuner<R> {
         Ok((self.settings.output_scale.zip(delta, |s, d| s * d), fault))
     }
 
+    /// Both inputs as the even sets see them.
+    #[inline(always)]
+    fn bent(&self, error: R, change: R) -> (R, R) {
+        let (sets, range) = (self.settings.input_sets, self.supervisor.range());
+        let bent = |places: Option<SetPlaces<R>>, input| {
+            places.map_or(input, |places| places.bent(input, range))
+        };
+        (bent(sets.error, error), bent(sets.change, change))
+    }
+
     /// Scaled increments $s \Delta k$ where the supervisor sees `error` and `change`, in its own units
     /// and with its sign, outside of any dead zone; `None` for inputs that it refuses.
     pub fn increments_where_seen(&self, error: R, change: R) -> Option<Gains<R>> {
         self.inferred(error, change).ok().map(|(increments, _)| increments)
     }
 
-    /// The gains of this sample; `previous` are those of the last one, `None` at the first. With
-    /// them a fault to latch: a supervisor that refuses the input leaves the gains as they were.
+    /// The gains of this sample, and what has to be remembered with them. A supervisor that refuses
+    /// the input leaves the gains as they were.
     ///
     /// # Errors
     /// [`Faults::OVERFLOW`] where there are none.
     #[inline(always)]
-    pub(crate) fn gains(
+    pub(crate) fn tuned(
         &self,
-        previous: Option<Gains<R>>,
+        state: &State<R>,
+        sample: Sample<R>,
+        dt_s: R,
+    ) -> Result<Tuned<R>, Faults> {
+        let error_rad = sample.setpoint_rad - sample.measurement_rad;
+        let mut model = ModelState::at(R::ZERO);
+        let change_rad = match self.settings.sees {
+            Sees::ErrorAndChange => {
+                let delta_rad = state.error_delta(error_rad);
+                match self.settings.change {
+                    Change::Rate => delta_rad / dt_s,
+                    Change::Delta => delta_rad,
+                }
+            }
+            Sees::ErrorAndRate => -sample.rate_rad_s,
+            Sees::ErrorAndModelError(reference) => {
+                let rest = ModelState::at(sample.measurement_rad);
+                let now = state.previous.map_or(rest, |previous| previous.model);
+                model = reference.next(now, sample.setpoint_rad, dt_s);
+                now.pitch_rad - sample.measurement_rad
+            }
+        };
+        let (gains, fault) = self.gains(state.previous, error_rad, change_rad, dt_s)?;
+        Ok(Tuned { gains, model, fault })
+    }
+
+    /// The gains for an error and what is seen beside it; with them a fault to latch.
+    ///
+    /// # Errors
+    /// [`Faults::OVERFLOW`] where there are none.
+    #[inline(always)]
+    fn gains(
+        &self,
+        previous: Option<Previous<R>>,
         error_rad: R,
-        error_delta_rad: R,
+        change_rad: R,
         dt_s: R,
     ) -> Result<(Gains<R>, Faults), Faults> {
-        let previous = previous.unwrap_or(self.nominal);
-        let change_rad = match self.settings.change {
-            Change::Rate => error_delta_rad / dt_s,
-            Change::Delta => error_delta_rad,
-        };
+        let previous = previous.map_or(self.nominal, |previous| previous.gains);
         let (scaled, fault) = match self.increments(error_rad, change_rad) {
             Err(Faults::OUT_OF_RANGE) => return Ok((previous, Faults::OUT_OF_RANGE)),
             answer => answer?,
@@ -254,6 +369,28 @@ impl<R: Real> SelfTuner<R> {
         // The origin is within every range, so there always is an answer.
         let (added, _) = self.increments(R::ZERO, R::ZERO).unwrap_or((Gains::ZERO, Faults::NONE));
         self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
+    }
+
+    /// True if the supervisor sees the measured pitch rate.
+    pub fn sees_rate(&self) -> bool {
+        self.settings.sees == Sees::ErrorAndRate
+    }
+
+    /// A shell with what follows the gains.
+    #[inline(always)]
+    pub(crate) fn shell_at(&self, shell: &Shell<R>, gains: Gains<R>) -> Shell<R> {
+        let followers = self.settings.followers;
+        if followers == Followers::NONE {
+            return *shell;
+        }
+        let (weights, nominal) = (shell.setpoint_weights, self.nominal);
+        let proportional =
+            weights.proportional + followers.setpoint_weight * (gains.kp - nominal.kp);
+        Shell {
+            setpoint_weights: SetpointWeights { proportional, ..weights },
+            rate_gain_s: shell.rate_gain_s + followers.rate_gain * (gains.kd - nominal.kd),
+            ..*shell
+        }
     }
 
     fn limited(&self, gains: Gains<R>) -> Gains<R> {

@@ -389,3 +389,19 @@ fn what_is_no_loop_is_refused_by_name() {
         assert_eq!(found, Err("sample period in seconds"));
     }
 }
+
+#[test]
+fn a_place_of_the_z_plane_gives_the_value_of_the_difference_equation() -> Outcome {
+    let open = sampled(&b747(2.0)?, 0.05, 3)?;
+    for omega_rad_s in [0.01, 0.3, 2.0, 30.0] {
+        let (sine, cosine) = libm::sincos(omega_rad_s * open.dt_s());
+        let (on_circle, wanted) = (open.at_z(Complex::new(cosine, sine)), open.at(omega_rad_s));
+        assert!(modulus(on_circle - wanted) < 1e-9 * modulus(wanted), "{omega_rad_s}");
+    }
+    // T/(z - 1) behind two samples of delay, off the circle.
+    let integrator = sampled(&TransferFunction::new(&[1.0], &[1.0, 0.0])?, 0.05, 2)?;
+    let z = Complex::new(0.6, 0.3);
+    let wanted = quotient(Complex::new(0.05, 0.0), z * z * (z - 1.0));
+    assert!(modulus(integrator.at_z(z) - wanted) < 1e-15, "{}", integrator.at_z(z));
+    Ok(())
+}

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fspid_core::AntiWindup;
+use fspid_core::{AntiWindup, Sees, TunerSettings};
 use fspid_fuzzy::scalar::Interval;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
@@ -40,6 +40,11 @@ pub enum NotProvable {
     },
     /// A sensor with a clock of its own: there is no single matrix from one sample to the next.
     ChangingAge,
+    /// A self-tuner of another structure than the paper's.
+    Structure {
+        /// What is in the way.
+        what: &'static str,
+    },
     /// Nothing bounds the gains of an accumulating law.
     UnboundedGains(NoBound),
     /// The model is refused.
@@ -57,6 +62,10 @@ impl fmt::Display for NotProvable {
             ),
             Self::ChangingAge => f.write_str(
                 "a sensor samples with a clock of its own, so that the age of its values changes and no single matrix leads from one sample to the next; a proof needs period_s to be that of the loop, or 0",
+            ),
+            Self::Structure { what } => write!(
+                f,
+                "{what}; a proof speaks of supervisors that see the error and its change through even sets, and of controllers of which only the gains move"
             ),
             Self::UnboundedGains(reason) => reason.fmt(f),
             Self::Plant(reason) => reason.fmt(f),
@@ -83,6 +92,21 @@ impl From<SimError> for NotProvable {
     fn from(error: SimError) -> Self {
         Self::Model(error)
     }
+}
+
+/// What keeps a self-tuner from being proved; nothing for one that is plain.
+fn beyond_proof(settings: &TunerSettings<f64>) -> Option<&'static str> {
+    if settings.is_plain() {
+        return None;
+    }
+    Some(match settings.sees {
+        Sees::ErrorAndRate => "the supervisor sees the measured pitch rate",
+        Sees::ErrorAndModelError(_) => "the supervisor sees the error of a reference model",
+        Sees::ErrorAndChange if !settings.input_sets.are_even() => {
+            "the sets of the supervisor's inputs are not even"
+        }
+        Sees::ErrorAndChange => "set-point weight or rate gain follow the gains",
+    })
 }
 
 impl LoopDescription {
@@ -120,6 +144,11 @@ impl LoopDescription {
         }
         if self.actuator.play_rad() > 0.0 {
             return Err(NotProvable::NotLinearAroundRest { what: "play" });
+        }
+        if let Controller::SelfTuning(fspid) = &self.controller
+            && let Some(what) = beyond_proof(fspid.tuner().settings())
+        {
+            return Err(NotProvable::Structure { what });
         }
         let uses_rate = self.controller.shell().rate_gain_s != 0.0;
         if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::{Sample, State, Step};
+use fspid_core::{Faults, Gains, Sample, State, Step};
 
 use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
@@ -92,6 +92,25 @@ pub fn fly_perturbed(
     watch(prepared, controller, perturbation, |instant, _| observer(instant))
 }
 
+/// As [`fly`], with a function of what is seen in the controller's place: it answers commands in rad, nose up
+/// positive. For experiments such as a relay's.
+///
+/// # Errors
+/// As [`fly`].
+pub fn fly_commanded(
+    prepared: &Prepared,
+    mut command_rad: impl FnMut(Sample<f64>) -> f64,
+    mut observer: impl FnMut(Instant) -> ControlFlow<()>,
+) -> Result<Outcome, SimError> {
+    let answer = |sample| Step {
+        command_rad: command_rad(sample),
+        gains: Gains::ZERO,
+        saturated: false,
+        faults: Faults::NONE,
+    };
+    watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| observer(instant))
+}
+
 /// What is about to happen between a sample and the next.
 pub(crate) struct Coming<'a> {
     pub(crate) propagation: &'a Propagation,
@@ -106,10 +125,21 @@ pub(crate) fn watch(
     prepared: &Prepared,
     controller: &Controller,
     perturbation: &Perturbation,
+    observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, SimError> {
+    let mut memory = State::new();
+    let answer = |sample| controller.step(&mut memory, sample);
+    watch_answers(prepared, answer, perturbation, observer)
+}
+
+#[inline]
+fn watch_answers(
+    prepared: &Prepared,
+    mut answer: impl FnMut(Sample<f64>) -> Step<f64>,
+    perturbation: &Perturbation,
     mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut path = perturbation.start()?;
-    let mut memory = State::new();
     let mut delayed = Delay::of(prepared.delay_samples);
     let mut stages = prepared.stages.iter().peekable();
     let Some(mut stage) = stages.next() else {
@@ -136,7 +166,7 @@ pub(crate) fn watch(
         let measurement_rad = sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement);
         let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
-        let step = controller.step(&mut memory, sample);
+        let step = answer(sample);
         let arriving_rad = delayed.pass(path.pass(step.command_rad));
         let command_rad = arriving_rad + at(&prepared.at_servo);
         stage.propagation.settle(&mut plant, command_rad);

@@ -42,4 +42,22 @@ impl Controller {
             Self::SelfTuning(fspid) => fspid.tuner().nominal(),
         }
     }
+
+    /// Everything but the gains, as it is at these gains.
+    #[must_use]
+    pub fn shell_at(&self, gains: Gains<f64>) -> Shell<f64> {
+        match self {
+            Self::Fixed(pid) => *pid.shell(),
+            Self::SelfTuning(fspid) => fspid.shell_at(gains),
+        }
+    }
+
+    /// True if the measured pitch rate matters.
+    #[must_use]
+    pub fn uses_rate(&self) -> bool {
+        match self {
+            Self::Fixed(pid) => pid.shell().rate_gain_s != 0.0,
+            Self::SelfTuning(fspid) => fspid.uses_rate(),
+        }
+    }
 }

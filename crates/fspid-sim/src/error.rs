@@ -67,6 +67,8 @@ pub enum SimError {
     AircraftChanges,
     /// A question about a linear loop, of an aircraft that is none.
     NotLinear,
+    /// A self-tuner of another structure than small signals along a flight are written for.
+    Structure,
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -110,6 +112,9 @@ impl fmt::Display for SimError {
             Self::NotLinear => {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
+            Self::Structure => f.write_str(
+                "gains along a flight are derived for supervisors that see the error and its change through even sets, and for controllers of which only the gains move",
+            ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),

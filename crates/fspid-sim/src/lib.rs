@@ -43,7 +43,7 @@ mod timing;
 mod trace;
 
 pub use aircraft::{AircraftPlant, AircraftSample};
-pub use closed_loop::{Flight, Instant, fly, fly_perturbed, simulate};
+pub use closed_loop::{Flight, Instant, fly, fly_commanded, fly_perturbed, simulate};
 pub use controller::Controller;
 pub use error::SimError;
 pub use flown::{AllPass, Perturbation};

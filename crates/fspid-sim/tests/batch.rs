@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits, Gains,
+    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner,
+    SetPlaces, SetpointWeights, Shell, TunerSettings,
 };
 use fspid_sim::batch::{Entrant, InstructionSet, Refusal, fly_group_by, fly_many};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -26,6 +27,8 @@ struct Structure {
     literal: bool,
     anti_windup: u8,
     accumulates: bool,
+    /// What the supervisor sees: change, rate, model.
+    sees: u8,
     policy: OutOfRange,
     /// Faults, limits, changes of the plant, everything.
     wild: bool,
@@ -146,6 +149,14 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
         },
         ..TunerSettings::literal()
     };
+    settings.sees = match structure.sees {
+        0 => Sees::ErrorAndChange,
+        1 => Sees::ErrorAndRate,
+        _ => Sees::ErrorAndModelError(ReferenceModel {
+            bandwidth_rad_s: random.between(0.3, 10.0),
+            damping: random.between(0.3, 1.5),
+        }),
+    };
     if structure.accumulates {
         settings.law = Law::Accumulating { leakage_per_s: random.between(0.0, 2.0) };
     }
@@ -155,6 +166,17 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
         }
         if random.one_in(2) {
             settings.change = Change::Delta;
+        }
+        let places = |random: &mut Random| {
+            let places = SetPlaces::new(random.between(0.05, 0.4), random.between(0.5, 0.95));
+            random.one_in(2).then(|| places.expect("in order"))
+        };
+        settings.input_sets = InputSets { error: places(random), change: places(random) };
+        if random.one_in(2) {
+            settings.followers = Followers {
+                setpoint_weight: random.between(-1.0, 1.0),
+                rate_gain: random.between(-1.0, 1.0),
+            };
         }
         if random.one_in(2) {
             settings.dead_zone = Some(DeadZone {
@@ -305,9 +327,11 @@ fn compare(structure: Structure, seed: u64, count: usize) {
 fn structure() -> impl Strategy<Value = Structure> {
     let policy = prop::sample::select(OutOfRange::ALL.to_vec());
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
-    (1_usize..=5, flags, 0_u8..4, policy).prop_map(|(order, flags, anti_windup, policy)| {
+    let kinds = (0_u8..4, 0_u8..3);
+    (1_usize..=5, flags, kinds, policy).prop_map(|(order, flags, kinds, policy)| {
         let (self_tuning, literal, accumulates, wild) = flags;
-        Structure { order, self_tuning, literal, anti_windup, accumulates, policy, wild }
+        let (anti_windup, sees) = kinds;
+        Structure { order, self_tuning, literal, anti_windup, accumulates, sees, policy, wild }
     })
 }
 
@@ -333,6 +357,7 @@ const PLAIN: Structure = Structure {
     literal: false,
     anti_windup: 0,
     accumulates: false,
+    sees: 0,
     policy: OutOfRange::Clamp,
     wild: false,
 };
@@ -404,6 +429,9 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
     mixed[3] = flights(Structure { policy: OutOfRange::Error, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
+    mixed[3] = flights(Structure { sees: 1, ..PLAIN }, 1, 1).remove(0);
+    let what = "what its supervisor sees";
+    assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
 
     mixed[3] = flights(Structure { order: 3, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "the order of its plant" });

@@ -2,11 +2,13 @@
 
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
+use core::ops::ControlFlow;
+
 use fspid_core::{Gains, Pid, Shell};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario, Servo, SimError,
-    Surroundings, Timing, Trace, simulate,
+    Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange, Scenario, Servo,
+    SimError, Surroundings, Timing, Trace, fly_commanded, simulate,
 };
 use proptest::prelude::*;
 
@@ -224,4 +226,22 @@ fn a_first_order_plant_answers_as_its_formula() {
         assert!((theta - 0.3 * (1.0 - decay)).abs() < 1e-13, "{k}: {theta}");
         assert!((q - 0.6 * decay).abs() < 1e-12, "{k}: {q}");
     }
+}
+
+#[test]
+fn a_function_in_the_controllers_place_flies_as_the_controller_that_it_computes() {
+    let scenario = scenario(b747(), pid(2.0, 0.0, 0.0), 0.1);
+    let wanted = flown(&scenario).theta_rad;
+    let prepared = scenario.prepare().expect("flies");
+    let mut found = Vec::new();
+    let outcome = fly_commanded(
+        &prepared,
+        |sample| 2.0 * (sample.setpoint_rad - sample.measurement_rad),
+        |instant| {
+            found.push(instant.theta_rad);
+            ControlFlow::Continue(())
+        },
+    );
+    assert_eq!(outcome, Ok(Outcome::Completed));
+    assert_eq!(found, wanted);
 }

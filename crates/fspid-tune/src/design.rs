@@ -32,9 +32,17 @@ pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneErr
                 .to_owned(),
         });
     }
-    if !source.overrides.is_empty() && has_list(&text) {
+    if !source.overrides.is_empty() {
+        check_room(&text, "--set")?;
+    }
+    Ok(())
+}
+
+/// Refuses changes of a text that lists some itself.
+pub(crate) fn check_room(text: &str, what: &'static str) -> Result<(), TuneError> {
+    if has_list(text) {
         return Err(TuneError::Value {
-            what: "--set",
+            what,
             found: "given together with a scenario that has a `set` of its own".to_owned(),
             allowed: "one of the two, so that the design can hold it".to_owned(),
         });
@@ -78,6 +86,11 @@ pub fn text(
         from = bytes.end;
     }
     body.push_str(original.get(from..).unwrap_or_default());
+    Ok(with_changes(&body, heading, &changes))
+}
+
+/// A text with comments and a list of changes before it.
+pub(crate) fn with_changes(body: &str, heading: &[String], changes: &[String]) -> String {
     let mut out = String::new();
     for line in heading {
         out.push_str(&format!("# {line}\n"));
@@ -86,8 +99,8 @@ pub fn text(
         let quoted: Vec<String> = changes.iter().map(|change| format!("{change:?}")).collect();
         out.push_str(&format!("set = [{}]\n", quoted.join(", ")));
     }
-    out.push_str(&body);
-    Ok(out)
+    out.push_str(body);
+    out
 }
 
 /// A value as a person would write it; a grid in lines.

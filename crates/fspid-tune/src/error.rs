@@ -84,6 +84,9 @@ pub enum TuneError {
     /// A file cannot be written.
     #[error("{0}")]
     Output(#[from] OutputError),
+    /// A rule that gives no gains.
+    #[error("{0}")]
+    Rule(#[from] crate::rule::RuleError),
     /// Nothing that the search tried can be flown.
     #[error("none of {tried} candidates could be flown in every case; the best one: {reason}")]
     NothingFlies {

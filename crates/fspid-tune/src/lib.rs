@@ -13,6 +13,7 @@
 )]
 
 pub mod anfis;
+pub mod baseline;
 pub mod design;
 mod error;
 pub mod history;

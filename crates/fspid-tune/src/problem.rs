@@ -232,7 +232,7 @@ impl Problem {
 }
 
 /// The controller of that name, or the one that has marks.
-fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneError> {
+pub(crate) fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneError> {
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     if let Some(name) = named {

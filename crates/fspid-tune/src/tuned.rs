@@ -9,6 +9,8 @@ use crate::search::{Search, Trial, stop_in_words};
 
 /// How near to a bound a number counts as at it, as a share of the way between the bounds.
 const AT_BOUND: f64 = 1e-3;
+/// Least width of the first column of the answer.
+const LEAST_WIDTH: usize = 40;
 /// Most entries of a front that are told to people.
 const MOST_OF_FRONT: usize = 20;
 
@@ -45,6 +47,8 @@ pub struct Tuned {
 #[derive(Clone, Debug)]
 struct Row {
     name: String,
+    /// The same without the controller's own name.
+    short: String,
     start: f64,
     found: f64,
     /// Bounds and whether the number found lies at one of them; none for labels of rules.
@@ -103,12 +107,14 @@ impl Tuned {
             if self.flights == 1 { "" } else { "s" },
             stop_in_words(self.stop),
         );
-        out.push_str(&format!("\n  {:<44}{:>14}{:>14}\n", self.over_in_words(), "start", "found"));
+        let width = self.width();
+        let heading = self.over_in_words();
+        out.push_str(&format!("\n  {heading:<width$}{:>14}{:>14}\n", "start", "found"));
         for (index, (name, unit)) in self.objectives.iter().enumerate() {
             let value = |trial: &Trial| shown(trial.score.values.get(index).copied());
             let name = if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") };
             out.push_str(&format!(
-                "  {name:<44}{:>14}{:>14}\n",
+                "  {name:<width$}{:>14}{:>14}\n",
                 value(&self.start),
                 value(&self.best)
             ));
@@ -118,12 +124,15 @@ impl Tuned {
             false => "not allowed".to_owned(),
         };
         out.push_str(&format!(
-            "  {:<44}{:>14}{:>14}\n",
+            "  {:<width$}{:>14}{:>14}\n",
             "cost",
             cost(&self.start),
             cost(&self.best)
         ));
-        out.push_str(&format!("\n  {:<44}{:>14}{:>14}  bounds\n", "free number", "start", "found"));
+        out.push_str(&format!(
+            "\n  {:<width$}{:>14}{:>14}  bounds\n",
+            "free number", "start", "found"
+        ));
         for row in &self.rows {
             let (start, found) = (shown(Some(row.start)), shown(Some(row.found)));
             let bounds = match row.bounds {
@@ -133,7 +142,7 @@ impl Tuned {
                     format!("{lower} to {upper}{note}")
                 }
             };
-            out.push_str(&format!("  {:<44}{start:>14}{found:>14}  {bounds}\n", row.name));
+            out.push_str(&format!("  {:<width$}{start:>14}{found:>14}  {bounds}\n", row.short));
         }
         self.tell_front(&mut out);
         if !self.reasons.is_empty() {
@@ -162,6 +171,12 @@ impl Tuned {
             out.push_str("  and more, in the history and the JSON\n");
         }
         out.push_str("The design is the one with the least weighted sum.\n");
+    }
+
+    /// Width of the first column of the answer.
+    fn width(&self) -> usize {
+        let names = self.rows.iter().map(|row| row.short.chars().count());
+        names.chain([LEAST_WIDTH]).max().unwrap_or(LEAST_WIDTH) + 1
     }
 
     fn over_in_words(&self) -> String {
@@ -253,9 +268,17 @@ fn rows(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Row> {
     let rows = space.names().into_iter().zip(numbers).zip(bounds).zip(&best.point);
     rows.map(|(((name, (start, found)), bounds), unit)| {
         let at = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
-        Row { name, start, found, bounds: bounds.map(|(lower, upper)| (lower, upper, at)) }
+        let short = short(&name, problem.controller());
+        Row { name, short, start, found, bounds: bounds.map(|(lower, upper)| (lower, upper, at)) }
     })
     .collect()
+}
+
+/// A path without the step to its controller.
+fn short(path: &str, controller: &str) -> String {
+    let prefixes = [format!("controller.{controller}."), format!("controller.\"{controller}\".")];
+    let rest = prefixes.iter().find_map(|prefix| path.strip_prefix(prefix.as_str()));
+    rest.unwrap_or(path).to_owned()
 }
 
 /// A number in five digits.

@@ -11,6 +11,8 @@ use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
 use fspid_study::output;
 use fspid_study::shell::word;
+use fspid_tune::baseline::Baseline;
+use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{Effort, Problem, Search, Source, State, TuneError, Tuned, design, history};
 
 /// How often the state of a search is saved.
@@ -42,6 +44,15 @@ pub(crate) struct Arguments {
     /// Candidates of a generation; by default what serves the optimiser.
     #[arg(long, value_name = "N")]
     population: Option<usize>,
+    /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history"])]
+    rule: Option<String>,
+    /// Terms that the rule shall give: p, pi or pid; by default what the rule is made for.
+    #[arg(long, value_name = "TERMS", requires = "rule")]
+    form: Option<String>,
+    /// Time constant that the closed loop shall have, s; for simc and lambda.
+    #[arg(long, value_name = "SECONDS", requires = "rule")]
+    closed_loop_s: Option<f64>,
     /// Begin anywhere within the bounds, and not about the start.
     #[arg(long)]
     anywhere: bool,
@@ -68,6 +79,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source =
         Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+    if let Some(rule) = &arguments.rule {
+        return by_rule(arguments, &source, rule);
+    }
     let problem = Problem::new(&source, arguments.controller.as_deref()).map_err(failure)?;
     if let Some(out) = &arguments.out {
         design::check_place(&source, out).map_err(failure)?;
@@ -93,6 +107,47 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "no candidate came back from every flight and met every requirement",
         )),
     }
+}
+
+/// The gains of a classical rule.
+fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Failure> {
+    if name == "list" {
+        let row = |rule: &Rule| format!("{:<18}{}\n", rule.name(), rule.about());
+        return print(&Rule::ALL.iter().map(row).collect::<String>());
+    }
+    let rule = Rule::from_name(name).ok_or_else(|| wrong("the rule", name, &Rule::NAMES))?;
+    let form = match arguments.form.as_deref() {
+        None => None,
+        Some(name) => Some(
+            Form::from_name(name).ok_or_else(|| wrong("the form", name, &["p", "pi", "pid"]))?,
+        ),
+    };
+    let options = Options { form, closed_loop_s: arguments.closed_loop_s, ..Options::default() };
+    let found = Baseline::of(source, arguments.controller.as_deref(), (rule, &options));
+    let found = found.map_err(failure)?;
+    match arguments.format {
+        Format::Text => print(&found.design.text())?,
+        Format::Json => print(&json_text(&found.design.json()))?,
+    }
+    if let Some(out) = &arguments.out {
+        let heading = [format!(
+            "Controller \"{}\" by the rule {}: {}",
+            found.controller,
+            rule.name(),
+            found.design.verdict.sentence()
+        )];
+        output::write(out, found.text(source, out, &heading).map_err(failure)?)?;
+        note(format_args!("wrote {}", out.display()));
+    }
+    match found.design.verdict {
+        Verdict::NotHeld(_) => Err(Failure::not_met("the rule's gains do not hold this aircraft")),
+        _ => Ok(()),
+    }
+}
+
+fn wrong(what: &'static str, found: &str, allowed: &[&str]) -> Failure {
+    let (found, allowed) = (format!("\"{found}\""), allowed.join(", "));
+    failure(TuneError::Value { what, found, allowed })
 }
 
 fn failure(error: TuneError) -> Failure {

@@ -131,6 +131,12 @@ impl SampledLoop {
         self.response(omega_rad_s * self.dt_s).open()
     }
 
+    /// Value at any place of the z-plane, on the unit circle or off it; infinite or NaN at a pole.
+    #[must_use]
+    pub fn at_z(&self, z: Complex) -> Complex {
+        self.reduced.at(z - 1.0).open()
+    }
+
     /// Gain at a frequency.
     #[must_use]
     pub fn gain(&self, omega_rad_s: f64) -> f64 {

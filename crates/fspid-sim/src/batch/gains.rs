@@ -1,11 +1,13 @@
 //! The gains of all lanes' self-tuning controllers.
 
 use fspid_core::fuzzy::{Answers, InstructionSet, OutOfRange, Supervisor};
-use fspid_core::{Change, ErrorSign, Gains, Law, SelfTuner};
+use fspid_core::{
+    Change, ErrorSign, Gains, InputSets, Law, ModelState, ReferenceModel, Sees, SelfTuner,
+};
 
 use super::lane::{Lanes, Mask, NO, YES, limited, mask, numbers};
 use super::memory::Memories;
-use super::regulator::FAR;
+use super::regulator::{FAR, Samples};
 
 numbers! {
     /// One flight's numbers of a self-tuner.
@@ -98,12 +100,39 @@ impl Tuner {
     }
 }
 
+/// What the supervisor sees beside the error, without its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Second {
+    Change,
+    Rate,
+    ModelError,
+}
+
+impl Second {
+    fn of(tuner: &SelfTuner<f64>) -> Self {
+        match tuner.settings().sees {
+            Sees::ErrorAndChange => Self::Change,
+            Sees::ErrorAndRate => Self::Rate,
+            Sees::ErrorAndModelError(_) => Self::ModelError,
+        }
+    }
+}
+
+/// A model that stays at rest.
+const STILL: ReferenceModel<f64> = ReferenceModel { bandwidth_rad_s: 0.0, damping: 0.0 };
+
 /// Self-tuners of all lanes, around one supervisor.
 #[derive(Clone, Debug)]
 pub(super) struct SelfTuners<const W: usize> {
     supervisor: Supervisor<f64>,
     instructions: InstructionSet,
     accumulates: bool,
+    sees: Second,
+    /// Whether sets are uneven in some lane.
+    bends: bool,
+    /// Where the sets of each lane's inputs lie.
+    sets: [InputSets<f64>; W],
+    models: [ReferenceModel<f64>; W],
     /// Inputs of the supervisor beyond this are answered one by one.
     farthest: f64,
     numbers: Tuners<W>,
@@ -117,6 +146,10 @@ impl<const W: usize> SelfTuners<W> {
             supervisor,
             instructions,
             accumulates: matches!(tuner.settings().law, Law::Accumulating { .. }),
+            sees: Second::of(tuner),
+            bends: false,
+            sets: [InputSets::EVEN; W],
+            models: [STILL; W],
             farthest: if refuses { supervisor.range() } else { FAR },
             numbers: Tuners::same(Tuner::PARKED),
         }
@@ -128,15 +161,25 @@ impl<const W: usize> SelfTuners<W> {
         if accumulates != self.accumulates {
             return Some("the law of its gains");
         }
+        if Second::of(tuner) != self.sees {
+            return Some("what its supervisor sees");
+        }
         (*tuner.supervisor() != self.supervisor).then_some("its supervisor")
     }
 
     pub(super) fn load(&mut self, lane: usize, tuner: &SelfTuner<f64>, dt_s: f64) {
         self.numbers.set(lane, Tuner::new(tuner, dt_s));
+        let settings = tuner.settings();
+        self.sets[lane] = settings.input_sets;
+        self.bends |= !settings.input_sets.are_even();
+        if let Sees::ErrorAndModelError(model) = settings.sees {
+            self.models[lane] = model;
+        }
     }
 
     pub(super) fn park(&mut self, lane: usize) {
         self.numbers.set(lane, Tuner::PARKED);
+        (self.sets[lane], self.models[lane]) = (InputSets::EVEN, STILL);
     }
 
     /// The gains for errors as the loops have them; strikes lanes out of `plain` that have to be
@@ -145,13 +188,15 @@ impl<const W: usize> SelfTuners<W> {
     pub(super) fn gains(
         &self,
         memories: &Memories<W>,
+        samples: Samples<'_, W>,
         error_rad: &Lanes<W>,
         plain: &mut Mask<W>,
     ) -> [Lanes<W>; 3] {
         let n = &self.numbers;
         let (mut error, mut change, mut silent) = ([0.0; W], [0.0; W], [NO; W]);
+        let seconds_rad = self.seconds_rad(memories, samples, error_rad);
         for lane in 0..W {
-            let change_rad = (error_rad[lane] - memories.error_rad[lane]) / n.change_divisor[lane];
+            let change_rad = seconds_rad[lane];
             let in_zone = (error_rad[lane].abs() <= n.zone_error_rad[lane])
                 & (change_rad.abs() <= n.zone_change_rad[lane]);
             let seen_error = n.sign[lane] * (n.error_per_rad[lane] * error_rad[lane]);
@@ -164,8 +209,70 @@ impl<const W: usize> SelfTuners<W> {
             silent[lane] = mask(in_zone);
             plain[lane] &= mask(near) | mask(in_zone);
         }
+        if self.bends {
+            self.bend(&mut error, &mut change);
+        }
         let increments = self.inferred(&error, &change, plain);
         self.by_law(&memories.gains, increments, &silent)
+    }
+
+    /// What is seen beside the errors.
+    #[inline(always)]
+    fn seconds_rad(
+        &self,
+        memories: &Memories<W>,
+        samples: Samples<'_, W>,
+        error_rad: &Lanes<W>,
+    ) -> Lanes<W> {
+        let mut seconds_rad = [0.0; W];
+        for lane in 0..W {
+            seconds_rad[lane] = match self.sees {
+                Second::Change => {
+                    (error_rad[lane] - memories.error_rad[lane]) / self.numbers.change_divisor[lane]
+                }
+                Second::Rate => -samples.rate_rad_s[lane],
+                Second::ModelError => memories.model_rad[lane] - samples.measurement_rad[lane],
+            };
+        }
+        seconds_rad
+    }
+
+    /// Inputs as the even sets see them.
+    #[inline(never)]
+    fn bend(&self, error: &mut Lanes<W>, change: &mut Lanes<W>) {
+        let range = self.supervisor.range();
+        for lane in 0..W {
+            let InputSets { error: of_error, change: of_change } = self.sets[lane];
+            error[lane] = of_error.map_or(error[lane], |places| places.bent(error[lane], range));
+            change[lane] =
+                of_change.map_or(change[lane], |places| places.bent(change[lane], range));
+        }
+    }
+
+    /// The reference models at the next sample, into the next memories; strikes lanes out of `plain`
+    /// whose model comes near overflow.
+    #[inline(always)]
+    pub(super) fn advance(
+        &self,
+        before: &Memories<W>,
+        samples: Samples<'_, W>,
+        next: &mut Memories<W>,
+        plain: &mut Mask<W>,
+    ) {
+        if self.sees != Second::ModelError {
+            return;
+        }
+        for lane in 0..W {
+            let now = ModelState {
+                pitch_rad: before.model_rad[lane],
+                rate_rad_s: before.model_rad_s[lane],
+            };
+            let dt_s = self.numbers.dt_s[lane];
+            let ModelState { pitch_rad, rate_rad_s } =
+                self.models[lane].next(now, samples.setpoint_rad[lane], dt_s);
+            (next.model_rad[lane], next.model_rad_s[lane]) = (pitch_rad, rate_rad_s);
+            plain[lane] &= mask((pitch_rad.abs() <= FAR) & (rate_rad_s.abs() <= FAR));
+        }
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The memories of all lanes' controllers.
 
-use fspid_core::{Faults, Gains, Previous, State};
+use fspid_core::{Faults, Gains, ModelState, Previous, State};
 
 use super::lane::{Lanes, Mask, NO, YES};
 
@@ -15,6 +15,9 @@ pub(super) struct Memories<const W: usize> {
     pub(super) error_rad: Lanes<W>,
     pub(super) derivative_input_rad: Lanes<W>,
     pub(super) gains: [Lanes<W>; 3],
+    /// The reference model at the next sample.
+    pub(super) model_rad: Lanes<W>,
+    pub(super) model_rad_s: Lanes<W>,
     pub(super) faults: [Faults; W],
 }
 
@@ -29,6 +32,8 @@ impl<const W: usize> Memories<W> {
             error_rad: [0.0; W],
             derivative_input_rad: [0.0; W],
             gains: [[0.0; W]; 3],
+            model_rad: [0.0; W],
+            model_rad_s: [0.0; W],
             faults: [Faults::NONE; W],
         }
     }
@@ -44,6 +49,10 @@ impl<const W: usize> Memories<W> {
                 error_rad: self.error_rad[lane],
                 derivative_input_rad: self.derivative_input_rad[lane],
                 gains: Gains { kp, ki, kd },
+                model: ModelState {
+                    pitch_rad: self.model_rad[lane],
+                    rate_rad_s: self.model_rad_s[lane],
+                },
             }),
             faults: self.faults[lane],
         }
@@ -56,12 +65,14 @@ impl<const W: usize> Memories<W> {
         self.derivative_rad_s[lane] = state.derivative_rad_s;
         self.faults[lane] = state.faults;
         self.has_previous[lane] = NO;
-        let Some(Previous { error_rad, derivative_input_rad, gains }) = state.previous else {
+        let Some(Previous { error_rad, derivative_input_rad, gains, model }) = state.previous
+        else {
             return;
         };
         self.has_previous[lane] = YES;
         self.error_rad[lane] = error_rad;
         self.derivative_input_rad[lane] = derivative_input_rad;
+        (self.model_rad[lane], self.model_rad_s[lane]) = (model.pitch_rad, model.rate_rad_s);
         for (place, gain) in self.gains.iter_mut().zip([gains.kp, gains.ki, gains.kd]) {
             place[lane] = gain;
         }

@@ -1,6 +1,6 @@
 //! The controllers of all lanes.
 
-use fspid_core::{AntiWindup, Faults, Gains, IntegralForm, Sample, Shell, Step};
+use fspid_core::{AntiWindup, Faults, Followers, Gains, IntegralForm, Sample, Shell, Step};
 use fspid_fuzzy::InstructionSet;
 
 use super::gains::SelfTuners;
@@ -21,9 +21,14 @@ numbers! {
     Regulators:
     dt_s,
     rate_gain_s,
+    /// 1 where the pitch rate is used, else 0.
+    uses_rate,
     /// Set-point weights.
     proportional,
     derivative,
+    /// What follows the gains, by how much per unit.
+    weight_per_kp,
+    rate_gain_per_kd,
     filter_s,
     /// Filter and sample period together.
     filter_and_dt_s,
@@ -48,8 +53,11 @@ impl Regulator {
     const PARKED: Self = Self {
         dt_s: 1.0,
         rate_gain_s: 0.0,
+        uses_rate: 0.0,
         proportional: 1.0,
         derivative: 1.0,
+        weight_per_kp: 0.0,
+        rate_gain_per_kd: 0.0,
         filter_s: 0.0,
         filter_and_dt_s: 1.0,
         lower_rad: f64::NEG_INFINITY,
@@ -65,11 +73,13 @@ impl Regulator {
         fixed_kd: 0.0,
     };
 
-    fn new(shell: &Shell<f64>, gains: Gains<f64>) -> Self {
+    fn new(controller: &Controller) -> Self {
+        let (shell, gains) = (controller.shell(), controller.nominal());
         let filter_s = shell.derivative.filter_s;
         let mut one = Self {
             dt_s: shell.dt_s,
             rate_gain_s: shell.rate_gain_s,
+            uses_rate: if controller.uses_rate() { 1.0 } else { 0.0 },
             proportional: shell.setpoint_weights.proportional,
             derivative: shell.setpoint_weights.derivative,
             filter_s,
@@ -81,6 +91,11 @@ impl Regulator {
             fixed_kd: gains.kd,
             ..Self::PARKED
         };
+        if let Controller::SelfTuning(fspid) = controller {
+            let followers = fspid.tuner().settings().followers;
+            one.weight_per_kp = followers.setpoint_weight;
+            one.rate_gain_per_kd = followers.rate_gain;
+        }
         if let Some(limits) = shell.limits {
             (one.lower_rad, one.upper_rad) = (limits.lower(), limits.upper());
         }
@@ -134,6 +149,8 @@ pub(super) struct Controllers<'a, const W: usize> {
     /// Whose numbers mean nothing.
     anti_windup: AntiWindup<f64>,
     tuners: Option<SelfTuners<W>>,
+    /// Whether something follows the gains in some lane.
+    follows: bool,
     memories: Memories<W>,
     next: Memories<W>,
     pub(super) steps: Steps<W>,
@@ -155,6 +172,7 @@ impl<'a, const W: usize> Controllers<'a, W> {
             form: first.integral,
             anti_windup: first.anti_windup,
             tuners,
+            follows: false,
             memories: Memories::at_rest(),
             next: Memories::at_rest(),
             steps: Steps {
@@ -188,10 +206,11 @@ impl<'a, const W: usize> Controllers<'a, W> {
                     return Err(differs(what));
                 }
                 tuners.load(lane, fspid.tuner(), shell.dt_s);
+                self.follows |= fspid.tuner().settings().followers != Followers::NONE;
             }
             _ => return Err(differs("its kind of controller")),
         }
-        self.numbers.set(lane, Regulator::new(shell, controller.nominal()));
+        self.numbers.set(lane, Regulator::new(controller));
         self.memories.has_previous[lane] = NO;
         Ok(())
     }
@@ -213,9 +232,12 @@ impl<'a, const W: usize> Controllers<'a, W> {
         let (mut plain, error_rad) = self.admitted(samples);
         let gains = match &self.tuners {
             None => [self.numbers.fixed_kp, self.numbers.fixed_ki, self.numbers.fixed_kd],
-            Some(tuners) => tuners.gains(&self.memories, &error_rad, &mut plain),
+            Some(tuners) => tuners.gains(&self.memories, samples, &error_rad, &mut plain),
         };
         self.regulate(samples, &error_rad, gains, &mut plain);
+        if let Some(tuners) = &self.tuners {
+            tuners.advance(&self.memories, samples, &mut self.next, &mut plain);
+        }
         self.steps.command_rad = self.next.command_rad;
         self.steps.gains = self.next.gains;
         if !all(&plain) {
@@ -232,7 +254,7 @@ impl<'a, const W: usize> Controllers<'a, W> {
         for lane in 0..W {
             let setpoint_rad = samples.setpoint_rad[lane];
             let measurement_rad = samples.measurement_rad[lane];
-            let rate_rad_s = used_rate(n.rate_gain_s[lane], samples.rate_rad_s[lane]);
+            let rate_rad_s = used_rate(n.uses_rate[lane], samples.rate_rad_s[lane]);
             error_rad[lane] = setpoint_rad - measurement_rad;
             let believed = (setpoint_rad.abs() <= n.guard_rad[lane])
                 & (measurement_rad.abs() <= n.guard_rad[lane])
@@ -254,6 +276,13 @@ impl<'a, const W: usize> Controllers<'a, W> {
     ) {
         let (n, before, next) = (&self.numbers, &self.memories, &mut self.next);
         let [kp, ki, kd] = &gains;
+        let (mut weight, mut rate_gain_s) = (n.proportional, n.rate_gain_s);
+        if self.follows {
+            for lane in 0..W {
+                weight[lane] += n.weight_per_kp[lane] * (kp[lane] - n.fixed_kp[lane]);
+                rate_gain_s[lane] += n.rate_gain_per_kd[lane] * (kd[lane] - n.fixed_kd[lane]);
+            }
+        }
         let wound = wound(self.form, before, ki, error_rad, &n.dt_s);
         let mut term_rad = unclamped(self.form, ki, &wound, &n.dt_s);
         if matches!(self.anti_windup, AntiWindup::Clamping(_)) {
@@ -266,16 +295,15 @@ impl<'a, const W: usize> Controllers<'a, W> {
         for lane in 0..W {
             let setpoint_rad = samples.setpoint_rad[lane];
             let measurement_rad = samples.measurement_rad[lane];
-            let rate_rad_s = used_rate(n.rate_gain_s[lane], samples.rate_rad_s[lane]);
-            let proportional_rad =
-                kp[lane] * (n.proportional[lane] * setpoint_rad - measurement_rad);
+            let rate_rad_s = used_rate(n.uses_rate[lane], samples.rate_rad_s[lane]);
+            let proportional_rad = kp[lane] * (weight[lane] * setpoint_rad - measurement_rad);
             let input_rad = n.derivative[lane] * setpoint_rad - measurement_rad;
             let difference_rad = input_rad - before.derivative_input_rad[lane];
             let derivative_rad_s = (n.filter_s[lane] * before.derivative_rad_s[lane]
                 + difference_rad)
                 / n.filter_and_dt_s[lane];
             let free_rad = proportional_rad + term_rad[lane] + kd[lane] * derivative_rad_s
-                - n.rate_gain_s[lane] * rate_rad_s;
+                - rate_gain_s[lane] * rate_rad_s;
             let (last_rad, slew_rad) = (before.command_rad[lane], n.slew_rad[lane]);
             let slewed_rad = limited(free_rad, last_rad - slew_rad, last_rad + slew_rad);
             let command_rad = limited(slewed_rad, n.lower_rad[lane], n.upper_rad[lane]);
@@ -363,10 +391,10 @@ impl<'a, const W: usize> Controllers<'a, W> {
     }
 }
 
-/// Without a rate loop the rate is zero.
+/// Where the rate is not used it is zero.
 #[inline(always)]
-fn used_rate(rate_gain_s: f64, rate_rad_s: f64) -> f64 {
-    if rate_gain_s == 0.0 { 0.0 } else { rate_rad_s }
+fn used_rate(uses_rate: f64, rate_rad_s: f64) -> f64 {
+    if uses_rate == 0.0 { 0.0 } else { rate_rad_s }
 }
 
 /// As `Integrator::wound`.

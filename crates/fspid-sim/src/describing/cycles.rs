@@ -126,7 +126,7 @@ pub fn limit_cycles_at(
     let plant = plant_around_rest(scenario)?;
     let mut table = Table::new(&path, searched);
     let answer = |gains: &Gains<f64>| {
-        let open = OpenLoop::of(scenario, &plant, shell, *gains)?;
+        let open = OpenLoop::of(scenario, &plant, &controller.shell_at(*gains), *gains)?;
         let zeros = table.zeros(&open);
         let cycles: Vec<LimitCycle> =
             zeros.iter().filter_map(|zero| cycle(&open, &path, zero)).collect();

@@ -1,12 +1,13 @@
 //! The way of a flight through the inputs of its supervisor.
 
-use fspid_core::{Change, ErrorSign};
+use fspid_core::{Change, ErrorSign, Sees};
 use fspid_sim::{Controller, simulate};
 
 use crate::file::Study;
 
 /// Error and change at each sample of a controller's flight, in the supervisor's units and within its
-/// range; nothing for fixed gains or a flight that cannot be flown.
+/// range; nothing for fixed gains, a supervisor that sees something else, or a flight that cannot be
+/// flown.
 pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
     let scenario = &study.scenario;
     let named = scenario.controllers.iter().position(|named| named.name == name);
@@ -17,6 +18,9 @@ pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
     let Controller::SelfTuning(fspid) = &named.controller else {
         return Vec::new();
     };
+    if fspid.tuner().settings().sees != Sees::ErrorAndChange {
+        return Vec::new();
+    }
     let mut alone = scenario.clone();
     alone.controllers = scenario.controllers.get(index..=index).unwrap_or_default().to_vec();
     let Ok(flight) = simulate(&alone) else {

@@ -82,8 +82,9 @@ impl<'a> Mapper<'a> {
         fspid: &'a Fspid<f64>,
         question: Question,
     ) -> Result<Self, SimError> {
-        let memory = Memory::of_gains(producible(fspid.tuner(), 0.0, 0.0), fspid.shell());
-        let model = LoopModel::of(scenario, plant, fspid.shell(), memory)?;
+        let rest = producible(fspid.tuner(), 0.0, 0.0);
+        let shell = fspid.shell_at(rest);
+        let model = LoopModel::of(scenario, plant, &shell, Memory::of_gains(rest, &shell))?;
         let family = model.family(question.point)?;
         Ok(Self { scenario, plant, fspid, question, model, family })
     }
@@ -140,21 +141,29 @@ impl<'a> Mapper<'a> {
         if self.question.every_point_in_full {
             return None;
         }
-        if Memory::of_gains(gains, self.fspid.shell()) != self.model.settings().memory {
+        if !self.has_the_shell_at(gains)
+            || Memory::of_gains(gains, self.fspid.shell()) != self.model.settings().memory
+        {
             return None;
         }
         let found = self.family.as_ref()?.margins(&[gains.kp, gains.ki, gains.kd])?;
         Some(Margins::of_stable(&found))
     }
 
+    /// Whether the loop at these gains is the model's but for the gains: nothing follows them, or they are
+    /// where the model was made.
+    fn has_the_shell_at(&self, gains: Gains<f64>) -> bool {
+        self.fspid.shell_at(gains) == self.model.settings().shell
+    }
+
     /// Margins of one loop by eigenvalues.
     fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
-        let memory = Memory::of_gains(gains, self.fspid.shell());
-        let open = if memory == self.model.settings().memory {
+        let shell = self.fspid.shell_at(gains);
+        let memory = Memory::of_gains(gains, &shell);
+        let open = if self.has_the_shell_at(gains) && memory == self.model.settings().memory {
             self.model.open(gains, self.question.point)?
         } else {
-            let shell = self.fspid.shell();
-            let own = LoopModel::of(self.scenario, self.plant, shell, memory)?;
+            let own = LoopModel::of(self.scenario, self.plant, &shell, memory)?;
             own.open(gains, self.question.point)?
         };
         let (_, margins) = judged(&open)?;

@@ -61,12 +61,12 @@ impl AnalysedLoop {
             absent: Some(reason),
             flights: flights.clone(),
         };
-        if question.point == BreakPoint::Rate && controller.shell().rate_gain_s == 0.0 {
-            return Ok(none(Absent::NoRateLoop));
-        }
         let Some(gains) = equilibrium.gains() else {
             return Ok(none(Absent::GainsDrift));
         };
+        if question.point == BreakPoint::Rate && controller.shell_at(gains).rate_gain_s == 0.0 {
+            return Ok(none(Absent::NoRateLoop));
+        }
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
             let open = open_loop(scenario, plant, (controller, gains), question.point)?;
@@ -215,9 +215,9 @@ pub(crate) fn open_loop(
     (controller, gains): (&Controller, Gains<f64>),
     point: BreakPoint,
 ) -> Result<SampledLoop, SimError> {
-    let shell = controller.shell();
-    let memory = Memory::of_gains(gains, shell);
-    LoopModel::of(scenario, plant, shell, memory)?.open(gains, point)
+    let shell = controller.shell_at(gains);
+    let memory = Memory::of_gains(gains, &shell);
+    LoopModel::of(scenario, plant, &shell, memory)?.open(gains, point)
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ fn at_rest(named: &NamedController) -> Option<NamedController> {
         limits: None,
         slew_rad_s: None,
         anti_windup: AntiWindup::None,
-        ..*named.controller.shell()
+        ..named.controller.shell_at(gains)
     };
     let controller = Controller::Fixed(Pid::new(gains, shell).ok()?);
     Some(NamedController { name: named.name.clone(), controller })

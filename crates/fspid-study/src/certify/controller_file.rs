@@ -249,6 +249,8 @@ impl TunerFile {
             dead_zone: self
                 .dead_zone
                 .map(|[error_rad, change_rad]| DeadZone { error_rad, change_rad }),
+            // A proof speaks of no other structure.
+            ..TunerSettings::literal()
         };
         SelfTuner::new(nominal, self.supervisor()?, settings).map_err(said("tuner"))
     }

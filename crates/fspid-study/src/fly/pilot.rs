@@ -188,7 +188,7 @@ impl Pilot {
             return rate_rad_s;
         }
         let estimate_rad_s = self.rate.estimate_rad_s(request.measurement_rad);
-        if self.controller.shell().rate_gain_s != 0.0 {
+        if self.controller.uses_rate() {
             self.log.estimated_rate(self.rate.time_constant_s());
         }
         estimate_rad_s

@@ -45,7 +45,7 @@ impl Verification {
             let Controller::SelfTuning(_) = named.controller else {
                 return (named.controller.nominal(), *named.controller.shell());
             };
-            (frozen.gains, *named.controller.shell())
+            (frozen.gains, named.controller.shell_at(frozen.gains))
         });
         // A flight needs every plant; the loops and the aircraft are looked at one by one.
         let flown = matches!(judgement.requirement.measure.family(), Family::Step | Family::Flight);

@@ -67,6 +67,11 @@ pub(super) fn walk(
     controller: &Controller,
     mut visit: impl FnMut(&SmallSignal, &[Vec<f64>]) -> ControlFlow<()>,
 ) -> Result<(Outcome, Vec<String>), SimError> {
+    if let Controller::SelfTuning(fspid) = controller
+        && !fspid.tuner().settings().is_plain()
+    {
+        return Err(SimError::Structure);
+    }
     let prepared = scenario.prepare()?;
     let system = match controller {
         Controller::SelfTuning(fspid) => system_of(fspid.tuner().supervisor()),

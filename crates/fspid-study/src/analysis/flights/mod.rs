@@ -19,7 +19,8 @@ pub struct Flights {
     pub empirical: EmpiricalAnswer,
     /// Limit cycles that describing functions predict at the gains at rest.
     pub limit_cycles: LimitCycles,
-    /// The loop linearised along its flight; of self-tuning controllers only.
+    /// The loop linearised along its flight; of self-tuning controllers only whose supervisor sees the
+    /// error and its change through even sets, and of which nothing but the gains moves.
     pub along: Option<TrajectoryLinearisation>,
 }
 
@@ -33,7 +34,10 @@ impl Flights {
         let every = scenario.timing.rows().div_ceil(POINTS);
         let along = match controller {
             Controller::Fixed(_) => None,
-            Controller::SelfTuning(_) => Some(linearise_along(scenario, controller, every)?),
+            Controller::SelfTuning(_) => match linearise_along(scenario, controller, every) {
+                Err(SimError::Structure) => None,
+                along => Some(along?),
+            },
         };
         Ok(Self {
             empirical: empirical_margins(scenario, controller, &EmpiricalOptions::default())?,

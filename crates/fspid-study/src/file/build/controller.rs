@@ -1,9 +1,9 @@
 //! Controllers.
 
 use fspid_core::{
-    AntiWindup, Change, ConfigError, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains,
-    Guard, InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell,
-    TunerSettings,
+    AntiWindup, Change, ConfigError, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits,
+    Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees,
+    SelfTuner, SetPlaces, SetpointWeights, Shell, TunerSettings,
 };
 use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
@@ -212,12 +212,18 @@ fn tuner(
             "measurement-minus-setpoint" => ErrorSign::MeasurementMinusSetpoint,
             _ => ErrorSign::SetpointMinusMeasurement,
         },
+        sees: sees(report, part)?,
         change: match part.text("change")? {
             "delta" => Change::Delta,
             _ => Change::Rate,
         },
         input_scale: input_scale(report, part)?,
+        input_sets: InputSets {
+            error: set_places(report, part, "error_sets")?,
+            change: set_places(report, part, "change_sets")?,
+        },
         output_scale: output_scale(part),
+        followers: followers(section),
         law: law?,
         gain_limits: match gain_limits {
             Some(limits) => Some(limits?),
@@ -249,6 +255,60 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
     };
     let (error, change) = (per_rad("error_scale"), per_rad("change_scale"));
     Some(InputScale { error_per_rad: error?, change_per_rad: change? })
+}
+
+/// What the supervisor sees beside the error; what would go unused is refused.
+fn sees(report: &mut Report, part: &Section) -> Option<Sees<f64>> {
+    let (word, model) = (part.text("sees")?, part.section("model"));
+    if word != "error-and-change" && part.given("change") {
+        let message = format!("the supervisor sees no change, but \"{word}\"");
+        let allowed = "only with sees = \"error-and-change\"";
+        report.value(part.at("change"), &part.path("change"), message, allowed);
+        return None;
+    }
+    match (word, model) {
+        ("error-and-model-error", Some(model)) => Some(Sees::ErrorAndModelError(ReferenceModel {
+            bandwidth_rad_s: model.number("bandwidth_rad_s")?,
+            damping: model.number("damping")?,
+        })),
+        ("error-and-model-error", None) => {
+            let (message, allowed) = ("it has no reference model", "together with `model`");
+            report.missing(part.at("sees"), &part.path("sees"), message, allowed);
+            None
+        }
+        (_, Some(model)) => {
+            let message = format!("the supervisor sees no model, but \"{word}\"");
+            let allowed = "only with sees = \"error-and-model-error\"";
+            report.value(part.at("model"), &model.path, message, allowed);
+            None
+        }
+        ("error-and-rate", None) => Some(Sees::ErrorAndRate),
+        _ => Some(Sees::ErrorAndChange),
+    }
+}
+
+/// Where the sets of an input lie; the inner `None` where nothing is said, the outer one for a problem.
+#[allow(clippy::option_option, reason = "left out and refused are two things")]
+fn set_places(
+    report: &mut Report,
+    part: &Section,
+    key: &'static str,
+) -> Option<Option<SetPlaces<f64>>> {
+    match part.interval(key) {
+        None => Some(None),
+        Some((small, medium)) => {
+            judged(report, (part, key), SetPlaces::new(small, medium)).map(Some)
+        }
+    }
+}
+
+fn followers(section: &Section) -> Followers<f64> {
+    let part = section.section("followers");
+    let number = |key| part.and_then(|part| part.number(key)).unwrap_or(0.0);
+    Followers {
+        setpoint_weight: number("setpoint_weight_per_kp"),
+        rate_gain: number("rate_gain_per_kd"),
+    }
 }
 
 fn output_scale(part: &Section) -> Gains<f64> {

@@ -223,6 +223,11 @@ const TUNER: &[Key] = &[
         "Pulls the gains of the accumulating law back to nominal; 0 if left out.",
     ),
     optional(
+        "followers",
+        Kind::Table(&FOLLOWERS),
+        "What moves with the gains; nothing if left out.",
+    ),
+    optional(
         "gain_limits",
         Kind::Table(&GAIN_LIMITS),
         "Bounds of the total gains; none if left out.",
@@ -235,7 +240,7 @@ const TUNER: &[Key] = &[
 ];
 
 static SUPERVISOR: Table = plain(
-    "The supervisor: it sees error and change of error and answers increments of the gains.",
+    "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
     &[&[
         required(
             "table",
@@ -271,6 +276,18 @@ static SUPERVISOR: Table = plain(
             Default::Number(1.0),
             "The supervisor sees this times the error in degrees.",
         ),
+        optional(
+            "error_sets",
+            Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
+            "Where the small and the medium sets of the error lie, as parts of the range; a third and two thirds if left out.",
+        ),
+        defaulted(
+            "sees",
+            Kind::Word(&["error-and-change", "error-and-rate", "error-and-model-error"]),
+            Default::Word("error-and-change"),
+            "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
+        ),
+        optional("model", Kind::Table(&MODEL), "The reference model of `error-and-model-error`."),
         defaulted(
             "change",
             Kind::Word(&["rate", "delta"]),
@@ -281,12 +298,52 @@ static SUPERVISOR: Table = plain(
             "change_scale",
             finite(""),
             Default::Number(1.0),
-            "The supervisor sees this times the change in degrees per second or per sample.",
+            "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
+        ),
+        optional(
+            "change_sets",
+            Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
+            "As `error_sets`, of what is seen beside the error.",
         ),
         optional(
             "output_scale",
             Kind::Table(&OUTPUT_SCALE),
             "Factors of the increments; 1 if left out.",
+        ),
+    ]],
+);
+
+static MODEL: Table = plain(
+    "A reference model of second order: how the pitch should follow the set-point.",
+    &[&[
+        required(
+            "bandwidth_rad_s",
+            positive("rad/s"),
+            "Its natural frequency; at most half per sample.",
+        ),
+        defaulted(
+            "damping",
+            Kind::Number { unit: "", range: Range::PositiveUpTo(1.5) },
+            Default::Number(1.0),
+            "Its damping.",
+        ),
+    ]],
+);
+
+static FOLLOWERS: Table = plain(
+    "What moves with the gains, by how much per unit of their distance from nominal.",
+    &[&[
+        defaulted(
+            "setpoint_weight_per_kp",
+            finite(""),
+            Default::Number(0.0),
+            "Of the set-point weight in the proportional term, by the proportional gain.",
+        ),
+        defaulted(
+            "rate_gain_per_kd",
+            finite(""),
+            Default::Number(0.0),
+            "Of the gain of the inner loop, by the derivative gain.",
         ),
     ]],
 );
@@ -319,7 +376,7 @@ static DEAD_ZONE: Table = plain(
         required(
             "change_deg_s",
             not_negative("deg/s"),
-            "Change up to which it holds; degrees per sample where change is `delta`.",
+            "Change up to which it holds; degrees per sample where change is `delta`, degrees where a model's error is seen.",
         ),
     ]],
 );

@@ -1,0 +1,58 @@
+//! Bent inputs of a supervisor against general fuzzy systems whose triangles are moved.
+
+use fspid_core::SetPlaces;
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::membership::ShapeKind;
+use fspid_fuzzy::system::{Answer, Membership, Parts, System};
+
+const PRINTED: &str = include_str!("../../../data/rule-tables/printed.toml");
+const RANGE: f64 = 5.0;
+
+/// The paper's rules with triangles from neighbour to neighbour, their centres at these places.
+fn triangles(centres: [[f64; 7]; 2]) -> System {
+    let texts: Vec<&str> = PRINTED.split("\"\"\"").collect();
+    let table = RuleTable::parse([texts[1], texts[3], texts[5]]).expect("the shipped table");
+    let supervisor = Supervisor::new(&table, RANGE, Defuzzifier::Exact, OutOfRange::Clamp);
+    let mut parts = Parts::from(&supervisor.expect("allowed"));
+    for (input, centres) in parts.inputs.iter_mut().zip(centres) {
+        for (at, term) in input.terms.iter_mut().enumerate() {
+            let before = if at == 0 { centres[0] - 1.0 } else { centres[at - 1] };
+            let after = if at == 6 { centres[6] + 1.0 } else { centres[at + 1] };
+            let params = vec![before, centres[at], after];
+            term.membership = Membership::Shape { kind: ShapeKind::Triangle, params, height: 1.0 };
+        }
+    }
+    System::new(parts).expect("sound")
+}
+
+fn centres(small: f64, medium: f64) -> [f64; 7] {
+    [-1.0, -medium, -small, 0.0, small, medium, 1.0].map(|part| part * RANGE)
+}
+
+#[test]
+fn bending_the_input_of_even_triangles_is_the_same_as_moving_the_triangles() {
+    let even = centres(1.0 / 3.0, 2.0 / 3.0);
+    for [(small, medium), (other_small, other_medium)] in
+        [[(0.1, 0.5), (0.5, 0.6)], [(0.3, 0.9), (1.0 / 3.0, 2.0 / 3.0)], [(0.6, 0.95), (0.05, 0.1)]]
+    {
+        let moved = triangles([centres(small, medium), centres(other_small, other_medium)]);
+        let fixed = triangles([even, even]);
+        let places = [(small, medium), (other_small, other_medium)]
+            .map(|(small, medium)| SetPlaces::new(small, medium).expect("in order"));
+        let (mut one, mut other) = (moved.workspace(), fixed.workspace());
+        for row in -25..=25_i32 {
+            for column in -25..=25_i32 {
+                let input = [row, column].map(|k| 0.2 * f64::from(k) - 0.01);
+                let bent = [0, 1].map(|k| places[k].bent(input[k], RANGE));
+                let expected = moved.evaluate(&input, &mut one).expect("inside");
+                let found = fixed.evaluate(&bent, &mut other).expect("inside");
+                for (found, expected) in found.iter().zip(expected) {
+                    let value = |answer: &Answer| answer.value.expect("some rule fires");
+                    let (found, expected) = (value(found), value(expected));
+                    // The grades differ by the rounding of quotients.
+                    assert!((found - expected).abs() < 1e-11, "{input:?}: {found} {expected}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! A classical rule for a controller of a scenario, and the scenario with what the rule gave.
+
+use std::path::Path;
+
+use fspid_core::Shell;
+use fspid_sim::Controller;
+use fspid_study::file::{Extra, SettingPath, Template};
+use fspid_study::tuning::Free;
+
+use crate::design::{check_room, text_of, with_changes};
+use crate::error::TuneError;
+use crate::problem::{Source, chosen, folder_of};
+use crate::rule::{self, Design, Options, Rule};
+
+/// What a rule makes of the loop of a scenario.
+#[derive(Clone, Debug)]
+pub struct Baseline {
+    /// The controller whose filters, limits and rate loop stay.
+    pub controller: String,
+    /// What the rule gave.
+    pub design: Design,
+}
+
+impl Baseline {
+    /// By a rule for the controller of that name, or the first one.
+    ///
+    /// # Errors
+    /// A scenario that is wrong, a controller that there is not, or a rule that gives no gains.
+    pub fn of(
+        source: &Source,
+        controller: Option<&str>,
+        (rule, options): (Rule, &Options),
+    ) -> Result<Self, TuneError> {
+        let template = source.template()?;
+        let study = template.study();
+        let controller = chosen(study, controller)?;
+        let found = study.scenario.controllers.iter().find(|named| named.name == controller);
+        let shell = found.map(|named| *shell_of(&named.controller));
+        let options = Options { shell, ..*options };
+        Ok(Self { controller, design: rule::design(study, rule, &options)? })
+    }
+
+    /// The scenario with the rule's numbers for its controller. A number that is marked free stays free, and
+    /// begins where the rule says, if that lies within its bounds.
+    ///
+    /// # Errors
+    /// A controller that has not all the numbers that the rule gave, or the text's own list of changes.
+    pub fn text(
+        &self,
+        source: &Source,
+        out: &Path,
+        heading: &[String],
+    ) -> Result<String, TuneError> {
+        let text = text_of(source)?;
+        check_room(&text, "--out")?;
+        let mut changes = source.overrides.clone();
+        let template = source.template()?;
+        changes.extend(self.changes(&template));
+        let design = with_changes(&text, heading, &changes);
+        let name = out.display().to_string();
+        Template::parse(&design, &name, Some(folder_of(out)), &Extra::default())?;
+        Ok(design)
+    }
+
+    fn changes(&self, template: &Template) -> Vec<String> {
+        let Design { gains, shell, given, .. } = &self.design;
+        let nominal = match template
+            .study()
+            .scenario
+            .controllers
+            .iter()
+            .find(|it| it.name == self.controller)
+        {
+            Some(named) if matches!(named.controller, Controller::SelfTuning(_)) => "nominal.",
+            _ => "",
+        };
+        let mut numbers = vec![(format!("{nominal}kp"), gains.kp)];
+        let others = [("ki", gains.ki), ("kd", gains.kd)];
+        numbers.extend(others.map(|(key, gain)| (format!("{nominal}{key}"), gain)));
+        // A proportional controller has no other gains, and needs none that are 0.
+        numbers
+            .retain(|(key, gain)| key.ends_with("kp") || *gain != 0.0 || self.has(template, key));
+        if given.rate_gain {
+            numbers.push(("rate_gain".to_owned(), shell.rate_gain_s));
+        }
+        if given.derivative_filter {
+            numbers.push(("derivative_filter_s".to_owned(), shell.derivative.filter_s));
+        }
+        if given.setpoint_weights {
+            let weights = shell.setpoint_weights;
+            numbers.push(("setpoint_weights.proportional".to_owned(), weights.proportional));
+            numbers.push(("setpoint_weights.derivative".to_owned(), weights.derivative));
+        }
+        numbers.iter().map(|(key, number)| self.change(template, key, *number)).collect()
+    }
+
+    fn path(&self, key: &str) -> String {
+        format!("controller.\"{}\".{key}", self.controller)
+    }
+
+    fn has(&self, template: &Template, key: &str) -> bool {
+        let path = SettingPath::parse(&self.path(key));
+        path.is_some_and(|path| template.number_at(&path).is_some())
+    }
+
+    /// The change that brings a number in: as the start of a mark where its bounds hold it, else as it is.
+    fn change(&self, template: &Template, key: &str, number: f64) -> String {
+        let is_start = template.study().marks.iter().any(|mark| {
+            let holds = match &mark.free {
+                Free::Number(free) => (free.lower..=free.upper).contains(&number),
+                Free::Grid(_) => false,
+            };
+            let is_it = mark.path.text().ends_with(&format!(".{key}"));
+            mark.controller() == Some(&self.controller) && is_it && holds
+        });
+        format!("{}{}={number:?}", self.path(key), if is_start { ".start" } else { "" })
+    }
+}
+
+fn shell_of(controller: &Controller) -> &Shell<f64> {
+    match controller {
+        Controller::Fixed(pid) => pid.shell(),
+        Controller::SelfTuning(fspid) => fspid.shell(),
+    }
+}

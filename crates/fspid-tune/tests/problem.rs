@@ -1,0 +1,187 @@
+//! What a candidate is worth, against what a single flight measures.
+
+use fspid_study::file;
+use fspid_study::simulation::Simulation;
+use fspid_study::units::degrees;
+use fspid_tune::{Effort, FORBIDDEN, Problem, Search, Source};
+
+const SCENARIO: &str = r#"schema = 1
+name = "to be tuned"
+
+[plant]
+preset = "navion-paper"
+
+[actuator]
+time_constant_s = 0.1
+
+[loop]
+sample_period_s = 0.02
+duration_s = 4.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 2.0
+
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = { tune = [0.1, 40.0], scale = "log", start = 1.0 }
+ki = { tune = [0.01, 5.0], scale = "log", start = 0.5 }
+kd = 0.1
+derivative_filter_s = 0.05
+
+[[controller]]
+name = "P"
+kind = "p"
+kp = { tune = [0.1, 2.0] }
+
+[[dispersion]]
+path = "plant.preset.numerator[0]"
+distribution = "uniform"
+lower = 0.7
+upper = 1.3
+relative = true
+
+[tuning]
+controller = "PID"
+
+[[tuning.objective]]
+measure = "iae_deg_s"
+
+[[tuning.objective]]
+measure = "elevator_travel_deg"
+weight = 0.05
+"#;
+
+/// The scenario with changes of its text, in a folder of its own.
+fn problem(changes: &[(&str, &str)]) -> Problem {
+    let text = changes.iter().fold(SCENARIO.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pitch.toml");
+    std::fs::write(&path, text).expect("written");
+    let source = Source { path, overrides: Vec::new() };
+    Problem::new(&source, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A place in the unit cube where the proportional gain is `kp`.
+fn with_kp(problem: &Problem, kp: f64) -> Vec<f64> {
+    let mut point = problem.space().start();
+    point[0] = (kp / 0.1).ln() / 400.0_f64.ln();
+    point
+}
+
+#[test]
+fn the_cost_of_a_candidate_is_the_weighted_sum_of_what_a_flight_measures() {
+    let problem = problem(&[]);
+    let point = with_kp(&problem, 1.7);
+    let score = problem.scores(std::slice::from_ref(&point)).remove(0);
+    let kp = problem.space().numbers(&point)[0];
+    let plain = SCENARIO
+        .replace("{ tune = [0.1, 40.0], scale = \"log\", start = 1.0 }", &format!("{kp:?}"));
+    let study = file::parse(&plain, "plain.toml", None, &[]).expect("a scenario");
+    let flown = Simulation::of(&study).expect("it flies");
+    let iae = degrees(flown.results[0].metrics.integrals.expect("measured").iae_rad_s);
+    let elevator = &flown.results[0].trace.elevator_rad;
+    let travel: f64 = elevator.windows(2).map(|two| degrees((two[1] - two[0]).abs())).sum();
+    assert_eq!(score.values[0], iae);
+    assert!((score.values[1] - travel).abs() < 1e-9, "{score:?} {travel}");
+    assert!((score.cost - (iae + 0.05 * travel)).abs() < 1e-9, "{score:?}");
+    assert!(score.is_allowed());
+}
+
+#[test]
+fn candidates_fly_with_the_same_draws_whoever_flies_beside_them() {
+    let problem = problem(&[("controller = \"PID\"\n\n", "controller = \"PID\"\nruns = 5\n\n")]);
+    assert_eq!(problem.flights(), 5);
+    let points: Vec<Vec<f64>> = [0.5, 1.0, 2.0, 1.0].map(|kp| with_kp(&problem, kp)).to_vec();
+    let together = problem.scores(&points);
+    assert_eq!(together[1], together[3]);
+    for (point, score) in points.iter().zip(&together) {
+        assert_eq!(problem.scores(std::slice::from_ref(point))[0], *score);
+    }
+}
+
+#[test]
+fn the_worst_flight_costs_no_less_than_the_tail_and_the_tail_no_less_than_the_mean() {
+    let cost = |over: &str| {
+        let to = format!("controller = \"PID\"\nruns = 7\nover = \"{over}\"\n\n");
+        let problem = problem(&[("controller = \"PID\"\n\n", &to)]);
+        problem.scores(&[problem.space().start()])[0].cost
+    };
+    let (mean, tail, worst) = (cost("mean"), cost("tail\"\nshare = 0.3 # \""), cost("worst"));
+    assert!(mean < tail && tail < worst, "{mean} {tail} {worst}");
+}
+
+#[test]
+fn a_lost_flight_costs_more_than_a_broken_requirement_and_that_more_than_any_allowed_one() {
+    let limit = "\n[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 15.0\n\n[tuning]";
+    let problem = problem(&[("\n[tuning]", limit)]);
+    let kps = [1.0, 3.0, 10.0, 40.0];
+    let points: Vec<Vec<f64>> = kps.map(|kp| with_kp(&problem, kp)).to_vec();
+    let scores = problem.scores(&points);
+    assert!(scores[0].is_allowed() && scores[0].cost < FORBIDDEN, "{scores:?}");
+    assert!(!scores[1].is_allowed() && scores[1].values.len() == 2, "{scores:?}");
+    assert!(scores[3].values.is_empty(), "{scores:?}");
+    let costs: Vec<f64> = scores.iter().map(|score| score.cost).collect();
+    assert!(costs.is_sorted(), "{costs:?}");
+    assert!(
+        problem.reasons(&points[1])[0].contains("overshoot_pct"),
+        "{:?}",
+        problem.reasons(&points[1])
+    );
+    assert!(
+        problem.reasons(&points[3])[0].contains("diverged"),
+        "{:?}",
+        problem.reasons(&points[3])
+    );
+}
+
+#[test]
+fn a_search_spends_its_budget_and_no_more_and_keeps_its_best() {
+    let problem = problem(&[]);
+    for optimiser in Effort::optimisers() {
+        let effort = Effort {
+            optimiser: optimiser.to_owned(),
+            budget: 33,
+            seed: 4,
+            population: None,
+            anywhere: false,
+        };
+        let mut search = Search::begin(&problem, effort).expect("it begins");
+        while search.advance().is_none() {}
+        assert_eq!(search.spent(), 33, "{optimiser}");
+        let least = search.trials().iter().map(|trial| trial.score.cost).fold(f64::MAX, f64::min);
+        assert_eq!(search.best().score.cost, least, "{optimiser}");
+        assert!(search.trials().iter().all(|it| it.point.iter().all(|x| (0.0..=1.0).contains(x))));
+    }
+}
+
+#[test]
+fn no_entry_of_a_front_beats_another_and_the_front_beats_every_candidate() {
+    let problem = problem(&[]);
+    let effort = Effort {
+        optimiser: "nsga-ii".to_owned(),
+        budget: 120,
+        seed: 1,
+        population: Some(20),
+        anywhere: false,
+    };
+    let mut search = Search::begin(&problem, effort).expect("it begins");
+    while search.advance().is_none() {}
+    let front = search.front();
+    let objectives = |index: usize| &front[index].score.objectives;
+    for index in 1..front.len() {
+        assert!(objectives(index)[0] > objectives(index - 1)[0]);
+        assert!(objectives(index)[1] < objectives(index - 1)[1]);
+    }
+    for trial in search.trials().iter().filter(|trial| trial.score.is_allowed()) {
+        let covered = front.iter().any(|one| {
+            one.score.objectives.iter().zip(&trial.score.objectives).all(|(a, b)| a <= b)
+        });
+        assert!(covered, "{trial:?}");
+    }
+    assert!(search.front_volume().expect("a front") > 0.0);
+}
