@@ -13,6 +13,7 @@ pub(crate) mod explain;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
+pub(crate) mod learn;
 mod progress;
 pub(crate) mod reproduce;
 pub(crate) mod schema;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use fspid_formats::fcl::Dialect;
 use fspid_formats::{Problems, WriteOptions, fcl, fis, fll};
+use fspid_fuzzy::system::Parts;
 
 use super::load::{Format, LoadError, Options, load};
 use super::toml_file;
@@ -70,32 +71,45 @@ pub fn convert(
     path: &Path,
     target: Target,
 ) -> Result<Converted, ConvertError> {
-    let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
-    let format = Format::of(path).ok_or_else(unknown)?;
+    format_of(path)?;
     let loaded = load(name, options).map_err(ConvertError::Load)?;
+    let written = write_as(loaded.system.parts(), path, target)?;
+    Ok(Converted { assumed: loaded.notes, ..written })
+}
+
+/// A system in the format that the ending of `path` tells.
+///
+/// # Errors
+/// [`ConvertError`]; nothing is written in any case.
+pub fn write_as(parts: &Parts, path: &Path, target: Target) -> Result<Converted, ConvertError> {
+    let format = format_of(path)?;
     if let Some(dialect) = target.dialect
         && format != Format::Fcl
     {
         let problem = format!("--to {} goes with an .fcl file", dialect.name());
         return Err(ConvertError::Unwritable { problems: vec![problem] });
     }
-    let parts = loaded.system.parts();
     let options = WriteOptions { lossy: target.lossy };
     let written = match format {
-        Format::Toml => return Ok(Converted::whole(toml_file::write(parts), loaded.notes)),
+        Format::Toml => return Ok(Converted::whole(toml_file::write(parts))),
         Format::Fis => fis::write(parts, options),
         Format::Fll => fll::write(parts, options),
         Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
     };
     let writing = written.map_err(|problems| unwritable(path, &problems))?;
     let lost = writing.notes.iter().map(ToString::to_string).collect();
-    Ok(Converted { text: writing.text, assumed: loaded.notes, lost })
+    Ok(Converted { text: writing.text, assumed: Vec::new(), lost })
+}
+
+fn format_of(path: &Path) -> Result<Format, ConvertError> {
+    let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
+    Format::of(path).ok_or_else(unknown)
 }
 
 impl Converted {
     /// A file in which everything could be said.
-    fn whole(text: String, assumed: Vec<String>) -> Self {
-        Self { text, assumed, lost: Vec::new() }
+    fn whole(text: String) -> Self {
+        Self { text, assumed: Vec::new(), lost: Vec::new() }
     }
 }
 

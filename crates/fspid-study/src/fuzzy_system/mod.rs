@@ -15,11 +15,11 @@ mod toml_file;
 mod words;
 
 pub use fspid_formats::fcl::Dialect;
-pub use fspid_fuzzy::system::System;
+pub use fspid_fuzzy::system::{Parts, System};
 
 pub use answer::{Asked, ask};
 pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
-pub use convert::{ConvertError, Converted, Target, convert};
+pub use convert::{ConvertError, Converted, Target, convert, write_as};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
 pub use load::{Format, LoadError, Loaded, Options, is_system, load, read};
 pub use slice::{Question as SliceQuestion, Slice, slice};

@@ -28,6 +28,7 @@
 //!
 //! Not here: choosing how many sets and rules there are.
 
+mod answer;
 mod consequents;
 mod data;
 mod error;

@@ -1,0 +1,125 @@
+//! `fspid learn`: the numbers of a fuzzy system, from data.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, ValueEnum};
+
+use super::{Format, Loading, json_text};
+use crate::exit::{Failure, note, print};
+use fspid_study::fuzzy_system::{self, Parts, Target};
+use fspid_study::output;
+use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
+
+/// Learn a fuzzy system from data: what rules conclude by least squares, where their sets lie by gradient descent (ANFIS).
+///
+/// The system must be one of Takagi and Sugeno, of order 0 or 1; --conclude makes one of any other.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
+pub(crate) struct Arguments {
+    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    system: String,
+    #[command(flatten)]
+    loading: Loading,
+    /// A CSV file with a column for each input and each output, found by their names.
+    #[arg(long, value_name = "FILE.csv")]
+    data: Option<PathBuf>,
+    /// In place of data: a system whose answers are to be learned, named as SYSTEM is.
+    #[arg(long, value_name = "SYSTEM", requires = "points")]
+    teacher: Option<String>,
+    /// How many points the grid has along each input of the teacher, such as `15,15`.
+    #[arg(long, value_name = "N,N", value_delimiter = ',', requires = "teacher")]
+    points: Vec<usize>,
+    /// Give every rule a conclusion of its own in place of those of the file.
+    #[arg(long, value_enum, value_name = "WHAT")]
+    conclude: Option<Conclude>,
+    /// The new file: .toml (everything can be said), .fis, .fcl or .fll.
+    #[arg(long, value_name = "OUT")]
+    out: PathBuf,
+    /// Most epochs.
+    #[arg(long, default_value_t = Plan::default().epochs)]
+    epochs: usize,
+    /// Length of the first step of the sets, in spans of their inputs.
+    #[arg(long, default_value_t = Plan::default().step)]
+    step: f64,
+    /// Learn conclusions only; the sets stay where they are.
+    #[arg(long)]
+    sets_stay: bool,
+    /// Share of the rows that only judge; the best system by them is kept.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    validate: f64,
+    /// Seed of the choice of those rows.
+    #[arg(long, default_value_t = Plan::default().seed)]
+    seed: u64,
+    /// Ends after so many epochs without a better error of those rows.
+    #[arg(long, default_value_t = Plan::default().patience)]
+    patience: usize,
+    /// How the errors are told.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// What a rule concludes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Conclude {
+    /// A number (order 0).
+    Constant,
+    /// A linear function of the inputs (order 1).
+    Linear,
+}
+
+impl From<Conclude> for Order {
+    fn from(conclude: Conclude) -> Self {
+        match conclude {
+            Conclude::Constant => Self::Zero,
+            Conclude::Linear => Self::One,
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let system = arguments.loading.load(&arguments.system)?;
+    let parts = match arguments.conclude {
+        Some(conclude) => sugeno(system.parts(), conclude.into()),
+        None => system.parts().clone(),
+    };
+    let data = match (&arguments.data, &arguments.teacher) {
+        (Some(path), _) => Data::load(&parts, path),
+        (None, Some(teacher)) => {
+            let teacher = arguments.loading.load(teacher)?;
+            same_names(&parts, teacher.parts())?;
+            Data::taught(teacher.parts(), &arguments.points)
+        }
+        (None, None) => Ok(Data::new(parts.inputs.len(), parts.outputs.len())),
+    };
+    let plan = Plan {
+        epochs: arguments.epochs,
+        premises: !arguments.sets_stay,
+        step: arguments.step,
+        validation_share: arguments.validate,
+        seed: arguments.seed,
+        patience: arguments.patience,
+        ..Plan::default()
+    };
+    let learned = learn(&parts, &data.map_err(Failure::input)?, &plan).map_err(Failure::input)?;
+    let written = fuzzy_system::write_as(&learned.parts, &arguments.out, Target::default());
+    output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
+    note(format_args!("wrote {}", arguments.out.display()));
+    match arguments.format {
+        Format::Text => print(&learned.text()),
+        Format::Json => print(&json_text(&learned.json())),
+    }
+}
+
+/// Answers of a teacher are learned by position, so that its variables must be those of the system.
+fn same_names(parts: &Parts, teacher: &Parts) -> Result<(), Failure> {
+    let names = |parts: &Parts| {
+        let inputs = parts.inputs.iter().map(|input| input.name.as_str());
+        let outputs = parts.outputs.iter().map(|output| output.name.as_str());
+        inputs.chain(outputs).collect::<Vec<_>>().join(", ")
+    };
+    let (own, taught) = (names(parts), names(teacher));
+    if own == taught {
+        return Ok(());
+    }
+    Err(Failure::input(format!("the teacher has {taught}; the system has {own}")))
+}

@@ -1,0 +1,95 @@
+//! Learning a fuzzy system from data on the command line.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn fspid(arguments: &[&str], folder: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    command.args(arguments).current_dir(folder).output().expect("the program starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("UTF-8")
+}
+
+#[test]
+fn the_supervisor_of_the_paper_is_learned_as_numbers_and_answers_from_its_new_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let learn = |out: &str, more: &[&str]| {
+        let mut arguments = vec!["learn", "printed", "--range", "5", "--teacher", "printed"];
+        arguments.extend([
+            "--points",
+            "9,9",
+            "--conclude",
+            "constant",
+            "--sets-stay",
+            "--out",
+            out,
+        ]);
+        arguments.extend(more);
+        fspid(&arguments, folder.path())
+    };
+    let done = learn("numbers.toml", &["--format", "json"]);
+    assert_eq!(code(&done), 0, "{}", stderr(&done));
+    let answer: Value = serde_json::from_str(&stdout(&done)).expect("JSON");
+    assert_eq!(
+        (&answer["best_epoch"], answer["epochs"].as_array().map(Vec::len)),
+        (&1.into(), Some(1))
+    );
+    assert!(answer["epochs"][0]["training"].as_f64().is_some_and(|error| error < 0.15), "{answer}");
+    let asked = ["infer", "numbers.toml", "--input", "error=2", "--input", "change=-1"];
+    assert_eq!(code(&fspid(&asked, folder.path())), 0);
+    // The same bytes again, and in words.
+    let first = std::fs::read(folder.path().join("numbers.toml")).expect("written");
+    let again = learn("again.toml", &[]);
+    assert_eq!(std::fs::read(folder.path().join("again.toml")).expect("written"), first);
+    assert!(stdout(&again).starts_with("1 epoch(s); nothing is to move"), "{}", stdout(&again));
+}
+
+#[test]
+fn data_are_read_by_columns_and_bad_lines_are_told_before_anything_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let teach = ["learn", "printed", "--range", "5", "--teacher", "printed", "--points", "5,5"];
+    let start =
+        [&teach[..], &["--conclude", "linear", "--sets-stay", "--out", "start.toml"]].concat();
+    assert_eq!(code(&fspid(&start, folder.path())), 0);
+    let mut rows = "error,change,delta_kp,delta_ki,delta_kd\n".to_owned();
+    for k in 0..60 {
+        let (e, c) = (f64::from(k % 10) - 4.5, f64::from(k / 10) * 1.5 - 4.0);
+        rows.push_str(&format!("{e},{c},{},{},{}\n", e + c, e * c, 1.0 - e));
+    }
+    std::fs::write(path("rows.csv"), &rows).expect("written");
+    let learn = |file: &str, out: &str| {
+        let more = ["--data", file, "--epochs", "3", "--validate", "0.2", "--out", out];
+        fspid(&[&["learn", "start.toml"][..], &more].concat(), folder.path())
+    };
+    let done = learn("rows.csv", "learned.toml");
+    assert_eq!(code(&done), 0, "{}", stderr(&done));
+    assert!(stdout(&done).contains("validation"), "{}", stdout(&done));
+    std::fs::write(path("bad.csv"), rows.replace("-4.5,-4,", "-4.5,nan,")).expect("written");
+    let refused = learn("bad.csv", "never.toml");
+    assert_eq!(code(&refused), 2);
+    let told = "bad.csv:2: change is NaN; allowed is a finite number";
+    assert!(stderr(&refused).contains(told), "{}", stderr(&refused));
+    assert!(!path("never.toml").exists());
+    let mamdani = [&teach[..], &["--out", "never.toml"]].concat();
+    let refused = fspid(&mamdani, folder.path());
+    assert!(code(&refused) == 2 && stderr(&refused).contains("Takagi and Sugeno"));
+    let tip = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/systems/tip.toml");
+    std::fs::copy(tip, path("tip.toml")).expect("copied");
+    let more = ["--teacher", "tip.toml", "--points", "5,5", "--out", "never.toml"];
+    let refused = fspid(&[&["learn", "start.toml"][..], &more].concat(), folder.path());
+    let told = "the teacher has service, food, tip; the system has error, change, delta_kp";
+    assert!(code(&refused) == 2 && stderr(&refused).contains(told), "{}", stderr(&refused));
+}

@@ -1,0 +1,43 @@
+//! What was learned, in words and for programs.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::{Epoch, Learned};
+
+impl Learned {
+    /// The answer of `learn --format text`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let (done, best) = (self.history.len(), self.best());
+        let first = self.history.first().copied().unwrap_or(best);
+        let mut out = format!("{done} epoch(s); {}\n", self.stop);
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "best epoch  {}", self.best + 1);
+        let _ = writeln!(out, "training    {:.6e}, {:.6e} at first", best.training, first.training);
+        if let (Some(best), Some(first)) = (best.validation, first.validation) {
+            let _ = writeln!(out, "validation  {best:.6e}, {first:.6e} at first");
+        }
+        out.push_str("Errors are roots of the mean square over rows and outputs.\n");
+        out
+    }
+
+    /// The answer of `learn --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let epoch = |epoch: &Epoch| {
+            let mut value = json!({ "training": epoch.training });
+            if let Some(validation) = epoch.validation {
+                value["validation"] = json!(validation);
+            }
+            value["step"] = json!(epoch.step);
+            value
+        };
+        json!({
+            "stop": self.stop.to_string(),
+            "best_epoch": self.best + 1,
+            "epochs": self.history.iter().map(epoch).collect::<Vec<_>>(),
+        })
+    }
+}
