@@ -49,6 +49,34 @@ fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
 }
 
 #[test]
+fn a_supervisor_that_sees_the_rate_rests_where_one_that_sees_the_change_does() {
+    let plain = analysed(TUNED, &[]);
+    let sees = analysed(TUNED, &["controller.C.supervisor.sees=\"error-and-rate\""]);
+    assert_eq!(sees.loops[0].equilibrium, plain.loops[0].equilibrium);
+    assert_eq!(sees.loops[0].margins(), plain.loops[0].margins());
+}
+
+#[test]
+fn the_margins_at_rest_and_of_frozen_gains_are_those_of_the_rate_gain_that_has_followed() {
+    // The rules take 0.16666 off kd at rest; the rate gain follows with a factor of -3.
+    let followers = "controller.C.followers={rate_gain_per_kd = -3.0}";
+    let analysis = analysed(TUNED, &[followers]);
+    let rate_gain = format!("controller.C.rate_gain={:?}", {
+        let Equilibrium::AtRest(gains) = analysis.loops[0].equilibrium else { panic!("at rest") };
+        -3.0 * (gains.kd - 1.0)
+    });
+    let fixed = analysed(TUNED, &[&rate_gain]);
+    let (found, expected) = (analysis.loops[0].margins(), fixed.loops[0].margins());
+    assert_eq!(found.expect("stable"), expected.expect("stable"));
+    assert_ne!(found, analysed(TUNED, &[]).loops[0].margins());
+    let worst = |analysis: &fspid_study::analysis::Analysis| {
+        let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+        map.worst.margins.as_ref().map(|margins| margins.disk_margin).ok()
+    };
+    assert_ne!(worst(&analysis), worst(&fixed));
+}
+
+#[test]
 fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
     let analysis = analysed(TUNED, &[]);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");

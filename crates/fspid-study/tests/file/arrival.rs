@@ -1,8 +1,9 @@
 //! Every key of the file arrives where it belongs: the scenario built by hand is the one read.
 
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits, Gains,
+    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner,
+    SetPlaces, SetpointWeights, Shell, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
@@ -72,8 +73,14 @@ fn tuned() -> Controller {
         Supervisor::new(&table, 5.0, Defuzzifier::Endpoints(101), OutOfRange::Evaluate);
     let settings = TunerSettings {
         error_sign: ErrorSign::MeasurementMinusSetpoint,
+        sees: Sees::ErrorAndChange,
         change: Change::Delta,
         input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 20.0 / DEG },
+        input_sets: InputSets {
+            error: SetPlaces::new(0.2, 0.5).ok(),
+            change: SetPlaces::new(0.3, 0.7).ok(),
+        },
+        followers: Followers { setpoint_weight: 0.3, rate_gain: 2.0 },
         output_scale: Gains { kp: 0.01, ki: 0.001, kd: 0.002 },
         law: Law::Accumulating { leakage_per_s: 0.1 },
         gain_limits: Some(GainLimits {
@@ -91,6 +98,7 @@ fn tuned_isa(isa: Gains<f64>) -> Controller {
     let table = rule_table("printed").expect("carried");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
+        sees: Sees::ErrorAndModelError(ReferenceModel { bandwidth_rad_s: 1.5, damping: 0.8 }),
         input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 1.0 / DEG },
         ..TunerSettings::literal()
     };

@@ -9,7 +9,7 @@ use crate::{repository, text};
 const GOLDEN: &str = "crates/fspid-study/tests/scenarios/messages.txt";
 
 /// A mistake: what it is, what is replaced in the starter, and by what.
-const MISTAKES: [(&str, &str, &str); 31] = [
+const MISTAKES: [(&str, &str, &str); 36] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
     ("a key that does not exist", "name = \"my first flight\"", "name = \"x\"\ncolour = \"red\""),
@@ -65,6 +65,15 @@ const MISTAKES: [(&str, &str, &str); 31] = [
         "law = \"memoryless\"\nleakage_per_s = 1.0",
     ),
     ("an unknown rule table", "table = \"mirrored\"", "table = \"printd\""),
+    (
+        "a change that nobody sees",
+        "range = 5.0",
+        "range = 5.0\nsees = \"error-and-rate\"\nchange = \"delta\"",
+    ),
+    ("a model that is not there", "range = 5.0", "range = 5.0\nsees = \"error-and-model-error\""),
+    ("a model that nobody sees", "range = 5.0", "range = 5.0\nmodel = { bandwidth_rad_s = 1.0 }"),
+    ("sets out of their order", "range = 5.0", "range = 5.0\nerror_sets = [0.6, 0.3]"),
+    ("a set at the end of the range", "range = 5.0", "range = 5.0\nerror_sets = [0.3, 1.0]"),
     ("an unknown defuzzifier", "range = 5.0", "range = 5.0\ndefuzzifier = \"centroid\""),
     ("a rule file that is not there", "table = \"mirrored\"", "table = \"my-rules.toml\""),
     ("a table for a list of tables", "[setpoint]", "[disturbance]\nkind = \"step\"\n\n[setpoint]"),

@@ -260,7 +260,7 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
 /// What the supervisor sees beside the error; what would go unused is refused.
 fn sees(report: &mut Report, part: &Section) -> Option<Sees<f64>> {
     let (word, model) = (part.text("sees")?, part.section("model"));
-    if word != "error-and-change" && part.given("change") {
+    if word != "error-and-change" && part.text("change") == Some("delta") {
         let message = format!("the supervisor sees no change, but \"{word}\"");
         let allowed = "only with sees = \"error-and-change\"";
         report.value(part.at("change"), &part.path("change"), message, allowed);
