@@ -78,7 +78,7 @@ pub struct Trial {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Engine {
-    One(Snapshot),
+    One(Box<Snapshot>),
     Front(NsgaII),
 }
 
@@ -184,7 +184,7 @@ impl<'a> Search<'a> {
             effort: self.effort.clone(),
             generation: self.generation,
             engine: match &self.running {
-                Running::One(optimiser) => Engine::One(optimiser.snapshot()),
+                Running::One(optimiser) => Engine::One(Box::new(optimiser.snapshot())),
                 Running::Front(front) => Engine::Front(front.clone()),
             },
             trials: self.trials.clone(),

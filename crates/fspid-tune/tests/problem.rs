@@ -1,4 +1,5 @@
 //! What a candidate is worth, against what a single flight measures.
+#![allow(clippy::float_cmp, reason = "the same bits are asked for")]
 
 use fspid_study::file;
 use fspid_study::simulation::Simulation;
@@ -69,7 +70,7 @@ fn problem(changes: &[(&str, &str)]) -> Problem {
 /// A place in the unit cube where the proportional gain is `kp`.
 fn with_kp(problem: &Problem, kp: f64) -> Vec<f64> {
     let mut point = problem.space().start();
-    point[0] = (kp / 0.1).ln() / 400.0_f64.ln();
+    point[0] = libm::log(kp / 0.1) / libm::log(400.0);
     point
 }
 

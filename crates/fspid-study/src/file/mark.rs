@@ -17,6 +17,8 @@ const KEY: &str = "tune";
 const SCALES: [(Scale, &str); 2] = [(Scale::Linear, "linear"), (Scale::Logarithmic, "log")];
 const NUMBER_KEYS: [&str; 3] = [KEY, "scale", "start"];
 const GRID_KEYS: [&str; 6] = [KEY, "start", "reach", "symmetric", "at_rest", "monotone"];
+/// How many labels a cell may move, unless the mark says.
+const USUAL_REACH: u8 = 2;
 /// Top-level tables in which nothing can be free.
 pub(crate) const FIXED: [&str; 5] = ["requirement", "dispersion", "tuning", "contest", "set"];
 
@@ -42,7 +44,7 @@ pub(crate) fn schemas() -> serde_json::Value {
             "properties": {
                 KEY: { "const": "rules" },
                 "start": { "description": "Seven lines of seven labels.", "type": "string" },
-                "reach": { "description": "How many labels a cell may move.", "type": "integer", "minimum": 1, "maximum": 6, "default": 2 },
+                "reach": { "description": "How many labels a cell may move.", "type": "integer", "minimum": 1, "maximum": 6, "default": USUAL_REACH },
                 "symmetric": { "description": "A fall is answered as a rise.", "type": "boolean", "default": true },
                 "at_rest": { "description": "The label of no error and no change.", "type": "string", "enum": Label::ALL.map(Label::name) },
                 "monotone": { "description": "How labels run from the middle outwards.", "type": "string", "enum": orders, "default": "no" },
@@ -243,43 +245,18 @@ impl Fields<'_> {
     }
 
     fn grid(&mut self) -> Option<GridMark> {
-        if self.word(KEY, &[((), "rules")], ()).is_none() {
-            return None;
-        }
-        let start = match self.member("start").map(|item| &item.value) {
-            Some(Value::Text(text)) => Grid::parse(text),
-            _ => {
-                self.wrong(
-                    "start",
-                    "missing key",
-                    "seven lines of seven labels out of NB NM NS ZO PS PM PB",
-                );
-                return None;
-            }
+        self.word(KEY, &[((), "rules")], ())?;
+        let start = self.start_grid()?;
+        let reach = |value: &Value| match value {
+            Value::Integer(_, Some(reach @ 1..=6)) => Some(*reach as u8),
+            _ => None,
         };
-        let start = match start {
-            Ok(start) => start,
-            Err(error) => {
-                self.wrong("start", &error.to_string(), "");
-                return None;
-            }
+        let reach = self.of_kind("reach", reach, USUAL_REACH, "a whole number from 1 to 6")?;
+        let truth = |value: &Value| match value {
+            Value::Boolean(truth) => Some(*truth),
+            _ => None,
         };
-        let reach = match self.member("reach").map(|item| &item.value) {
-            None => 2,
-            Some(Value::Integer(_, Some(reach @ 1..=6))) => *reach as u8,
-            Some(_) => {
-                self.wrong("reach", "no number of labels", "a whole number from 1 to 6");
-                return None;
-            }
-        };
-        let symmetric = match self.member("symmetric").map(|item| &item.value) {
-            None => true,
-            Some(Value::Boolean(symmetric)) => *symmetric,
-            Some(_) => {
-                self.wrong("symmetric", "wrong type", "true or false");
-                return None;
-            }
-        };
+        let symmetric = self.of_kind("symmetric", truth, true, "true or false")?;
         let labels = Label::ALL.map(|label| (Some(label), label.name()));
         let at_rest = self.word("at_rest", &labels, None)?;
         let monotone = self.word("monotone", &Monotone::NAMES, Monotone::No)?;
@@ -290,6 +267,37 @@ impl Fields<'_> {
             return None;
         }
         Some(mark)
+    }
+
+    fn start_grid(&mut self) -> Option<Grid> {
+        const GRID: &str = "seven lines of seven labels out of NB NM NS ZO PS PM PB";
+        let Some(Value::Text(text)) = self.member("start").map(|item| &item.value) else {
+            self.wrong("start", "missing key", GRID);
+            return None;
+        };
+        let grid = Grid::parse(text);
+        if let Err(error) = &grid {
+            self.wrong("start", &error.to_string(), "");
+        }
+        grid.ok()
+    }
+
+    /// The value of a key as `read` takes it, or the default where the key is left out.
+    fn of_kind<T>(
+        &mut self,
+        key: &str,
+        read: impl Fn(&Value) -> Option<T>,
+        default: T,
+        allowed: &str,
+    ) -> Option<T> {
+        let Some(item) = self.member(key) else {
+            return Some(default);
+        };
+        let found = read(&item.value);
+        if found.is_none() {
+            self.wrong(key, "wrong value", allowed);
+        }
+        found
     }
 }
 

@@ -182,7 +182,8 @@ mod tests {
         ] {
             for seed in 0..20 {
                 let levels = levels(&mark(monotone, None).at(&units(25, seed)));
-                for line in 0..7 {
+                let lines: [usize; 7] = std::array::from_fn(|line| line);
+                for line in lines {
                     let at = |k: usize| {
                         sign * if along_rows { levels[line][k] } else { levels[k][line] }
                     };
