@@ -282,3 +282,15 @@ fn a_rule_gives_gains_and_a_start_for_the_search() {
     assert!(told.contains("allowed is ziegler-nichols, tyreus-luyben"), "{told}");
     assert!(done(&["tune", "pitch.toml", "--rule", "list"], folder).lines().count() == 9);
 }
+
+#[test]
+fn a_rule_does_not_write_gains_that_a_schedule_would_multiply_again() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = SCENARIO
+        .replace("[plant]\npreset = \"navion-paper\"", "[aircraft]\nname = \"navion\"\nairspeed_ft_s = 176.0\naltitude_ft = 0.0\nmodel = \"linear\"")
+        .replace("derivative_on = ", "schedule = { dynamic_pressure_pa = 1700.0 }\nderivative_on = ");
+    std::fs::write(folder.join("scheduled.toml"), text).expect("written");
+    let told = refused(&["tune", "scheduled.toml", "--rule", "simc"], folder);
+    assert!(told.contains("whose gains come from a schedule"), "{told}");
+}

@@ -34,6 +34,13 @@ impl Baseline {
         let template = source.template()?;
         let study = template.study();
         let controller = chosen(study, controller)?;
+        if study.derived_gains.iter().any(|derived| derived.controller == controller) {
+            return Err(TuneError::Value {
+                what: "the controller",
+                found: format!("\"{controller}\", whose gains come from a schedule or a regulator"),
+                allowed: "one whose gains stand in the scenario as they fly".to_owned(),
+            });
+        }
         let found = study.scenario.controllers.iter().find(|named| named.name == controller);
         let shell = found.map(|named| *shell_of(&named.controller));
         let options = Options { shell, ..*options };

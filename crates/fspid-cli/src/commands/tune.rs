@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let effort = effort(arguments, &problem);
     let tuned = local::in_threads(arguments.threads, || search(arguments, &problem, &effort));
-    let (tuned, best) = tuned.map_err(|error| Failure::input(error))?.map_err(failure)?;
+    let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
     let answer = match arguments.format {
         Format::Text => tuned.text(),
         Format::Json => json_text(&tuned.json()),
