@@ -12,19 +12,23 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod contest;
 pub mod design;
 mod error;
+mod flights;
 pub mod history;
 mod problem;
 pub mod rule;
 mod score;
 mod search;
+mod source;
 mod space;
 mod tuned;
 
 pub use error::TuneError;
-pub use problem::{Problem, Source};
+pub use problem::Problem;
 pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};
+pub use source::Source;
 pub use space::Space;
 pub use tuned::Tuned;

@@ -1,0 +1,209 @@
+//! Controllers against the one that all are compared with.
+
+use super::judged::{Contestant, Judged, Quantity};
+use super::signed_rank::SignedRank;
+use super::two_way::{TwoWay, holm, mean};
+
+/// Confidence of intervals, and of what is called significant for all comparisons together.
+pub(crate) const CONFIDENCE: f64 = 0.95;
+
+/// How a controller stands against the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// Less is lost, or the error is significantly smaller.
+    Better,
+    /// More is lost, or the error is significantly larger.
+    Worse,
+    /// The difference is not significant.
+    Open,
+}
+
+/// A mean ratio over cases and designs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// The geometric mean of the ratios of the cases that neither lost; none where there are no such cases.
+    pub mean: Option<f64>,
+    /// Its interval; none for fewer than three cases.
+    pub interval: Option<[f64; 2]>,
+    /// Cases that neither lost.
+    pub cases: usize,
+}
+
+/// A controller compared with the other in one quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Place of the controller.
+    pub contestant: usize,
+    /// Ratio of the means over all cases and designs; infinite where it lost a flight, none where both did.
+    pub ratio_of_means: Option<f64>,
+    /// The mean ratio, with an interval that holds together with those of the other controllers.
+    pub ratio: Ratio,
+    /// The same for each group of cases, with intervals each of its own.
+    pub groups: Vec<Ratio>,
+    /// Logarithm of the ratio of each case; infinite where one of them lost more of its flights.
+    pub(crate) cases: Vec<f64>,
+    /// What the cases alone say, in logarithms; the interval each of its own.
+    pub typical: Option<SignedRank>,
+    /// The larger of the p-values of both tests.
+    pub p: f64,
+    /// The same after Holm's correction for all controllers.
+    pub p_adjusted: f64,
+    /// How it stands.
+    pub standing: Standing,
+    /// Whether lost flights decided that.
+    pub by_flights: bool,
+}
+
+/// Compares everyone with the one; `None` where a value of the quantity is not above 0, so that it has no ratio.
+pub(crate) fn compared(judged: &Judged, quantity: Quantity) -> Option<Vec<Comparison>> {
+    let reference = judged.contestants.get(judged.against)?;
+    if !is_positive(judged, quantity) {
+        return None;
+    }
+    let others = judged.contestants.iter().enumerate().filter(|(at, _)| *at != judged.against);
+    let count = judged.contestants.len().saturating_sub(1).max(1);
+    // Each interval gives up its share of the doubt, so that all hold together (Bonferroni).
+    let together = 1.0 - (1.0 - CONFIDENCE) / count as f64;
+    let pair = Pair { judged, quantity, theirs: reference };
+    let mut all: Vec<Comparison> =
+        others.map(|(place, mine)| pair.comparison((place, mine), together)).collect();
+    let adjusted = holm(&all.iter().map(|it| it.p).collect::<Vec<_>>());
+    for (it, p) in all.iter_mut().zip(adjusted) {
+        it.p_adjusted = p;
+        let mine = judged.contestants.get(it.contestant)?;
+        (it.standing, it.by_flights) = pair.standing(mine, it);
+    }
+    Some(all)
+}
+
+fn is_positive(judged: &Judged, quantity: Quantity) -> bool {
+    let designs = judged.contestants.iter().flat_map(|it| &it.designs);
+    let mut values = designs.flat_map(|design| {
+        judged.all().into_iter().map(move |case| judged.value(design, case, quantity))
+    });
+    values.all(|value| value.is_some_and(|value| value > 0.0))
+}
+
+/// What comparisons have in common.
+struct Pair<'a> {
+    judged: &'a Judged,
+    quantity: Quantity,
+    theirs: &'a Contestant,
+}
+
+impl Pair<'_> {
+    fn comparison(&self, (place, mine): (usize, &Contestant), together: f64) -> Comparison {
+        let all = self.judged.all();
+        let cases: Vec<f64> = all.iter().map(|case| self.case(mine, *case)).collect();
+        let typical = SignedRank::of(&cases, CONFIDENCE);
+        let (over, ratio) = self.ratio(mine, &all, together);
+        let groups = self.judged.groups();
+        let groups = groups.iter().map(|(_, cases)| self.ratio(mine, cases, CONFIDENCE).1);
+        let p = match (over, typical) {
+            // Two tests that point in different directions have found nothing.
+            (Some(over), Some(typical)) if over.estimate * typical.estimate >= 0.0 => {
+                over.p().max(typical.p)
+            }
+            _ => 1.0,
+        };
+        Comparison {
+            contestant: place,
+            ratio_of_means: self.ratio_of_means(mine),
+            ratio,
+            groups: groups.collect(),
+            cases,
+            typical,
+            p,
+            p_adjusted: 1.0,
+            standing: Standing::Open,
+            by_flights: false,
+        }
+    }
+
+    /// Logarithm of the ratio on a case, averaged over designs.
+    fn case(&self, mine: &Contestant, case: usize) -> f64 {
+        let lost = |it: &Contestant| self.judged.count(it, &[case]).lost_share();
+        let (lost_mine, lost_theirs) = (lost(mine), lost(self.theirs));
+        if lost_mine > lost_theirs {
+            return f64::INFINITY;
+        }
+        if lost_mine < lost_theirs {
+            return f64::NEG_INFINITY;
+        }
+        if lost_mine > 0.0 {
+            // Both lose as many: nobody is better.
+            return 0.0;
+        }
+        let [mine, theirs] = [mine, self.theirs].map(|it| {
+            let logarithms = self.logarithms(it, &[case]);
+            mean(logarithms.iter().map(|row| row.first().copied().unwrap_or(f64::NAN)))
+        });
+        let difference = mine - theirs;
+        // A cost without a value on either side says nothing of the case.
+        if difference.is_nan() { 0.0 } else { difference }
+    }
+
+    /// Logarithms of the values, `[design][case]`.
+    fn logarithms(&self, of: &Contestant, cases: &[usize]) -> Vec<Vec<f64>> {
+        let value = |design, case| self.judged.value(design, case, self.quantity);
+        let row = |design| {
+            let values = cases.iter().map(|&case| value(design, case).map_or(f64::NAN, libm::log));
+            values.collect()
+        };
+        of.designs.iter().map(row).collect()
+    }
+
+    fn ratio(
+        &self,
+        mine: &Contestant,
+        cases: &[usize],
+        confidence: f64,
+    ) -> (Option<TwoWay>, Ratio) {
+        let kept = self.judged.kept([mine, self.theirs].into_iter(), cases);
+        let none = (None, Ratio { mean: None, interval: None, cases: kept.len() });
+        if kept.is_empty() {
+            return none;
+        }
+        let (a, b) = (self.logarithms(mine, &kept), self.logarithms(self.theirs, &kept));
+        let Some(over) = TwoWay::of(&a, &b) else {
+            return none;
+        };
+        let ratio = Ratio {
+            mean: Some(libm::exp(over.estimate)),
+            interval: over.interval(confidence).map(|ends| ends.map(libm::exp)),
+            cases: kept.len(),
+        };
+        (Some(over), ratio)
+    }
+
+    fn ratio_of_means(&self, mine: &Contestant) -> Option<f64> {
+        let all = self.judged.all();
+        let [mine, theirs] = [mine, self.theirs].map(|it| {
+            let means = it.designs.iter().map(|design| {
+                self.judged.mean(design, &all, self.quantity).unwrap_or(f64::INFINITY)
+            });
+            mean(means)
+        });
+        let ratio = mine / theirs;
+        (!ratio.is_nan()).then_some(ratio)
+    }
+
+    fn standing(&self, mine: &Contestant, found: &Comparison) -> (Standing, bool) {
+        let all = self.judged.all();
+        let lost = |it: &Contestant| self.judged.count(it, &all).lost_share();
+        let (lost_mine, lost_theirs) = (lost(mine), lost(self.theirs));
+        if lost_mine > lost_theirs {
+            return (Standing::Worse, true);
+        }
+        if lost_mine < lost_theirs {
+            return (Standing::Better, true);
+        }
+        let is_sure = found.p_adjusted <= 1.0 - CONFIDENCE;
+        let standing = match found.ratio.mean {
+            Some(ratio) if is_sure && ratio < 1.0 => Standing::Better,
+            Some(ratio) if is_sure && ratio > 1.0 => Standing::Worse,
+            _ => Standing::Open,
+        };
+        (standing, false)
+    }
+}

@@ -1,0 +1,262 @@
+//! Numbers and findings in words.
+
+use fspid_study::report::number::significant;
+use fspid_study::tuning::{Over, Tuning};
+
+use super::compare::{CONFIDENCE, Comparison, Standing};
+use super::outcome::{First, Outcome};
+use super::summary::Spread;
+
+/// What the tuning made small.
+pub(super) fn objectives(tuning: &Tuning) -> Vec<String> {
+    let one = |it: &fspid_study::tuning::Objective| {
+        let name = it.requirement.measure.name();
+        if it.weight == 1.0 { name.to_owned() } else { format!("{} {name}", it.weight) }
+    };
+    let mut all: Vec<String> = tuning.objectives.iter().map(one).collect();
+    match tuning.over {
+        Over::Mean => {}
+        Over::Worst => all.push("of the worst flight".to_owned()),
+        Over::Tail { share } => {
+            all.push(format!("over the worst {} % of the flights", 100.0 * share));
+        }
+    }
+    all
+}
+
+/// A number with four digits.
+pub(super) fn number(value: f64) -> String {
+    if value.is_infinite() {
+        return "lost".to_owned();
+    }
+    let text = significant(value, 4);
+    let is_plain = text.contains('.') && !text.contains('\u{d7}');
+    if is_plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Median and quartiles: "1.234 (1.2 to 1.3)".
+pub(super) fn spread(found: Option<Spread>, designs: usize) -> String {
+    let Some(found) = found else {
+        return "none".to_owned();
+    };
+    let median = number(found.median);
+    if designs < 2 || found.median.is_infinite() {
+        return median;
+    }
+    format!("{median} ({} to {})", number(found.lower), number(found.upper))
+}
+
+/// By how much a ratio is less or more than 1: "12 % less".
+pub(super) fn change(ratio: f64) -> String {
+    if ratio.is_infinite() {
+        return "more without bound".to_owned();
+    }
+    let percent = 100.0 * (ratio - 1.0);
+    let size = percent.abs();
+    let digits = if size >= 10.0 { 0 } else { 1 };
+    let text = format!("{size:.digits$}");
+    match text.trim_matches(['0', '.']).is_empty() {
+        true => "no difference".to_owned(),
+        false if size >= 1000.0 => format!("{} times as much", number(ratio)),
+        false => format!("{text} % {}", if percent < 0.0 { "less" } else { "more" }),
+    }
+}
+
+/// An interval of a ratio: "from 18 % less to 5.1 % less".
+pub(super) fn interval([lower, upper]: [f64; 2]) -> String {
+    format!("from {} to {}", change(lower), change(upper))
+}
+
+/// A p-value in words.
+pub(super) fn p_value(p: f64) -> String {
+    match p {
+        p if p < 1e-4 => "p < 0.0001".to_owned(),
+        p if p < 0.01 => format!("p = {p:.4}"),
+        p if p > 0.995 => "p = 1".to_owned(),
+        p => format!("p = {p:.2}"),
+    }
+}
+
+/// A count with its noun.
+pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
+}
+
+pub(super) fn per_cent() -> String {
+    format!("{} %", 100.0 * CONFIDENCE)
+}
+
+/// Words as a list: "one, two and three".
+pub(super) fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+pub(super) fn name(outcome: &Outcome, place: usize) -> &str {
+    outcome.judged.contestants.get(place).map_or("", |it| it.name.as_str())
+}
+
+/// A group's name for people.
+pub(super) fn group(name: &str) -> &str {
+    if name.is_empty() { "other cases" } else { name }
+}
+
+/// Who is first on all cases, in one sentence.
+pub(super) fn headline(outcome: &Outcome) -> String {
+    let against = outcome.judged.against;
+    let reference = name(outcome, against);
+    let First { ranking, .. } = outcome.first();
+    let Some(&first) = ranking.first() else {
+        return "Nobody flew.".to_owned();
+    };
+    if outcome.error.is_none() {
+        return "Errors are 0 somewhere, so that they cannot be compared as ratios.".to_owned();
+    }
+    if first != against {
+        let winner = name(outcome, first);
+        return match outcome.comparison(first) {
+            Some(it) if it.standing == Standing::Better => {
+                format!("{winner} wins: {}.", finding(outcome, it))
+            }
+            Some(it) => format!(
+                "Nobody wins: {winner} is first, and its difference from {reference} is not significant ({}).",
+                finding(outcome, it)
+            ),
+            None => format!("{winner} is first."),
+        };
+    }
+    let open: Vec<String> = ranking
+        .iter()
+        .filter(|place| **place != against && outcome.standing(**place) == Standing::Open)
+        .map(|place| name(outcome, *place).to_owned())
+        .collect();
+    let all_worse = format!("{reference} wins: all others are significantly worse or lose more flights.");
+    match open.is_empty() {
+        true => all_worse,
+        false => format!(
+            "{reference} is first, and its difference from {} is not significant.",
+            list(&open)
+        ),
+    }
+}
+
+/// What a comparison found: "12 % less error than PID (95 %: from 18 % less to 5.1 % less), p = 0.0004".
+pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
+    let reference = name(outcome, outcome.judged.against);
+    let mut words = Vec::new();
+    if found.by_flights {
+        words.push(lost_against(outcome, found.contestant));
+    }
+    match found.ratio.mean {
+        None => words.push("no case that both flew".to_owned()),
+        Some(ratio) => {
+            let change = match change(ratio).as_str() {
+                "no difference" => format!("the same IAE as {reference}"),
+                change => format!("{change} IAE than {reference}"),
+            };
+            let sure = found.ratio.interval.map_or(String::new(), |it| {
+                format!(" ({}: {})", per_cent(), interval(it))
+            });
+            let place = match found.ratio.cases == outcome.judged.cases.len() {
+                true => String::new(),
+                false => format!(" on the {} that neither lost", counted(found.ratio.cases, "case", "cases")),
+            };
+            words.push(format!("{change}{place}{sure}, {}", p_value(found.p_adjusted)));
+        }
+    }
+    if let Some(ratio) = outcome.activity_of(found.contestant).and_then(|it| it.ratio.mean) {
+        words.push(match change(ratio).as_str() {
+            "no difference" => "as much elevator travel".to_owned(),
+            change => format!("{change} elevator travel"),
+        });
+    }
+    words.join("; ")
+}
+
+/// How many flights a controller loses and how many the one compared with.
+fn lost_against(outcome: &Outcome, place: usize) -> String {
+    let lost = |place: usize| {
+        let count = outcome.summaries[place].whole.count;
+        format!("{} of {}", count.lost, count.of)
+    };
+    let against = outcome.judged.against;
+    format!(
+        "it loses {} flights, {} {}",
+        lost(place),
+        name(outcome, against),
+        lost(against)
+    )
+}
+
+/// A controller against the one compared with, in a sentence.
+pub(super) fn sentence(outcome: &Outcome, found: &Comparison) -> String {
+    let who = name(outcome, found.contestant);
+    let standing = match found.standing {
+        Standing::Better => "is better",
+        Standing::Worse => "is worse",
+        Standing::Open => "is not significantly different",
+    };
+    format!("{who} {standing}: {}.", finding(outcome, found))
+}
+
+/// Who is first in each group of cases, a sentence each.
+pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
+    let groups = outcome.judged.groups();
+    let sentence = |(place, (group_name, cases)): (usize, &(String, Vec<usize>))| {
+        let first = outcome.first_of_group(place);
+        let whose = first.ranking.iter().map(|&it| {
+            let change = match first.ratios[it] {
+                _ if it == outcome.judged.against => "compared with".to_owned(),
+                Some(ratio) => change(ratio),
+                None => "no case that both flew".to_owned(),
+            };
+            let lost = outcome.summaries[it].groups[place].count.lost;
+            let lost =
+                if lost > 0 { format!("; {} lost", counted(lost as usize, "flight", "flights")) } else { String::new() };
+            format!("{} ({change}{lost})", name(outcome, it))
+        });
+        format!(
+            "{} ({}): {}",
+            group(group_name),
+            counted(cases.len(), "case", "cases"),
+            whose.collect::<Vec<_>>().join(", ")
+        )
+    };
+    groups.iter().enumerate().map(sentence).collect()
+}
+
+/// What is to be known before the numbers are believed.
+pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
+    let (judged, setting) = (&outcome.judged, &outcome.setting);
+    let mut notes = Vec::new();
+    let others = judged.contestants.len().saturating_sub(1);
+    // The smallest p-value of n signs is 2^(1-n).
+    let least = libm::exp2(1.0 - judged.cases.len() as f64) * others as f64;
+    if least > 1.0 - CONFIDENCE {
+        notes.push(format!(
+            "{} are too few for {}: no difference could be significant.",
+            counted(judged.cases.len(), "case", "cases"),
+            counted(others, "comparison", "comparisons")
+        ));
+    }
+    let any_tuned = judged.contestants.iter().any(|it| it.is_tuned);
+    if any_tuned && setting.efforts.len() < 2 {
+        notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
+    }
+    for contestant in &judged.contestants {
+        let found: Vec<_> = contestant.designs.iter().filter_map(|it| it.found.as_ref()).collect();
+        let bad = found.iter().filter(|it| it.cost.is_none()).count();
+        if bad > 0 {
+            notes.push(format!(
+                "{}: {} of {} tunings found no candidate that came back from every training flight and met every requirement; the one that broke them least was judged.",
+                contestant.name,
+                bad,
+                found.len()
+            ));
+        }
+    }
+    notes
+}
