@@ -38,8 +38,7 @@ impl Problem {
             return Err(TuneError::NothingFree { path: path(), controller });
         }
         template.only(&controller)?.check_marks()?;
-        let dispersed =
-            Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
+        let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
         let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
         let digest = digest(&template, &controller, &cases);
         let measured = tuning.objectives.iter().map(|it| it.requirement.clone()).collect();

@@ -143,9 +143,10 @@ fn entrant(
         false => Some(Problem::new(source, Some(name))?),
     };
     let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
-    let flown = cases.iter().zip(&rules.cases).map(|(template, case)| {
-        flown_case(template, (&case.name, case.weight), name, dispersed)
-    });
+    let flown = cases
+        .iter()
+        .zip(&rules.cases)
+        .map(|(template, case)| flown_case(template, (&case.name, case.weight), name, dispersed));
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
     let measured = objectives.map(|it| it.requirement.clone()).collect();

@@ -21,6 +21,8 @@ mod compare;
 mod flight;
 mod json;
 mod judged;
+#[cfg(test)]
+mod oracle;
 mod outcome;
 mod page;
 mod signed_rank;

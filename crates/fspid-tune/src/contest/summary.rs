@@ -70,9 +70,8 @@ impl Summary {
     pub(crate) fn of(judged: &Judged, contestant: &Contestant) -> Self {
         let part = |cases: &[usize]| part(judged, contestant, cases);
         let whole = part(&judged.all());
-        let interval = |count: u64| {
-            clopper_pearson(count, whole.count.of, CONFIDENCE).unwrap_or([0.0, 1.0])
-        };
+        let interval =
+            |count: u64| clopper_pearson(count, whole.count.of, CONFIDENCE).unwrap_or([0.0, 1.0]);
         Self {
             lost: interval(whole.count.lost),
             failed: interval(whole.count.failed),

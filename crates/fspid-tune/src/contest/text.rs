@@ -1,12 +1,15 @@
 //! The outcome for people.
 
-use super::compare::Standing;
+use super::compare::{Comparison, Standing};
 use super::judged::Quantity;
 use super::outcome::Outcome;
-use super::words::{by_group, cautions, change, counted, headline, name, number, p_value, sentence, spread};
+use super::words::{
+    by_group, cautions, counted, cut, headline, name, number, p_value, sentence, signed, spread,
+};
 
 pub(super) fn text(outcome: &Outcome) -> String {
-    let mut out = format!("{}\n\n", headline(outcome));
+    let head = headline(outcome);
+    let mut out = format!("{}: {}.\n\n", head.word, head.why);
     for found in outcome.error.iter().flatten() {
         out.push_str(&format!("{}\n", sentence(outcome, found)));
     }
@@ -28,55 +31,86 @@ pub(super) fn held(outcome: &Outcome) -> String {
     let mut text = match setting.efforts.first().filter(|_| tuned > 0) {
         None => "Nobody was tuned; all fly as they are written".to_owned(),
         Some(effort) => format!(
-            "{} tuned alike by {}, {} candidates, {}; others as they are written",
+            "{} tuned alike by {}, {} candidates, {}{}",
             counted(tuned, "controller", "controllers"),
             effort.optimiser,
             effort.budget,
             counted(setting.efforts.len(), "seed", "seeds"),
+            match judged.contestants.len() - tuned {
+                0 => String::new(),
+                1 => "; one as it is written".to_owned(),
+                others => format!("; {others} as they are written"),
+            },
         ),
     };
     text.push_str(&format!("; judged on {cases} that nobody was tuned on"));
     if setting.runs > 0 {
-        text.push_str(&format!(" with {} of the dispersions each", counted(setting.runs as usize, "draw", "draws")));
+        text.push_str(&format!(
+            " with {} of the dispersions each",
+            counted(setting.runs as usize, "draw", "draws")
+        ));
     }
     text.push('.');
     text
 }
 
 fn table(outcome: &Outcome, out: &mut String) {
-    let width = outcome.judged.contestants.iter().map(|it| it.name.chars().count()).max();
-    let width = width.unwrap_or(0).clamp(10, 40);
-    out.push_str(&format!(
-        "  {:<width$}  {:>26}  {:>14}  {:>26}  {:>12}  {:>12}  {:<12}\n",
-        "controller", "IAE [deg s]", "to the other", "elevator travel [deg]", "lost", "failed", "standing"
-    ));
+    let head = [
+        "controller",
+        "IAE [deg s]",
+        "difference",
+        "elevator travel [deg]",
+        "difference",
+        "lost",
+        "failed",
+        "standing",
+    ];
+    let mut rows = vec![head.map(str::to_owned)];
     for place in outcome.first().ranking {
         let (it, summary) = (&outcome.judged.contestants[place], &outcome.summaries[place]);
-        let designs = it.designs.len();
-        let of = |quantity| spread(summary.whole.spread(quantity), designs);
+        let of = |quantity| spread(summary.whole.spread(quantity), it.designs.len());
         let count = summary.whole.count;
-        let (change, standing) = match outcome.comparison(place) {
-            None => ("\u{2013}".to_owned(), "compared with".to_owned()),
-            Some(found) => {
-                let word = match found.standing {
-                    Standing::Better => "better",
-                    Standing::Worse => "worse",
-                    Standing::Open => "not significant",
-                };
-                let ratio = found.ratio.mean.map_or("none".to_owned(), change);
-                (ratio, format!("{word}, {}", p_value(found.p_adjusted)))
-            }
+        let difference = |found: Option<&Comparison>| {
+            found.and_then(|it| it.ratio.mean).map_or("\u{2013}".to_owned(), signed)
         };
-        let name: String = it.name.chars().take(width).collect();
-        out.push_str(&format!(
-            "  {name:<width$}  {:>26}  {change:>14}  {:>26}  {:>12}  {:>12}  {standing}\n",
+        rows.push([
+            cut(&it.name, 40),
             of(Quantity::ERROR),
+            difference(outcome.comparison(place)),
             of(Quantity::ACTIVITY),
+            difference(outcome.activity_of(place)),
             format!("{} of {}", count.lost, count.of),
             format!("{} of {}", count.failed, count.of),
-        ));
+            standing(outcome, place),
+        ]);
     }
-    out.push_str("  Median over the seeds (quartiles) of the mean over the cases; a lost flight makes its mean \"lost\".\n");
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: Vec<usize> = (0..head.len()).map(|column| width(column).unwrap_or(0)).collect();
+    for row in &rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(column, (text, width))| {
+            let is_word = column == 0 || column + 1 == head.len();
+            if is_word { format!("{text:<width$}") } else { format!("{text:>width$}") }
+        });
+        out.push_str(&format!("  {}\n", cells.collect::<Vec<_>>().join("  ").trim_end()));
+    }
+    out.push_str(
+        "  Median over the seeds (quartiles) of the mean over the cases; with a lost flight it is \"lost\".\n",
+    );
+}
+
+fn standing(outcome: &Outcome, place: usize) -> String {
+    let Some(found) = outcome.comparison(place) else {
+        return "compared with".to_owned();
+    };
+    let word = match found.standing {
+        Standing::Better => "better",
+        Standing::Worse => "worse",
+        Standing::Open => "not significant",
+    };
+    match found.by_flights {
+        true => format!("{word} by lost flights"),
+        false => format!("{word}, {}", p_value(found.p_adjusted)),
+    }
 }
 
 fn mirrors(outcome: &Outcome, out: &mut String) {
@@ -92,19 +126,16 @@ fn mirrors(outcome: &Outcome, out: &mut String) {
 }
 
 /// How alike a controller flies both directions.
-pub(super) fn mirror(
-    outcome: &Outcome,
-    place: usize,
-    summary: &super::Summary,
-) -> Option<String> {
+pub(super) fn mirror(outcome: &Outcome, place: usize, summary: &super::Summary) -> Option<String> {
     let found = summary.mirror?;
     let case = &outcome.judged.cases[found.case].name;
     let error = match found.error.is_infinite() {
         true => format!("lost in one direction and not in the other (\"{case}\")"),
         false => format!("{} % of the IAE (\"{case}\")", number(100.0 * found.error)),
     };
-    let overshoot = found.overshoot_pct.filter(|it| it.is_finite()).map_or(String::new(), |it| {
-        format!(", {} points of overshoot", number(it))
-    });
+    let overshoot = found
+        .overshoot_pct
+        .filter(|it| it.is_finite())
+        .map_or(String::new(), |it| format!(", {} points of overshoot", number(it)));
     Some(format!("{}: {error}{overshoot}", name(outcome, place)))
 }

@@ -109,10 +109,7 @@ impl Task<'_> {
     ///
     /// # Errors
     /// A start without a cost, or files that cannot be written.
-    pub(crate) fn done(
-        &self,
-        tell: &mut dyn FnMut(&Progress) -> Then,
-    ) -> Result<Found, TuneError> {
+    pub(crate) fn done(&self, tell: &mut dyn FnMut(&Progress) -> Then) -> Result<Found, TuneError> {
         if let Some(found) = self.kept() {
             return match tell(&self.progress(found.candidates, true)) {
                 Then::Stop => Err(TuneError::Stopped),

@@ -1,10 +1,10 @@
 //! Numbers and findings in words.
 
-use fspid_study::report::number::significant;
+use fspid_study::report::number::{fixed, significant};
 use fspid_study::tuning::{Over, Tuning};
 
 use super::compare::{CONFIDENCE, Comparison, Standing};
-use super::outcome::{First, Outcome};
+use super::outcome::Outcome;
 use super::summary::Spread;
 
 /// What the tuning made small.
@@ -62,9 +62,33 @@ pub(super) fn change(ratio: f64) -> String {
     }
 }
 
-/// An interval of a ratio: "from 18 % less to 5.1 % less".
+/// An interval of a ratio: "5.1 to 18 % less", "from 3.0 % less to 4.0 % more".
 pub(super) fn interval([lower, upper]: [f64; 2]) -> String {
-    format!("from {} to {}", change(lower), change(upper))
+    let size = |ratio: f64| change(ratio).split(" % ").next().unwrap_or_default().to_owned();
+    let is_plain = |ratio: f64| change(ratio).contains(" % ");
+    match (is_plain(lower) && is_plain(upper), lower < 1.0, upper < 1.0) {
+        (true, false, false) => format!("{} to {} % more", size(lower), size(upper)),
+        (true, true, true) => format!("{} to {} % less", size(upper), size(lower)),
+        _ => format!("from {} to {}", change(lower), change(upper)),
+    }
+}
+
+/// The same for tables: "+34 %", "\u{2212}5.1 %".
+pub(super) fn signed(ratio: f64) -> String {
+    if ratio.is_infinite() {
+        return "unbounded".to_owned();
+    }
+    let percent = 100.0 * (ratio - 1.0);
+    let digits = if percent.abs() >= 10.0 { 0 } else { 1 };
+    let text = fixed(percent, digits);
+    let is_positive = percent > 0.0 && text.contains(|c: char| ('1'..='9').contains(&c));
+    format!("{}{text} %", if is_positive { "+" } else { "" })
+}
+
+/// An interval for tables: "+24 % to +44 %".
+pub(super) fn signed_interval([lower, upper]: [f64; 2]) -> String {
+    let below = if lower > 0.0 { signed(lower) } else { "unbounded".to_owned() };
+    format!("{below} to {}", signed(upper))
 }
 
 /// A p-value in words.
@@ -73,6 +97,7 @@ pub(super) fn p_value(p: f64) -> String {
         p if p < 1e-4 => "p < 0.0001".to_owned(),
         p if p < 0.01 => format!("p = {p:.4}"),
         p if p > 0.995 => "p = 1".to_owned(),
+        p if p < 0.1 => format!("p = {p:.3}"),
         p => format!("p = {p:.2}"),
     }
 }
@@ -104,43 +129,49 @@ pub(super) fn group(name: &str) -> &str {
     if name.is_empty() { "other cases" } else { name }
 }
 
-/// Who is first on all cases, in one sentence.
-pub(super) fn headline(outcome: &Outcome) -> String {
+/// Who is first on all cases, and what that rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Headline {
+    /// Whether lost flights or a significant difference decide it.
+    pub(super) is_decided: bool,
+    /// "PID wins", "PID is first, and nobody wins".
+    pub(super) word: String,
+    /// Why, without a full stop.
+    pub(super) why: String,
+}
+
+pub(super) fn headline(outcome: &Outcome) -> Headline {
     let against = outcome.judged.against;
-    let reference = name(outcome, against);
-    let First { ranking, .. } = outcome.first();
-    let Some(&first) = ranking.first() else {
-        return "Nobody flew.".to_owned();
-    };
-    if outcome.error.is_none() {
-        return "Errors are 0 somewhere, so that they cannot be compared as ratios.".to_owned();
-    }
-    if first != against {
-        let winner = name(outcome, first);
-        return match outcome.comparison(first) {
-            Some(it) if it.standing == Standing::Better => {
-                format!("{winner} wins: {}.", finding(outcome, it))
-            }
-            Some(it) => format!(
-                "Nobody wins: {winner} is first, and its difference from {reference} is not significant ({}).",
-                finding(outcome, it)
-            ),
-            None => format!("{winner} is first."),
-        };
-    }
+    let reference = cut(name(outcome, against), 60);
+    let ranking = outcome.first().ranking;
+    let first = ranking.first().copied().unwrap_or(against);
+    let winner = cut(name(outcome, first), 60);
     let open: Vec<String> = ranking
         .iter()
-        .filter(|place| **place != against && outcome.standing(**place) == Standing::Open)
-        .map(|place| name(outcome, *place).to_owned())
+        .filter(|place| **place != against && outcome.standing(**place) != Standing::Worse)
+        .map(|place| cut(name(outcome, *place), 60))
         .collect();
-    let all_worse = format!("{reference} wins: all others are significantly worse or lose more flights.");
-    match open.is_empty() {
-        true => all_worse,
-        false => format!(
-            "{reference} is first, and its difference from {} is not significant.",
-            list(&open)
+    let (is_decided, why) = match outcome.comparison(first) {
+        _ if outcome.error.is_none() => {
+            (false, "an error is 0 somewhere, so that errors have no ratios".to_owned())
+        }
+        Some(found) => (found.standing == Standing::Better, finding(outcome, found)),
+        None if open.is_empty() => (
+            true,
+            "every other controller has a significantly larger error or loses more flights"
+                .to_owned(),
         ),
-    }
+        None => (false, format!("its difference from {} is not significant", list(&open))),
+    };
+    let word = match is_decided {
+        true => format!("{winner} wins"),
+        false => format!("{winner} is first, and nobody wins"),
+    };
+    let why = match is_decided || first == against {
+        true => why,
+        false => format!("not significantly different from {reference}: {why}"),
+    };
+    Headline { is_decided, word, why }
 }
 
 /// What a comparison found: "12 % less error than PID (95 %: from 18 % less to 5.1 % less), p = 0.0004".
@@ -157,12 +188,16 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
                 "no difference" => format!("the same IAE as {reference}"),
                 change => format!("{change} IAE than {reference}"),
             };
-            let sure = found.ratio.interval.map_or(String::new(), |it| {
-                format!(" ({}: {})", per_cent(), interval(it))
-            });
+            let sure = found
+                .ratio
+                .interval
+                .map_or(String::new(), |it| format!(" ({}: {})", per_cent(), interval(it)));
             let place = match found.ratio.cases == outcome.judged.cases.len() {
                 true => String::new(),
-                false => format!(" on the {} that neither lost", counted(found.ratio.cases, "case", "cases")),
+                false => format!(
+                    " on the {} that neither lost",
+                    counted(found.ratio.cases, "case", "cases")
+                ),
             };
             words.push(format!("{change}{place}{sure}, {}", p_value(found.p_adjusted)));
         }
@@ -183,12 +218,7 @@ fn lost_against(outcome: &Outcome, place: usize) -> String {
         format!("{} of {}", count.lost, count.of)
     };
     let against = outcome.judged.against;
-    format!(
-        "it loses {} flights, {} {}",
-        lost(place),
-        name(outcome, against),
-        lost(against)
-    )
+    format!("it loses {} flights, {} {}", lost(place), name(outcome, against), lost(against))
 }
 
 /// A controller against the one compared with, in a sentence.
@@ -214,8 +244,11 @@ pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
                 None => "no case that both flew".to_owned(),
             };
             let lost = outcome.summaries[it].groups[place].count.lost;
-            let lost =
-                if lost > 0 { format!("; {} lost", counted(lost as usize, "flight", "flights")) } else { String::new() };
+            let lost = if lost > 0 {
+                format!("; {} lost", counted(lost as usize, "flight", "flights"))
+            } else {
+                String::new()
+            };
             format!("{} ({change}{lost})", name(outcome, it))
         });
         format!(
@@ -259,4 +292,13 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
         }
     }
     notes
+}
+
+/// At most so many characters, with an ellipsis where some are left out.
+pub(super) fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{}\u{2026}", kept.trim_end())
 }
