@@ -1,7 +1,7 @@
 //! Points of a space flown on cases: what tuning and contest have in common.
 
 use fspid_campaign::Draws;
-use fspid_campaign::engine::{self, FlightResult, Memory};
+use fspid_campaign::engine::{self, FlightResult, Memory, Stability};
 use fspid_campaign::sample::Sampling;
 use fspid_study::dispersion::Drawn;
 use fspid_study::file::{Study, Template};
@@ -52,13 +52,19 @@ pub(crate) struct Flights {
     cases: Vec<FlownCase>,
     /// Judged with the scenario's own, after them.
     measured: Vec<Requirement>,
+    stability: Stability,
     at_once: usize,
 }
 
 impl Flights {
     pub(crate) fn new(space: Space, cases: Vec<FlownCase>, measured: Vec<Requirement>) -> Self {
         let at_once = cases.first().map_or(1, |case| engine::at_once(case.template.study()));
-        Self { space, cases, measured, at_once }
+        Self { space, cases, measured, stability: Stability::Analysed, at_once }
+    }
+
+    /// The same with unstable loops measured as they fly.
+    pub(crate) fn as_flown(self) -> Self {
+        Self { stability: Stability::AsFlown, ..self }
     }
 
     pub(crate) fn space(&self) -> &Space {
@@ -94,7 +100,7 @@ impl Flights {
         let groups = jobs.par_chunks(self.at_once.max(1));
         let fly = |memory: &mut Memory, group: &[(&Vec<f64>, &FlownCase, usize)]| {
             let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
-            fly(memory, studies.collect(), read)
+            fly(memory, (studies.collect(), self.stability), read)
         };
         let flown: Vec<Vec<T>> = groups.map_init(Memory::default, fly).collect();
         let mut of_point = vec![Vec::with_capacity(self.count()); points.len()];
@@ -124,7 +130,7 @@ impl Flights {
 
 fn fly<T>(
     memory: &mut Memory,
-    studies: Vec<Result<Study, String>>,
+    (studies, stability): (Vec<Result<Study, String>>, Stability),
     read: &impl Fn(Result<&FlightResult, String>, f64) -> T,
 ) -> Vec<T> {
     let mut answers = Vec::with_capacity(studies.len());
@@ -139,7 +145,7 @@ fn fly<T>(
         }
     }
     let nobody = || "nobody flies".to_owned();
-    let flown = engine::fly_with(memory, &sound).into_iter().zip(&sound);
+    let flown = engine::fly_judging(memory, &sound, stability).into_iter().zip(&sound);
     let mut flown = flown.map(|(flights, study)| {
         let duration_s = study.scenario.timing.end_s();
         match &flights {

@@ -255,15 +255,32 @@ fn a_controller_that_is_better_everywhere_wins_significantly() {
     assert!(outcome.text().starts_with("good wins:"), "{}", outcome.text());
 }
 
+/// A case whose dead time a brisk loop does not survive, and whose elevator is large and fast enough to show it.
+fn late(name: &str, samples: u32) -> String {
+    format!(
+        r#"
+[[contest.case]]
+name = "{name}"
+group = "plants"
+set = [
+    "actuator.delay_samples={samples}",
+    "actuator.position_limit_deg=85.0",
+    "actuator.rate_limit_deg_s=1000.0",
+    "loop.duration_s=40.0",
+]
+"#
+    )
+}
+
 /// The brisk one has the smaller error wherever it comes back, and does not come back from one case.
 #[test]
 fn a_lost_flight_makes_its_controller_lose() {
-    let lost = "\n[[contest.case]]\nname = \"late\"\ngroup = \"plants\"\nset = [\"actuator.delay_samples=40\"]\n";
+    let lost = late("late", 46);
     let text = format!(
         "{LOOP}{}{}{}",
         pid("calm", "kp = 0.2\nki = 0.1\nkd = 0.05"),
         pid("brisk", "kp = 0.8\nki = 0.4\nkd = 0.16"),
-        cases(lost)
+        cases(&lost)
     );
     let outcome = place(&text).held();
     let [calm, brisk] = [0, 1].map(|place| outcome.summaries[place].whole.count);
@@ -272,16 +289,56 @@ fn a_lost_flight_makes_its_controller_lose() {
     assert!(found.ratio.mean.expect("cases that both flew") < 0.9);
     assert_eq!((found.ratio.cases, found.ratio_of_means), (8, Some(f64::INFINITY)));
     assert_eq!((found.standing, found.by_flights), (Standing::Worse, true));
+    assert!(!found.is_sure, "one case of nine");
     assert_eq!(found.typical.expect("ranks").upper, f64::INFINITY);
     let mean = outcome.summaries[1].whole.spread(Quantity::ERROR).expect("a mean");
     assert_eq!(mean.median, f64::INFINITY);
     assert_eq!(outcome.first().ranking, [0, 1]);
     let told = outcome.text();
-    assert!(told.starts_with("calm wins:"), "{told}");
-    assert!(told.contains("it loses 1 of 9 flights"), "{told}");
+    assert!(told.starts_with("calm is first, and nobody wins:"), "{told}");
+    let sentence = "brisk is behind by lost flights: it loses 1 of 9 flights, calm 0 of 9; they differ in 1 case";
+    assert!(told.contains(sentence), "{told}");
     let json = outcome.json();
     assert!(json["controllers"][1]["measures"]["iae_deg_s"]["median"].is_null());
-    assert_eq!(json["controllers"][1]["compared"]["iae_deg_s"]["standing"], "worse");
+    assert_eq!(json["controllers"][1]["compared"]["iae_deg_s"]["standing"], "behind");
+}
+
+#[test]
+fn flights_that_are_lost_in_many_cases_are_significantly_worse() {
+    let text = format!(
+        "{LOOP}{}{}{}",
+        pid("brisk", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+        pid("calm", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        cases(&(42..48).map(|it| late(&it.to_string(), it)).collect::<String>())
+    );
+    let outcome = place(&text).held();
+    let found = outcome.comparison(1).expect("a comparison");
+    assert_eq!((found.standing, found.by_flights, found.lost.cases), (Standing::Better, true, 6));
+    // Six cases of one sign: 2 in 64.
+    assert_eq!((found.lost.p, found.is_sure), (0.03125, true));
+    assert!(
+        outcome.text().starts_with("calm wins: it loses 0 of 14 flights"),
+        "{}",
+        outcome.text()
+    );
+}
+
+/// The analysis knows of loops with fixed gains and without limits alone; it must not count against them.
+#[test]
+fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew() {
+    let oscillating =
+        "\n[[contest.case]]\nname = \"late\"\nset = [\"actuator.delay_samples=40\"]\n";
+    let text = format!(
+        "{LOOP}{}{}{}",
+        pid("calm", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("brisk", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+        cases(oscillating)
+    );
+    let outcome = place(&text).held();
+    let count = outcome.summaries[1].whole.count;
+    assert_eq!((count.lost, count.unstable), (0, 1));
+    let late = outcome.summaries[1].cases[8].spread(Quantity::ERROR).expect("an error");
+    assert!(late.median.is_finite());
 }
 
 #[test]

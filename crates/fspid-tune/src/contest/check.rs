@@ -150,6 +150,6 @@ fn entrant(
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
     let measured = objectives.map(|it| it.requirement.clone()).collect();
-    let flights = Flights::new(Space::new(marks), flown, measured);
+    let flights = Flights::new(Space::new(marks), flown, measured).as_flown();
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -10,9 +10,9 @@ pub(crate) const CONFIDENCE: f64 = 0.95;
 /// How a controller stands against the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// Less is lost, or the error is significantly smaller.
+    /// It loses a smaller share of its flights; or as many, and its error is significantly smaller.
     Better,
-    /// More is lost, or the error is significantly larger.
+    /// It loses a larger share of its flights; or as many, and its error is significantly larger.
     Worse,
     /// The difference is not significant.
     Open,
@@ -48,10 +48,25 @@ pub struct Comparison {
     pub p: f64,
     /// The same after Holm's correction for all controllers.
     pub p_adjusted: f64,
+    /// Lost flights of both.
+    pub lost: Lost,
     /// How it stands.
     pub standing: Standing,
     /// Whether lost flights decided that.
     pub by_flights: bool,
+    /// Whether that is significant.
+    pub is_sure: bool,
+}
+
+/// Whether one of two controllers loses more flights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lost {
+    /// Cases of which one loses a larger share than the other.
+    pub cases: usize,
+    /// P-value of "no controller loses more", by the signed ranks of the cases.
+    pub p: f64,
+    /// The same after Holm's correction for all controllers.
+    pub p_adjusted: f64,
 }
 
 /// Compares everyone with the one; `None` where a value of the quantity is not above 0, so that it has no ratio.
@@ -68,10 +83,11 @@ pub(crate) fn compared(judged: &Judged, quantity: Quantity) -> Option<Vec<Compar
     let mut all: Vec<Comparison> =
         others.map(|(place, mine)| pair.comparison((place, mine), together)).collect();
     let adjusted = holm(&all.iter().map(|it| it.p).collect::<Vec<_>>());
-    for (it, p) in all.iter_mut().zip(adjusted) {
-        it.p_adjusted = p;
+    let adjusted_lost = holm(&all.iter().map(|it| it.lost.p).collect::<Vec<_>>());
+    for (it, (p, p_lost)) in all.iter_mut().zip(adjusted.into_iter().zip(adjusted_lost)) {
+        (it.p_adjusted, it.lost.p_adjusted) = (p, p_lost);
         let mine = judged.contestants.get(it.contestant)?;
-        (it.standing, it.by_flights) = pair.standing(mine, it);
+        pair.stand(mine, it);
     }
     Some(all)
 }
@@ -115,8 +131,21 @@ impl Pair<'_> {
             typical,
             p,
             p_adjusted: 1.0,
+            lost: self.lost(mine),
             standing: Standing::Open,
             by_flights: false,
+            is_sure: false,
+        }
+    }
+
+    fn lost(&self, mine: &Contestant) -> Lost {
+        let share = |it: &Contestant, case: usize| self.judged.count(it, &[case]).lost_share();
+        let difference = |case: usize| share(mine, case) - share(self.theirs, case);
+        let differences: Vec<f64> = self.judged.all().into_iter().map(difference).collect();
+        Lost {
+            cases: differences.iter().filter(|it| **it != 0.0).count(),
+            p: SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p),
+            p_adjusted: 1.0,
         }
     }
 
@@ -188,22 +217,20 @@ impl Pair<'_> {
         (!ratio.is_nan()).then_some(ratio)
     }
 
-    fn standing(&self, mine: &Contestant, found: &Comparison) -> (Standing, bool) {
+    /// Lost flights come first, whatever the error elsewhere.
+    fn stand(&self, mine: &Contestant, found: &mut Comparison) {
         let all = self.judged.all();
-        let lost = |it: &Contestant| self.judged.count(it, &all).lost_share();
-        let (lost_mine, lost_theirs) = (lost(mine), lost(self.theirs));
-        if lost_mine > lost_theirs {
-            return (Standing::Worse, true);
-        }
-        if lost_mine < lost_theirs {
-            return (Standing::Better, true);
-        }
-        let is_sure = found.p_adjusted <= 1.0 - CONFIDENCE;
-        let standing = match found.ratio.mean {
-            Some(ratio) if is_sure && ratio < 1.0 => Standing::Better,
-            Some(ratio) if is_sure && ratio > 1.0 => Standing::Worse,
+        let share = |it: &Contestant| self.judged.count(it, &all).lost_share();
+        let (lost_mine, lost_theirs) = (share(mine), share(self.theirs));
+        found.by_flights = lost_mine != lost_theirs;
+        let p = if found.by_flights { found.lost.p_adjusted } else { found.p_adjusted };
+        found.is_sure = p <= 1.0 - CONFIDENCE;
+        found.standing = match found.ratio.mean {
+            _ if lost_mine > lost_theirs => Standing::Worse,
+            _ if lost_mine < lost_theirs => Standing::Better,
+            Some(ratio) if found.is_sure && ratio < 1.0 => Standing::Better,
+            Some(ratio) if found.is_sure && ratio > 1.0 => Standing::Worse,
             _ => Standing::Open,
         };
-        (standing, false)
     }
 }

@@ -4,6 +4,7 @@ use fspid_campaign::engine::FlightResult;
 use fspid_campaign::rows;
 use fspid_study::metrics::Absent;
 use fspid_study::tuning::Objective;
+use fspid_study::units::degrees;
 
 use crate::score::FlightScore;
 
@@ -24,6 +25,10 @@ pub(crate) const TRAVEL: usize = 2;
 pub(crate) const OVERSHOOT: usize = 3;
 const SETTLING: usize = 4;
 
+/// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
+/// right angle there is no pitch hold left whose error could be compared.
+const LOST_DEG: f64 = 90.0;
+
 /// A flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
@@ -36,8 +41,11 @@ pub struct Flight {
     pub cost: Option<f64>,
     /// The verdict in words.
     pub verdict: String,
-    /// True for a flight that diverged, whose loop is unstable, or that could not be flown at all.
+    /// True for a flight that diverged, whose error grew beyond 90 deg, or that could not be flown at all.
     pub lost: bool,
+    /// True for a loop that the linear analysis calls unstable; it cannot tell of self-tuning gains or limits, so that
+    /// this counts against nobody.
+    pub unstable: bool,
     /// True for a flight that is lost or breaks a requirement.
     pub failed: bool,
     /// Why it is lost, and which requirements are broken.
@@ -52,6 +60,7 @@ impl Flight {
             cost: None,
             verdict: rows::REFUSED.to_owned(),
             lost: true,
+            unstable: false,
             failed: true,
             reasons: vec![reason],
         }
@@ -61,7 +70,8 @@ impl Flight {
     pub(crate) fn of(flight: &FlightResult, objectives: &[Objective], duration_s: f64) -> Self {
         let score = FlightScore::of(flight, objectives.len(), duration_s);
         let measures = MEASURES.map(|(name, _)| rows::measured(flight, name));
-        let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none();
+        let is_far = !(degrees(flight.largest_error_rad) <= LOST_DEG);
+        let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none() || is_far;
         let measures = if is_lost { [None; MEASURES.len()] } else { measures };
         let mut counted = measures;
         for (index, value) in counted.iter_mut().enumerate() {
@@ -76,10 +86,18 @@ impl Flight {
             measures,
             counted,
             cost: has_cost.then_some(cost).filter(|cost| cost.is_finite()),
-            verdict: flight.metrics.verdict.to_string(),
+            verdict: match is_far && !flight.metrics.verdict.is_failure() {
+                true => format!("lost: an error beyond {LOST_DEG} deg"),
+                false => flight.metrics.verdict.to_string(),
+            },
             lost: is_lost,
+            unstable: flight.unstable.is_some(),
             failed: is_lost || unmet,
-            reasons: score.reasons,
+            reasons: is_far
+                .then(|| format!("an error beyond {LOST_DEG} deg"))
+                .into_iter()
+                .chain(score.reasons)
+                .collect(),
         }
     }
 }

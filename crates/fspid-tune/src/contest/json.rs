@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::compare::{CONFIDENCE, Comparison, Ratio, Standing};
+use super::compare::{CONFIDENCE, Comparison, Lost, Ratio, Standing};
 use super::judged::{Contestant, Count, Design, Quantity};
 use super::outcome::{First, Outcome};
-use super::summary::{Part, Spread, Summary};
+use super::summary::{Spread, Summary};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -77,7 +77,7 @@ fn controller(
 ) -> Value {
     let groups = outcome.judged.groups().into_iter().zip(&summary.groups);
     let groups: Vec<Value> = groups
-        .map(|((name, _), it)| json!({ "name": name, "measures": part(it), "flights": count(it.count) }))
+        .map(|((name, _), it)| json!({ "name": name, "measures": measures(&it.spreads), "flights": count(it.count) }))
         .collect();
     let mirror = summary.mirror.map(|it| {
         json!({
@@ -102,8 +102,8 @@ fn controller(
     json!({
         "name": contestant.name,
         "tuned": contestant.is_tuned,
-        "measures": part(&summary.whole),
-        "kept_iae_deg_s": spread(summary.whole.kept_error),
+        "measures": measures(&summary.whole.spreads),
+        "measures_where_nobody_lost": measures(&summary.whole.kept),
         "flights": count(summary.whole.count),
         "lost_interval": summary.lost,
         "failed_interval": summary.failed,
@@ -130,11 +130,14 @@ fn design(design: &Design) -> Value {
 }
 
 fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
-    let standing = match found.standing {
-        Standing::Better => "better",
-        Standing::Worse => "worse",
-        Standing::Open => "not significant",
+    let standing = match (found.standing, found.is_sure) {
+        (Standing::Better, true) => "better",
+        (Standing::Worse, true) => "worse",
+        (Standing::Better, false) => "ahead",
+        (Standing::Worse, false) => "behind",
+        (Standing::Open, _) => "not significant",
     };
+    let Lost { cases: lost_cases, p: lost_p, p_adjusted: lost_p_adjusted } = found.lost;
     let names = outcome.judged.groups().into_iter().zip(&found.groups);
     let groups: Vec<Value> = names
         .map(|((name, _), it)| {
@@ -157,6 +160,7 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
     json!({
         "standing": standing,
         "by_lost_flights": found.by_flights,
+        "lost": { "cases": lost_cases, "p": lost_p, "p_adjusted": lost_p_adjusted },
         "ratio_of_means": found.ratio_of_means.and_then(finite),
         "mean_ratio": ratio(&found.ratio),
         "typical": typical,
@@ -171,8 +175,8 @@ fn ratio(ratio: &Ratio) -> Value {
     json!({ "ratio": ratio.mean, "interval": ratio.interval, "cases": ratio.cases })
 }
 
-fn part(part: &Part) -> Map<String, Value> {
-    let all = Quantity::all().zip(&part.spreads);
+fn measures(spreads: &[Option<Spread>]) -> Map<String, Value> {
+    let all = Quantity::all().zip(spreads);
     all.map(|(quantity, it)| (quantity.name().to_owned(), spread(*it))).collect()
 }
 
@@ -188,7 +192,7 @@ fn spread(found: Option<Spread>) -> Value {
 }
 
 fn count(count: Count) -> Value {
-    json!({ "lost": count.lost, "failed": count.failed, "of": count.of })
+    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "of": count.of })
 }
 
 /// JSON has no infinity: a mean with lost flights is null, and the flights are counted beside it.

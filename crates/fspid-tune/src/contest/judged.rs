@@ -97,6 +97,8 @@ pub struct Count {
     pub lost: u64,
     /// Flights that are lost or break a requirement.
     pub failed: u64,
+    /// Flights of a loop that the linear analysis calls unstable.
+    pub unstable: u64,
     /// All flights.
     pub of: u64,
 }
@@ -167,6 +169,7 @@ impl Judged {
             for flight in cases.iter().flat_map(|&case| self.flights(design, case)) {
                 count.lost += u64::from(flight.lost);
                 count.failed += u64::from(flight.failed);
+                count.unstable += u64::from(flight.unstable);
                 count.of += 1;
             }
         }

@@ -13,8 +13,11 @@
 //! designs, [`signed_rank`] asks the cases alone without assuming a distribution. A difference is called significant
 //! where both tests say so, after Holm's correction for the number of controllers compared.
 //!
-//! A lost flight has no error that could be averaged. It makes the mean of its design infinite, its case ranks behind
-//! every case without, and a controller that loses more flights than another is never called better.
+//! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
+//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for being
+//! easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design infinite, its case ranks behind
+//! every case without, and a controller that loses more flights than another ranks behind it and is never called
+//! better, whatever its error elsewhere; whether it is called worse is for the signed ranks of the cases to say.
 
 mod check;
 mod compare;
@@ -40,7 +43,7 @@ use fspid_campaign::Folder;
 use fspid_study::output;
 use fspid_study::tuning::{Contest as Rules, Tuning};
 
-pub use compare::{Comparison, Ratio, Standing};
+pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};

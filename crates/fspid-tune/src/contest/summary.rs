@@ -34,8 +34,8 @@ pub struct Mirror {
 pub struct Part {
     /// Spread over designs of the mean over the cases, in the order of [`Quantity::all`]; none without values.
     pub spreads: Vec<Option<Spread>>,
-    /// The same of the error on the cases that nobody lost a flight of; none where there are none.
-    pub kept_error: Option<Spread>,
+    /// The same on the cases that nobody lost a flight of.
+    pub kept: Vec<Option<Spread>>,
     /// Lost and failed flights.
     pub count: Count,
 }
@@ -63,6 +63,13 @@ impl Part {
     pub fn spread(&self, quantity: Quantity) -> Option<Spread> {
         let place = Quantity::all().position(|it| it == quantity)?;
         self.spreads.get(place).copied().flatten()
+    }
+
+    /// The spread of a quantity on the cases that nobody lost a flight of.
+    #[must_use]
+    pub fn kept_spread(&self, quantity: Quantity) -> Option<Spread> {
+        let place = Quantity::all().position(|it| it == quantity)?;
+        self.kept.get(place).copied().flatten()
     }
 }
 
@@ -93,7 +100,7 @@ fn part(judged: &Judged, contestant: &Contestant, cases: &[usize]) -> Part {
     let kept = judged.kept(judged.contestants.iter(), cases);
     Part {
         spreads: Quantity::all().map(|quantity| spread_of(cases, quantity)).collect(),
-        kept_error: spread_of(&kept, Quantity::ERROR),
+        kept: Quantity::all().map(|quantity| spread_of(&kept, quantity)).collect(),
         count: judged.count(contestant, cases),
     }
 }

@@ -57,6 +57,7 @@ fn push(table: &mut Table, head: &[Cell<'_>], flight: &Flight) -> Result<(), Tun
     row.extend([
         Cell::Text(short(&flight.verdict)),
         Cell::Boolean(flight.lost),
+        Cell::Boolean(flight.unstable),
         Cell::Boolean(flight.failed),
         if reasons.is_empty() { Cell::Absent } else { Cell::Text(short(&reasons)) },
         number(flight.cost),
@@ -82,7 +83,10 @@ fn schema() -> Result<Schema, TuneError> {
         column("run", Kind::Integer).meaning("number of the draw within the case, from 0"),
         column("verdict", Kind::Text).meaning("verdict on the flight"),
         column("lost", Kind::Boolean)
-            .meaning("it diverged, its loop is unstable, or it could not be flown"),
+            .meaning("it diverged, its error grew beyond 90 deg, or it could not be flown"),
+        column("unstable", Kind::Boolean).meaning(
+            "the linear analysis calls its loop unstable, which it cannot tell of self-tuning gains and limits",
+        ),
         column("failed", Kind::Boolean).meaning("it is lost or breaks a requirement"),
         column("reasons", Kind::Text).meaning("why it failed or has no cost"),
         column("cost", Kind::Float)

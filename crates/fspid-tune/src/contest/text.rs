@@ -1,16 +1,18 @@
 //! The outcome for people.
 
-use super::compare::{Comparison, Standing};
+use super::compare::Comparison;
 use super::judged::Quantity;
 use super::outcome::Outcome;
 use super::words::{
-    by_group, cautions, counted, cut, headline, name, number, p_value, sentence, signed, spread,
+    by_group, cautions, counted, cut, headline, name, number, over_kept, p_value, sentence, signed,
+    spread_of, standing,
 };
 
 pub(super) fn text(outcome: &Outcome) -> String {
     let head = headline(outcome);
     let mut out = format!("{}: {}.\n\n", head.word, head.why);
-    for found in outcome.error.iter().flatten() {
+    let ranking = outcome.first().ranking;
+    for found in ranking.iter().filter_map(|place| outcome.comparison(*place)) {
         out.push_str(&format!("{}\n", sentence(outcome, found)));
     }
     out.push_str("\nFirst to last, by kind of case:\n");
@@ -68,7 +70,7 @@ fn table(outcome: &Outcome, out: &mut String) {
     let mut rows = vec![head.map(str::to_owned)];
     for place in outcome.first().ranking {
         let (it, summary) = (&outcome.judged.contestants[place], &outcome.summaries[place]);
-        let of = |quantity| spread(summary.whole.spread(quantity), it.designs.len());
+        let of = |quantity| spread_of(outcome, place, quantity);
         let count = summary.whole.count;
         let difference = |found: Option<&Comparison>| {
             found.and_then(|it| it.ratio.mean).map_or("\u{2013}".to_owned(), signed)
@@ -81,7 +83,7 @@ fn table(outcome: &Outcome, out: &mut String) {
             difference(outcome.activity_of(place)),
             format!("{} of {}", count.lost, count.of),
             format!("{} of {}", count.failed, count.of),
-            standing(outcome, place),
+            stands(outcome, place),
         ]);
     }
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
@@ -93,23 +95,19 @@ fn table(outcome: &Outcome, out: &mut String) {
         });
         out.push_str(&format!("  {}\n", cells.collect::<Vec<_>>().join("  ").trim_end()));
     }
-    out.push_str(
-        "  Median over the seeds (quartiles) of the mean over the cases; with a lost flight it is \"lost\".\n",
-    );
+    out.push_str(&format!(
+        "  Medians over the seeds (quartiles) of means over {}.\n",
+        over_kept(outcome)
+    ));
 }
 
-fn standing(outcome: &Outcome, place: usize) -> String {
-    let Some(found) = outcome.comparison(place) else {
-        return "compared with".to_owned();
-    };
-    let word = match found.standing {
-        Standing::Better => "better",
-        Standing::Worse => "worse",
-        Standing::Open => "not significant",
-    };
-    match found.by_flights {
-        true => format!("{word} by lost flights"),
-        false => format!("{word}, {}", p_value(found.p_adjusted)),
+fn stands(outcome: &Outcome, place: usize) -> String {
+    match outcome.comparison(place) {
+        None => "compared with".to_owned(),
+        Some(found) if found.by_flights => {
+            format!("{}, {}", standing(found), p_value(found.lost.p_adjusted))
+        }
+        Some(found) => format!("{}, {}", standing(found), p_value(found.p_adjusted)),
     }
 }
 

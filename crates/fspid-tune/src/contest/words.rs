@@ -4,6 +4,7 @@ use fspid_study::report::number::{fixed, significant};
 use fspid_study::tuning::{Over, Tuning};
 
 use super::compare::{CONFIDENCE, Comparison, Standing};
+use super::judged::Quantity;
 use super::outcome::Outcome;
 use super::summary::Spread;
 
@@ -91,6 +92,31 @@ pub(super) fn signed_interval([lower, upper]: [f64; 2]) -> String {
     format!("{below} to {}", signed(upper))
 }
 
+/// The spread of a controller's means over the cases that nobody lost; over all where each was lost by somebody.
+pub(super) fn spread_of(outcome: &Outcome, place: usize, quantity: Quantity) -> String {
+    let (it, part) = (&outcome.judged.contestants[place], &outcome.summaries[place].whole);
+    let found = match kept(outcome) {
+        0 => part.spread(quantity),
+        _ => part.kept_spread(quantity),
+    };
+    spread(found, it.designs.len())
+}
+
+/// How many cases nobody lost a flight of.
+pub(super) fn kept(outcome: &Outcome) -> usize {
+    let judged = &outcome.judged;
+    judged.kept(judged.contestants.iter(), &judged.all()).len()
+}
+
+/// Over which cases [`spread_of`] is.
+pub(super) fn over_kept(outcome: &Outcome) -> String {
+    match (kept(outcome), outcome.judged.cases.len()) {
+        (kept, all) if kept == all => "the cases".to_owned(),
+        (0, _) => "the cases, of which each was lost by somebody".to_owned(),
+        (kept, all) => format!("the {kept} of {all} cases that nobody lost a flight of"),
+    }
+}
+
 /// A p-value in words.
 pub(super) fn p_value(p: f64) -> String {
     match p {
@@ -148,14 +174,19 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
     let winner = cut(name(outcome, first), 60);
     let open: Vec<String> = ranking
         .iter()
-        .filter(|place| **place != against && outcome.standing(**place) != Standing::Worse)
+        .filter(|place| {
+            let found = outcome.comparison(**place);
+            found.is_some_and(|it| !(it.standing == Standing::Worse && it.is_sure))
+        })
         .map(|place| cut(name(outcome, *place), 60))
         .collect();
     let (is_decided, why) = match outcome.comparison(first) {
         _ if outcome.error.is_none() => {
             (false, "an error is 0 somewhere, so that errors have no ratios".to_owned())
         }
-        Some(found) => (found.standing == Standing::Better, finding(outcome, found)),
+        Some(found) => {
+            (found.standing == Standing::Better && found.is_sure, finding(outcome, found))
+        }
         None if open.is_empty() => (
             true,
             "every other controller has a significantly larger error or loses more flights"
@@ -169,7 +200,7 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
     };
     let why = match is_decided || first == against {
         true => why,
-        false => format!("not significantly different from {reference}: {why}"),
+        false => format!("not significantly different from {reference}; {why}"),
     };
     Headline { is_decided, word, why }
 }
@@ -179,7 +210,7 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
     let reference = name(outcome, outcome.judged.against);
     let mut words = Vec::new();
     if found.by_flights {
-        words.push(lost_against(outcome, found.contestant));
+        words.push(lost_against(outcome, found));
     }
     match found.ratio.mean {
         None => words.push("no case that both flew".to_owned()),
@@ -212,24 +243,43 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
 }
 
 /// How many flights a controller loses and how many the one compared with.
-fn lost_against(outcome: &Outcome, place: usize) -> String {
+fn lost_against(outcome: &Outcome, found: &Comparison) -> String {
     let lost = |place: usize| {
         let count = outcome.summaries[place].whole.count;
         format!("{} of {}", count.lost, count.of)
     };
     let against = outcome.judged.against;
-    format!("it loses {} flights, {} {}", lost(place), name(outcome, against), lost(against))
+    format!(
+        "it loses {} flights, {} {}; they differ in {}, {}",
+        lost(found.contestant),
+        name(outcome, against),
+        lost(against),
+        counted(found.lost.cases, "case", "cases"),
+        p_value(found.lost.p_adjusted)
+    )
+}
+
+/// How a controller stands, in a word or two.
+pub(super) fn standing(found: &Comparison) -> &'static str {
+    match (found.standing, found.by_flights, found.is_sure) {
+        (Standing::Better, true, false) => "ahead by lost flights",
+        (Standing::Worse, true, false) => "behind by lost flights",
+        (Standing::Better, true, true) => "better by lost flights",
+        (Standing::Worse, true, true) => "worse by lost flights",
+        (Standing::Better, false, _) => "better",
+        (Standing::Worse, false, _) => "worse",
+        (Standing::Open, ..) => "not significant",
+    }
 }
 
 /// A controller against the one compared with, in a sentence.
 pub(super) fn sentence(outcome: &Outcome, found: &Comparison) -> String {
     let who = name(outcome, found.contestant);
-    let standing = match found.standing {
-        Standing::Better => "is better",
-        Standing::Worse => "is worse",
-        Standing::Open => "is not significantly different",
+    let word = match found.standing {
+        Standing::Open => "not significantly different",
+        _ => standing(found),
     };
-    format!("{who} {standing}: {}.", finding(outcome, found))
+    format!("{who} is {word}: {}.", finding(outcome, found))
 }
 
 /// Who is first in each group of cases, a sentence each.

@@ -11,8 +11,9 @@ use crate::contest::compare::{Comparison, Ratio};
 use crate::contest::judged::{Judged, Quantity};
 use crate::contest::words::{counted, cut, group, name, per_cent};
 
-/// Differences beyond this are drawn at the edge, %.
-const EDGE_PCT: f64 = 150.0;
+/// Intervals that reach farther than this many times the largest difference are cut at the edge, unless that is near.
+const REACH: f64 = 1.3;
+const LEAST_PCT: f64 = 30.0;
 /// Most groups that are drawn.
 const MOST_GROUPS: usize = 16;
 
@@ -25,7 +26,7 @@ pub(super) fn where_chapter(outcome: &Outcome) -> Chapter {
             "differences",
             differences(outcome),
             format!(
-                "Mean difference from {reference} over all cases and by group, left of 0 is better. The intervals of all cases hold together at {}; those of groups each alone. A group of fewer than three cases has a sign without an interval. Differences beyond {EDGE_PCT:.0} % stand at the edge. Cases that either lost are left out here; lost flights are counted below.",
+                "Mean difference from {reference} over all cases and by group, left of 0 is better. The intervals of all cases hold together at {}; those of groups each alone. A group of fewer than three cases has a sign without an interval. An interval that ends at the edge reaches farther. Cases that either lost are left out here; lost flights are counted below.",
                 per_cent()
             ),
         ));
@@ -53,21 +54,30 @@ fn differences(outcome: &Outcome) -> fspid_study::figure::Svg {
             marks: marks(outcome, |it| it.groups.get(place).copied()),
         }));
     }
-    let ends = rows.iter().flat_map(|row| &row.marks).flat_map(|it| [it.lower, it.upper]);
-    let most = ends.fold(0.0, f64::max);
-    let least = rows.iter().flat_map(|row| &row.marks).map(|it| it.lower).fold(0.0, f64::min);
-    let range = (most > EDGE_PCT).then_some((least * 1.05, EDGE_PCT));
-    let column = |label: &str| IntervalColumn { label: label.to_owned(), range, stems: false };
+    let column = |place: usize, label: &str| {
+        let range = range(rows.iter().flat_map(|row| &row.marks).filter(|it| it.column == place));
+        IntervalColumn { label: label.to_owned(), range, stems: false }
+    };
+    let columns = vec![column(0, "IAE [%]"), column(1, "elevator travel [%]")];
     let contestants = outcome.judged.contestants.iter().enumerate();
     let others = contestants.filter(|(place, _)| *place != outcome.judged.against);
     IntervalFigure {
         title: format!("Difference from {}", cut(name(outcome, outcome.judged.against), 60)),
-        columns: vec![column("IAE [%]"), column("elevator travel [%]")],
+        columns,
         rows,
         series: others.map(|(place, it)| (cut(&it.name, 60), style(place))).collect(),
         width_px: 760.0,
     }
     .render()
+}
+
+/// Ends of an axis that shows every estimate, and no interval that would make the others small.
+fn range<'a>(marks: impl Iterator<Item = &'a IntervalMark> + Clone) -> Option<(f64, f64)> {
+    let most = |value: fn(&IntervalMark) -> f64| marks.clone().map(value).fold(0.0, f64::max);
+    let lower = marks.clone().map(|it| it.lower).fold(0.0, f64::min);
+    let upper = most(|it| it.upper).min((REACH * most(|it| it.value)).max(LEAST_PCT));
+    let pad = 0.05 * (upper - lower);
+    (pad > 0.0).then_some((lower - pad, upper + pad))
 }
 
 fn marks(outcome: &Outcome, of: impl Fn(&Comparison) -> Option<Ratio>) -> Vec<IntervalMark> {

@@ -80,7 +80,7 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
 fn notes(outcome: &Outcome) -> Vec<String> {
     let mut notes = cautions(outcome);
     notes.push("Significant means: cases like these and seeds like these would tell the same. It does not mean that the difference matters, nor that other aircraft would tell the same.".to_owned());
-    notes.push("A lost flight (diverged, unstable, or refused) has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another counts as worse, whatever its error elsewhere.".to_owned());
+    notes.push("A lost flight (diverged, an error beyond 90 deg, or refused) has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another stands behind it, whatever its error elsewhere. Whether other cases would tell the same is tested apart.".to_owned());
     notes
 }
 

@@ -8,8 +8,8 @@ use fspid_study::report::analysis::{Chapter, Item, Picture};
 use fspid_study::units::degrees;
 
 use super::{chapter as chapter_of, style};
-use crate::contest::judged::{Judged, Quantity};
-use crate::contest::words::cut;
+use crate::contest::judged::{Contestant, Judged, Quantity};
+use crate::contest::words::{cut, list};
 use crate::contest::{Contest, Outcome};
 
 /// Cases that are drawn.
@@ -101,9 +101,18 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
         width_px: 760.0,
     };
     let draw = if judged.cases.get(case)?.runs > 1 { ", its first draw" } else { "" };
-    let caption =
-        format!("Case \"{name}\"{draw}. A line that ends early is a flight that was lost.");
+    let lost: Vec<String> =
+        judged.contestants.iter().filter_map(|it| lost(judged, it, case)).collect();
+    let lost = if lost.is_empty() { String::new() } else { format!(" Lost: {}.", list(&lost)) };
+    let caption = format!("Case \"{name}\"{draw}.{lost}");
     Some(Item::Figure(Picture { name: format!("response-{case}"), svg: figure.render(), caption }))
+}
+
+/// The name of a controller whose flight is lost, with the verdict.
+fn lost(judged: &Judged, contestant: &Contestant, case: usize) -> Option<String> {
+    let design = contestant.designs.get(Judged::best(contestant))?;
+    let flight = judged.flights(design, case).first().filter(|it| it.lost)?;
+    Some(format!("{} ({})", cut(&contestant.name, 60), flight.verdict))
 }
 
 /// Ends of an ordinate that lost flights cannot stretch.

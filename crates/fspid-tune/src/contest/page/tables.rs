@@ -7,9 +7,10 @@ use super::chapter;
 use crate::contest::compare::{Comparison, Standing};
 use crate::contest::judged::Quantity;
 use crate::contest::words::{
-    counted, cut, group, name, number, p_value, per_cent, signed, signed_interval, spread,
+    counted, cut, group, kept, name, number, over_kept, p_value, per_cent, signed, signed_interval,
+    spread, spread_of,
 };
-use crate::contest::{Outcome, text};
+use crate::contest::{Outcome, text, words};
 
 /// Most rows of the table of cases, and most reasons of failures that are told.
 const MOST_ROWS: usize = 300;
@@ -30,30 +31,31 @@ pub(super) fn controllers(outcome: &Outcome) -> DataTable {
         "difference (interval)",
         "p",
         "elevator travel [deg]",
-        "difference (interval)",
+        "difference",
         "lost",
     ];
     let rows = outcome.first().ranking.into_iter().map(|place| {
-        let (it, summary) = (&outcome.judged.contestants[place], &outcome.summaries[place]);
-        let of = |quantity| Datum::Number(spread(summary.whole.spread(quantity), it.designs.len()));
+        let of = |quantity| Datum::Number(spread_of(outcome, place, quantity));
         let found = outcome.comparison(place);
         let p = found.map_or(DASH.to_owned(), |it| {
             p_value(it.p_adjusted).replace("p = ", "").replace("p ", "")
         });
-        let count = summary.whole.count;
+        let activity = outcome.activity_of(place).and_then(|it| it.ratio.mean);
+        let count = outcome.summaries[place].whole.count;
         vec![
-            Datum::Text(cut(&it.name, 60)),
+            Datum::Text(cut(name(outcome, place), 60)),
             standing(outcome, place),
             of(Quantity::ERROR),
             difference(found),
             Datum::Number(p),
             of(Quantity::ACTIVITY),
-            difference(outcome.activity_of(place)),
+            Datum::Number(activity.map_or(DASH.to_owned(), signed)),
             Datum::Number(format!("{} of {}", count.lost, count.of)),
         ]
     });
     let caption = format!(
-        "Median over the seeds (and quartiles) of the mean over the cases; with a lost flight it is \"lost\". Differences are those from {reference} in the geometric mean over the cases that neither lost; their intervals hold together at {}. p is the larger of two tests, after Holm's correction.",
+        "Medians over the seeds (and quartiles) of means over {}. Differences are those from {reference} in the geometric mean over the cases that neither lost; their intervals hold together at {}. p is the larger of two tests, after Holm's correction.",
+        over_kept(outcome),
         per_cent()
     );
     table(caption, &head, rows.collect())
@@ -79,18 +81,20 @@ pub(super) fn more(outcome: &Outcome) -> DataTable {
     let mut head = vec!["controller".to_owned()];
     head.extend(others.iter().map(|it| format!("{} [{}]", in_words(it.name()), it.unit())));
     head.push("cost".to_owned());
+    head.push("difference of travel (interval)".to_owned());
     head.extend(["ratio of mean IAE", "IAE in a typical case (interval)"].map(str::to_owned));
     let rows = outcome.first().ranking.into_iter().map(|place| {
-        let (it, summary) = (&outcome.judged.contestants[place], &outcome.summaries[place]);
-        let of = |quantity| Datum::Number(spread(summary.whole.spread(quantity), it.designs.len()));
-        let mut row = vec![Datum::Text(cut(&it.name, 60))];
+        let of = |quantity| Datum::Number(spread_of(outcome, place, quantity));
+        let mut row = vec![Datum::Text(cut(name(outcome, place), 60))];
         row.extend(others.map(of));
         row.push(of(Quantity::Cost));
+        row.push(difference(outcome.activity_of(place)));
         row.extend(typical(outcome.comparison(place)));
         row
     });
     let caption = format!(
-        "Median over the seeds (and quartiles) of the mean over the cases. Cost: what the tuning made small, on the cases of the contest. Ratio of mean IAE: the mean over all cases and seeds by that of {reference}. Typical case: the median over pairs of cases by Hodges and Lehmann, lost cases as the worst, with its own {} interval over cases.",
+        "Medians over the seeds (and quartiles) of means over {}. Cost: what the tuning made small, on the cases of the contest. Ratio of mean IAE: the mean over all cases and seeds by that of {reference}. Typical case: the median over pairs of cases by Hodges and Lehmann, lost cases as the worst, with its own {} interval over cases.",
+        over_kept(outcome),
         per_cent()
     );
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
@@ -126,11 +130,11 @@ fn standing(outcome: &Outcome, place: usize) -> Datum {
     let Some(found) = outcome.comparison(place) else {
         return Datum::Text("compared with".to_owned());
     };
-    let by = if found.by_flights { " by lost flights" } else { "" };
+    let word = words::standing(found).to_owned();
     match found.standing {
-        Standing::Better => Datum::Met(format!("better{by}")),
-        Standing::Worse => Datum::Unmet(format!("worse{by}")),
-        Standing::Open => Datum::Text("not significant".to_owned()),
+        Standing::Better if found.is_sure => Datum::Met(word),
+        Standing::Worse if found.is_sure => Datum::Unmet(word),
+        _ => Datum::Text(word),
     }
 }
 
@@ -159,29 +163,31 @@ fn failures(outcome: &Outcome) -> DataTable {
     };
     let rows = contestants.map(|(it, summary)| {
         let count = summary.whole.count;
-        let kept = summary.whole.kept_error;
+        let whole = summary.whole.spread(Quantity::ERROR);
         vec![
             Datum::Text(cut(&it.name, 60)),
             Datum::Number(format!("{} of {}", count.lost, count.of)),
             Datum::Number(percent(summary.lost)),
             Datum::Number(format!("{} of {}", count.failed, count.of)),
             Datum::Number(percent(summary.failed)),
-            Datum::Number(spread(kept, it.designs.len())),
+            Datum::Number(format!("{} of {}", count.unstable, count.of)),
+            Datum::Number(spread(whole, it.designs.len())),
         ]
     });
-    let kept = outcome.judged.kept(outcome.judged.contestants.iter(), &outcome.judged.all()).len();
+    let without = kept(outcome);
     let head = [
         "controller",
         "lost",
         "probability of a loss",
         "failed",
         "probability of a failure",
-        "IAE on cases that nobody lost [deg s]",
+        "unstable by analysis",
+        "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost if it diverges, its loop is unstable or it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. {} without a lost flight of anybody.",
+        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that the linear analysis calls unstable are judged as they flew, as all are: it cannot tell of self-tuning gains and limits. A mean with a lost flight is \"lost\". {} without a lost flight of anybody.",
         per_cent(),
-        match kept {
+        match without {
             kept if kept == outcome.judged.cases.len() => "All cases are".to_owned(),
             1 => "1 case is".to_owned(),
             kept => format!("{kept} cases are"),
