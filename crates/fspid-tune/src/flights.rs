@@ -62,9 +62,9 @@ impl Flights {
         Self { space, cases, measured, stability: Stability::Analysed, at_once }
     }
 
-    /// The same with unstable loops measured as they fly.
-    pub(crate) fn as_flown(self) -> Self {
-        Self { stability: Stability::AsFlown, ..self }
+    /// The same with another way to treat unstable loops.
+    pub(crate) fn with(self, stability: Stability) -> Self {
+        Self { stability, ..self }
     }
 
     pub(crate) fn space(&self) -> &Space {

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let held = local::in_threads(arguments.threads, || {
         contest.hold(&arguments.out, &mut |progress| watch.then(progress))
     });
-    let outcome = held.map_err(|error| Failure::input(error))?.map_err(failure)?;
+    let outcome = held.map_err(Failure::input)?.map_err(failure)?;
     watch.end();
     let answer = match arguments.format {
         Format::Text => outcome.text(),

@@ -1,5 +1,6 @@
 //! Whether a contest can be held, and fairly: everything that is wrong is told at once.
 
+use fspid_campaign::engine::Stability;
 use fspid_study::file::{Study, Template};
 use fspid_study::tuning::{Contest as Rules, Tuning};
 
@@ -150,6 +151,6 @@ fn entrant(
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
     let measured = objectives.map(|it| it.requirement.clone()).collect();
-    let flights = Flights::new(Space::new(marks), flown, measured).as_flown();
+    let flights = Flights::new(Space::new(marks), flown, measured).with(Stability::AsFlown);
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -1,5 +1,7 @@
 //! Controllers against the one that all are compared with.
 
+use std::cmp::Ordering;
+
 use super::judged::{Contestant, Judged, Quantity};
 use super::signed_rank::SignedRank;
 use super::two_way::{TwoWay, holm, mean};
@@ -151,17 +153,13 @@ impl Pair<'_> {
 
     /// Logarithm of the ratio on a case, averaged over designs.
     fn case(&self, mine: &Contestant, case: usize) -> f64 {
-        let lost = |it: &Contestant| self.judged.count(it, &[case]).lost_share();
-        let (lost_mine, lost_theirs) = (lost(mine), lost(self.theirs));
-        if lost_mine > lost_theirs {
-            return f64::INFINITY;
-        }
-        if lost_mine < lost_theirs {
-            return f64::NEG_INFINITY;
-        }
-        if lost_mine > 0.0 {
+        let [lost_mine, lost_theirs] = [mine, self.theirs].map(|it| self.judged.count(it, &[case]));
+        match lost_mine.cmp_lost(lost_theirs) {
+            Ordering::Greater => return f64::INFINITY,
+            Ordering::Less => return f64::NEG_INFINITY,
             // Both lose as many: nobody is better.
-            return 0.0;
+            Ordering::Equal if lost_mine.lost > 0 => return 0.0,
+            Ordering::Equal => {}
         }
         let [mine, theirs] = [mine, self.theirs].map(|it| {
             let logarithms = self.logarithms(it, &[case]);
@@ -220,16 +218,16 @@ impl Pair<'_> {
     /// Lost flights come first, whatever the error elsewhere.
     fn stand(&self, mine: &Contestant, found: &mut Comparison) {
         let all = self.judged.all();
-        let share = |it: &Contestant| self.judged.count(it, &all).lost_share();
-        let (lost_mine, lost_theirs) = (share(mine), share(self.theirs));
-        found.by_flights = lost_mine != lost_theirs;
+        let [lost_mine, lost_theirs] = [mine, self.theirs].map(|it| self.judged.count(it, &all));
+        let flights = lost_mine.cmp_lost(lost_theirs);
+        found.by_flights = flights.is_ne();
         let p = if found.by_flights { found.lost.p_adjusted } else { found.p_adjusted };
         found.is_sure = p <= 1.0 - CONFIDENCE;
-        found.standing = match found.ratio.mean {
-            _ if lost_mine > lost_theirs => Standing::Worse,
-            _ if lost_mine < lost_theirs => Standing::Better,
-            Some(ratio) if found.is_sure && ratio < 1.0 => Standing::Better,
-            Some(ratio) if found.is_sure && ratio > 1.0 => Standing::Worse,
+        found.standing = match (flights, found.ratio.mean) {
+            (Ordering::Greater, _) => Standing::Worse,
+            (Ordering::Less, _) => Standing::Better,
+            (Ordering::Equal, Some(ratio)) if found.is_sure && ratio < 1.0 => Standing::Better,
+            (Ordering::Equal, Some(ratio)) if found.is_sure && ratio > 1.0 => Standing::Worse,
             _ => Standing::Open,
         };
     }

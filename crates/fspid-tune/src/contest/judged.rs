@@ -1,5 +1,7 @@
 //! All flights of a contest, and their means.
 
+use std::cmp::Ordering;
+
 use super::flight::{Flight, IAE, MEASURES, TRAVEL};
 use super::tuning::Found;
 
@@ -107,6 +109,12 @@ impl Count {
     /// Share of the flights that is lost.
     pub(crate) fn lost_share(self) -> f64 {
         self.lost as f64 / self.of.max(1) as f64
+    }
+
+    /// Which of two controllers loses the larger share, without rounding.
+    pub(crate) fn cmp_lost(self, other: Self) -> Ordering {
+        let crossed = |one: Self, other: Self| u128::from(one.lost) * u128::from(other.of);
+        crossed(self, other).cmp(&crossed(other, self))
     }
 }
 

@@ -56,7 +56,9 @@ fn pair_means(values: &[f64]) -> Vec<f64> {
 }
 
 fn mean(a: f64, b: f64) -> f64 {
-    if a.is_infinite() && b.is_infinite() && a != b { 0.0 } else { 0.5 * a + 0.5 * b }
+    let mean = 0.5 * a + 0.5 * b;
+    // Infinity and its opposite; no difference is NaN.
+    if mean.is_nan() { 0.0 } else { mean }
 }
 
 fn median(sorted: &[f64]) -> f64 {
@@ -133,7 +135,8 @@ fn doubled_ranks(differences: &[f64]) -> Vec<usize> {
     let mut ranks = vec![0; differences.len()];
     let mut first = 0;
     while first < order.len() {
-        let alike = order[first..].iter().take_while(|&&it| size(it) == size(order[first])).count();
+        let is_alike = |it: &&usize| size(**it).total_cmp(&size(order[first])).is_eq();
+        let alike = order[first..].iter().take_while(is_alike).count();
         for &index in &order[first..first + alike] {
             ranks[index] = 2 * first + alike + 1;
         }

@@ -114,7 +114,9 @@ fn spread(mut values: Vec<f64>) -> Option<Spread> {
         let below = place.floor();
         let (low, high) = (values[below as usize], values[(below as usize + 1).min(last)]);
         // Infinity less infinity is no number.
-        if low == high || place == below { low } else { low + (place - below) * (high - low) }
+        let part = place - below;
+        let is_one = part <= 0.0 || low.total_cmp(&high).is_eq();
+        if is_one { low } else { low + part * (high - low) }
     };
     Some(Spread { lower: at(0.25), median: at(0.5), upper: at(0.75) })
 }
@@ -147,7 +149,7 @@ fn mirror(judged: &Judged, contestant: &Contestant) -> Option<Mirror> {
 
 /// By how much the larger is more than the smaller.
 fn unlike(a: f64, b: f64) -> f64 {
-    if a == b {
+    if a.total_cmp(&b).is_eq() {
         return 0.0;
     }
     let (smaller, larger) = if a < b { (a, b) } else { (b, a) };
@@ -155,7 +157,7 @@ fn unlike(a: f64, b: f64) -> f64 {
 }
 
 fn difference(a: f64, b: f64) -> f64 {
-    if a == b { 0.0 } else { (a - b).abs() }
+    if a.total_cmp(&b).is_eq() { 0.0 } else { (a - b).abs() }
 }
 
 #[cfg(test)]

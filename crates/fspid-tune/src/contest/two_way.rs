@@ -28,7 +28,9 @@ impl TwoWay {
     /// with the variance $s_c^2$ over the K cases of the differences that are averaged over designs, and the
     /// variances $s_i^2$ over the designs of a controller of its values that are averaged over cases. A controller
     /// that was not tuned has one design and no such part. What is peculiar to a flight is in every part, so that
-    /// the error is somewhat too large rather than too small.
+    /// the error is somewhat too large rather than too small: intervals at 95 % held the true ratio in 93.9 to 96.1 % of
+    /// 4000 simulated contests of 6 to 30 cases and 1 to 10 designs where cases or designs scatter, and in 96.2 to 99.4 %
+    /// where single flights alone do (`oracles/make_contest.py --simulate`).
     ///
     /// # Source
     /// Crossed random effects: S. R. Searle, G. Casella, C. E. McCulloch, *Variance Components* (1992), 4.2; A. B.

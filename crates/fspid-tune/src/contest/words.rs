@@ -12,7 +12,11 @@ use super::summary::Spread;
 pub(super) fn objectives(tuning: &Tuning) -> Vec<String> {
     let one = |it: &fspid_study::tuning::Objective| {
         let name = it.requirement.measure.name();
-        if it.weight == 1.0 { name.to_owned() } else { format!("{} {name}", it.weight) }
+        if it.weight.total_cmp(&1.0).is_eq() {
+            name.to_owned()
+        } else {
+            format!("{} {name}", it.weight)
+        }
     };
     let mut all: Vec<String> = tuning.objectives.iter().map(one).collect();
     match tuning.over {

@@ -14,6 +14,8 @@ use crate::contest::words::{counted, cut, group, name, per_cent};
 /// Intervals that reach farther than this many times the largest difference are cut at the edge, unless that is near.
 const REACH: f64 = 1.3;
 const LEAST_PCT: f64 = 30.0;
+/// What is more than three times as large is hopeless, and would hide how the others differ.
+const MOST_PCT: f64 = 200.0;
 /// Most groups that are drawn.
 const MOST_GROUPS: usize = 16;
 
@@ -26,7 +28,7 @@ pub(super) fn where_chapter(outcome: &Outcome) -> Chapter {
             "differences",
             differences(outcome),
             format!(
-                "Mean difference from {reference} over all cases and by group, left of 0 is better. The intervals of all cases hold together at {}; those of groups each alone. A group of fewer than three cases has a sign without an interval. An interval that ends at the edge reaches farther. Cases that either lost are left out here; lost flights are counted below.",
+                "Mean difference from {reference} over all cases and by group, left of 0 is better. The intervals of all cases hold together at {}; those of groups each alone. A group of fewer than three cases has a sign without an interval. A sign at the edge lies beyond it, and an interval that ends there reaches farther. Cases that either lost are left out here; lost flights are counted below.",
                 per_cent()
             ),
         ));
@@ -65,7 +67,7 @@ fn differences(outcome: &Outcome) -> fspid_study::figure::Svg {
         title: format!("Difference from {}", cut(name(outcome, outcome.judged.against), 60)),
         columns,
         rows,
-        series: others.map(|(place, it)| (cut(&it.name, 60), style(place))).collect(),
+        series: others.map(|(place, it)| (cut(&it.name, 60), style(outcome, place))).collect(),
         width_px: 760.0,
     }
     .render()
@@ -75,7 +77,7 @@ fn differences(outcome: &Outcome) -> fspid_study::figure::Svg {
 fn range<'a>(marks: impl Iterator<Item = &'a IntervalMark> + Clone) -> Option<(f64, f64)> {
     let most = |value: fn(&IntervalMark) -> f64| marks.clone().map(value).fold(0.0, f64::max);
     let lower = marks.clone().map(|it| it.lower).fold(0.0, f64::min);
-    let upper = most(|it| it.upper).min((REACH * most(|it| it.value)).max(LEAST_PCT));
+    let upper = most(|it| it.upper).min((REACH * most(|it| it.value)).clamp(LEAST_PCT, MOST_PCT));
     let pad = 0.05 * (upper - lower);
     (pad > 0.0).then_some((lower - pad, upper + pad))
 }
@@ -90,7 +92,7 @@ fn marks(outcome: &Outcome, of: impl Fn(&Comparison) -> Option<Ratio>) -> Vec<In
             };
             let percent = |ratio: f64| 100.0 * (ratio - 1.0);
             let [lower, upper] = ratio.interval.unwrap_or([mean; 2]).map(percent);
-            let style = style(found.contestant);
+            let style = style(outcome, found.contestant);
             marks.push(IntervalMark { column, style, value: percent(mean), lower, upper });
         }
     }
@@ -108,7 +110,7 @@ pub(super) fn trade_chapter(outcome: &Outcome) -> Chapter {
     }
     let of = |place: usize| TradeSeries {
         name: cut(&judged.contestants[place].name, 60),
-        style: style(place),
+        style: style(outcome, place),
         points: points(judged, place, &kept),
     };
     let figure = TradeFigure {

@@ -119,9 +119,10 @@ fn command(outcome: &Outcome) -> String {
     words.join(" ")
 }
 
-/// How the controller at a place is drawn in every figure.
-fn style(place: usize) -> SeriesStyle {
-    SeriesStyle::Numbered(place)
+/// How the controller at a place is drawn in every figure: by its rank, so that those who matter most differ.
+fn style(outcome: &Outcome, place: usize) -> SeriesStyle {
+    let ranking = outcome.first().ranking;
+    SeriesStyle::Numbered(ranking.iter().position(|it| *it == place).unwrap_or(place))
 }
 
 fn picture(name: &str, svg: Svg, caption: impl Into<String>) -> Item {

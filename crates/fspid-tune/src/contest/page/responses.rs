@@ -58,7 +58,10 @@ fn chosen(outcome: &Outcome) -> Vec<usize> {
 
 fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
     let judged = &outcome.judged;
-    let flown = judged.contestants.iter().enumerate().map(|(place, it)| {
+    let ranking = outcome.first().ranking;
+    let (drawn, left) = ranking.split_at(ranking.len().min(SeriesStyle::COUNT));
+    let flown = drawn.iter().map(|&place| {
+        let it = &judged.contestants[place];
         let curves = flown(contest, place, Judged::best(it), (outcome, case));
         (place, cut(&it.name, 60), curves.unwrap_or_default())
     });
@@ -75,7 +78,7 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
     let panel = |y_label: &str, pick: fn(&Curves) -> &Vec<f64>, first: Option<Series>| {
         let curve = |(place, name, curves): &(usize, String, Curves)| Series {
             name: name.clone(),
-            style: style(*place),
+            style: style(outcome, *place),
             x: curves.time_s.clone(),
             y: pick(curves).clone(),
             stairs: false,
@@ -104,7 +107,11 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
     let lost: Vec<String> =
         judged.contestants.iter().filter_map(|it| lost(judged, it, case)).collect();
     let lost = if lost.is_empty() { String::new() } else { format!(" Lost: {}.", list(&lost)) };
-    let caption = format!("Case \"{name}\"{draw}.{lost}");
+    let left: Vec<String> =
+        left.iter().map(|place| cut(&judged.contestants[*place].name, 60)).collect();
+    let left =
+        if left.is_empty() { String::new() } else { format!(" Not drawn: {}.", list(&left)) };
+    let caption = format!("Case \"{name}\"{draw}.{lost}{left}");
     Some(Item::Figure(Picture { name: format!("response-{case}"), svg: figure.render(), caption }))
 }
 

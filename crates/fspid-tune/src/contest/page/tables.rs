@@ -185,12 +185,11 @@ fn failures(outcome: &Outcome) -> DataTable {
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that the linear analysis calls unstable are judged as they flew, as all are: it cannot tell of self-tuning gains and limits. A mean with a lost flight is \"lost\". {} without a lost flight of anybody.",
+        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that the linear analysis calls unstable are judged as they flew, as all are: it cannot tell of self-tuning gains and limits. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
-            kept if kept == outcome.judged.cases.len() => "All cases are".to_owned(),
-            1 => "1 case is".to_owned(),
-            kept => format!("{kept} cases are"),
+            kept if kept == outcome.judged.cases.len() => "any case".to_owned(),
+            kept => format!("{kept} of {} cases", outcome.judged.cases.len()),
         }
     );
     table(caption, &head, rows.collect())
