@@ -4,7 +4,7 @@ use fspid_study::file::{Extra, NewValue, Template, read_text};
 use fspid_study::tuning::{Free, Mark};
 
 use crate::error::TuneError;
-use crate::problem::{Source, folder_of};
+use crate::source::{Source, folder_of};
 use crate::space::Space;
 
 /// The text of a scenario file without its byte order mark.

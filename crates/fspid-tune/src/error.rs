@@ -87,6 +87,25 @@ pub enum TuneError {
     /// A rule that gives no gains.
     #[error("{0}")]
     Rule(#[from] crate::rule::RuleError),
+    /// A contest that cannot be held.
+    #[error("{path}: this is no fair contest:\n{}", problems.iter().map(|it| format!("    {it}")).collect::<Vec<_>>().join("\n"))]
+    Contest {
+        /// The scenario.
+        path: String,
+        /// Everything that is wrong.
+        problems: Vec<String>,
+    },
+    /// A controller of a contest cannot be tuned.
+    #[error("controller \"{controller}\": {reason}")]
+    Entrant {
+        /// Its name.
+        controller: String,
+        /// Why.
+        reason: Box<TuneError>,
+    },
+    /// A contest that was asked to stop; it goes on from there.
+    #[error("stopped; the same command goes on from there")]
+    Stopped,
     /// Nothing that the search tried can be flown.
     #[error("none of {tried} candidates could be flown in every case; the best one: {reason}")]
     NothingFlies {

@@ -14,19 +14,23 @@
 
 pub mod anfis;
 pub mod baseline;
+pub mod contest;
 pub mod design;
 mod error;
+mod flights;
 pub mod history;
 mod problem;
 pub mod rule;
 mod score;
 mod search;
+mod source;
 mod space;
 mod tuned;
 
 pub use error::TuneError;
-pub use problem::{Problem, Source};
+pub use problem::Problem;
 pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};
+pub use source::Source;
 pub use space::Space;
 pub use tuned::Tuned;

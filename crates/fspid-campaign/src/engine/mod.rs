@@ -9,7 +9,7 @@ mod recorder;
 mod single;
 
 use fspid_core::Faults;
-use fspid_sim::stability::instability;
+use fspid_sim::stability::{Unstable, instability};
 use fspid_sim::{Exit, Prepared, SimError, Trace};
 use fspid_study::file::Study;
 use fspid_study::metrics::{CommandEffort, FlightMetrics, largest_error_rad};
@@ -35,9 +35,21 @@ pub struct FlightResult {
     pub faults: Faults,
     /// When an aircraft first left the range of its model, if it did.
     pub exit: Option<Exit>,
+    /// What the linear analysis says of an unstable loop; none for a stable loop and for one that it cannot tell of.
+    pub unstable: Option<Unstable>,
     /// The requirements that concern it, in the order of the study; those of the aircraft alone concern
     /// every controller.
     pub judgements: Vec<Judgement>,
+}
+
+/// What is done with a loop whose linear analysis says that it is unstable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stability {
+    /// It is lost, whatever its flight looks like.
+    Analysed,
+    /// It is measured as it flew. Self-tuning gains and limits of a controller are out of reach of the analysis, so that
+    /// a comparison of loops with and without them is fair only like this.
+    AsFlown,
 }
 
 /// Most memory for traces that are being measured, in numbers: 16 MiB a thread.
@@ -64,6 +76,16 @@ pub fn fly_with(
     memory: &mut Memory,
     studies: &[Study],
 ) -> Vec<Result<Vec<FlightResult>, SimError>> {
+    fly_judging(memory, studies, Stability::Analysed)
+}
+
+/// The same, with a choice of what is done with unstable loops.
+#[must_use]
+pub fn fly_judging(
+    memory: &mut Memory,
+    studies: &[Study],
+    stability: Stability,
+) -> Vec<Result<Vec<FlightResult>, SimError>> {
     let prepared: Vec<_> = studies.iter().map(|study| study.scenario.prepare()).collect();
     let mut traces: Vec<Result<Vec<Trace>, SimError>> = prepared
         .iter()
@@ -77,7 +99,10 @@ pub fn fly_with(
         }
     }
     let measured = studies.iter().zip(&prepared).zip(traces);
-    measured.map(|((study, prepared), traces)| measure(memory, study, prepared, traces?)).collect()
+    let judged = |((study, prepared), traces): ((&Study, _), Result<_, _>)| {
+        measure(memory, (study, stability), prepared, traces?)
+    };
+    measured.map(judged).collect()
 }
 
 /// Adds a trace to those of its study; the first error stays.
@@ -92,25 +117,28 @@ fn keep(traces: &mut Result<Vec<Trace>, SimError>, flown: Option<Result<Trace, S
 
 fn measure(
     memory: &mut Memory,
-    study: &Study,
+    (study, stability): (&Study, Stability),
     prepared: &Result<Prepared, SimError>,
     traces: Vec<Trace>,
 ) -> Result<Vec<FlightResult>, SimError> {
     let prepared = prepared.as_ref().map_err(Clone::clone)?;
     let scenario = &study.scenario;
+    let mut unstable = Vec::with_capacity(traces.len());
     let results = scenario.controllers.iter().zip(traces).map(|(named, trace)| {
-        let unstable = instability(scenario, &named.controller)?;
+        let found = instability(scenario, &named.controller)?;
+        unstable.push(found);
+        let unstable = found.filter(|_| stability == Stability::Analysed);
         let metrics = FlightMetrics::of(&trace, prepared.edges(), scenario.timing, unstable);
         Ok(ControllerResult { name: named.name.clone(), trace, metrics })
     });
     let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
     let judgements = judge(study, &results);
-    let flights = results.into_iter().map(|result| {
+    let flights = results.into_iter().zip(unstable).map(|(result, unstable)| {
         let concerns = |judgement: &&Judgement| {
             judgement.controller == result.name || judgement.is_of_aircraft()
         };
         let mine = judgements.iter().filter(concerns).cloned().collect();
-        flight(memory, result, mine, scenario.timing.dt_s())
+        FlightResult { unstable, ..flight(memory, result, mine, scenario.timing.dt_s()) }
     });
     Ok(flights.collect())
 }
@@ -130,6 +158,7 @@ fn flight(
         saturated_share: trace.saturated_samples as f64 / trace.rows().max(1) as f64,
         faults: trace.faults,
         exit: trace.exit,
+        unstable: None,
         judgements,
     };
     memory.take_back(trace);

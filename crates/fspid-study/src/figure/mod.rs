@@ -41,7 +41,7 @@ pub use analysis::{
 pub use campaign::{
     DistributionFigure, DistributionRow, EnvelopeBand, EnvelopeFigure, EnvelopePanel,
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, LimitLine, RunScatter, ShareCell,
-    ShareMap,
+    ShareMap, TradeFigure, TradeSeries,
 };
 pub use conclusion::{ConclusionFigure, Part};
 pub use line::{Band, LineFigure, LinePanel, Series};

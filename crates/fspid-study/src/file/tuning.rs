@@ -56,6 +56,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
 /// The contest of a scenario whose controllers have these names.
 pub(crate) fn contest(report: &mut Report, section: &Section, names: &[&str]) -> Option<Contest> {
     check_controller(report, section, "against", names);
+    check_mirrors(report, section.sections("case"));
     Some(Contest {
         seeds: section.integer("seeds")? as u64,
         cases: cases(report, section.sections("case")),
@@ -114,7 +115,23 @@ fn case(report: &mut Report, section: &Section) -> Option<Case> {
         group: section.text("group").unwrap_or_default().to_owned(),
         set: set?,
         weight: section.number("weight")?,
+        mirror_of: section.text("mirror_of").map(str::to_owned),
     })
+}
+
+fn check_mirrors(report: &mut Report, sections: &[Section]) {
+    for section in sections {
+        let Some(mirrored) = section.text("mirror_of") else {
+            continue;
+        };
+        let is_other = |it: &&Section| it.text("name") != section.text("name");
+        let mut others = sections.iter().filter(is_other).filter_map(|it| it.text("name"));
+        if !others.any(|name| name == mirrored) {
+            let message = "no other case has this name";
+            let allowed = "the name of another [[contest.case]]";
+            report.value(section.at("mirror_of"), &section.path("mirror_of"), message, allowed);
+        }
+    }
 }
 
 fn texts(item: &Item) -> Option<Vec<String>> {

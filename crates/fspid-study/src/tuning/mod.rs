@@ -40,6 +40,8 @@ pub struct Case {
     pub set: Vec<String>,
     /// How much it counts in a mean.
     pub weight: f64,
+    /// Name of the case that this one is the mirror image of; in contests only.
+    pub mirror_of: Option<String>,
 }
 
 /// A measure that is to become small, or large where its weight is negative.

@@ -11,9 +11,11 @@ mod scatter;
 mod share_map;
 #[cfg(test)]
 pub(super) mod tests;
+mod trade;
 
 pub use distribution::{DistributionFigure, DistributionRow, LimitLine};
 pub use envelope::{EnvelopeBand, EnvelopeFigure, EnvelopePanel};
 pub use interval::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
 pub use scatter::RunScatter;
 pub use share_map::{ShareCell, ShareMap};
+pub use trade::{TradeFigure, TradeSeries};

@@ -121,6 +121,21 @@ fn map(side: usize) -> ShareMap {
     }
 }
 
+fn trade(series: usize, points: usize) -> TradeFigure {
+    let at = |n: usize, k: usize| (20.0 + (n * 7 + k) as f64, 3.0 + ((n + 3 * k) % 11) as f64);
+    let one = |n: usize| TradeSeries {
+        name: name(n),
+        style: SeriesStyle::Numbered(n),
+        points: (0..points).map(|k| at(n, k)).collect(),
+    };
+    TradeFigure {
+        title: format!("Error against {}", name(3)),
+        x_label: name(3),
+        y_label: name(2),
+        series: (0..series).map(one).collect(),
+    }
+}
+
 fn each(count: usize) -> Vec<Svg> {
     vec![
         intervals(count, 2).render(),
@@ -131,6 +146,8 @@ fn each(count: usize) -> Vec<Svg> {
         envelope(2, count).render(),
         scatter(count).render(),
         map(count).render(),
+        trade(count, 5).render(),
+        trade(2, count).render(),
     ]
 }
 
@@ -187,6 +204,9 @@ pub(in crate::figure) fn odd(draw: &mut Draw) -> Vec<Svg> {
         }
         .render(),
     );
+    let mut figure = trade(3, 0);
+    figure.series.iter_mut().for_each(|series| series.points = pairs(draw));
+    found.push(figure.render());
     found
 }
 

@@ -77,24 +77,35 @@ pub(super) static TUNING: Table = plain(
     ]],
 );
 
-static CASE: Table = plain(
+static CASE: Table = plain("The scenario with changes.", &[CASE_KEYS]);
+
+static CONTEST_CASE: Table = plain(
     "The scenario with changes.",
-    &[&[
-        required("name", Kind::Text, "What it is called; each only once."),
-        optional("group", Kind::Text, "What kind of case it is: plants, commands, gusts."),
-        required(
-            "set",
-            Kind::Own { allowed: overrides::listed_in_words, schema: overrides::listed_schema },
-            "The changes, as `--set` takes them.",
-        ),
-        defaulted(
-            "weight",
-            Kind::Number { unit: "", range: Range::Positive },
-            Default::Number(1.0),
-            "How much it counts in the mean.",
-        ),
-    ]],
+    &[
+        CASE_KEYS,
+        &[optional(
+            "mirror_of",
+            Kind::Text,
+            "Name of the case that this one is the mirror image of, such as the step downwards of a step upwards; the answer says how alike both are flown.",
+        )],
+    ],
 );
+
+const CASE_KEYS: &[Key] = &[
+    required("name", Kind::Text, "What it is called; each only once."),
+    optional("group", Kind::Text, "What kind of case it is: plants, commands, gusts."),
+    required(
+        "set",
+        Kind::Own { allowed: overrides::listed_in_words, schema: overrides::listed_schema },
+        "The changes, as `--set` takes them.",
+    ),
+    defaulted(
+        "weight",
+        Kind::Number { unit: "", range: Range::Positive },
+        Default::Number(1.0),
+        "How much it counts in the mean.",
+    ),
+];
 
 static OBJECTIVE: Table = plain(
     "A measure that is to become small.",
@@ -140,7 +151,7 @@ pub(super) static CONTEST: Table = plain(
         RUN_SEED,
         required(
             "case",
-            Kind::Tables { table: &CASE, least: 1, most: 1000 },
+            Kind::Tables { table: &CONTEST_CASE, least: 1, most: 1000 },
             "What is flown, none of it tuned on.",
         ),
     ]],

@@ -1,0 +1,156 @@
+//! Whether a contest can be held, and fairly: everything that is wrong is told at once.
+
+use fspid_campaign::engine::Stability;
+use fspid_study::file::{Study, Template};
+use fspid_study::tuning::{Contest as Rules, Tuning};
+
+use super::{Contest, Entrant, Options};
+use crate::error::TuneError;
+use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
+use crate::problem::{Problem, marks_of};
+use crate::search::Effort;
+use crate::source::Source;
+use crate::space::Space;
+
+pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, TuneError> {
+    let template = source.template()?;
+    let study = template.study();
+    let mut problems = Vec::new();
+    let names: Vec<String> =
+        study.scenario.controllers.iter().map(|named| named.name.clone()).collect();
+    if names.len() < 2 {
+        let found = names.len();
+        problems.push(format!("it has {found} controller; a contest needs two or more"));
+    }
+    let Some(rules) = study.contest.clone() else {
+        problems.push("it has no [[contest.case]]: what the controllers are judged on".to_owned());
+        return Err(refused(source, problems));
+    };
+    let tuning = study.tuning.clone();
+    problems.extend(tuned_on(tuning.as_ref(), &rules));
+    let efforts = efforts(tuning.as_ref(), &rules, options, &mut problems);
+    let cases = templates(source, &rules, &mut problems);
+    let mut entrants = Vec::new();
+    for name in &names {
+        match entrant(source, study, (name, &cases), &rules) {
+            Ok(entrant) => entrants.push(entrant),
+            Err(error) => problems.push(in_lines(&format!("controller \"{name}\": {error}"))),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(refused(source, problems));
+    }
+    let against = rules.against.as_ref();
+    let against = against.and_then(|name| names.iter().position(|it| it == name)).unwrap_or(0);
+    Ok(Contest {
+        source: source.clone(),
+        name: study.scenario.name.clone(),
+        digest: study.digest.clone(),
+        tuning,
+        rules,
+        efforts,
+        entrants,
+        against,
+    })
+}
+
+fn refused(source: &Source, problems: Vec<String>) -> TuneError {
+    TuneError::Contest { path: source.path.display().to_string(), problems }
+}
+
+/// Lines of a problem below one another.
+fn in_lines(text: &str) -> String {
+    text.trim_end().replace('\n', "\n    ")
+}
+
+/// Cases of the contest that are cases of the tuning.
+fn tuned_on(tuning: Option<&Tuning>, rules: &Rules) -> Vec<String> {
+    let Some(tuning) = tuning else {
+        return Vec::new();
+    };
+    let training: Vec<(&str, Vec<&str>)> = match tuning.cases.is_empty() {
+        true => vec![("the scenario as written", Vec::new())],
+        false => tuning.cases.iter().map(|it| (it.name.as_str(), changes(&it.set))).collect(),
+    };
+    let twin = |set: &[String]| {
+        let set = changes(set);
+        training.iter().find(|(_, other)| *other == set).map(|(name, _)| *name)
+    };
+    let named = rules.cases.iter().filter_map(|case| Some((&case.name, twin(&case.set)?)));
+    named
+        .map(|(name, twin)| {
+            format!(
+                "case \"{name}\" changes what \"{twin}\" of the tuning changes; judge on what nobody was tuned on"
+            )
+        })
+        .collect()
+}
+
+/// Changes without spaces that mean nothing, in an order of their own.
+fn changes(set: &[String]) -> Vec<&str> {
+    let mut changes: Vec<&str> = set.iter().map(|change| change.trim()).collect();
+    changes.sort_unstable();
+    changes
+}
+
+fn efforts(
+    tuning: Option<&Tuning>,
+    rules: &Rules,
+    options: &Options,
+    problems: &mut Vec<String>,
+) -> Vec<Effort> {
+    let seeds = options.seeds.unwrap_or(rules.seeds);
+    if seeds == 0 {
+        problems.push("0 seeds: each controller is tuned with one or more".to_owned());
+    }
+    let Some(tuning) = tuning else {
+        return Vec::new();
+    };
+    let budget = options.budget.unwrap_or(tuning.budget);
+    if budget == 0 {
+        problems.push("a budget of 0: each tuning flies one candidate or more".to_owned());
+    }
+    let effort = |number: u64| Effort {
+        optimiser: tuning.optimiser.clone(),
+        budget,
+        seed: tuning.seed.wrapping_add(number),
+        population: None,
+        anywhere: false,
+    };
+    (0..seeds).map(effort).collect()
+}
+
+/// The scenario with the changes of each case.
+fn templates(source: &Source, rules: &Rules, problems: &mut Vec<String>) -> Vec<Template> {
+    let mut templates = Vec::new();
+    for case in &rules.cases {
+        match source.case(case) {
+            Ok(template) => templates.push(template),
+            Err(error) => problems.push(in_lines(&error.to_string())),
+        }
+    }
+    templates
+}
+
+fn entrant(
+    source: &Source,
+    study: &Study,
+    (name, cases): (&str, &[Template]),
+    rules: &Rules,
+) -> Result<Entrant, TuneError> {
+    let marks = marks_of(study, name);
+    let problem = match marks.is_empty() {
+        true => None,
+        false => Some(Problem::new(source, Some(name))?),
+    };
+    let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
+    let flown = cases
+        .iter()
+        .zip(&rules.cases)
+        .map(|(template, case)| flown_case(template, (&case.name, case.weight), name, dispersed));
+    let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
+    let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
+    let measured = objectives.map(|it| it.requirement.clone()).collect();
+    let flights = Flights::new(Space::new(marks), flown, measured).with(Stability::AsFlown);
+    Ok(Entrant { name: name.to_owned(), problem, flights })
+}

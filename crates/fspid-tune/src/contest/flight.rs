@@ -1,0 +1,121 @@
+//! What a flight of the contest leaves behind.
+
+use fspid_campaign::engine::FlightResult;
+use fspid_campaign::rows;
+use fspid_study::metrics::Absent;
+use fspid_study::tuning::Objective;
+use fspid_study::units::degrees;
+
+use crate::score::FlightScore;
+
+/// Measures that are told of every flight: name, unit.
+pub const MEASURES: [(&str, &str); 7] = [
+    ("iae_deg_s", "deg s"),
+    ("itae_deg_s2", "deg s²"),
+    ("elevator_travel_deg", "deg"),
+    ("overshoot_pct", "%"),
+    ("settling_time_s", "s"),
+    ("largest_error_deg", "deg"),
+    ("rms_error_deg", "deg"),
+];
+
+/// Places of some measures in [`MEASURES`].
+pub(crate) const IAE: usize = 0;
+pub(crate) const TRAVEL: usize = 2;
+pub(crate) const OVERSHOOT: usize = 3;
+const SETTLING: usize = 4;
+
+/// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
+/// right angle there is no pitch hold left whose error could be compared.
+const LOST_DEG: f64 = 90.0;
+
+/// A flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flight {
+    /// The measures of [`MEASURES`]; none where the flight does not have one.
+    pub measures: [Option<f64>; MEASURES.len()],
+    /// What counts in means: infinite for a lost flight, the length of its window for a step that did not
+    /// settle; none where nothing was asked, as of overshoot without a step.
+    pub(crate) counted: [Option<f64>; MEASURES.len()],
+    /// What the objectives of the tuning cost; none without objectives, or where one has no value.
+    pub cost: Option<f64>,
+    /// The verdict in words.
+    pub verdict: String,
+    /// True for a flight that diverged, whose error grew beyond 90 deg, or that could not be flown at all.
+    pub lost: bool,
+    /// True for a loop that the linear analysis calls unstable; it cannot tell of self-tuning gains or limits, so that
+    /// this counts against nobody.
+    pub unstable: bool,
+    /// True for a flight that is lost or breaks a requirement.
+    pub failed: bool,
+    /// Why it is lost, and which requirements are broken.
+    pub reasons: Vec<String>,
+}
+
+impl Flight {
+    pub(crate) fn refused(reason: String) -> Self {
+        Self {
+            measures: [None; MEASURES.len()],
+            counted: [Some(f64::INFINITY); MEASURES.len()],
+            cost: None,
+            verdict: rows::REFUSED.to_owned(),
+            lost: true,
+            unstable: false,
+            failed: true,
+            reasons: vec![reason],
+        }
+    }
+
+    /// Of a flight whose judgements end with those of the objectives.
+    pub(crate) fn of(flight: &FlightResult, objectives: &[Objective], duration_s: f64) -> Self {
+        let score = FlightScore::of(flight, objectives.len(), duration_s);
+        let measures = MEASURES.map(|(name, _)| rows::measured(flight, name));
+        let is_far = !(degrees(flight.largest_error_rad) <= LOST_DEG);
+        let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none() || is_far;
+        let measures = if is_lost { [None; MEASURES.len()] } else { measures };
+        let mut counted = measures;
+        for (index, value) in counted.iter_mut().enumerate() {
+            *value = value.or_else(|| stand_in(flight, index, is_lost));
+        }
+        let asked = flight.judgements.len().saturating_sub(objectives.len());
+        let unmet = flight.judgements.iter().take(asked).any(|judgement| !judgement.met);
+        let costs = score.values.iter().zip(objectives);
+        let cost = costs.map(|(value, objective)| objective.weight * value).sum::<f64>();
+        let has_cost = !objectives.is_empty() && !is_lost && !score.values.is_empty();
+        Self {
+            measures,
+            counted,
+            cost: has_cost.then_some(cost).filter(|cost| cost.is_finite()),
+            verdict: match is_far && !flight.metrics.verdict.is_failure() {
+                true => format!("lost: an error beyond {LOST_DEG} deg"),
+                false => flight.metrics.verdict.to_string(),
+            },
+            lost: is_lost,
+            unstable: flight.unstable.is_some(),
+            failed: is_lost || unmet,
+            reasons: is_far
+                .then(|| format!("an error beyond {LOST_DEG} deg"))
+                .into_iter()
+                .chain(score.reasons)
+                .collect(),
+        }
+    }
+}
+
+/// What stands for a measure that a flight does not have.
+fn stand_in(flight: &FlightResult, measure: usize, is_lost: bool) -> Option<f64> {
+    if is_lost {
+        return Some(f64::INFINITY);
+    }
+    let step = flight.metrics.first_step();
+    let why = match measure {
+        OVERSHOOT => step.overshoot_pct.err()?,
+        SETTLING => step.settling_time_s.err()?,
+        _ => return Some(f64::INFINITY),
+    };
+    match why {
+        Absent::NoStep => None,
+        Absent::NotSettled { window_s } if measure == SETTLING => Some(window_s),
+        _ => Some(f64::INFINITY),
+    }
+}

@@ -1,0 +1,201 @@
+//! The outcome for programs.
+
+use serde_json::{Map, Value, json};
+
+use super::compare::{CONFIDENCE, Comparison, Lost, Ratio, Standing};
+use super::judged::{Contestant, Count, Design, Quantity};
+use super::outcome::{First, Outcome};
+use super::summary::{Spread, Summary};
+
+/// Version of the format.
+const SCHEMA: u32 = 1;
+
+pub(super) fn json(outcome: &Outcome) -> Value {
+    let judged = &outcome.judged;
+    let name = |place: usize| judged.contestants.get(place).map(|it| it.name.as_str());
+    let setting = &outcome.setting;
+    let effort = setting.efforts.first();
+    let tuned = effort.map(|effort| {
+        json!({
+            "optimiser": effort.optimiser,
+            "budget": effort.budget,
+            "seeds": setting.efforts.iter().map(|it| it.seed).collect::<Vec<_>>(),
+            "objectives": setting.objectives,
+            "cases": setting.training,
+            "runs": setting.training_runs,
+        })
+    });
+    let controllers = judged.contestants.iter().zip(&outcome.summaries).enumerate();
+    let groups = judged.groups().into_iter().enumerate().map(|(place, (group, cases))| {
+        let first = outcome.first_of_group(place);
+        json!({ "name": group, "cases": cases.len(), "ranking": ranking(outcome, &first) })
+    });
+    json!({
+        "schema": SCHEMA,
+        "scenario": setting.scenario,
+        "digest": setting.digest,
+        "confidence": CONFIDENCE,
+        "against": name(judged.against),
+        "tuning": tuned,
+        "ranking": ranking(outcome, &outcome.first()),
+        "groups": groups.collect::<Vec<_>>(),
+        "cases": cases(outcome),
+        "controllers": controllers.map(|(place, it)| controller(outcome, place, it)).collect::<Vec<_>>(),
+    })
+}
+
+fn ranking<'a>(outcome: &'a Outcome, first: &First) -> Vec<&'a str> {
+    first.ranking.iter().map(|place| outcome.judged.contestants[*place].name.as_str()).collect()
+}
+
+fn cases(outcome: &Outcome) -> Vec<Value> {
+    let judged = &outcome.judged;
+    let case = |(place, case): (usize, &super::Case)| {
+        let errors = judged.contestants.iter().zip(&outcome.summaries);
+        let errors: Map<String, Value> = errors
+            .map(|(it, summary)| {
+                let part = &summary.cases[place];
+                (it.name.clone(), spread(part.spread(Quantity::ERROR)))
+            })
+            .collect();
+        json!({
+            "name": case.name,
+            "group": case.group,
+            "set": case.set,
+            "runs": case.runs,
+            "mirror_of": case.mirror_of.map(|it| judged.cases[it].name.as_str()),
+            "iae_deg_s": errors,
+        })
+    };
+    judged.cases.iter().enumerate().map(case).collect()
+}
+
+fn controller(
+    outcome: &Outcome,
+    place: usize,
+    (contestant, summary): (&Contestant, &Summary),
+) -> Value {
+    let groups = outcome.judged.groups().into_iter().zip(&summary.groups);
+    let groups: Vec<Value> = groups
+        .map(|((name, _), it)| json!({ "name": name, "measures": measures(&it.spreads), "flights": count(it.count) }))
+        .collect();
+    let mirror = summary.mirror.map(|it| {
+        json!({
+            "largest_relative_difference": finite(it.error),
+            "lost_on_one_side": it.error.is_infinite(),
+            "largest_overshoot_difference_pct": it.overshoot_pct.and_then(finite),
+            "case": outcome.judged.cases[it.case].name,
+        })
+    });
+    let compare = |quantity: &str, found: Option<&Vec<Comparison>>| {
+        let found = found.and_then(|all| all.iter().find(|it| it.contestant == place));
+        (quantity.to_owned(), found.map_or(Value::Null, |it| comparison(outcome, it)))
+    };
+    let compared: Map<String, Value> = [
+        compare("iae_deg_s", outcome.error.as_ref()),
+        compare("elevator_travel_deg", outcome.activity.as_ref()),
+        compare("cost", outcome.cost.as_ref()),
+    ]
+    .into_iter()
+    .collect();
+    let is_reference = place == outcome.judged.against;
+    json!({
+        "name": contestant.name,
+        "tuned": contestant.is_tuned,
+        "measures": measures(&summary.whole.spreads),
+        "measures_where_nobody_lost": measures(&summary.whole.kept),
+        "flights": count(summary.whole.count),
+        "lost_interval": summary.lost,
+        "failed_interval": summary.failed,
+        "groups": groups,
+        "mirror": mirror,
+        "compared": if is_reference { Value::Null } else { Value::Object(compared) },
+        "designs": contestant.designs.iter().map(design).collect::<Vec<_>>(),
+    })
+}
+
+fn design(design: &Design) -> Value {
+    match &design.found {
+        None => Value::Null,
+        Some(found) => json!({
+            "seed": found.effort.seed,
+            "cost": found.cost,
+            "candidates": found.candidates,
+            "flights_per_candidate": found.flights,
+            "stop": found.stop,
+            "parameters": found.numbers,
+            "reasons": found.reasons.iter().map(|it| it.trim()).collect::<Vec<_>>(),
+        }),
+    }
+}
+
+fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
+    let standing = match (found.standing, found.is_sure) {
+        (Standing::Better, true) => "better",
+        (Standing::Worse, true) => "worse",
+        (Standing::Better, false) => "ahead",
+        (Standing::Worse, false) => "behind",
+        (Standing::Open, _) => "not significant",
+    };
+    let Lost { cases: lost_cases, p: lost_p, p_adjusted: lost_p_adjusted } = found.lost;
+    let names = outcome.judged.groups().into_iter().zip(&found.groups);
+    let groups: Vec<Value> = names
+        .map(|((name, _), it)| {
+            let mut value = ratio(it);
+            value["name"] = json!(name);
+            value
+        })
+        .collect();
+    let cases = outcome.judged.cases.iter().zip(&found.cases);
+    let cases: Map<String, Value> =
+        cases.map(|(case, it)| (case.name.clone(), json!(finite(libm::exp(*it))))).collect();
+    let typical = found.typical.map(|it| {
+        let interval = [it.lower, it.upper].map(|end| finite(libm::exp(end)));
+        json!({
+            "ratio": finite(libm::exp(it.estimate)),
+            "interval": interval,
+            "p": it.p,
+        })
+    });
+    json!({
+        "standing": standing,
+        "by_lost_flights": found.by_flights,
+        "lost": { "cases": lost_cases, "p": lost_p, "p_adjusted": lost_p_adjusted },
+        "ratio_of_means": found.ratio_of_means.and_then(finite),
+        "mean_ratio": ratio(&found.ratio),
+        "typical": typical,
+        "p": found.p,
+        "p_adjusted": found.p_adjusted,
+        "groups": groups,
+        "case_ratios": cases,
+    })
+}
+
+fn ratio(ratio: &Ratio) -> Value {
+    json!({ "ratio": ratio.mean, "interval": ratio.interval, "cases": ratio.cases })
+}
+
+fn measures(spreads: &[Option<Spread>]) -> Map<String, Value> {
+    let all = Quantity::all().zip(spreads);
+    all.map(|(quantity, it)| (quantity.name().to_owned(), spread(*it))).collect()
+}
+
+fn spread(found: Option<Spread>) -> Value {
+    let Some(found) = found else {
+        return Value::Null;
+    };
+    json!({
+        "lower_quartile": finite(found.lower),
+        "median": finite(found.median),
+        "upper_quartile": finite(found.upper),
+    })
+}
+
+fn count(count: Count) -> Value {
+    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "of": count.of })
+}
+
+/// JSON has no infinity: a mean with lost flights is null, and the flights are counted beside it.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

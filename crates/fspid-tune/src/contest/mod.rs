@@ -1,0 +1,239 @@
+//! A fair contest: controllers that are tuned alike, judged on what none of them was tuned on.
+//!
+//! ```text
+//! scenario ─the same budget, optimiser, objectives, seeds▶ designs ─cases of the contest▶ flights ─▶ who wins where
+//! ```
+//!
+//! Controllers without marks fly as they are. What is found is kept in a folder, so that a contest that was
+//! interrupted goes on with the same bits; threads do not show in it either.
+//!
+//! # What is said of differences
+//! Flights of one case, and flights of one design, are not independent. Cases and designs are therefore the units that
+//! are counted, never flights: [`two_way`] gives the error of a mean ratio with a part for cases and a part for
+//! designs, [`signed_rank`] asks the cases alone without assuming a distribution. A difference is called significant
+//! where both tests say so, after Holm's correction for the number of controllers compared.
+//!
+//! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
+//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for being
+//! easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design infinite, its case ranks behind
+//! every case without, and a controller that loses more flights than another ranks behind it and is never called
+//! better, whatever its error elsewhere; whether it is called worse is for the signed ranks of the cases to say.
+
+mod check;
+mod compare;
+mod flight;
+mod json;
+mod judged;
+#[cfg(test)]
+mod oracle;
+mod outcome;
+mod page;
+mod signed_rank;
+mod student;
+mod summary;
+mod table;
+mod text;
+mod tuning;
+mod two_way;
+mod words;
+
+use std::path::Path;
+
+use fspid_campaign::Folder;
+use fspid_study::output;
+use fspid_study::tuning::{Contest as Rules, Tuning};
+
+pub use compare::{Comparison, Lost, Ratio, Standing};
+pub use flight::{Flight, MEASURES};
+pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
+pub use outcome::{First, Outcome, Setting};
+pub use signed_rank::SignedRank;
+pub use summary::{Mirror, Part, Spread, Summary};
+pub use tuning::{Found, Number, Progress, Then};
+pub use two_way::{TwoWay, holm};
+
+use crate::error::TuneError;
+use crate::flights::Flights;
+use crate::problem::Problem;
+use crate::search::Effort;
+use crate::source::Source;
+use tuning::Task;
+
+/// What can be chosen about a contest.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// How many seeds each controller is tuned with; by default as the scenario says.
+    pub seeds: Option<u64>,
+    /// Candidates of each tuning; by default as the scenario says.
+    pub budget: Option<usize>,
+}
+
+/// A controller that takes part.
+#[derive(Clone, Debug)]
+struct Entrant {
+    name: String,
+    /// How it is tuned; none for one without marks.
+    problem: Option<Problem>,
+    /// What it is judged on.
+    flights: Flights,
+}
+
+/// A contest that can be held.
+#[derive(Clone, Debug)]
+pub struct Contest {
+    source: Source,
+    name: String,
+    digest: String,
+    tuning: Option<Tuning>,
+    rules: Rules,
+    efforts: Vec<Effort>,
+    entrants: Vec<Entrant>,
+    /// Place of the controller that the others are compared with.
+    against: usize,
+}
+
+/// The part of the folder in which designs lie.
+const DESIGNS: &str = "designs";
+
+impl Contest {
+    /// Reads and checks a contest; nothing is flown.
+    ///
+    /// # Errors
+    /// Everything that makes it none: fewer than two controllers, cases that were tuned on, cases that make the
+    /// scenario wrong, a tuning that is none.
+    pub fn new(source: &Source, options: &Options) -> Result<Self, TuneError> {
+        check::checked(source, options)
+    }
+
+    /// Tunes what is to be tuned, judges all, and writes `contest.parquet`, `contest.json` and `contest.html` into
+    /// the folder, designs below it. Designs that are there already are not searched again.
+    ///
+    /// `tell` is called before each generation and for each design that was there. Runs on the threads of the pool
+    /// that it is called in.
+    ///
+    /// # Errors
+    /// Another process in the folder, a start without a cost, files that cannot be written, or
+    /// [`TuneError::Stopped`].
+    pub fn hold(
+        &self,
+        folder: &Path,
+        tell: &mut dyn FnMut(&Progress) -> Then,
+    ) -> Result<Outcome, TuneError> {
+        let designs = folder.join(DESIGNS);
+        output::make_folder(&designs)?;
+        let _lock = Folder::new(folder).lock(true)?;
+        let found = self.tuned(&designs, tell)?;
+        let judged = self.judged(found);
+        table::write(&folder.join("contest.parquet"), &judged, &self.digest)?;
+        let outcome = Outcome::new(judged, self.setting(folder));
+        output::write(&folder.join("contest.json"), format!("{:#}\n", outcome.json()))?;
+        output::write(&folder.join("contest.html"), page::page(self, &outcome))?;
+        Ok(outcome)
+    }
+
+    /// What each tuning found, a list for each controller.
+    fn tuned(
+        &self,
+        folder: &Path,
+        tell: &mut dyn FnMut(&Progress) -> Then,
+    ) -> Result<Vec<Vec<Found>>, TuneError> {
+        let tuned = self.entrants.iter().filter(|it| it.problem.is_some()).count();
+        let (mut number, all) = (0, tuned * self.efforts.len());
+        let mut found = Vec::new();
+        for (place, entrant) in self.entrants.iter().enumerate() {
+            let mut mine = Vec::new();
+            for effort in self.efforts.iter().filter(|_| entrant.problem.is_some()) {
+                let Some(problem) = &entrant.problem else {
+                    continue;
+                };
+                number += 1;
+                let stem = format!("{}-{}-seed-{}", place + 1, bare(&entrant.name), effort.seed);
+                let search = (number, all);
+                let effort = effort.clone();
+                let task = Task { source: &self.source, problem, effort, folder, stem, search };
+                mine.push(task.done(tell).map_err(|error| of_entrant(error, &entrant.name))?);
+            }
+            found.push(mine);
+        }
+        Ok(found)
+    }
+
+    /// All designs flown on all cases.
+    fn judged(&self, found: Vec<Vec<Found>>) -> Judged {
+        let objectives =
+            self.tuning.as_ref().map_or(&[][..], |tuning| tuning.objectives.as_slice());
+        let contestants = self.entrants.iter().zip(found).map(|(entrant, found)| {
+            let is_tuned = entrant.problem.is_some();
+            let found: Vec<Option<Found>> = match is_tuned {
+                true => found.into_iter().map(Some).collect(),
+                false => vec![None],
+            };
+            let point = |it: &Option<Found>| it.as_ref().map_or(Vec::new(), |it| it.point.clone());
+            let points: Vec<Vec<f64>> = found.iter().map(point).collect();
+            let flown = entrant.flights.flown(&points, &|flight, duration_s| match flight {
+                Ok(flight) => Flight::of(flight, objectives, duration_s),
+                Err(reason) => Flight::refused(reason),
+            });
+            let designs = found.into_iter().zip(flown);
+            Contestant {
+                name: entrant.name.clone(),
+                is_tuned,
+                designs: designs.map(|(found, flights)| Design { found, flights }).collect(),
+            }
+        });
+        Judged { contestants: contestants.collect(), cases: self.cases(), against: self.against }
+    }
+
+    fn cases(&self) -> Vec<Case> {
+        let runs = |case: usize| {
+            let first = self.entrants.first();
+            first.and_then(|it| it.flights.cases().get(case)).map_or(0, |it| it.runs())
+        };
+        let place = |name: &String| self.rules.cases.iter().position(|it| it.name == *name);
+        let cases = self.rules.cases.iter().enumerate().map(|(index, case)| Case {
+            name: case.name.clone(),
+            group: case.group.clone(),
+            set: case.set.clone(),
+            weight: case.weight,
+            runs: runs(index),
+            mirror_of: case.mirror_of.as_ref().and_then(place),
+        });
+        cases.collect()
+    }
+
+    fn setting(&self, folder: &Path) -> Setting {
+        let path = &self.source.path;
+        let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        let training = self.tuning.as_ref().map(|it| it.cases.as_slice()).unwrap_or_default();
+        let folder = folder.file_name().map(|name| name.to_string_lossy().into_owned());
+        Setting {
+            scenario: self.name.clone(),
+            file: file.unwrap_or_default(),
+            overrides: self.source.overrides.clone(),
+            folder: folder.unwrap_or_default(),
+            digest: self.digest.clone(),
+            efforts: self.efforts.clone(),
+            training: training.iter().map(|case| case.name.clone()).collect(),
+            objectives: self.tuning.as_ref().map_or(Vec::new(), words::objectives),
+            training_runs: self.tuning.as_ref().map_or(0, |it| it.runs),
+            runs: self.rules.runs,
+        }
+    }
+}
+
+/// A name as part of a file's name.
+fn bare(name: &str) -> String {
+    let kept = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let text: String = name.chars().map(kept).take(40).collect();
+    let words: Vec<&str> = text.split('-').filter(|word| !word.is_empty()).collect();
+    words.join("-")
+}
+
+fn of_entrant(error: TuneError, controller: &str) -> TuneError {
+    match error {
+        TuneError::Stopped | TuneError::Output(_) | TuneError::History(_) => error,
+        reason => {
+            TuneError::Entrant { controller: controller.to_owned(), reason: Box::new(reason) }
+        }
+    }
+}

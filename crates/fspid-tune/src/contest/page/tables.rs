@@ -1,0 +1,254 @@
+//! Tables: controllers, failures, mirrored cases, cases.
+
+use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item};
+use fspid_study::report::number::significant;
+
+use super::chapter;
+use crate::contest::compare::{Comparison, Standing};
+use crate::contest::judged::Quantity;
+use crate::contest::words::{
+    counted, cut, group, kept, name, number, over_kept, p_value, per_cent, signed, signed_interval,
+    spread, spread_of,
+};
+use crate::contest::{Outcome, text, words};
+
+/// Most rows of the table of cases, and most reasons of failures that are told.
+const MOST_ROWS: usize = 300;
+const MOST_REASONS: usize = 30;
+
+pub(super) fn table(caption: String, head: &[&str], rows: Vec<Vec<Datum>>) -> DataTable {
+    let head = head.iter().map(|it| (*it).to_owned()).collect();
+    DataTable { caption, head, rows, cards: true }
+}
+
+/// What everyone came to, the first first.
+pub(super) fn controllers(outcome: &Outcome) -> DataTable {
+    let reference = cut(name(outcome, outcome.judged.against), 40);
+    let head = [
+        "controller",
+        "standing",
+        "IAE [deg s]",
+        "difference (interval)",
+        "p",
+        "elevator travel [deg]",
+        "difference",
+        "lost",
+    ];
+    let rows = outcome.first().ranking.into_iter().map(|place| {
+        let of = |quantity| Datum::Number(spread_of(outcome, place, quantity));
+        let found = outcome.comparison(place);
+        let p = found.map_or(DASH.to_owned(), |it| {
+            p_value(it.p_adjusted).replace("p = ", "").replace("p ", "")
+        });
+        let activity = outcome.activity_of(place).and_then(|it| it.ratio.mean);
+        let count = outcome.summaries[place].whole.count;
+        vec![
+            Datum::Text(cut(name(outcome, place), 60)),
+            standing(outcome, place),
+            of(Quantity::ERROR),
+            difference(found),
+            Datum::Number(p),
+            of(Quantity::ACTIVITY),
+            Datum::Number(activity.map_or(DASH.to_owned(), signed)),
+            Datum::Number(format!("{} of {}", count.lost, count.of)),
+        ]
+    });
+    let caption = format!(
+        "Medians over the seeds (and quartiles) of means over {}. Differences are those from {reference} in the geometric mean over the cases that neither lost; their intervals hold together at {}. p is the larger of two tests, after Holm's correction.",
+        over_kept(outcome),
+        per_cent()
+    );
+    table(caption, &head, rows.collect())
+}
+
+const DASH: &str = "\u{2013}";
+
+fn difference(found: Option<&Comparison>) -> Datum {
+    let Some(ratio) = found.map(|it| it.ratio) else {
+        return Datum::Number(DASH.to_owned());
+    };
+    Datum::Number(match (ratio.mean, ratio.interval) {
+        (Some(mean), Some(ends)) => format!("{} ({})", signed(mean), signed_interval(ends)),
+        (Some(mean), None) => signed(mean),
+        _ => DASH.to_owned(),
+    })
+}
+
+/// The other measures of everyone, and other ways to compare.
+pub(super) fn more(outcome: &Outcome) -> DataTable {
+    let reference = cut(name(outcome, outcome.judged.against), 40);
+    let others = [1, 3, 4, 5, 6].map(Quantity::Measure);
+    let mut head = vec!["controller".to_owned()];
+    head.extend(others.iter().map(|it| format!("{} [{}]", in_words(it.name()), it.unit())));
+    head.push("cost".to_owned());
+    head.push("difference of travel (interval)".to_owned());
+    head.extend(["ratio of mean IAE", "IAE in a typical case (interval)"].map(str::to_owned));
+    let rows = outcome.first().ranking.into_iter().map(|place| {
+        let of = |quantity| Datum::Number(spread_of(outcome, place, quantity));
+        let mut row = vec![Datum::Text(cut(name(outcome, place), 60))];
+        row.extend(others.map(of));
+        row.push(of(Quantity::Cost));
+        row.push(difference(outcome.activity_of(place)));
+        row.extend(typical(outcome.comparison(place)));
+        row
+    });
+    let caption = format!(
+        "Medians over the seeds (and quartiles) of means over {}. Cost: what the tuning made small, on the cases of the contest. Ratio of mean IAE: the mean over all cases and seeds by that of {reference}. Typical case: the median over pairs of cases by Hodges and Lehmann, lost cases as the worst, with its own {} interval over cases.",
+        over_kept(outcome),
+        per_cent()
+    );
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    table(caption, &head, rows.collect())
+}
+
+/// A measure's name without its unit.
+fn in_words(name: &str) -> String {
+    let bare =
+        ["_deg_s2", "_deg_s", "_deg", "_pct", "_s"].iter().find_map(|it| name.strip_suffix(it));
+    bare.unwrap_or(name).replace('_', " ").replace("itae", "ITAE").replace("rms", "RMS")
+}
+
+fn typical(found: Option<&Comparison>) -> [Datum; 2] {
+    let Some(found) = found else {
+        return [DASH, DASH].map(|it| Datum::Number(it.to_owned()));
+    };
+    let means = found.ratio_of_means.map(|ratio| match ratio.is_infinite() {
+        true => "lost".to_owned(),
+        false => significant(ratio, 3),
+    });
+    let typical = found.typical.map(|it| {
+        let [middle, lower, upper] = [it.estimate, it.lower, it.upper].map(libm::exp);
+        format!("{} ({})", signed(middle), signed_interval([lower, upper]))
+    });
+    let number = |text: Option<String>, why: &str| {
+        text.map_or_else(|| Datum::Absent(why.to_owned()), Datum::Number)
+    };
+    [number(means, "both lose flights"), number(typical, "none")]
+}
+
+fn standing(outcome: &Outcome, place: usize) -> Datum {
+    let Some(found) = outcome.comparison(place) else {
+        return Datum::Text("compared with".to_owned());
+    };
+    let word = words::standing(found).to_owned();
+    match found.standing {
+        Standing::Better if found.is_sure => Datum::Met(word),
+        Standing::Worse if found.is_sure => Datum::Unmet(word),
+        _ => Datum::Text(word),
+    }
+}
+
+/// Lost and failed flights, and how alike mirrored cases are flown.
+pub(super) fn failures_chapter(outcome: &Outcome) -> Chapter {
+    let mut items = vec![Item::Table(failures(outcome))];
+    let reasons = reasons(outcome);
+    if !reasons.is_empty() {
+        items.push(Item::Fold("Why flights failed".to_owned(), vec![Item::List(reasons)]));
+    }
+    let mirrors = outcome.summaries.iter().enumerate();
+    let mirrors: Vec<String> =
+        mirrors.filter_map(|(place, it)| text::mirror(outcome, place, it)).collect();
+    if !mirrors.is_empty() {
+        items.push(Item::Heading("Both directions alike?".to_owned()));
+        items.push(Item::Text("Largest difference between a case and its mirror image, over all seeds and draws: of the error integral as the larger by the smaller, and of the overshoot.".to_owned()));
+        items.push(Item::List(mirrors));
+    }
+    chapter("failures", "Failures", items)
+}
+
+fn failures(outcome: &Outcome) -> DataTable {
+    let contestants = outcome.judged.contestants.iter().zip(&outcome.summaries);
+    let percent = |[lower, upper]: [f64; 2]| {
+        format!("{} % to {} %", significant(100.0 * lower, 2), significant(100.0 * upper, 2))
+    };
+    let rows = contestants.map(|(it, summary)| {
+        let count = summary.whole.count;
+        let whole = summary.whole.spread(Quantity::ERROR);
+        vec![
+            Datum::Text(cut(&it.name, 60)),
+            Datum::Number(format!("{} of {}", count.lost, count.of)),
+            Datum::Number(percent(summary.lost)),
+            Datum::Number(format!("{} of {}", count.failed, count.of)),
+            Datum::Number(percent(summary.failed)),
+            Datum::Number(format!("{} of {}", count.unstable, count.of)),
+            Datum::Number(spread(whole, it.designs.len())),
+        ]
+    });
+    let without = kept(outcome);
+    let head = [
+        "controller",
+        "lost",
+        "probability of a loss",
+        "failed",
+        "probability of a failure",
+        "unstable by analysis",
+        "IAE on all cases [deg s]",
+    ];
+    let caption = format!(
+        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that the linear analysis calls unstable are judged as they flew, as all are: it cannot tell of self-tuning gains and limits. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        per_cent(),
+        match without {
+            kept if kept == outcome.judged.cases.len() => "any case".to_owned(),
+            kept => format!("{kept} of {} cases", outcome.judged.cases.len()),
+        }
+    );
+    table(caption, &head, rows.collect())
+}
+
+fn reasons(outcome: &Outcome) -> Vec<String> {
+    let judged = &outcome.judged;
+    let mut told: Vec<String> = Vec::new();
+    let mut more = 0;
+    for contestant in &judged.contestants {
+        for (place, case) in judged.cases.iter().enumerate() {
+            let flights = contestant.designs.iter().flat_map(|it| judged.flights(it, place));
+            let failed: Vec<_> = flights.filter(|flight| flight.failed).collect();
+            let Some(first) = failed.first() else {
+                continue;
+            };
+            if told.len() >= MOST_REASONS {
+                more += 1;
+                continue;
+            }
+            told.push(format!(
+                "{}, {}: {}, such as: {}",
+                cut(&contestant.name, 60),
+                cut(&case.name, 60),
+                counted(failed.len(), "flight", "flights"),
+                cut(&first.reasons.join("; "), 200)
+            ));
+        }
+    }
+    if more > 0 {
+        told.push(format!("and {more} more, in contest.parquet"));
+    }
+    told
+}
+
+/// The error of everyone on each case.
+pub(super) fn cases(outcome: &Outcome) -> DataTable {
+    let judged = &outcome.judged;
+    let mut head = vec!["case", "group"];
+    let names: Vec<String> = judged.contestants.iter().map(|it| cut(&it.name, 30)).collect();
+    head.extend(names.iter().map(String::as_str));
+    let rows = judged.cases.iter().enumerate().take(MOST_ROWS).map(|(place, case)| {
+        let medians: Vec<f64> = outcome
+            .summaries
+            .iter()
+            .map(|it| it.cases[place].spread(Quantity::ERROR).map_or(f64::INFINITY, |it| it.median))
+            .collect();
+        let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut row =
+            vec![Datum::Text(cut(&case.name, 60)), Datum::Text(group(&case.group).to_owned())];
+        row.extend(medians.iter().map(|it| match *it <= least && it.is_finite() {
+            true => Datum::Met(number(*it)),
+            false => Datum::Number(number(*it)),
+        }));
+        row
+    });
+    let left = judged.cases.len().saturating_sub(MOST_ROWS);
+    let left = if left > 0 { format!(" {left} cases are left out.") } else { String::new() };
+    let caption =
+        format!("IAE [deg s] of each case: median over the seeds; the smallest is marked.{left}");
+    table(caption, &head, rows.collect())
+}

@@ -1,0 +1,98 @@
+//! Every flight of a contest as a row of a Parquet file.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use fspid_campaign::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, Writer};
+use fspid_study::output;
+
+use super::flight::{Flight, MEASURES};
+use super::judged::Judged;
+use crate::error::TuneError;
+
+/// Key of the metadata that names the scenario.
+const SCENARIO_KEY: &str = "fspid.scenario";
+
+/// Writes all flights: controllers, designs, cases, runs.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(super) fn write(path: &Path, judged: &Judged, digest: &str) -> Result<(), TuneError> {
+    let table = table(judged)?;
+    let metadata = vec![(SCENARIO_KEY.to_owned(), digest.to_owned())];
+    output::write_by(path, |file| {
+        let mut writer = Writer::new(file, table.schema(), &metadata)?;
+        writer.write(&table)?;
+        writer.finish(&[])?;
+        Ok::<_, TuneError>(())
+    })
+}
+
+fn table(judged: &Judged) -> Result<Table, TuneError> {
+    let mut table = Table::new(Arc::new(schema()?));
+    for contestant in &judged.contestants {
+        for design in &contestant.designs {
+            let seed = design.found.as_ref().map(|found| found.effort.seed as i64);
+            for (place, case) in judged.cases.iter().enumerate() {
+                for (run, flight) in judged.flights(design, place).iter().enumerate() {
+                    let head = [
+                        Cell::Text(short(&contestant.name)),
+                        seed.map_or(Cell::Absent, Cell::Integer),
+                        Cell::Text(short(&case.name)),
+                        Cell::Text(short(&case.group)),
+                        Cell::Integer(run as i64),
+                    ];
+                    push(&mut table, &head, flight)?;
+                }
+            }
+        }
+    }
+    Ok(table)
+}
+
+fn push(table: &mut Table, head: &[Cell<'_>], flight: &Flight) -> Result<(), TuneError> {
+    let number = |value: Option<f64>| value.map_or(Cell::Absent, Cell::Float);
+    let reasons = flight.reasons.join("; ");
+    let mut row = head.to_vec();
+    row.extend([
+        Cell::Text(short(&flight.verdict)),
+        Cell::Boolean(flight.lost),
+        Cell::Boolean(flight.unstable),
+        Cell::Boolean(flight.failed),
+        if reasons.is_empty() { Cell::Absent } else { Cell::Text(short(&reasons)) },
+        number(flight.cost),
+    ]);
+    row.extend(flight.measures.iter().map(|value| number(*value)));
+    table.push(&row)?;
+    Ok(())
+}
+
+/// As much of a text as a cell holds.
+fn short(text: &str) -> &str {
+    text.get(..text.floor_char_boundary(MAX_TEXT_BYTES)).unwrap_or(text)
+}
+
+fn schema() -> Result<Schema, TuneError> {
+    let column = Column::new;
+    let mut columns = vec![
+        column("controller", Kind::Text).meaning("name of the controller"),
+        column("seed", Kind::Integer)
+            .meaning("seed that it was tuned with; empty for one that was not tuned"),
+        column("case", Kind::Text).meaning("name of the case"),
+        column("group", Kind::Text).meaning("group of the case"),
+        column("run", Kind::Integer).meaning("number of the draw within the case, from 0"),
+        column("verdict", Kind::Text).meaning("verdict on the flight"),
+        column("lost", Kind::Boolean)
+            .meaning("it diverged, its error grew beyond 90 deg, or it could not be flown"),
+        column("unstable", Kind::Boolean).meaning(
+            "the linear analysis calls its loop unstable, which it cannot tell of self-tuning gains and limits",
+        ),
+        column("failed", Kind::Boolean).meaning("it is lost or breaks a requirement"),
+        column("reasons", Kind::Text).meaning("why it failed or has no cost"),
+        column("cost", Kind::Float)
+            .meaning("what the objectives of the tuning cost; empty for a lost flight"),
+    ];
+    let measures = MEASURES.iter().map(|(name, unit)| Column::new(*name, Kind::Float).unit(*unit));
+    columns.extend(measures);
+    Ok(Schema::new(columns)?)
+}

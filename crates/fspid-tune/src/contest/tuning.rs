@@ -1,0 +1,233 @@
+//! One controller tuned with one seed, kept in the contest's folder.
+
+use std::path::{Path, PathBuf};
+
+use fspid_campaign::Plan;
+use fspid_study::output;
+use fspid_study::tuning::Free;
+use serde::{Deserialize, Serialize};
+
+use crate::design;
+use crate::error::TuneError;
+use crate::problem::Problem;
+use crate::search::{Effort, Search, State, stop_in_words};
+use crate::source::Source;
+use crate::tuned::Tuned;
+
+/// Version of what is kept.
+const SCHEMA: u32 = 1;
+/// How near to a bound a number counts as at it, as a share of the way between the bounds.
+const AT_BOUND: f64 = 1e-3;
+
+/// What a tuning found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    schema: u32,
+    /// The program that searched.
+    program: String,
+    /// Digest of everything that decides what a candidate is worth.
+    of: String,
+    /// Name of the controller.
+    pub controller: String,
+    /// How it was searched.
+    pub effort: Effort,
+    /// Candidates flown, the start not counted.
+    pub candidates: usize,
+    /// Flights of a candidate.
+    pub flights: usize,
+    /// Why the search is over.
+    pub stop: String,
+    /// Cost on the training cases; none where no candidate was allowed.
+    pub cost: Option<f64>,
+    /// What is wrong with flights of the best candidate; empty where all is well.
+    pub reasons: Vec<String>,
+    /// The numbers that were free.
+    pub numbers: Vec<Number>,
+    /// The best candidate's place in the unit cube.
+    pub(crate) point: Vec<f64>,
+}
+
+/// A number that was free.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Number {
+    /// Where it stands.
+    pub path: String,
+    /// What the search began from.
+    pub start: f64,
+    /// What was found.
+    pub value: f64,
+    /// Bounds; none for labels of rules.
+    pub bounds: Option<[f64; 2]>,
+    /// Whether it lies at one of its bounds.
+    pub at_bound: bool,
+}
+
+/// How far a search is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Name of the controller.
+    pub controller: String,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Number of the search, from 1, and how many there are.
+    pub search: (usize, usize),
+    /// Candidates flown of this search, and how many there will be.
+    pub candidates: (usize, usize),
+    /// Whether it was found finished.
+    pub was_there: bool,
+}
+
+/// What is done after progress was told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Then {
+    /// The next generation.
+    GoOn,
+    /// The state of the search is saved first.
+    Save,
+    /// The state of the search is saved, and the contest ends there until it is begun again.
+    Stop,
+}
+
+/// A search that is asked for.
+pub(crate) struct Task<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) problem: &'a Problem,
+    pub(crate) effort: Effort,
+    /// Where its files lie, and what their names begin with.
+    pub(crate) folder: &'a Path,
+    pub(crate) stem: String,
+    /// Its number and how many there are.
+    pub(crate) search: (usize, usize),
+}
+
+impl Task<'_> {
+    fn path(&self, ending: &str) -> PathBuf {
+        self.folder.join(format!("{}.{ending}", self.stem))
+    }
+
+    /// What was found before, or is found now.
+    ///
+    /// # Errors
+    /// A start without a cost, or files that cannot be written.
+    pub(crate) fn done(&self, tell: &mut dyn FnMut(&Progress) -> Then) -> Result<Found, TuneError> {
+        if let Some(found) = self.kept() {
+            return match tell(&self.progress(found.candidates, true)) {
+                Then::Stop => Err(TuneError::Stopped),
+                _ => Ok(found),
+            };
+        }
+        let mut search = self.begun()?;
+        let stop = loop {
+            let then = tell(&self.progress(search.spent(), false));
+            if then != Then::GoOn {
+                output::write(&self.path("state.json"), json(&search.state()))?;
+            }
+            if then == Then::Stop {
+                return Err(TuneError::Stopped);
+            }
+            if let Some(stop) = search.advance() {
+                break stop;
+            }
+        };
+        let tuned = Tuned::of(self.problem, &search, stop);
+        let found = self.found(&tuned);
+        let heading = tuned.heading(&self.command());
+        let space = self.problem.space();
+        let text = design::text(self.source, space, &tuned.best.point, &heading)?;
+        output::write(&self.path("toml"), text)?;
+        output::write(&self.path("json"), json(&found))?;
+        // A state that stays is not used again: what was found comes before it.
+        let _ = std::fs::remove_file(self.path("state.json"));
+        Ok(found)
+    }
+
+    /// What was found before, if it is of the same search.
+    fn kept(&self) -> Option<Found> {
+        let text = std::fs::read_to_string(self.path("json")).ok()?;
+        let found: Found = serde_json::from_str(&text).ok()?;
+        let point = &found.point;
+        let fits = found.schema == SCHEMA
+            && found.program == Plan::this_program()
+            && found.of == self.problem.digest()
+            && found.effort == self.effort
+            && point.len() == self.problem.space().dimension()
+            && point.iter().all(|x| (0.0..=1.0).contains(x))
+            && self.path("toml").exists();
+        fits.then_some(found)
+    }
+
+    /// The search where it was when its state was saved, if that is of the same search.
+    fn begun(&self) -> Result<Search<'_>, TuneError> {
+        let path = self.path("state.json");
+        let text = std::fs::read_to_string(&path).ok();
+        let state = text.and_then(|text| serde_json::from_str::<State>(&text).ok());
+        let name = path.display().to_string();
+        let resumed =
+            state.and_then(|it| Search::resume(self.problem, &self.effort, it, &name).ok());
+        match resumed {
+            Some(search) => Ok(search),
+            None => Search::begin(self.problem, self.effort.clone()),
+        }
+    }
+
+    fn progress(&self, spent: usize, was_there: bool) -> Progress {
+        Progress {
+            controller: self.problem.controller().to_owned(),
+            seed: self.effort.seed,
+            search: self.search,
+            candidates: (spent, self.effort.budget),
+            was_there,
+        }
+    }
+
+    fn found(&self, tuned: &Tuned) -> Found {
+        let best = &tuned.best;
+        Found {
+            schema: SCHEMA,
+            program: Plan::this_program(),
+            of: self.problem.digest(),
+            controller: self.problem.controller().to_owned(),
+            effort: self.effort.clone(),
+            candidates: tuned.spent,
+            flights: tuned.flights,
+            stop: stop_in_words(tuned.stop).to_owned(),
+            cost: best.score.is_allowed().then_some(best.score.cost).filter(|it| it.is_finite()),
+            reasons: tuned.reasons.clone(),
+            numbers: numbers(self.problem, &tuned.start.point, &best.point),
+            point: best.point.clone(),
+        }
+    }
+
+    /// The command that makes the same design alone.
+    fn command(&self) -> String {
+        let word = fspid_study::shell::word;
+        let Effort { optimiser, budget, seed, .. } = &self.effort;
+        let name = self.source.path.file_name().map(|it| it.to_string_lossy().into_owned());
+        let set: String =
+            self.source.overrides.iter().map(|it| format!(" --set {}", word(it))).collect();
+        format!(
+            "fspid tune {} --controller {} --optimiser {optimiser} --budget {budget} --seed {seed}{set}",
+            word(&name.unwrap_or_default()),
+            word(self.problem.controller())
+        )
+    }
+}
+
+fn numbers(problem: &Problem, start: &[f64], best: &[f64]) -> Vec<Number> {
+    let space = problem.space();
+    let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
+        Free::Number(number) => vec![Some([number.lower, number.upper])],
+        Free::Grid(_) => vec![None; mark.dimensions()],
+    });
+    let values = space.numbers(start).into_iter().zip(space.numbers(best));
+    let rows = space.names().into_iter().zip(values).zip(bounds).zip(best);
+    rows.map(|(((path, (start, value)), bounds), unit)| {
+        let is_at_end = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
+        Number { path, start, value, bounds, at_bound: bounds.is_some() && is_at_end }
+    })
+    .collect()
+}
+
+fn json(value: &impl Serialize) -> String {
+    format!("{:#}\n", serde_json::to_value(value).unwrap_or_default())
+}

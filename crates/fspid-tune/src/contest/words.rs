@@ -1,0 +1,358 @@
+//! Numbers and findings in words.
+
+use fspid_study::report::number::{fixed, significant};
+use fspid_study::tuning::{Over, Tuning};
+
+use super::compare::{CONFIDENCE, Comparison, Standing};
+use super::judged::Quantity;
+use super::outcome::Outcome;
+use super::summary::Spread;
+
+/// What the tuning made small.
+pub(super) fn objectives(tuning: &Tuning) -> Vec<String> {
+    let one = |it: &fspid_study::tuning::Objective| {
+        let name = it.requirement.measure.name();
+        if it.weight.total_cmp(&1.0).is_eq() {
+            name.to_owned()
+        } else {
+            format!("{} {name}", it.weight)
+        }
+    };
+    let mut all: Vec<String> = tuning.objectives.iter().map(one).collect();
+    match tuning.over {
+        Over::Mean => {}
+        Over::Worst => all.push("of the worst flight".to_owned()),
+        Over::Tail { share } => {
+            all.push(format!("over the worst {} % of the flights", 100.0 * share));
+        }
+    }
+    all
+}
+
+/// A number with four digits.
+pub(super) fn number(value: f64) -> String {
+    if value.is_infinite() {
+        return "lost".to_owned();
+    }
+    let text = significant(value, 4);
+    let is_plain = text.contains('.') && !text.contains('\u{d7}');
+    if is_plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Median and quartiles: "1.234 (1.2 to 1.3)".
+pub(super) fn spread(found: Option<Spread>, designs: usize) -> String {
+    let Some(found) = found else {
+        return "none".to_owned();
+    };
+    let median = number(found.median);
+    if designs < 2 || found.median.is_infinite() {
+        return median;
+    }
+    format!("{median} ({} to {})", number(found.lower), number(found.upper))
+}
+
+/// By how much a ratio is less or more than 1: "12 % less".
+pub(super) fn change(ratio: f64) -> String {
+    if ratio.is_infinite() {
+        return "more without bound".to_owned();
+    }
+    let percent = 100.0 * (ratio - 1.0);
+    let size = percent.abs();
+    let digits = if size >= 10.0 { 0 } else { 1 };
+    let text = format!("{size:.digits$}");
+    match text.trim_matches(['0', '.']).is_empty() {
+        true => "no difference".to_owned(),
+        false if size >= 1000.0 => format!("{} times as much", number(ratio)),
+        false => format!("{text} % {}", if percent < 0.0 { "less" } else { "more" }),
+    }
+}
+
+/// An interval of a ratio: "5.1 to 18 % less", "from 3.0 % less to 4.0 % more".
+pub(super) fn interval([lower, upper]: [f64; 2]) -> String {
+    let size = |ratio: f64| change(ratio).split(" % ").next().unwrap_or_default().to_owned();
+    let is_plain = |ratio: f64| change(ratio).contains(" % ");
+    match (is_plain(lower) && is_plain(upper), lower < 1.0, upper < 1.0) {
+        (true, false, false) => format!("{} to {} % more", size(lower), size(upper)),
+        (true, true, true) => format!("{} to {} % less", size(upper), size(lower)),
+        _ => format!("from {} to {}", change(lower), change(upper)),
+    }
+}
+
+/// The same for tables: "+34 %", "\u{2212}5.1 %".
+pub(super) fn signed(ratio: f64) -> String {
+    if ratio.is_infinite() {
+        return "unbounded".to_owned();
+    }
+    let percent = 100.0 * (ratio - 1.0);
+    let digits = if percent.abs() >= 10.0 { 0 } else { 1 };
+    let text = fixed(percent, digits);
+    let is_positive = percent > 0.0 && text.contains(|c: char| ('1'..='9').contains(&c));
+    format!("{}{text} %", if is_positive { "+" } else { "" })
+}
+
+/// An interval for tables: "+24 % to +44 %".
+pub(super) fn signed_interval([lower, upper]: [f64; 2]) -> String {
+    let below = if lower > 0.0 { signed(lower) } else { "unbounded".to_owned() };
+    format!("{below} to {}", signed(upper))
+}
+
+/// The spread of a controller's means over the cases that nobody lost; over all where each was lost by somebody.
+pub(super) fn spread_of(outcome: &Outcome, place: usize, quantity: Quantity) -> String {
+    let (it, part) = (&outcome.judged.contestants[place], &outcome.summaries[place].whole);
+    let found = match kept(outcome) {
+        0 => part.spread(quantity),
+        _ => part.kept_spread(quantity),
+    };
+    spread(found, it.designs.len())
+}
+
+/// How many cases nobody lost a flight of.
+pub(super) fn kept(outcome: &Outcome) -> usize {
+    let judged = &outcome.judged;
+    judged.kept(judged.contestants.iter(), &judged.all()).len()
+}
+
+/// Over which cases [`spread_of`] is.
+pub(super) fn over_kept(outcome: &Outcome) -> String {
+    match (kept(outcome), outcome.judged.cases.len()) {
+        (kept, all) if kept == all => "the cases".to_owned(),
+        (0, _) => "the cases, of which each was lost by somebody".to_owned(),
+        (kept, all) => format!("the {kept} of {all} cases that nobody lost a flight of"),
+    }
+}
+
+/// A p-value in words.
+pub(super) fn p_value(p: f64) -> String {
+    match p {
+        p if p < 1e-4 => "p < 0.0001".to_owned(),
+        p if p < 0.01 => format!("p = {p:.4}"),
+        p if p > 0.995 => "p = 1".to_owned(),
+        p if p < 0.1 => format!("p = {p:.3}"),
+        p => format!("p = {p:.2}"),
+    }
+}
+
+/// A count with its noun.
+pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
+}
+
+pub(super) fn per_cent() -> String {
+    format!("{} %", 100.0 * CONFIDENCE)
+}
+
+/// Words as a list: "one, two and three".
+pub(super) fn list(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+pub(super) fn name(outcome: &Outcome, place: usize) -> &str {
+    outcome.judged.contestants.get(place).map_or("", |it| it.name.as_str())
+}
+
+/// A group's name for people.
+pub(super) fn group(name: &str) -> &str {
+    if name.is_empty() { "other cases" } else { name }
+}
+
+/// Who is first on all cases, and what that rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Headline {
+    /// Whether lost flights or a significant difference decide it.
+    pub(super) is_decided: bool,
+    /// "PID wins", "PID is first, and nobody wins".
+    pub(super) word: String,
+    /// Why, without a full stop.
+    pub(super) why: String,
+}
+
+pub(super) fn headline(outcome: &Outcome) -> Headline {
+    let against = outcome.judged.against;
+    let reference = cut(name(outcome, against), 60);
+    let ranking = outcome.first().ranking;
+    let first = ranking.first().copied().unwrap_or(against);
+    let winner = cut(name(outcome, first), 60);
+    let open: Vec<String> = ranking
+        .iter()
+        .filter(|place| {
+            let found = outcome.comparison(**place);
+            found.is_some_and(|it| !(it.standing == Standing::Worse && it.is_sure))
+        })
+        .map(|place| cut(name(outcome, *place), 60))
+        .collect();
+    let (is_decided, why) = match outcome.comparison(first) {
+        _ if outcome.error.is_none() => {
+            (false, "an error is 0 somewhere, so that errors have no ratios".to_owned())
+        }
+        Some(found) => {
+            (found.standing == Standing::Better && found.is_sure, finding(outcome, found))
+        }
+        None if open.is_empty() => (
+            true,
+            "every other controller has a significantly larger error or loses more flights"
+                .to_owned(),
+        ),
+        None => (false, format!("its difference from {} is not significant", list(&open))),
+    };
+    let word = match is_decided {
+        true => format!("{winner} wins"),
+        false => format!("{winner} is first, and nobody wins"),
+    };
+    let why = match is_decided || first == against {
+        true => why,
+        false => format!("not significantly different from {reference}; {why}"),
+    };
+    Headline { is_decided, word, why }
+}
+
+/// What a comparison found: "12 % less error than PID (95 %: from 18 % less to 5.1 % less), p = 0.0004".
+pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
+    let reference = name(outcome, outcome.judged.against);
+    let mut words = Vec::new();
+    if found.by_flights {
+        words.push(lost_against(outcome, found));
+    }
+    match found.ratio.mean {
+        None => words.push("no case that both flew".to_owned()),
+        Some(ratio) => {
+            let change = match change(ratio).as_str() {
+                "no difference" => format!("the same IAE as {reference}"),
+                change => format!("{change} IAE than {reference}"),
+            };
+            let sure = found
+                .ratio
+                .interval
+                .map_or(String::new(), |it| format!(" ({}: {})", per_cent(), interval(it)));
+            let place = match found.ratio.cases == outcome.judged.cases.len() {
+                true => String::new(),
+                false => format!(
+                    " on the {} that neither lost",
+                    counted(found.ratio.cases, "case", "cases")
+                ),
+            };
+            words.push(format!("{change}{place}{sure}, {}", p_value(found.p_adjusted)));
+        }
+    }
+    if let Some(ratio) = outcome.activity_of(found.contestant).and_then(|it| it.ratio.mean) {
+        words.push(match change(ratio).as_str() {
+            "no difference" => "as much elevator travel".to_owned(),
+            change => format!("{change} elevator travel"),
+        });
+    }
+    words.join("; ")
+}
+
+/// How many flights a controller loses and how many the one compared with.
+fn lost_against(outcome: &Outcome, found: &Comparison) -> String {
+    let lost = |place: usize| {
+        let count = outcome.summaries[place].whole.count;
+        format!("{} of {}", count.lost, count.of)
+    };
+    let against = outcome.judged.against;
+    format!(
+        "it loses {} flights, {} {}; they differ in {}, {}",
+        lost(found.contestant),
+        name(outcome, against),
+        lost(against),
+        counted(found.lost.cases, "case", "cases"),
+        p_value(found.lost.p_adjusted)
+    )
+}
+
+/// How a controller stands, in a word or two.
+pub(super) fn standing(found: &Comparison) -> &'static str {
+    match (found.standing, found.by_flights, found.is_sure) {
+        (Standing::Better, true, false) => "ahead by lost flights",
+        (Standing::Worse, true, false) => "behind by lost flights",
+        (Standing::Better, true, true) => "better by lost flights",
+        (Standing::Worse, true, true) => "worse by lost flights",
+        (Standing::Better, false, _) => "better",
+        (Standing::Worse, false, _) => "worse",
+        (Standing::Open, ..) => "not significant",
+    }
+}
+
+/// A controller against the one compared with, in a sentence.
+pub(super) fn sentence(outcome: &Outcome, found: &Comparison) -> String {
+    let who = name(outcome, found.contestant);
+    let word = match found.standing {
+        Standing::Open => "not significantly different",
+        _ => standing(found),
+    };
+    format!("{who} is {word}: {}.", finding(outcome, found))
+}
+
+/// Who is first in each group of cases, a sentence each.
+pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
+    let groups = outcome.judged.groups();
+    let sentence = |(place, (group_name, cases)): (usize, &(String, Vec<usize>))| {
+        let first = outcome.first_of_group(place);
+        let whose = first.ranking.iter().map(|&it| {
+            let change = match first.ratios[it] {
+                _ if it == outcome.judged.against => "compared with".to_owned(),
+                Some(ratio) => change(ratio),
+                None => "no case that both flew".to_owned(),
+            };
+            let lost = outcome.summaries[it].groups[place].count.lost;
+            let lost = if lost > 0 {
+                format!("; {} lost", counted(lost as usize, "flight", "flights"))
+            } else {
+                String::new()
+            };
+            format!("{} ({change}{lost})", name(outcome, it))
+        });
+        format!(
+            "{} ({}): {}",
+            group(group_name),
+            counted(cases.len(), "case", "cases"),
+            whose.collect::<Vec<_>>().join(", ")
+        )
+    };
+    groups.iter().enumerate().map(sentence).collect()
+}
+
+/// What is to be known before the numbers are believed.
+pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
+    let (judged, setting) = (&outcome.judged, &outcome.setting);
+    let mut notes = Vec::new();
+    let others = judged.contestants.len().saturating_sub(1);
+    // The smallest p-value of n signs is 2^(1-n).
+    let least = libm::exp2(1.0 - judged.cases.len() as f64) * others as f64;
+    if least > 1.0 - CONFIDENCE {
+        notes.push(format!(
+            "{} are too few for {}: no difference could be significant.",
+            counted(judged.cases.len(), "case", "cases"),
+            counted(others, "comparison", "comparisons")
+        ));
+    }
+    let any_tuned = judged.contestants.iter().any(|it| it.is_tuned);
+    if any_tuned && setting.efforts.len() < 2 {
+        notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
+    }
+    for contestant in &judged.contestants {
+        let found: Vec<_> = contestant.designs.iter().filter_map(|it| it.found.as_ref()).collect();
+        let bad = found.iter().filter(|it| it.cost.is_none()).count();
+        if bad > 0 {
+            notes.push(format!(
+                "{}: {} of {} tunings found no candidate that came back from every training flight and met every requirement; the one that broke them least was judged.",
+                contestant.name,
+                bad,
+                found.len()
+            ));
+        }
+    }
+    notes
+}
+
+/// At most so many characters, with an ellipsis where some are left out.
+pub(super) fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{}\u{2026}", kept.trim_end())
+}

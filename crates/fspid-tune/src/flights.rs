@@ -1,0 +1,212 @@
+//! Points of a space flown on cases: what tuning and contest have in common.
+
+use fspid_campaign::Draws;
+use fspid_campaign::engine::{self, FlightResult, Memory, Stability};
+use fspid_campaign::sample::Sampling;
+use fspid_study::dispersion::Drawn;
+use fspid_study::file::{Study, Template};
+use fspid_study::requirement::Requirement;
+use fspid_study::tuning::Case;
+use rayon::prelude::*;
+
+use crate::error::TuneError;
+use crate::source::Source;
+use crate::space::Space;
+
+/// Name of the only case of a scenario that lists none.
+const AS_WRITTEN: &str = "as written";
+
+/// How many draws each case has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dispersed {
+    /// The key that says so, for messages.
+    pub(crate) key: &'static str,
+    pub(crate) runs: u64,
+    pub(crate) seed: u64,
+}
+
+/// A case that is flown: its scenario with one controller, and what each of its runs draws.
+#[derive(Clone, Debug)]
+pub(crate) struct FlownCase {
+    pub(crate) name: String,
+    pub(crate) weight: f64,
+    /// Digest of the scenario with the changes of the case.
+    pub(crate) digest: String,
+    template: Template,
+    draws: Option<Draws>,
+    /// Draws of each run; a single empty one for the scenario as written.
+    runs: Vec<Vec<Drawn>>,
+}
+
+impl FlownCase {
+    /// How often it is flown.
+    pub(crate) fn runs(&self) -> usize {
+        self.runs.len()
+    }
+}
+
+/// All flights that a point of a space has.
+#[derive(Clone, Debug)]
+pub(crate) struct Flights {
+    space: Space,
+    cases: Vec<FlownCase>,
+    /// Judged with the scenario's own, after them.
+    measured: Vec<Requirement>,
+    stability: Stability,
+    at_once: usize,
+}
+
+impl Flights {
+    pub(crate) fn new(space: Space, cases: Vec<FlownCase>, measured: Vec<Requirement>) -> Self {
+        let at_once = cases.first().map_or(1, |case| engine::at_once(case.template.study()));
+        Self { space, cases, measured, stability: Stability::Analysed, at_once }
+    }
+
+    /// The same with another way to treat unstable loops.
+    pub(crate) fn with(self, stability: Stability) -> Self {
+        Self { stability, ..self }
+    }
+
+    pub(crate) fn space(&self) -> &Space {
+        &self.space
+    }
+
+    pub(crate) fn cases(&self) -> &[FlownCase] {
+        &self.cases
+    }
+
+    /// How many flights a point has.
+    pub(crate) fn count(&self) -> usize {
+        self.cases.iter().map(FlownCase::runs).sum()
+    }
+
+    /// Every flight of a point: its case and the number of its run.
+    pub(crate) fn jobs(&self) -> impl Iterator<Item = (&FlownCase, usize)> {
+        self.cases.iter().flat_map(|case| (0..case.runs.len()).map(move |run| (case, run)))
+    }
+
+    /// What a function reads off all flights of each point, on all threads of the pool that this is called
+    /// in. It is given the flight, or why there is none, and how long it should have been, s.
+    pub(crate) fn flown<T: Send + Clone>(
+        &self,
+        points: &[Vec<f64>],
+        read: &(impl Fn(Result<&FlightResult, String>, f64) -> T + Sync),
+    ) -> Vec<Vec<T>> {
+        // Flights of one case fly best together: plants of the same order, the same steps.
+        let jobs: Vec<_> = self
+            .jobs()
+            .flat_map(|(case, run)| points.iter().map(move |point| (point, case, run)))
+            .collect();
+        let groups = jobs.par_chunks(self.at_once.max(1));
+        let fly = |memory: &mut Memory, group: &[(&Vec<f64>, &FlownCase, usize)]| {
+            let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
+            fly(memory, (studies.collect(), self.stability), read)
+        };
+        let flown: Vec<Vec<T>> = groups.map_init(Memory::default, fly).collect();
+        let mut of_point = vec![Vec::with_capacity(self.count()); points.len()];
+        for (index, flight) in flown.into_iter().flatten().enumerate() {
+            of_point[index % points.len()].push(flight);
+        }
+        of_point
+    }
+
+    /// The scenario of one flight, or why there is none.
+    pub(crate) fn study(
+        &self,
+        point: &[f64],
+        case: &FlownCase,
+        run: usize,
+    ) -> Result<Study, String> {
+        let mut values = self.space.values(point);
+        if let (Some(draws), Some(drawn)) = (&case.draws, case.runs.get(run)) {
+            values.extend(draws.values(drawn));
+        }
+        let built = case.template.with(&values);
+        let mut study = built.map_err(|problems| problems.first_in_a_line())?;
+        study.requirements.extend(self.measured.iter().cloned());
+        Ok(study)
+    }
+}
+
+fn fly<T>(
+    memory: &mut Memory,
+    (studies, stability): (Vec<Result<Study, String>>, Stability),
+    read: &impl Fn(Result<&FlightResult, String>, f64) -> T,
+) -> Vec<T> {
+    let mut answers = Vec::with_capacity(studies.len());
+    let mut sound = Vec::with_capacity(studies.len());
+    for study in studies {
+        match study {
+            Ok(study) => {
+                sound.push(study);
+                answers.push(None);
+            }
+            Err(reason) => answers.push(Some(read(Err(reason), 0.0))),
+        }
+    }
+    let nobody = || "nobody flies".to_owned();
+    let flown = engine::fly_judging(memory, &sound, stability).into_iter().zip(&sound);
+    let mut flown = flown.map(|(flights, study)| {
+        let duration_s = study.scenario.timing.end_s();
+        match &flights {
+            Ok(flights) => read(flights.first().ok_or_else(nobody), duration_s),
+            Err(error) => read(Err(error.to_string()), duration_s),
+        }
+    });
+    let nothing = || read(Err(nobody()), 0.0);
+    answers
+        .into_iter()
+        .map(|answer| answer.or_else(|| flown.next()).unwrap_or_else(nothing))
+        .collect()
+}
+
+/// The cases with one controller; the scenario itself where there are none.
+///
+/// # Errors
+/// The first case that makes the scenario wrong.
+pub(crate) fn flown_cases(
+    source: &Source,
+    controller: &str,
+    cases: &[Case],
+    dispersed: Dispersed,
+) -> Result<Vec<FlownCase>, TuneError> {
+    if cases.is_empty() {
+        let template = source.template()?;
+        return Ok(vec![flown_case(&template, (AS_WRITTEN, 1.0), controller, dispersed)?]);
+    }
+    let case = |case: &Case| {
+        let template = source.case(case)?;
+        flown_case(&template, (&case.name, case.weight), controller, dispersed)
+    };
+    cases.iter().map(case).collect()
+}
+
+/// A case of a scenario that was read with its changes.
+///
+/// # Errors
+/// Draws without dispersions, or a scenario that is wrong with this controller alone.
+pub(crate) fn flown_case(
+    template: &Template,
+    (name, weight): (&str, f64),
+    controller: &str,
+    dispersed: Dispersed,
+) -> Result<FlownCase, TuneError> {
+    let digest = template.study().digest.clone();
+    let template = template.only(controller)?;
+    let draws = match dispersed.runs {
+        0 => None,
+        runs if template.study().dispersions.is_empty() => {
+            return Err(TuneError::Value {
+                what: dispersed.key,
+                found: runs.to_string(),
+                allowed: "0 where the scenario has no [[dispersion]]".to_owned(),
+            });
+        }
+        runs => Some(Draws::new(&template, Sampling::LatinHypercube, runs, dispersed.seed)?),
+    };
+    let runs = match &draws {
+        None => vec![Vec::new()],
+        Some(draws) => (0..dispersed.runs).map(|run| draws.drawn(run)).collect(),
+    };
+    Ok(FlownCase { name: name.to_owned(), weight, template, digest, draws, runs })
+}

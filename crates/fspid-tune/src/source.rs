@@ -1,0 +1,42 @@
+//! Where a scenario comes from.
+
+use std::path::{Path, PathBuf};
+
+use fspid_study::file::Template;
+use fspid_study::tuning::Case;
+
+use crate::error::TuneError;
+
+/// A scenario file with changes from outside.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Path of the scenario.
+    pub path: PathBuf,
+    /// Changes, as `--set` takes them.
+    pub overrides: Vec<String>,
+}
+
+impl Source {
+    /// Reads the scenario.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn template(&self) -> Result<Template, TuneError> {
+        Ok(Template::load(&self.path, &self.overrides)?)
+    }
+
+    /// Reads the scenario with the changes of a case.
+    pub(crate) fn case(&self, case: &Case) -> Result<Template, TuneError> {
+        let mut overrides = self.overrides.clone();
+        overrides.extend(case.set.iter().cloned());
+        Template::load(&self.path, &overrides).map_err(|problems| TuneError::Case {
+            case: case.name.clone(),
+            problems: Box::new(problems),
+        })
+    }
+}
+
+/// The folder that paths in a scenario are relative to.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
