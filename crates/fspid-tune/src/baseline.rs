@@ -9,8 +9,9 @@ use fspid_study::tuning::Free;
 
 use crate::design::{check_room, text_of, with_changes};
 use crate::error::TuneError;
-use crate::problem::{Source, chosen, folder_of};
+use crate::problem::chosen;
 use crate::rule::{self, Design, Options, Rule};
+use crate::source::{Source, folder_of};
 
 /// What a rule makes of the loop of a scenario.
 #[derive(Clone, Debug)]
