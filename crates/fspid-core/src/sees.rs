@@ -36,6 +36,16 @@ impl<R> Sees<R> {
             Self::ErrorAndModelError(_) => "error-and-model-error",
         }
     }
+
+    /// What stands beside the error, in words.
+    #[must_use]
+    pub const fn beside(&self) -> &'static str {
+        match self {
+            Self::ErrorAndChange => "change of error",
+            Self::ErrorAndRate => "pitch rate, sign turned",
+            Self::ErrorAndModelError(_) => "error of the reference model",
+        }
+    }
 }
 
 /// How the pitch should follow the set-point:

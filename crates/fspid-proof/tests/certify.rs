@@ -1,6 +1,9 @@
 //! From loops to proved, refuted, refused; and certificates that are tampered with.
 
-use fspid_core::{Derivative, Fspid, Gains, InputScale, Law, Pid, SelfTuner, Shell, TunerSettings};
+use fspid_core::{
+    Derivative, Followers, Fspid, Gains, InputScale, InputSets, Law, Pid, ReferenceModel, Sees,
+    SelfTuner, SetPlaces, Shell, TunerSettings,
+};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::{Certificate, Claim, Effort, LoopDescription, NotProvable, Verdict, certify};
@@ -179,4 +182,27 @@ fn an_input_that_the_supervisor_never_sees_refutes_nothing() {
     assert!(!matches!(outcome.verdict, Verdict::Refuted(..)), "{outcome:?}");
     certificate.description = description;
     assert!(certificate.check().is_err());
+}
+
+#[test]
+fn a_tuner_of_another_structure_is_refused_by_name() {
+    let model = ReferenceModel { bandwidth_rad_s: 1.0, damping: 1.0 };
+    let uneven = InputSets { error: SetPlaces::new(0.2, 0.5).ok(), change: None };
+    let refusal = |settings: TunerSettings<f64>| {
+        let table = RuleTable::parse([RISING; 3]).expect("a table");
+        let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+        let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings);
+        let fspid = Fspid::new(tuner.expect("allowed"), shell()).expect("allowed");
+        let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &quick());
+        let refused = refused.expect_err("another structure");
+        assert!(matches!(refused, NotProvable::Structure { .. }), "{refused}");
+        refused.to_string()
+    };
+    let plain = TunerSettings::literal();
+    let followers = Followers { setpoint_weight: 0.1, rate_gain: 0.0 };
+    assert!(refusal(TunerSettings { sees: Sees::ErrorAndRate, ..plain }).contains("pitch rate"));
+    assert!(refusal(TunerSettings { followers, ..plain }).contains("follow the gains"));
+    let sees = Sees::ErrorAndModelError(model);
+    assert!(refusal(TunerSettings { sees, ..plain }).contains("reference model"));
+    assert!(refusal(TunerSettings { input_sets: uneven, ..plain }).contains("not even"));
 }

@@ -11,7 +11,8 @@ use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    InputScale, IntegralForm, Law, Limits, Pid, Sees, SelfTuner, SetpointWeights, Shell,
+    TunerSettings,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::aircraft::Forces;
@@ -21,7 +22,7 @@ use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{
     AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario,
-    Servo, Surroundings, Timing, simulate,
+    Servo, SimError, Surroundings, Timing, simulate,
 };
 
 #[path = "../../fspid-aircraft/tests/support/mod.rs"]
@@ -359,4 +360,12 @@ fn the_flight_of_a_nonlinear_aircraft_is_linearised_where_it_flies() {
     let flown = linearise_along(&scenario, &scenario.controllers[0].controller, 20).expect("flies");
     assert!(flown.worst.is_some_and(|worst| worst.radius < 1.1), "{:?}", flown.worst);
     assert_eq!(flown.states.first().map(String::as_str), Some("plant 1"));
+}
+
+#[test]
+fn a_tuner_that_sees_the_rate_has_no_small_signals_along_its_flight() {
+    let mut case = base();
+    case.settings.sees = Sees::ErrorAndRate;
+    let refused = linearise_along(&case.scenario(), &case.controller(), 10);
+    assert!(matches!(refused, Err(SimError::Structure)), "{refused:?}");
 }

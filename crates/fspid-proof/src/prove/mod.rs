@@ -110,6 +110,7 @@ struct Prover<'a> {
 
 impl<'a> Prover<'a> {
     fn new(description: &'a LoopDescription, effort: &'a Effort) -> Result<Self, NotProvable> {
+        description.clone().provable()?;
         let enclosed = description.enclosed()?;
         let model = enclosed.midpoint();
         let increments = match &description.controller {

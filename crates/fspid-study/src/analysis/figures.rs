@@ -246,7 +246,7 @@ pub(crate) fn gain_map(
     GainMap {
         title: format!("{name}: {label} of every frozen gain"),
         x_label: "error [supervisor units]".to_owned(),
-        y_label: "change of error [supervisor units]".to_owned(),
+        y_label: format!("{} [supervisor units]", map.beside),
         quantity: label.to_owned(),
         xs: inputs(0),
         ys: inputs(1),

@@ -25,6 +25,8 @@ pub struct FrozenPoint {
 /// Margins over the supervisor's inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrozenMap {
+    /// What the supervisor sees beside the error, in words.
+    pub beside: &'static str,
     /// Points along each input.
     pub side: usize,
     /// Row after row: the error rises from row to row, the change within one.
@@ -103,7 +105,8 @@ impl<'a> Mapper<'a> {
         let Some(worst) = worst_of(&points) else { return Ok(None) };
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
         worst.margins = self.margins(worst.gains)?;
-        Ok(Some(FrozenMap { side, points, worst }))
+        let beside = self.fspid.tuner().settings().sees.beside();
+        Ok(Some(FrozenMap { beside, side, points, worst }))
     }
 
     /// Looks around a point, nearer and nearer, for a worse one.

@@ -1,5 +1,6 @@
 //! The report of a user's own scenario: verdict first.
 
+use fspid_core::{Followers, InputSets, Sees, TunerSettings};
 use fspid_sim::Controller;
 use serde::Serialize;
 
@@ -204,6 +205,7 @@ struct Tuning {
     name: String,
     law: &'static str,
     accumulating: bool,
+    structure: Vec<String>,
     sets: Vec<Figure>,
     tables: Vec<Figure>,
     maps: Vec<Figure>,
@@ -220,6 +222,7 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
     Some(Tuning {
         name: named.name.clone(),
         accumulating: law == "accumulating",
+        structure: structure(fspid.tuner().settings()),
         law,
         sets: supervisor::sets(&prefix("sets"), supervisor),
         tables: supervisor::rule_tables(
@@ -236,6 +239,45 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
         ),
         at_rest: at_rest(fspid, supervisor),
     })
+}
+
+/// What differs from a supervisor that sees the error and its change through even sets.
+fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
+    let mut sentences = Vec::new();
+    let instead = "What tables and figures call change of error is this.";
+    match settings.sees {
+        Sees::ErrorAndChange => {}
+        Sees::ErrorAndRate => sentences.push(format!(
+            "Beside the error the supervisor sees the measured pitch rate with its sign turned. {instead}"
+        )),
+        Sees::ErrorAndModelError(model) => sentences.push(format!(
+            "Beside the error the supervisor sees how far the pitch is behind a reference model of second \
+             order with {} rad/s and a damping of {}. {instead}",
+            significant(model.bandwidth_rad_s, 4),
+            significant(model.damping, 4)
+        )),
+    }
+    let InputSets { error, change } = settings.input_sets;
+    for (places, input) in [(error, "error"), (change, settings.sees.beside())] {
+        sentences.extend(places.map(|places| {
+            format!(
+                "The small and the medium sets of the {input} lie at {} and {} of the range; figures show \
+                 it bent, so that they are even.",
+                significant(places.small(), 4),
+                significant(places.medium(), 4)
+            )
+        }));
+    }
+    let Followers { setpoint_weight, rate_gain } = settings.followers;
+    for (factor, what, gain) in
+        [(setpoint_weight, "set-point weight", "kp"), (rate_gain, "rate gain", "kd")]
+    {
+        if factor != 0.0 {
+            let factor = significant(factor, 4);
+            sentences.push(format!("The {what} moves by {factor} per unit of {gain}."));
+        }
+    }
+    sentences
 }
 
 fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> Table {
