@@ -9,8 +9,8 @@
 //!
 //! # What is said of differences
 //! Flights of one case, and flights of one design, are not independent. Cases and designs are therefore the units that
-//! are counted, never flights: [`two_way`] gives the error of a mean ratio with a part for cases and a part for
-//! designs, [`signed_rank`] asks the cases alone without assuming a distribution. A difference is called significant
+//! are counted, never flights: [`TwoWay`] gives the error of a mean ratio with a part for cases and a part for
+//! designs, [`SignedRank`] asks the cases alone without assuming a distribution. A difference is called significant
 //! where both tests say so, after Holm's correction for the number of controllers compared.
 //!
 //! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
