@@ -14,10 +14,11 @@
 //! where both tests say so, after Holm's correction for the number of controllers compared.
 //!
 //! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
-//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for being
-//! easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design infinite, its case ranks behind
-//! every case without, and a controller that loses more flights than another ranks behind it and is never called
-//! better, whatever its error elsewhere; whether it is called worse is for the signed ranks of the cases to say.
+//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for
+//! being easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design
+//! infinite, its case ranks behind every case without, and a controller that loses more flights than another ranks
+//! behind it and is never called better, whatever its error elsewhere; whether it is called worse is for the signed
+//! ranks of the cases to say.
 
 mod check;
 mod compare;
