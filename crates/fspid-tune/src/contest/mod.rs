@@ -9,15 +9,16 @@
 //!
 //! # What is said of differences
 //! Flights of one case, and flights of one design, are not independent. Cases and designs are therefore the units that
-//! are counted, never flights: [`two_way`] gives the error of a mean ratio with a part for cases and a part for
-//! designs, [`signed_rank`] asks the cases alone without assuming a distribution. A difference is called significant
+//! are counted, never flights: [`TwoWay`] gives the error of a mean ratio with a part for cases and a part for
+//! designs, [`SignedRank`] asks the cases alone without assuming a distribution. A difference is called significant
 //! where both tests say so, after Holm's correction for the number of controllers compared.
 //!
 //! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
-//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for being
-//! easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design infinite, its case ranks behind
-//! every case without, and a controller that loses more flights than another ranks behind it and is never called
-//! better, whatever its error elsewhere; whether it is called worse is for the signed ranks of the cases to say.
+//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for
+//! being easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design
+//! infinite, its case ranks behind every case without, and a controller that loses more flights than another ranks
+//! behind it and is never called better, whatever its error elsewhere; whether it is called worse is for the signed
+//! ranks of the cases to say.
 
 mod check;
 mod compare;

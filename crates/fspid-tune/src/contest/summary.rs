@@ -32,7 +32,8 @@ pub struct Mirror {
 /// What one controller came to on some cases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Spread over designs of the mean over the cases, in the order of [`Quantity::all`]; none without values.
+    /// Spread over designs of the mean over the cases, in the order of [`MEASURES`](super::MEASURES), then of the
+    /// cost; none without values.
     pub spreads: Vec<Option<Spread>>,
     /// The same on the cases that nobody lost a flight of.
     pub kept: Vec<Option<Spread>>,

@@ -263,9 +263,9 @@ fn lost_against(outcome: &Outcome, found: &Comparison) -> String {
     )
 }
 
-/// How a controller stands, in a word or two.
-pub(super) fn standing(found: &Comparison) -> &'static str {
-    match (found.standing, found.by_flights, found.is_sure) {
+/// How a controller stands, in some words.
+pub(super) fn standing(found: &Comparison) -> String {
+    let word = match (found.standing, found.by_flights, found.is_sure) {
         (Standing::Better, true, false) => "ahead by lost flights",
         (Standing::Worse, true, false) => "behind by lost flights",
         (Standing::Better, true, true) => "better by lost flights",
@@ -273,14 +273,26 @@ pub(super) fn standing(found: &Comparison) -> &'static str {
         (Standing::Better, false, _) => "better",
         (Standing::Worse, false, _) => "worse",
         (Standing::Open, ..) => "not significant",
-    }
+    };
+    // Lost flights come first, and do not hide what holds where both came back.
+    let elsewhere = match found.ratio.mean {
+        Some(ratio) if found.by_flights && found.p_adjusted <= 1.0 - CONFIDENCE => {
+            if ratio < 1.0 {
+                ", a smaller error elsewhere"
+            } else {
+                ", a larger error elsewhere"
+            }
+        }
+        _ => "",
+    };
+    format!("{word}{elsewhere}")
 }
 
 /// A controller against the one compared with, in a sentence.
 pub(super) fn sentence(outcome: &Outcome, found: &Comparison) -> String {
     let who = name(outcome, found.contestant);
     let word = match found.standing {
-        Standing::Open => "not significantly different",
+        Standing::Open => "not significantly different".to_owned(),
         _ => standing(found),
     };
     format!("{who} is {word}: {}.", finding(outcome, found))

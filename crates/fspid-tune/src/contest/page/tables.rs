@@ -130,7 +130,7 @@ fn standing(outcome: &Outcome, place: usize) -> Datum {
     let Some(found) = outcome.comparison(place) else {
         return Datum::Text("compared with".to_owned());
     };
-    let word = words::standing(found).to_owned();
+    let word = words::standing(found);
     match found.standing {
         Standing::Better if found.is_sure => Datum::Met(word),
         Standing::Worse if found.is_sure => Datum::Unmet(word),
