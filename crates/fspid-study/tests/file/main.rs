@@ -32,6 +32,7 @@ pub(crate) fn shipped() -> Vec<(String, String)> {
     let mut names = scenarios_in("");
     names.extend(scenarios_in("gallery/"));
     names.extend(scenarios_in("tuning/"));
+    names.extend(scenarios_in("contest/"));
     let read = |name: String| {
         let text = text(&format!("scenarios/{name}"));
         (name, text)
@@ -42,7 +43,8 @@ pub(crate) fn shipped() -> Vec<(String, String)> {
 /// Names and texts of the scenarios with marks.
 pub(crate) fn marked() -> Vec<(String, String)> {
     let named = |name: String| (name.clone(), text(&format!("scenarios/{name}")));
-    scenarios_in("tuning/").into_iter().map(named).collect()
+    let names = scenarios_in("tuning/").into_iter().chain(scenarios_in("contest/"));
+    names.map(named).collect()
 }
 
 /// Names of the scenarios in a folder of `scenarios`, in order, with the folder.
