@@ -224,6 +224,29 @@ fn an_accumulating_law_without_limits_is_warned_of() {
 }
 
 #[test]
+fn a_supervisor_that_sees_something_else_than_the_change_is_described_in_words() {
+    let words = [
+        "reference model of second order with 1.250 rad",
+        "lie at 0.2000 and 0.5000",
+        "moves by 3.000 per unit of kd",
+    ];
+    let plain = of_flight(file::starter());
+    let text = file::starter().replace(
+        "range = 5.0",
+        "range = 5.0\nsees = \"error-and-model-error\"\nmodel = { bandwidth_rad_s = 1.25 }\nerror_sets = [0.2, 0.5]",
+    );
+    let text = text.replace(
+        "law = \"memoryless\"",
+        "law = \"memoryless\"\nfollowers = { rate_gain_per_kd = 3.0 }",
+    );
+    let html = of_flight(&text);
+    assert_sound(&html);
+    for words in words {
+        assert!(html.contains(words) && !plain.contains(words), "{words}");
+    }
+}
+
+#[test]
 fn the_starter_s_report_is_sound_and_shows_the_defaults() {
     let html = of_flight(file::starter());
     assert_sound(&html);
