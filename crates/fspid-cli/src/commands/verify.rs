@@ -64,7 +64,8 @@ Measures of steps of the command, the worst step counts (only those of step_deg,
   recovery_time_s (needs within_deg; from the step, or from from_s)
 Measures of the flight:
   rms_error_deg largest_error_deg (from_s, to_s)
-  largest_command_deg command_rate_deg_s elevator_rate_deg_s saturated_pct
+  iae_deg_s itae_deg_s2 largest_command_deg command_rate_deg_s command_variation_deg
+  elevator_rate_deg_s elevator_travel_deg saturated_pct
 Measures of the loop as sampled, at the gains it has at rest; the worst plant counts:
   stable gain_margin_db gain_margin_low_db gain_margin_high_db phase_margin_deg (from_hz, to_hz)
   delay_margin_s disk_margin sensitivity_peak gain_crossover_rad_s mode_damping (from_hz, to_hz)
