@@ -142,7 +142,8 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
     Some(paths)
 }
 
-fn texts(item: &Item) -> Option<Vec<String>> {
+/// A list of texts, if it is one.
+pub(super) fn texts(item: &Item) -> Option<Vec<String>> {
     let Value::Array(items) = &item.value else {
         return None;
     };

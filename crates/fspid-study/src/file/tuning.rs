@@ -1,6 +1,6 @@
 //! Tuning and contest as files have them.
 
-use crate::file::document::{Item, Value};
+use crate::file::dispersion::texts;
 use crate::file::overrides;
 use crate::file::report::Report;
 use crate::file::requirement::objective_requirement;
@@ -132,15 +132,4 @@ fn check_mirrors(report: &mut Report, sections: &[Section]) {
             report.value(section.at("mirror_of"), &section.path("mirror_of"), message, allowed);
         }
     }
-}
-
-fn texts(item: &Item) -> Option<Vec<String>> {
-    let Value::Array(items) = &item.value else {
-        return None;
-    };
-    let text = |item: &Item| match &item.value {
-        Value::Text(text) => Some(text.clone()),
-        _ => None,
-    };
-    items.iter().map(text).collect()
 }
