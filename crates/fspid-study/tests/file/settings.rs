@@ -38,6 +38,10 @@ fn walk(table: &Table, path: &str, keys: &mut BTreeMap<String, Value>) {
                 keys.insert(join(name), mark["start"].clone());
             }
             Value::Table(table) => walk(table, &join(name), keys),
+            Value::Array(items) if items.iter().any(|item| item.get("tune").is_some()) => {
+                let start = |item: &Value| item.get("start").unwrap_or(item).clone();
+                keys.insert(join(name), items.iter().map(start).collect::<Vec<_>>().into());
+            }
             Value::Array(items) if !items.is_empty() && items.iter().all(Value::is_table) => {
                 for (index, table) in items.iter().filter_map(Value::as_table).enumerate() {
                     let step = match table.get("name").and_then(Value::as_str) {
