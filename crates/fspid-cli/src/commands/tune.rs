@@ -178,7 +178,8 @@ fn search(
     let mut search = begun(problem, effort, saved.as_deref())?;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let begun_at = (Instant::now(), search.spent());
-    let (mut told, mut kept) = (Instant::now(), Instant::now());
+    // The first generation is kept at once: what is found must not be lost, nor whether it can be kept.
+    let (mut told, mut kept) = (Instant::now(), None::<Instant>);
     let stop = loop {
         if let Some(stop) = search.advance() {
             break stop;
@@ -188,10 +189,10 @@ fn search(
             tell(telling, &line(&search, begun_at));
         }
         if let Some(path) = &saved
-            && kept.elapsed() >= SAVED_EVERY
+            && kept.is_none_or(|kept| kept.elapsed() >= SAVED_EVERY)
         {
             output::write(path, json_text(&state_json(&search.state())))?;
-            kept = Instant::now();
+            kept = Some(Instant::now());
         }
     };
     if telling != Telling::Nothing {

@@ -1,0 +1,48 @@
+//! The learned designs that are shipped: what their README claims, flown again by a contest.
+
+use std::path::Path;
+
+use fspid_tune::Source;
+use fspid_tune::contest::{Contest, Options, Then};
+use serde_json::Value;
+
+/// The contest that a design holds, as its JSON answer.
+fn held(name: &str) -> Value {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/designs/learned");
+    let source = Source { path: folder.join(format!("{name}.toml")), overrides: Vec::new() };
+    let contest = Contest::new(&source, &Options::default());
+    let contest = contest.unwrap_or_else(|error| panic!("{error}"));
+    let out = tempfile::tempdir().expect("a folder");
+    let outcome = contest.hold(out.path(), &mut |_| Then::GoOn);
+    outcome.unwrap_or_else(|error| panic!("{error}")).json()
+}
+
+fn controller<'a>(answer: &'a Value, name: &str) -> &'a Value {
+    let controllers = answer["controllers"].as_array().expect("a list");
+    controllers.iter().find(|entry| entry["name"] == name).expect("it flies")
+}
+
+fn median(answer: &Value, name: &str, measure: &str) -> f64 {
+    controller(answer, name)["measures"][measure]["median"].as_f64().expect("a number")
+}
+
+/// IAE and elevator travel of the self-tuning PID over those of the PID.
+fn ratios(answer: &Value) -> [f64; 2] {
+    ["iae_deg_s", "elevator_travel_deg"]
+        .map(|measure| median(answer, "FSPID", measure) / median(answer, "PID", measure))
+}
+
+#[test]
+fn the_transport_flies_with_an_eighth_less_error_for_the_same_travel_on_what_it_was_not_tuned_on() {
+    let answer = held("transport");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.88 && travel <= 1.02, "{error} {travel}");
+    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
+}
+
+#[test]
+fn the_light_aircraft_flies_with_less_error_for_less_travel() {
+    let answer = held("light");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.96 && travel <= 0.92, "{error} {travel}");
+}
