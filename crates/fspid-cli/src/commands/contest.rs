@@ -17,8 +17,8 @@ const SAVED_EVERY: Duration = Duration::from_secs(2);
 
 /// Tune every controller of a scenario alike, and judge all on what none of them was tuned on.
 ///
-/// Controllers with marks are tuned on the cases of [tuning] with the same budget, optimiser, objective and
-/// seeds; those without fly as they are written. All are judged on the cases of [contest]. The answer says who
+/// Controllers with marks are tuned on the cases of `[tuning]` with the same budget, optimiser, objective and
+/// seeds; those without fly as they are written. All are judged on the cases of `[contest]`. The answer says who
 /// wins where, by how much, and whether that is significant. The folder holds the designs, every flight
 /// (contest.parquet), the answer for programs (contest.json) and the page (contest.html). A contest that was
 /// interrupted goes on where it was when the same command is given again.
