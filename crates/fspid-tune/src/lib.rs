@@ -33,4 +33,4 @@ pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};
 pub use source::Source;
 pub use space::Space;
-pub use tuned::Tuned;
+pub use tuned::{Number, Tuned};

@@ -6,7 +6,7 @@ use fspid_study::requirement::{Judgement, Requirement};
 use fspid_study::tuning::{Objective, Over};
 use serde::{Deserialize, Serialize};
 
-/// Cost from which on candidates break a requirement or cannot be flown; what is allowed costs less, however
+/// Cost above which candidates break a requirement or cannot be flown; what is allowed costs no more, however
 /// bad it is.
 pub const FORBIDDEN: f64 = 1e12;
 /// Violation of a flight that is lost at its end; one that is lost at once counts twice.
@@ -144,6 +144,9 @@ impl Score {
         if violation > 0.0 || is_lost {
             cost = FORBIDDEN * (1.0 + violation);
             costs = vec![cost; objectives.len()];
+        } else {
+            cost = cost.min(FORBIDDEN);
+            costs.iter_mut().for_each(|cost| *cost = cost.min(FORBIDDEN));
         }
         let cost = if cost.is_nan() { f64::INFINITY } else { cost };
         Self { cost, objectives: costs, values, violation }

@@ -1,5 +1,7 @@
 //! A search, generation by generation: it can be stopped, written and gone on with, with the same bits.
 
+use fspid_campaign::Plan as Campaign;
+use fspid_study::shell::word;
 use fspid_study::tune::optimiser::{
     Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
 };
@@ -8,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::TuneError;
 use crate::problem::Problem;
 use crate::score::Score;
+use crate::source::Source;
 
 /// How wide the first candidates lie about the start, as a share of the cube. On the scenario of the gallery a
 /// spread of 0.2 lost the allowed region of two seeds in four within 400 candidates; 0.05 and 0.1 none.
@@ -35,6 +38,28 @@ impl Effort {
     #[must_use]
     pub fn optimisers() -> Vec<&'static str> {
         Kind::NAMES.iter().map(|(_, name)| *name).chain([NsgaII::NAME]).collect()
+    }
+
+    /// The command that searches so, beside the scenario.
+    #[must_use]
+    pub fn command(&self, source: &Source, controller: Option<&str>) -> String {
+        let name = source.path.file_name().map(|name| name.to_string_lossy().into_owned());
+        let mut words = vec!["fspid tune".to_owned(), word(&name.unwrap_or_default())];
+        let mut option = |name: &str, value: &str| words.push(format!("--{name} {}", word(value)));
+        if let Some(controller) = controller {
+            option("controller", controller);
+        }
+        option("optimiser", &self.optimiser);
+        option("budget", &self.budget.to_string());
+        option("seed", &self.seed.to_string());
+        if let Some(population) = self.population {
+            option("population", &population.to_string());
+        }
+        source.overrides.iter().for_each(|change| option("set", change));
+        if self.anywhere {
+            words.push("--anywhere".to_owned());
+        }
+        words.join(" ")
     }
 
     fn check(&self, objectives: usize) -> Result<(), TuneError> {
@@ -87,6 +112,8 @@ enum Engine {
 pub struct State {
     /// Version of this format.
     schema: u32,
+    /// The program that saved it.
+    program: String,
     /// Digest of everything that decides about the search.
     of: String,
     effort: Effort,
@@ -140,7 +167,7 @@ impl<'a> Search<'a> {
         path: &str,
     ) -> Result<Self, TuneError> {
         let wrong = |reason: String| TuneError::State { path: path.to_owned(), reason };
-        if state.schema != STATE_SCHEMA {
+        if state.schema != STATE_SCHEMA || state.program != Campaign::this_program() {
             return Err(wrong("it was saved by another version".to_owned()));
         }
         if state.of != problem.digest() || state.effort != *effort {
@@ -180,6 +207,7 @@ impl<'a> Search<'a> {
     pub fn state(&self) -> State {
         State {
             schema: STATE_SCHEMA,
+            program: Campaign::this_program(),
             of: self.problem.digest(),
             effort: self.effort.clone(),
             generation: self.generation,

@@ -2,6 +2,7 @@
 
 use fspid_study::tune::optimiser::Stop;
 use fspid_study::tuning::{Free, Over};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::problem::Problem;
@@ -37,22 +38,26 @@ pub struct Tuned {
     pub front: Vec<Trial>,
     /// Volume of the front.
     pub front_volume: Option<f64>,
-    rows: Vec<Row>,
+    /// The numbers that were free.
+    pub numbers: Vec<Number>,
     objectives: Vec<(String, &'static str)>,
     front_numbers: Vec<Vec<f64>>,
     over: Over,
 }
 
 /// A number that was free.
-#[derive(Clone, Debug)]
-struct Row {
-    name: String,
-    /// The same without the controller's own name.
-    short: String,
-    start: f64,
-    found: f64,
-    /// Bounds and whether the number found lies at one of them; none for labels of rules.
-    bounds: Option<(f64, f64, bool)>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Number {
+    /// Where it stands.
+    pub path: String,
+    /// What the search began from.
+    pub start: f64,
+    /// What was found.
+    pub value: f64,
+    /// Bounds; none for labels of rules.
+    pub bounds: Option<[f64; 2]>,
+    /// Whether it lies at one of its bounds.
+    pub at_bound: bool,
 }
 
 impl Tuned {
@@ -75,7 +80,7 @@ impl Tuned {
             stop,
             spent: search.spent(),
             flights: problem.flights(),
-            rows: rows(problem, &start, &best),
+            numbers: numbers(problem, &start, &best),
             front_numbers: front.iter().map(|it| problem.space().numbers(&it.point)).collect(),
             start,
             best,
@@ -133,16 +138,14 @@ impl Tuned {
             "\n  {:<width$}{:>14}{:>14}  bounds\n",
             "free number", "start", "found"
         ));
-        for row in &self.rows {
-            let (start, found) = (shown(Some(row.start)), shown(Some(row.found)));
-            let bounds = match row.bounds {
-                None => String::new(),
-                Some((lower, upper, at)) => {
-                    let note = if at { "; the bound is active" } else { "" };
-                    format!("{lower} to {upper}{note}")
-                }
-            };
-            out.push_str(&format!("  {:<width$}{start:>14}{found:>14}  {bounds}\n", row.short));
+        for number in &self.numbers {
+            let (start, value) = (shown(Some(number.start)), shown(Some(number.value)));
+            let bounds = number.bounds.map_or(String::new(), |[lower, upper]| {
+                let note = if number.at_bound { "; the bound is active" } else { "" };
+                format!("{lower} to {upper}{note}")
+            });
+            let name = short(&number.path, &self.controller);
+            out.push_str(&format!("  {name:<width$}{start:>14}{value:>14}  {bounds}\n"));
         }
         self.tell_front(&mut out);
         if !self.reasons.is_empty() {
@@ -175,7 +178,8 @@ impl Tuned {
 
     /// Width of the first column of the answer.
     fn width(&self) -> usize {
-        let names = self.rows.iter().map(|row| row.short.chars().count());
+        let short = |it: &Number| short(&it.path, &self.controller).chars().count();
+        let names = self.numbers.iter().map(short);
         names.chain([LEAST_WIDTH]).max().unwrap_or(LEAST_WIDTH) + 1
     }
 
@@ -226,15 +230,6 @@ impl Tuned {
                 "objectives": trial.score.values,
             })
         };
-        let parameters = self.rows.iter().map(|row| {
-            json!({
-                "path": row.name,
-                "start": row.start,
-                "value": row.found,
-                "bounds": row.bounds.map(|(lower, upper, _)| [lower, upper]),
-                "at_bound": row.bounds.is_some_and(|(_, _, at)| at),
-            })
-        });
         let front = self.front.iter().zip(&self.front_numbers).map(
             |(trial, numbers)| json!({ "objectives": trial.score.values, "parameters": numbers }),
         );
@@ -250,7 +245,7 @@ impl Tuned {
             "measures": self.objectives.iter().map(|(name, _)| name).collect::<Vec<_>>(),
             "start": score(&self.start),
             "best": score(&self.best),
-            "parameters": parameters.collect::<Vec<_>>(),
+            "parameters": self.numbers,
             "front": self.front_volume.map(|_| front.collect::<Vec<_>>()),
             "hypervolume": self.front_volume,
             "reasons": self.reasons.iter().map(|reason| reason.trim()).collect::<Vec<_>>(),
@@ -258,18 +253,17 @@ impl Tuned {
     }
 }
 
-fn rows(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Row> {
+fn numbers(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Number> {
     let space = problem.space();
     let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
-        Free::Number(number) => vec![Some((number.lower, number.upper))],
+        Free::Number(number) => vec![Some([number.lower, number.upper])],
         Free::Grid(_) => vec![None; mark.dimensions()],
     });
-    let numbers = space.numbers(&start.point).into_iter().zip(space.numbers(&best.point));
-    let rows = space.names().into_iter().zip(numbers).zip(bounds).zip(&best.point);
-    rows.map(|(((name, (start, found)), bounds), unit)| {
-        let at = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
-        let short = short(&name, problem.controller());
-        Row { name, short, start, found, bounds: bounds.map(|(lower, upper)| (lower, upper, at)) }
+    let values = space.numbers(&start.point).into_iter().zip(space.numbers(&best.point));
+    let rows = space.names().into_iter().zip(values).zip(bounds).zip(&best.point);
+    rows.map(|(((path, (start, value)), bounds), unit)| {
+        let is_at_end = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
+        Number { path, start, value, bounds, at_bound: bounds.is_some() && is_at_end }
     })
     .collect()
 }

@@ -323,9 +323,8 @@ fn flights_that_are_lost_in_many_cases_are_significantly_worse() {
     );
 }
 
-/// The analysis knows of loops with fixed gains and without limits alone; it must not count against them.
 #[test]
-fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew() {
+fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew_and_failed() {
     let oscillating =
         "\n[[contest.case]]\nname = \"late\"\nset = [\"actuator.delay_samples=40\"]\n";
     let text = format!(
@@ -337,6 +336,7 @@ fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew() {
     let outcome = place(&text).held();
     let count = outcome.summaries[1].whole.count;
     assert_eq!((count.lost, count.unstable), (0, 1));
+    assert!(count.failed >= 1, "{count:?}");
     let late = outcome.summaries[1].cases[8].spread(Quantity::ERROR).expect("an error");
     assert!(late.median.is_finite());
 }

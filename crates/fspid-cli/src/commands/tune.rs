@@ -10,7 +10,6 @@ use super::{Format, json_text};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
 use fspid_study::output;
-use fspid_study::shell::word;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{Effort, Problem, Search, Source, State, TuneError, Tuned, design, history};
@@ -95,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     print(&answer)?;
     if let Some(out) = &arguments.out {
-        let heading = tuned.heading(&command(arguments, &effort));
+        let heading = tuned.heading(&effort.command(&source, arguments.controller.as_deref()));
         let text = design::text(&source, problem.space(), &best, &heading).map_err(failure)?;
         output::write(out, text)?;
         remove(&state_path(out));
@@ -256,25 +255,4 @@ fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {
         parts.push(format!("{} left", duration(left)));
     }
     parts.join(", ")
-}
-
-/// The command that makes the design again.
-fn command(arguments: &Arguments, effort: &Effort) -> String {
-    let name = arguments.scenario.file_name().map(|name| name.to_string_lossy().into_owned());
-    let mut words = vec!["fspid tune".to_owned(), word(&name.unwrap_or_default())];
-    let mut option = |name: &str, value: &str| words.push(format!("--{name} {}", word(value)));
-    if let Some(controller) = &arguments.controller {
-        option("controller", controller);
-    }
-    option("optimiser", &effort.optimiser);
-    option("budget", &effort.budget.to_string());
-    option("seed", &effort.seed.to_string());
-    if let Some(population) = effort.population {
-        option("population", &population.to_string());
-    }
-    arguments.overrides.iter().for_each(|change| option("set", change));
-    if effort.anywhere {
-        words.push("--anywhere".to_owned());
-    }
-    words.join(" ")
 }

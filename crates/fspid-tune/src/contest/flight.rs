@@ -3,6 +3,7 @@
 use fspid_campaign::engine::FlightResult;
 use fspid_campaign::rows;
 use fspid_study::metrics::Absent;
+use fspid_study::requirement::{Judgement, NotEvaluated};
 use fspid_study::tuning::Objective;
 use fspid_study::units::degrees;
 
@@ -28,6 +29,8 @@ const SETTLING: usize = 4;
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
 /// right angle there is no pitch hold left whose error could be compared.
 const LOST_DEG: f64 = 90.0;
+/// Reason of a failure.
+const UNSTABLE: &str = "the loop is unstable at rest";
 
 /// A flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +46,10 @@ pub struct Flight {
     pub verdict: String,
     /// True for a flight that diverged, whose error grew beyond 90 deg, or that could not be flown at all.
     pub lost: bool,
-    /// True for a loop that the linear analysis calls unstable; it cannot tell of self-tuning gains or limits, so that
-    /// this counts against nobody.
+    /// True for a loop that is unstable at rest, with the gains that it has there. It is judged by its error as it
+    /// flew, and counts as failed: a calm window proves nothing.
     pub unstable: bool,
-    /// True for a flight that is lost or breaks a requirement.
+    /// True for a flight that is lost, breaks a requirement, or is of a loop that is unstable at rest.
     pub failed: bool,
     /// Why it is lost, and which requirements are broken.
     pub reasons: Vec<String>,
@@ -91,15 +94,23 @@ impl Flight {
                 false => flight.metrics.verdict.to_string(),
             },
             lost: is_lost,
-            unstable: flight.unstable.is_some(),
-            failed: is_lost || unmet,
+            unstable: is_unstable(flight),
+            failed: is_lost || unmet || is_unstable(flight),
             reasons: is_far
                 .then(|| format!("an error beyond {LOST_DEG} deg"))
                 .into_iter()
+                .chain(is_unstable(flight).then(|| UNSTABLE.to_owned()))
                 .chain(score.reasons)
                 .collect(),
         }
     }
+}
+
+/// Of fixed gains the engine knows; of gains that move, what was asked of them at rest.
+fn is_unstable(flight: &FlightResult) -> bool {
+    let refuses =
+        |judgement: &Judgement| matches!(judgement.found, Err(NotEvaluated::Unstable { .. }));
+    flight.unstable.is_some() || flight.judgements.iter().any(refuses)
 }
 
 /// What stands for a measure that a flight does not have.

@@ -97,9 +97,9 @@ impl Quantity {
 pub struct Count {
     /// Flights that are lost.
     pub lost: u64,
-    /// Flights that are lost or break a requirement.
+    /// Flights that are lost, break a requirement, or are of a loop that is unstable at rest.
     pub failed: u64,
-    /// Flights of a loop that the linear analysis calls unstable.
+    /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
     /// All flights.
     pub of: u64,

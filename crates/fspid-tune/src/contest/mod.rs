@@ -13,9 +13,8 @@
 //! designs, [`SignedRank`] asks the cases alone without assuming a distribution. A difference is called significant
 //! where both tests say so, after Holm's correction for the number of controllers compared.
 //!
-//! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. Unstable loops are
-//! measured as they fly: the linear analysis knows of fixed gains without limits alone, and nobody is to lose for
-//! being easier to analyse. A lost flight has no error that could be averaged. It makes the mean of its design
+//! A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown. A loop that
+//! is unstable at rest is measured as it flew, but its flight counts as failed, and who has one does not win. A lost flight has no error that could be averaged. It makes the mean of its design
 //! infinite, its case ranks behind every case without, and a controller that loses more flights than another ranks
 //! behind it and is never called better, whatever its error elsewhere; whether it is called worse is for the signed
 //! ranks of the cases to say.
@@ -50,7 +49,7 @@ pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
 pub use summary::{Mirror, Part, Spread, Summary};
-pub use tuning::{Found, Number, Progress, Then};
+pub use tuning::{Found, Progress, Then};
 pub use two_way::{TwoWay, holm};
 
 use crate::error::TuneError;

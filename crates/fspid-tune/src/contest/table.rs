@@ -85,7 +85,7 @@ fn schema() -> Result<Schema, TuneError> {
         column("lost", Kind::Boolean)
             .meaning("it diverged, its error grew beyond 90 deg, or it could not be flown"),
         column("unstable", Kind::Boolean).meaning(
-            "the linear analysis calls its loop unstable, which it cannot tell of self-tuning gains and limits",
+            "the loop is unstable at rest, with the gains that it has there; such a flight counts as failed",
         ),
         column("failed", Kind::Boolean).meaning("it is lost or breaks a requirement"),
         column("reasons", Kind::Text).meaning("why it failed or has no cost"),

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use fspid_campaign::Plan;
 use fspid_study::output;
-use fspid_study::tuning::Free;
 use serde::{Deserialize, Serialize};
 
 use crate::design;
@@ -12,12 +11,10 @@ use crate::error::TuneError;
 use crate::problem::Problem;
 use crate::search::{Effort, Search, State, stop_in_words};
 use crate::source::Source;
-use crate::tuned::Tuned;
+use crate::tuned::{Number, Tuned};
 
 /// Version of what is kept.
 const SCHEMA: u32 = 1;
-/// How near to a bound a number counts as at it, as a share of the way between the bounds.
-const AT_BOUND: f64 = 1e-3;
 
 /// What a tuning found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,21 +42,6 @@ pub struct Found {
     pub numbers: Vec<Number>,
     /// The best candidate's place in the unit cube.
     pub(crate) point: Vec<f64>,
-}
-
-/// A number that was free.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Number {
-    /// Where it stands.
-    pub path: String,
-    /// What the search began from.
-    pub start: f64,
-    /// What was found.
-    pub value: f64,
-    /// Bounds; none for labels of rules.
-    pub bounds: Option<[f64; 2]>,
-    /// Whether it lies at one of its bounds.
-    pub at_bound: bool,
 }
 
 /// How far a search is.
@@ -131,7 +113,8 @@ impl Task<'_> {
         };
         let tuned = Tuned::of(self.problem, &search, stop);
         let found = self.found(&tuned);
-        let heading = tuned.heading(&self.command());
+        let heading =
+            tuned.heading(&self.effort.command(self.source, Some(self.problem.controller())));
         let space = self.problem.space();
         let text = design::text(self.source, space, &tuned.best.point, &heading)?;
         output::write(&self.path("toml"), text)?;
@@ -193,39 +176,10 @@ impl Task<'_> {
             stop: stop_in_words(tuned.stop).to_owned(),
             cost: best.score.is_allowed().then_some(best.score.cost).filter(|it| it.is_finite()),
             reasons: tuned.reasons.clone(),
-            numbers: numbers(self.problem, &tuned.start.point, &best.point),
+            numbers: tuned.numbers.clone(),
             point: best.point.clone(),
         }
     }
-
-    /// The command that makes the same design alone.
-    fn command(&self) -> String {
-        let word = fspid_study::shell::word;
-        let Effort { optimiser, budget, seed, .. } = &self.effort;
-        let name = self.source.path.file_name().map(|it| it.to_string_lossy().into_owned());
-        let set: String =
-            self.source.overrides.iter().map(|it| format!(" --set {}", word(it))).collect();
-        format!(
-            "fspid tune {} --controller {} --optimiser {optimiser} --budget {budget} --seed {seed}{set}",
-            word(&name.unwrap_or_default()),
-            word(self.problem.controller())
-        )
-    }
-}
-
-fn numbers(problem: &Problem, start: &[f64], best: &[f64]) -> Vec<Number> {
-    let space = problem.space();
-    let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
-        Free::Number(number) => vec![Some([number.lower, number.upper])],
-        Free::Grid(_) => vec![None; mark.dimensions()],
-    });
-    let values = space.numbers(start).into_iter().zip(space.numbers(best));
-    let rows = space.names().into_iter().zip(values).zip(bounds).zip(best);
-    rows.map(|(((path, (start, value)), bounds), unit)| {
-        let is_at_end = !(AT_BOUND..=1.0 - AT_BOUND).contains(unit);
-        Number { path, start, value, bounds, at_bound: bounds.is_some() && is_at_end }
-    })
-    .collect()
 }
 
 fn json(value: &impl Serialize) -> String {

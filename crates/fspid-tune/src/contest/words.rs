@@ -198,6 +198,10 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
         ),
         None => (false, format!("its difference from {} is not significant", list(&open))),
     };
+    let (is_decided, why) = match unstable(outcome, first) {
+        None => (is_decided, why),
+        Some(words) => (false, format!("{words}; {why}")),
+    };
     let word = match is_decided {
         true => format!("{winner} wins"),
         false => format!("{winner} is first, and nobody wins"),
@@ -207,6 +211,16 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
         false => format!("not significantly different from {reference}; {why}"),
     };
     Headline { is_decided, word, why }
+}
+
+/// How many flights of a controller are of loops that are unstable at rest, if any.
+fn unstable(outcome: &Outcome, place: usize) -> Option<String> {
+    let count = outcome.summaries.get(place)?.whole.count;
+    let words = format!(
+        "{} of its {} flights are of loops that are unstable at rest",
+        count.unstable, count.of
+    );
+    (count.unstable > 0).then_some(words)
 }
 
 /// What a comparison found: "12 % less error than PID (95 %: from 18 % less to 5.1 % less), p = 0.0004".

@@ -181,11 +181,11 @@ fn failures(outcome: &Outcome) -> DataTable {
         "probability of a loss",
         "failed",
         "probability of a failure",
-        "unstable by analysis",
+        "unstable at rest",
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost or breaks a requirement of the scenario. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that the linear analysis calls unstable are judged as they flew, as all are: it cannot tell of self-tuning gains and limits. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost, breaks a requirement of the scenario, or is of a loop that is unstable at rest. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
             kept if kept == outcome.judged.cases.len() => "any case".to_owned(),
