@@ -257,7 +257,25 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
             change => format!("{change} elevator travel"),
         });
     }
+    words.extend(failed_against(outcome, found));
     words.join("; ")
+}
+
+/// How many more flights a controller fails than the one compared with, if it does: a small error in flights that
+/// break requirements is not the whole answer.
+fn failed_against(outcome: &Outcome, found: &Comparison) -> Option<String> {
+    let against = outcome.judged.against;
+    let count = |place: usize| outcome.summaries[place].whole.count;
+    let (mine, theirs) = (count(found.contestant), count(against));
+    let is_more = u128::from(mine.failed) * u128::from(theirs.of)
+        > u128::from(theirs.failed) * u128::from(mine.of);
+    let reference = name(outcome, against);
+    is_more.then(|| {
+        format!(
+            "but {} of its {} flights fail, {} of {} of {reference}",
+            mine.failed, mine.of, theirs.failed, theirs.of
+        )
+    })
 }
 
 /// How many flights a controller loses and how many the one compared with.

@@ -96,7 +96,8 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
         fact("cases", judged.cases.len().to_string()),
         fact("flights judged", flights.to_string()),
     ];
-    if let Some(effort) = setting.efforts.first() {
+    let is_tuned = judged.contestants.iter().any(|it| it.is_tuned);
+    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned) {
         let seeds: Vec<String> = setting.efforts.iter().map(|it| it.seed.to_string()).collect();
         facts.push(fact("optimiser", effort.optimiser.clone()));
         facts.push(fact("candidates of each tuning", effort.budget.to_string()));
