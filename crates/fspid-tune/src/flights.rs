@@ -29,8 +29,10 @@ pub(crate) struct Dispersed {
 #[derive(Clone, Debug)]
 pub(crate) struct FlownCase {
     pub(crate) name: String,
+    /// None for the scenario as it is written, which is no case.
+    group: Option<String>,
     pub(crate) weight: f64,
-    /// Digest of the scenario with the changes of the case.
+    /// Digest of the scenario with the changes of the case and one controller.
     pub(crate) digest: String,
     template: Template,
     draws: Option<Draws>,
@@ -39,6 +41,12 @@ pub(crate) struct FlownCase {
 }
 
 impl FlownCase {
+    /// All that decides about its flights.
+    pub(crate) fn fingerprint(&self) -> String {
+        let Self { name, group, weight, digest, runs, .. } = self;
+        format!("{name:?} {group:?} {weight:?} {digest} {runs:?}\n")
+    }
+
     /// How often it is flown.
     pub(crate) fn runs(&self) -> usize {
         self.runs.len()
@@ -123,6 +131,9 @@ impl Flights {
         }
         let built = case.template.with(&values);
         let mut study = built.map_err(|problems| problems.first_in_a_line())?;
+        if let Some(group) = &case.group {
+            study = study.in_case(&case.name, group);
+        }
         study.requirements.extend(self.measured.iter().cloned());
         Ok(study)
     }
@@ -172,27 +183,27 @@ pub(crate) fn flown_cases(
 ) -> Result<Vec<FlownCase>, TuneError> {
     if cases.is_empty() {
         let template = source.template()?;
-        return Ok(vec![flown_case(&template, (AS_WRITTEN, 1.0), controller, dispersed)?]);
+        return Ok(vec![flown_case(&template, None, controller, dispersed)?]);
     }
     let case = |case: &Case| {
         let template = source.case(case)?;
-        flown_case(&template, (&case.name, case.weight), controller, dispersed)
+        flown_case(&template, Some(case), controller, dispersed)
     };
     cases.iter().map(case).collect()
 }
 
-/// A case of a scenario that was read with its changes.
+/// A case of a scenario that was read with its changes; without one the scenario as it is written.
 ///
 /// # Errors
 /// Draws without dispersions, or a scenario that is wrong with this controller alone.
 pub(crate) fn flown_case(
     template: &Template,
-    (name, weight): (&str, f64),
+    case: Option<&Case>,
     controller: &str,
     dispersed: Dispersed,
 ) -> Result<FlownCase, TuneError> {
-    let digest = template.study().digest.clone();
     let template = template.only(controller)?;
+    let digest = template.study().digest.clone();
     let draws = match dispersed.runs {
         0 => None,
         runs if template.study().dispersions.is_empty() => {
@@ -208,5 +219,7 @@ pub(crate) fn flown_case(
         None => vec![Vec::new()],
         Some(draws) => (0..dispersed.runs).map(|run| draws.drawn(run)).collect(),
     };
-    Ok(FlownCase { name: name.to_owned(), weight, template, digest, draws, runs })
+    let name = case.map_or(AS_WRITTEN, |case| &case.name).to_owned();
+    let (group, weight) = (case.map(|case| case.group.clone()), case.map_or(1.0, |it| it.weight));
+    Ok(FlownCase { name, group, weight, template, digest, draws, runs })
 }

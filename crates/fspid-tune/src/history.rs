@@ -55,6 +55,10 @@ pub fn table(problem: &Problem, search: &Search<'_>) -> Result<Table, TuneError>
         row.extend(
             (0..count).map(|at| score.values.get(at).map_or(Cell::Absent, |it| Cell::Float(*it))),
         );
+        let limits = problem.tuning().limits.len();
+        row.extend(
+            (0..limits).map(|at| score.limited.get(at).map_or(Cell::Absent, |it| Cell::Float(*it))),
+        );
         row.extend(problem.space().numbers(&trial.point).into_iter().map(Cell::Float));
         table.push(&row)?;
     }
@@ -77,6 +81,12 @@ fn schema(problem: &Problem) -> Result<Schema, TuneError> {
         let measure = objective.requirement.measure;
         let name = format!("objective.{index}.{}", measure.name());
         columns.push(Column::new(name, Kind::Float).unit(measure.unit()).meaning(measure.doc()));
+    }
+    for (index, limit) in problem.tuning().limits.iter().enumerate() {
+        let name = format!("limit.{index}.{}", limit.measure.name());
+        columns.push(
+            Column::new(name, Kind::Float).unit(limit.measure.unit()).meaning(limit.measure.doc()),
+        );
     }
     let parameter = |name: String| Column::new(format!("parameter.{name}"), Kind::Float);
     columns.extend(problem.space().names().into_iter().map(parameter));

@@ -1,6 +1,7 @@
 //! What is flown for a candidate, and what it is worth.
 
-use fspid_study::file::{Study, Template};
+use fspid_study::file::Study;
+use fspid_study::requirement::Requirement;
 use fspid_study::tuning::{Mark, Tuning};
 use sha2::{Digest as _, Sha256};
 
@@ -40,8 +41,8 @@ impl Problem {
         template.only(&controller)?.check_marks()?;
         let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
         let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
-        let digest = digest(&template, &controller, &cases);
-        let measured = tuning.objectives.iter().map(|it| it.requirement.clone()).collect();
+        let digest = digest(&marks, &tuning, &cases);
+        let measured = measured(&tuning);
         let flights = Flights::new(Space::new(marks), cases, measured);
         Ok(Self { controller, tuning, flights, digest })
     }
@@ -81,8 +82,7 @@ impl Problem {
     pub fn scores(&self, points: &[Vec<f64>]) -> Vec<Score> {
         let flights = self.flown(points);
         let weights: Vec<f64> = self.flights.jobs().map(|(case, _)| case.weight).collect();
-        let judged = (self.tuning.over, self.tuning.objectives.as_slice());
-        flights.iter().map(|mine| Score::over(mine, &weights, judged)).collect()
+        flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect()
     }
 
     /// Why flights of a candidate have no value, each with its case.
@@ -114,12 +114,18 @@ impl Problem {
 
     /// All flights of each candidate.
     fn flown(&self, points: &[Vec<f64>]) -> Vec<Vec<FlightScore>> {
-        let objectives = self.tuning.objectives.len();
+        let measured = self.tuning.objectives.len() + self.tuning.limits.len();
         self.flights.flown(points, &|flight, duration_s| match flight {
-            Ok(flight) => FlightScore::of(flight, objectives, duration_s),
+            Ok(flight) => FlightScore::of(flight, measured, duration_s),
             Err(reason) => FlightScore::refused(reason),
         })
     }
+}
+
+/// What is measured of each flight beside its requirements: objectives, then what is limited on average.
+fn measured(tuning: &Tuning) -> Vec<Requirement> {
+    let objectives = tuning.objectives.iter().map(|it| &it.requirement);
+    objectives.chain(&tuning.limits).cloned().collect()
 }
 
 /// The controller of that name, or the one that has marks.
@@ -153,9 +159,12 @@ pub(crate) fn marks_of(study: &Study, controller: &str) -> Vec<Mark> {
     study.marks.iter().filter(concerns).cloned().collect()
 }
 
-fn digest(template: &Template, controller: &str, cases: &[FlownCase]) -> String {
-    let mut all = format!("{}\n{controller}\n", template.study().digest);
-    cases.iter().for_each(|case| all.push_str(&format!("{}\n", case.digest)));
+/// Of what is free, what makes a flight good, and what is flown; not of other controllers, nor of what a contest
+/// judges on, so that these can change and nothing is searched again.
+fn digest(marks: &[Mark], tuning: &Tuning, cases: &[FlownCase]) -> String {
+    let Tuning { over, objectives, limits, .. } = tuning;
+    let mut all = format!("{marks:?}\n{over:?}\n{objectives:?}\n{limits:?}\n");
+    cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
     let bytes = Sha256::digest(all.as_bytes());
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -3,7 +3,7 @@
 use fspid_campaign::engine::FlightResult;
 use fspid_study::metrics::Verdict;
 use fspid_study::requirement::{Judgement, Requirement};
-use fspid_study::tuning::{Objective, Over};
+use fspid_study::tuning::{Over, Tuning};
 use serde::{Deserialize, Serialize};
 
 /// Cost above which candidates break a requirement or cannot be flown; what is allowed costs no more, however
@@ -21,7 +21,7 @@ const UNKNOWN: f64 = 10.0;
 pub(crate) struct FlightScore {
     /// How far requirements are broken, 0 where they are met.
     pub(crate) violation: f64,
-    /// Values of the objectives' measures, in their order; nothing for a flight that is lost.
+    /// Values of the measures of objectives and limits, in their order; nothing for a flight that is lost.
     pub(crate) values: Vec<f64>,
     /// Why there is no value, or which requirements are broken.
     pub(crate) reasons: Vec<String>,
@@ -33,9 +33,9 @@ impl FlightScore {
         Self { violation: REFUSED, values: Vec::new(), reasons: vec![reason] }
     }
 
-    /// Of a flight whose judgements end with those of the objectives.
-    pub(crate) fn of(flight: &FlightResult, objectives: usize, duration_s: f64) -> Self {
-        let split = flight.judgements.len().saturating_sub(objectives);
+    /// Of a flight whose judgements end with those of so many objectives and limits.
+    pub(crate) fn of(flight: &FlightResult, measured: usize, duration_s: f64) -> Self {
+        let split = flight.judgements.len().saturating_sub(measured);
         let (asked, measured) = flight.judgements.split_at(split);
         if flight.metrics.verdict.is_failure() {
             let late = match flight.metrics.verdict {
@@ -79,15 +79,17 @@ fn violation(judgement: &Judgement) -> f64 {
     if judgement.met {
         return 0.0;
     }
-    let requirement = &judgement.requirement;
-    let slack = judgement.found.as_ref().ok().map(|case| requirement.slack(case.value));
+    let found = judgement.found.as_ref().ok();
+    found.map_or(UNKNOWN, |case| share_beyond(&judgement.requirement, case.value))
+}
+
+/// How far a value is beyond a limit that it does not meet, as a share of the limit.
+fn share_beyond(requirement: &Requirement, value: f64) -> f64 {
     let limit = requirement.most.or(requirement.least).unwrap_or(1.0).abs();
     let scale = if limit > 0.0 { limit } else { 1.0 };
-    match slack {
-        // A little more than nothing, so that a limit that is missed by a rounding is missed.
-        Some(slack) if slack.is_finite() => (-slack / scale).clamp(1e-12, UNKNOWN),
-        _ => UNKNOWN,
-    }
+    let slack = requirement.slack(value);
+    // A little more than nothing, so that a limit that is missed by a rounding is missed.
+    if slack.is_finite() { (-slack / scale).clamp(1e-12, UNKNOWN) } else { UNKNOWN }
 }
 
 /// What a candidate is worth over all its flights.
@@ -99,7 +101,10 @@ pub struct Score {
     pub objectives: Vec<f64>,
     /// Values of the objectives' measures, brought together as the costs are; nothing where a flight is lost.
     pub values: Vec<f64>,
-    /// How far requirements are broken on average; 0 where all are met.
+    /// Means of what is limited on average; nothing where a flight is lost.
+    #[serde(default)]
+    pub limited: Vec<f64>,
+    /// How far requirements are broken on average, and limits of means; 0 where all are met.
     pub violation: f64,
 }
 
@@ -111,46 +116,62 @@ impl Score {
     }
 
     /// Of the flights of a candidate with the weights of their cases.
-    pub(crate) fn over(
-        flights: &[FlightScore],
-        weights: &[f64],
-        (over, objectives): (Over, &[Objective]),
-    ) -> Self {
+    pub(crate) fn over(flights: &[FlightScore], weights: &[f64], tuning: &Tuning) -> Self {
         let whole = weights.iter().sum::<f64>();
-        let violation = weighted(flights.iter().map(|flight| flight.violation), weights) / whole;
-        let is_lost = flights.iter().any(|flight| flight.values.len() != objectives.len());
-        let of = |index: usize| -> Vec<f64> {
+        let measured = tuning.objectives.len() + tuning.limits.len();
+        let broken = weighted(flights.iter().map(|flight| flight.violation), weights) / whole;
+        if flights.iter().any(|flight| flight.values.len() != measured) {
+            return Self::forbidden(broken, tuning, (Vec::new(), Vec::new()));
+        }
+        let column = |index: usize| -> Vec<f64> {
             flights.iter().filter_map(|flight| flight.values.get(index).copied()).collect()
         };
-        let (mut values, mut costs, mut cost) = (Vec::new(), Vec::new(), 0.0);
-        if !is_lost {
-            let all: Vec<Vec<f64>> = (0..objectives.len()).map(of).collect();
-            let costs_of = |flight: usize| -> f64 {
-                all.iter().zip(objectives).map(|(values, it)| it.weight * values[flight]).sum()
-            };
-            cost = brought_together(
-                &(0..flights.len()).map(costs_of).collect::<Vec<_>>(),
-                weights,
-                over,
-            );
-            for (column, objective) in all.iter().zip(objectives) {
+        let limited = (tuning.objectives.len()..measured)
+            .map(|index| weighted(column(index).into_iter(), weights) / whole);
+        let limited: Vec<f64> = limited.collect();
+        let values: Vec<f64> = tuning
+            .objectives
+            .iter()
+            .enumerate()
+            .map(|(index, objective)| {
                 let sign = objective.weight.signum();
-                let signed: Vec<f64> = column.iter().map(|value| sign * value).collect();
-                let value = sign * brought_together(&signed, weights, over);
-                values.push(value);
-                costs.push(objective.weight * value);
-            }
+                let signed: Vec<f64> = column(index).iter().map(|value| sign * value).collect();
+                sign * brought_together(&signed, weights, tuning.over)
+            })
+            .collect();
+        let beyond = tuning.limits.iter().zip(&limited);
+        let violation =
+            broken + beyond.map(|(limit, mean)| beyond_limit(limit, *mean)).sum::<f64>();
+        if violation > 0.0 {
+            return Self::forbidden(violation, tuning, (values, limited));
         }
-        if violation > 0.0 || is_lost {
-            cost = FORBIDDEN * (1.0 + violation);
-            costs = vec![cost; objectives.len()];
-        } else {
-            cost = cost.min(FORBIDDEN);
-            costs.iter_mut().for_each(|cost| *cost = cost.min(FORBIDDEN));
+        let cost_of = |flight: &FlightScore| -> f64 {
+            let parts = tuning.objectives.iter().zip(&flight.values);
+            parts.map(|(objective, value)| objective.weight * value).sum()
+        };
+        let costs: Vec<f64> = flights.iter().map(cost_of).collect();
+        let allowed = |cost: f64| if cost.is_nan() { f64::INFINITY } else { cost.min(FORBIDDEN) };
+        let parts = tuning.objectives.iter().zip(&values);
+        Self {
+            cost: allowed(brought_together(&costs, weights, tuning.over)),
+            objectives: parts.map(|(it, value)| (it.weight * value).min(FORBIDDEN)).collect(),
+            values,
+            limited,
+            violation,
         }
-        let cost = if cost.is_nan() { f64::INFINITY } else { cost };
-        Self { cost, objectives: costs, values, violation }
     }
+
+    /// Of a candidate that breaks requirements or limits, or is lost.
+    fn forbidden(violation: f64, tuning: &Tuning, (values, limited): (Vec<f64>, Vec<f64>)) -> Self {
+        let cost = FORBIDDEN * (1.0 + violation);
+        let cost = if cost.is_nan() { f64::INFINITY } else { cost };
+        Self { cost, objectives: vec![cost; tuning.objectives.len()], values, limited, violation }
+    }
+}
+
+/// How far a mean is beyond its limit, as a share of the limit.
+fn beyond_limit(limit: &Requirement, mean: f64) -> f64 {
+    if limit.is_met_by(mean) { 0.0 } else { share_beyond(limit, mean) }
 }
 
 fn weighted(values: impl Iterator<Item = f64>, weights: &[f64]) -> f64 {

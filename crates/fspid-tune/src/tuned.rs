@@ -1,5 +1,6 @@
 //! What a search found, for people and programs.
 
+use fspid_study::requirement::Requirement;
 use fspid_study::tune::optimiser::Stop;
 use fspid_study::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,7 @@ pub struct Tuned {
     /// The numbers that were free.
     pub numbers: Vec<Number>,
     objectives: Vec<(String, &'static str)>,
+    limits: Vec<Requirement>,
     front_numbers: Vec<Vec<f64>>,
     over: Over,
 }
@@ -70,10 +72,17 @@ impl Tuned {
             let measure = objective.requirement.measure;
             (measure.name().to_owned(), measure.unit())
         });
-        let reasons = match best.score.is_allowed() {
+        let mut reasons = match best.score.is_allowed() {
             true => Vec::new(),
             false => problem.reasons(&best.point),
         };
+        let limits = problem.tuning().limits.iter().zip(&best.score.limited);
+        reasons.extend(limits.filter(|(limit, mean)| !limit.is_met_by(**mean)).map(
+            |(limit, mean)| {
+                let (name, limits) = (limit.measure.name(), limit.limits_in_words());
+                format!("    mean over the flights: {name} {}, {limits}", shown(Some(*mean)))
+            },
+        ));
         Self {
             controller: problem.controller().to_owned(),
             effort: search.effort().clone(),
@@ -88,6 +97,7 @@ impl Tuned {
             front,
             front_volume: search.front_volume(),
             objectives: objectives.collect(),
+            limits: problem.tuning().limits.clone(),
             over: problem.tuning().over,
         }
     }
@@ -123,6 +133,12 @@ impl Tuned {
                 value(&self.start),
                 value(&self.best)
             ));
+        }
+        for (index, limit) in self.limits.iter().enumerate() {
+            let value = |trial: &Trial| shown(trial.score.limited.get(index).copied());
+            let name = format!("mean {}, {}", limit.measure.name(), limit.limits_in_words());
+            let (start, found) = (value(&self.start), value(&self.best));
+            out.push_str(&format!("  {name:<width$}{start:>14}{found:>14}\n"));
         }
         let cost = |trial: &Trial| match trial.score.is_allowed() {
             true => shown(Some(trial.score.cost)),
@@ -228,6 +244,7 @@ impl Tuned {
                 "allowed": trial.score.is_allowed(),
                 "violation": trial.score.violation,
                 "objectives": trial.score.values,
+                "limited": trial.score.limited,
             })
         };
         let front = self.front.iter().zip(&self.front_numbers).map(

@@ -186,3 +186,63 @@ fn no_entry_of_a_front_beats_another_and_the_front_beats_every_candidate() {
     }
     assert!(search.front_volume().expect("a front") > 0.0);
 }
+
+#[test]
+fn a_mean_beyond_its_limit_is_not_allowed_however_small_the_cost() {
+    let limit = |most: f64| {
+        let text = format!(
+            "[tuning]\ncontroller = \"PID\"\n[[tuning.limit]]\nmeasure = \"elevator_travel_deg\"\nmost = {most:?}\n"
+        );
+        problem(&[("[tuning]\ncontroller = \"PID\"\n", &text)])
+    };
+    let free = limit(1e6);
+    let point = with_kp(&free, 1.7);
+    let score = free.scores(std::slice::from_ref(&point)).remove(0);
+    let travel = score.limited[0];
+    assert!(score.is_allowed() && travel == score.values[1], "{score:?}");
+    let tight = limit(travel / 2.0).scores(std::slice::from_ref(&point)).remove(0);
+    assert!((tight.violation - 1.0).abs() < 1e-9 && tight.cost >= FORBIDDEN, "{tight:?}");
+    // What it came to is told all the same.
+    assert_eq!(tight.values, score.values);
+    assert!(limit(travel).scores(&[point]).remove(0).is_allowed());
+}
+
+#[test]
+fn a_requirement_counts_in_its_cases_alone() {
+    let with = |words: &str| {
+        let text = format!(
+            "[tuning]\ncontroller = \"PID\"\n[[tuning.case]]\nname = \"up\"\nset = []\n[[tuning.case]]\nname = \"down\"\n\
+             group = \"falls\"\nset = [\"setpoint.amplitude_deg=-2\"]\n[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 0.0\n{words}\n"
+        );
+        let problem = problem(&[("[tuning]\ncontroller = \"PID\"\n", &text)]);
+        let point = problem.space().start();
+        problem.scores(&[point]).remove(0).violation
+    };
+    let all = with("");
+    assert!(all > 0.0);
+    assert_eq!(with("not_in = [\"falls\"]"), all / 2.0);
+    assert_eq!(with("only_in = [\"up\"]"), all / 2.0);
+    assert_eq!(with("not_in = [\"falls\", \"up\"]"), 0.0);
+}
+
+#[test]
+fn the_digest_of_a_tuning_is_of_what_it_flies_and_not_of_other_controllers_or_words() {
+    let digest = |changes: &[(&str, &str)]| problem(changes).digest();
+    let own = digest(&[]);
+    for same in [
+        ("kp = { tune = [0.1, 2.0] }", "kp = 0.3"),
+        ("schema = 1\n", "# A remark.\nschema = 1\n"),
+        ("duration_s = 4.0", "duration_s = 4.00"),
+    ] {
+        assert_eq!(digest(&[same]), own, "{same:?}");
+    }
+    for other in [
+        ("duration_s = 4.0", "duration_s = 4.1"),
+        ("start = 0.5", "start = 0.51"),
+        ("kd = 0.1", "kd = 0.11"),
+        ("weight = 0.05", "weight = 0.06"),
+        ("preset = \"navion-paper\"", "preset = \"b747-paper\""),
+    ] {
+        assert_ne!(digest(&[other]), own, "{other:?}");
+    }
+}

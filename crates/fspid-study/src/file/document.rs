@@ -45,6 +45,29 @@ impl Value {
     }
 }
 
+impl Item {
+    /// What it says without the places, so that texts that mean the same are written alike: for digests.
+    pub(crate) fn meaning(&self) -> String {
+        match &self.value {
+            Value::Text(text) => format!("{text:?}"),
+            Value::Integer(number, None) | Value::Float(number) => format!("{number:?}"),
+            Value::Integer(_, Some(whole)) => whole.to_string(),
+            Value::Boolean(boolean) => boolean.to_string(),
+            Value::Date => "date".to_owned(),
+            Value::Array(items) => {
+                let items: Vec<String> = items.iter().map(Self::meaning).collect();
+                format!("[{}]", items.join(","))
+            }
+            Value::Table(members) => {
+                let member = |it: &Member| format!("{:?}={}", it.name, it.item.meaning());
+                let mut members: Vec<String> = members.iter().map(member).collect();
+                members.sort_unstable();
+                format!("{{{}}}", members.join(","))
+            }
+        }
+    }
+}
+
 /// A key with its value.
 #[derive(Clone, Debug)]
 pub(crate) struct Member {

@@ -69,8 +69,10 @@ pub use template::{NewValue, SettingPath, Template};
 pub struct Study {
     /// What flies.
     pub scenario: Scenario,
-    /// What the responses must meet.
+    /// What the responses of the scenario as it is written must meet.
     pub requirements: Vec<Requirement>,
+    /// Every requirement, also those that are asked in some cases of a tuning or a contest only.
+    pub case_requirements: Vec<Requirement>,
     /// What is known of the flight of each plant: the one at the start and one for each change.
     pub airframes: Vec<Airframe>,
     /// What differs from run to run of a campaign.
@@ -92,20 +94,29 @@ pub struct Study {
 }
 
 impl Study {
+    /// The study as a case of this name and group is judged.
+    #[must_use]
+    pub fn in_case(self, name: &str, group: &str) -> Self {
+        let asked = self.case_requirements.iter().filter(|it| it.cases.case(name, group));
+        Self { requirements: asked.cloned().collect(), ..self }
+    }
+
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
         let Built {
             scenario,
-            requirements,
+            requirements: case_requirements,
             airframes,
             dispersions,
             derived_gains,
             tuning,
             contest,
         } = built;
+        let as_written = |it: &&Requirement| it.cases.as_written();
         Self {
             scenario,
-            requirements,
+            requirements: case_requirements.iter().filter(as_written).cloned().collect(),
+            case_requirements,
             airframes,
             dispersions,
             derived_gains,
@@ -230,6 +241,7 @@ fn read(
 ) -> Option<(Built, Vec<Setting>, Vec<Mark>)> {
     let (document, marks) = changed_document(report, files, text, extra)?;
     let section = check::table(report, &spec::SCENARIO, &document, "")?;
+    requirement::check_cases(report, &section);
     let built = build::scenario(report, files, &section);
     files.report_unused_changes(report);
     let built = built?;

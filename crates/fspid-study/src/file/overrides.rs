@@ -102,6 +102,11 @@ pub(crate) struct Change {
 }
 
 impl Change {
+    /// What is changed, for digests.
+    pub(crate) fn meaning(&self) -> String {
+        format!("{} {:?} {}", self.path, self.steps, self.set.item.meaning())
+    }
+
     /// Changes what the file says.
     pub(crate) fn apply(&self, report: &mut Report, document: &mut Item) {
         if descend(report, document, &self.steps, "", &self.set).is_some() {

@@ -1,16 +1,17 @@
 //! Requirements as files have them: single ones, and ready sets.
 
 use crate::file::check;
+use crate::file::dispersion::texts;
 use crate::file::document;
 use crate::file::files::Files;
 use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
-use crate::file::spec::SET_FILE;
+use crate::file::spec::{NOT_IN, ONLY_IN, SET_FILE, names_in_words};
 use crate::metrics::Measure;
 use crate::requirement::{
-    Air, Choices, Conditions, Confidence, Origin, Requirement, RequirementSet, SET_NAMES, SetLine,
-    set, set_text,
+    Air, AskedIn, Choices, Conditions, Confidence, Origin, Requirement, RequirementSet, SET_NAMES,
+    SetLine, set, set_text,
 };
 
 /// The requirements of a scenario whose controllers have these names.
@@ -36,6 +37,7 @@ pub(crate) fn requirements(
         };
         let asked = found.into_iter().map(|requirement| Requirement {
             controller: controller.map(str::to_owned),
+            cases: asked_in(section),
             ..requirement
         });
         requirements.extend(asked);
@@ -43,6 +45,48 @@ pub(crate) fn requirements(
     check_ids(report, sections);
     number_ids(&mut requirements);
     requirements
+}
+
+/// Where it is asked; what is wrong with it is told by [`check_cases`].
+fn asked_in(section: &Section) -> AskedIn {
+    let names = |key| section.item(key).and_then(texts).unwrap_or_default();
+    AskedIn { only: names(ONLY_IN), not: names(NOT_IN) }
+}
+
+/// Refuses names of cases that there are not, and lists of anything else; warns of what the scenario as it is
+/// written is not asked.
+pub(crate) fn check_cases(report: &mut Report, scenario: &Section) {
+    let cases = ["tuning", "contest"].into_iter().filter_map(|key| scenario.section(key));
+    let cases: Vec<&Section> = cases.flat_map(|part| part.sections("case")).collect();
+    let known = |name: &str| {
+        let is_it =
+            |case: &&&Section| [case.text("name"), case.text("group")].contains(&Some(name));
+        cases.iter().any(|case| is_it(&case))
+    };
+    for section in scenario.sections("requirement") {
+        for key in [ONLY_IN, NOT_IN] {
+            let Some(item) = section.item(key) else {
+                continue;
+            };
+            let path = section.path(key);
+            match texts(item).filter(|names| !names.is_empty()) {
+                None => report.value(item.place, &path, "no list of names", names_in_words()),
+                Some(names) => {
+                    for name in names.iter().filter(|name| !known(name)) {
+                        let message = format!("no case and no group is called \"{name}\"");
+                        report.missing(item.place, &path, message, names_in_words());
+                    }
+                }
+            }
+        }
+        if section.given(ONLY_IN) {
+            let measure = section.text("measure").or(section.text("set")).unwrap_or_default();
+            report.warn(format!(
+                "{}: {measure} is asked in some cases of tuning or contest only, not of the scenario as it is written",
+                section.path
+            ));
+        }
+    }
 }
 
 /// Refuses an id that an earlier requirement was given.
@@ -97,6 +141,7 @@ fn single(report: &mut Report, section: &Section) -> Option<Requirement> {
             confidence: section.text("confidence").and_then(Confidence::from_name),
             note: text("note"),
         },
+        cases: AskedIn::default(),
     })
 }
 
@@ -118,7 +163,18 @@ pub(crate) fn objective_requirement(
         most: is_minimised.then_some(0.0),
         conditions,
         origin: Origin::default(),
+        cases: AskedIn::default(),
     })
+}
+
+/// A limit of the mean of a measure over many flights.
+pub(crate) fn limit_requirement(
+    report: &mut Report,
+    section: &Section,
+    index: usize,
+) -> Option<Requirement> {
+    single(report, section)
+        .map(|requirement| Requirement { id: format!("limit[{index}]"), ..requirement })
 }
 
 /// The limits; a measure that is 1 or 0 has its own.

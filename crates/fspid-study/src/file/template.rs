@@ -160,13 +160,21 @@ impl Template {
     /// # Errors
     /// Everything that is wrong with it then.
     pub fn with(&self, values: &[(&SettingPath, NewValue)]) -> Result<Study, Problems> {
-        let (mut report, mut files) = (self.report.clone(), self.files());
-        let mut document = self.document.clone();
+        let mut files = self.files();
+        self.with_files(&mut files, values)
+    }
+
+    fn with_files(
+        &self,
+        files: &mut Files<'_>,
+        values: &[(&SettingPath, NewValue)],
+    ) -> Result<Study, Problems> {
+        let (mut report, mut document) = (self.report.clone(), self.document.clone());
         for (path, value) in values {
             let set = setting(&mut report, path, value);
-            overrides::put(&mut report, &mut files, &mut document, (&path.steps, &set));
+            overrides::put(&mut report, files, &mut document, (&path.steps, &set));
         }
-        let built = build(&mut report, &mut files, &document);
+        let built = build(&mut report, files, &document);
         files.report_unused_changes(&mut report);
         report.finish(&self.name)?;
         let built = built.ok_or_else(|| Problems::new(&self.name, Vec::new(), 0))?;
@@ -174,6 +182,8 @@ impl Template {
     }
 
     /// The scenario with one controller alone, and without what it says of tuning and of other controllers.
+    ///
+    /// Its digest is of what is left and of the files that this names: of what decides about its flights.
     ///
     /// # Errors
     /// A controller that there is not.
@@ -196,7 +206,12 @@ impl Template {
         }
         let is_mine = |mark: &&Mark| mark.controller().is_none_or(|name| name == controller);
         let marks = self.study.marks.iter().filter(is_mine).cloned().collect();
-        one.study = Study { marks, ..one.with(&[])? };
+        let mut files = one.files();
+        let study = one.with_files(&mut files, &[])?;
+        files.digest(&one.document.meaning());
+        one.changes.iter().for_each(|change| files.digest(&change.meaning()));
+        let digest = files.finish();
+        one.study = Study { marks, digest, ..study };
         Ok(one)
     }
 

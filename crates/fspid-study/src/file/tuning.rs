@@ -3,9 +3,10 @@
 use crate::file::dispersion::texts;
 use crate::file::overrides;
 use crate::file::report::Report;
-use crate::file::requirement::objective_requirement;
+use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
+use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
 
 /// Share of the flights that counts in a tail, unless another is asked for.
@@ -50,6 +51,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
         run_seed: section.integer("run_seed")? as u64,
         cases: cases(report, section.sections("case")),
         objectives,
+        limits: limits(report, section),
     })
 }
 
@@ -89,6 +91,12 @@ fn objective(report: &mut Report, section: &Section, index: usize) -> Option<Obj
     }
     let requirement = objective_requirement(report, section, (index, weight > 0.0))?;
     Some(Objective { requirement, weight, reference: section.number("reference") })
+}
+
+/// Limits of means.
+fn limits(report: &mut Report, section: &Section) -> Vec<Requirement> {
+    let sound = section.sections("limit").iter().filter(|part| part.sound).enumerate();
+    sound.filter_map(|(index, part)| limit_requirement(report, part, index)).collect()
 }
 
 fn cases(report: &mut Report, sections: &[Section]) -> Vec<Case> {

@@ -127,7 +127,7 @@ pub fn judge(study: &Study, results: &[ControllerResult]) -> Vec<Judgement> {
 mod tests {
     use super::*;
     use crate::metrics::Measure;
-    use crate::requirement::{Conditions, Origin};
+    use crate::requirement::{AskedIn, Conditions, Origin};
 
     fn requirement(least: Option<f64>, most: Option<f64>) -> Requirement {
         Requirement {
@@ -138,6 +138,7 @@ mod tests {
             most,
             conditions: Conditions::default(),
             origin: Origin::default(),
+            cases: AskedIn::default(),
         }
     }
 

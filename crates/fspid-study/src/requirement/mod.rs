@@ -43,6 +43,34 @@ pub struct Requirement {
     pub conditions: Conditions,
     /// Where it is from.
     pub origin: Origin,
+    /// In which cases of a tuning or a contest it is asked.
+    pub cases: AskedIn,
+}
+
+/// In which cases of a tuning or a contest something is asked: names of cases or of their groups.
+///
+/// The scenario as it is written, without the changes of a case, has no name and is in no group.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AskedIn {
+    /// In no others than these, and not of the scenario as it is written; everywhere if there are none.
+    pub only: Vec<String>,
+    /// In all but these.
+    pub not: Vec<String>,
+}
+
+impl AskedIn {
+    /// True if the scenario as it is written is asked.
+    #[must_use]
+    pub fn as_written(&self) -> bool {
+        self.only.is_empty()
+    }
+
+    /// True if a case of this name and group is asked.
+    #[must_use]
+    pub fn case(&self, name: &str, group: &str) -> bool {
+        let is_this = |it: &String| it == name || (it == group && !group.is_empty());
+        (self.only.is_empty() || self.only.iter().any(is_this)) && !self.not.iter().any(is_this)
+    }
 }
 
 /// Where a requirement is from.

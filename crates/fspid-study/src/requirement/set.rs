@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::condition::Air;
-use super::{Conditions, Confidence, Origin, Requirement};
+use super::{AskedIn, Conditions, Confidence, Origin, Requirement};
 use crate::metrics::Measure;
 
 /// Ready sets by name.
@@ -138,6 +138,7 @@ impl SetLine {
                 confidence: Some(self.confidence),
                 note: self.note.clone(),
             },
+            cases: AskedIn::default(),
         }
     }
 }

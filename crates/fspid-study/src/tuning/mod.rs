@@ -76,6 +76,8 @@ pub struct Tuning {
     pub cases: Vec<Case>,
     /// What makes a flight good.
     pub objectives: Vec<Objective>,
+    /// Limits of means over all flights, weighted by case.
+    pub limits: Vec<Requirement>,
 }
 
 /// On what tuned controllers are compared.

@@ -4,6 +4,7 @@
 mod abuse;
 mod arrival;
 mod bad_values;
+mod cases;
 mod dispersions;
 mod lqi;
 mod marks;

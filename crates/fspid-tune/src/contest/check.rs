@@ -147,7 +147,7 @@ fn entrant(
     let flown = cases
         .iter()
         .zip(&rules.cases)
-        .map(|(template, case)| flown_case(template, (&case.name, case.weight), name, dispersed));
+        .map(|(template, case)| flown_case(template, Some(case), name, dispersed));
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
     let measured = objectives.map(|it| it.requirement.clone()).collect();

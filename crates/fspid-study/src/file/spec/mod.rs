@@ -28,7 +28,7 @@ mod tuning;
 
 pub(crate) use aircraft::AIRCRAFT_FILE;
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
-pub(crate) use requirement::{REQUIREMENT_FILE, SET_FILE};
+pub(crate) use requirement::{NOT_IN, ONLY_IN, REQUIREMENT_FILE, SET_FILE, names_in_words};
 pub(crate) use scenario::SCENARIO;
 pub(crate) use tuning::FRONT;
 

@@ -16,7 +16,7 @@ const MEASURE_DOC: &str = "What is measured; `fspid verify --help` lists all. Th
 const LEVEL: Kind = Kind::Integer { least: 1, most: 3 };
 
 /// Limits.
-const LIMITS: &[Key] = &[
+pub(super) const LIMITS: &[Key] = &[
     optional(
         "least",
         not_negative(""),
@@ -87,7 +87,29 @@ const WHERE: &[Key] = &[
         "The air that it is asked in: for a measure any, for a set \"smooth\" if left out.",
     ),
     optional("controller", Kind::Text, "Name of the controller; all of them if it is left out."),
+    optional(
+        ONLY_IN,
+        Kind::Own { allowed: names_in_words, schema: names_schema },
+        "Names of cases of [tuning] and [contest], or of their groups: it is asked in these alone, and not of the scenario as it is written.",
+    ),
+    optional(
+        NOT_IN,
+        Kind::Own { allowed: names_in_words, schema: names_schema },
+        "Names of cases or groups in which it is not asked.",
+    ),
 ];
+
+/// Keys that say in which cases a requirement is asked.
+pub(crate) const ONLY_IN: &str = "only_in";
+pub(crate) const NOT_IN: &str = "not_in";
+
+pub(crate) fn names_in_words() -> String {
+    "a list of names of [[tuning.case]] and [[contest.case]], or of their groups".to_owned()
+}
+
+fn names_schema() -> serde_json::Value {
+    serde_json::json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 })
+}
 
 /// Keys that go with `measure`.
 const WITH_MEASURE: &[&str] = &[

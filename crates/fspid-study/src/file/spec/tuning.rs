@@ -1,6 +1,6 @@
 //! How a scenario is tuned, and on what tuned controllers are compared.
 
-use super::requirement::{CONDITIONS, MEASURE};
+use super::requirement::{CONDITIONS, LIMITS, MEASURE};
 use super::{Default, Key, Kind, Range, Table, defaulted, optional, plain, required};
 use crate::file::overrides;
 use crate::tuning::Over;
@@ -74,6 +74,11 @@ pub(super) static TUNING: Table = plain(
             Kind::Tables { table: &OBJECTIVE, least: 1, most: 20 },
             "What is to become small. The scenario's requirements are limits that come before.",
         ),
+        optional(
+            "limit",
+            Kind::Tables { table: &LIMIT, least: 0, most: 20 },
+            "Limits of the mean over all flights, such as the effort that everybody may spend; a requirement limits each flight.",
+        ),
     ]],
 );
 
@@ -130,6 +135,11 @@ static OBJECTIVE: Table = plain(
         ],
         CONDITIONS,
     ],
+);
+
+static LIMIT: Table = plain(
+    "A limit of the mean of a measure over all flights, weighted by case.",
+    &[&[required("measure", MEASURE, "The measure, as in requirements.")], LIMITS, CONDITIONS],
 );
 
 /// On what tuned controllers are compared.
