@@ -182,16 +182,17 @@ impl Show {
             ),
             (ModelData::Forces(data), _) => tables::text(data, units),
             (ModelData::Linear(data), Some(linear)) => {
-                let condition = match condition(data).text(units) {
-                    none if none.is_empty() => "its source gives no flight condition\n".to_owned(),
-                    facts => format!("flight condition of the model\n{facts}"),
+                let title = match data.condition {
+                    Some(_) => "flight condition of the model",
+                    None => "its source gives no flight condition",
                 };
+                let condition = condition(data).text(units);
                 let sense = positive_elevator(data);
                 let equations = linear.longitudinal.text(units);
                 let plant = polynomial::fraction(&linear.plant);
                 format!(
                     "known by its linear model alone; it cannot be trimmed or flown elsewhere\n\n\
-                     {condition}\na positive elevator turns the nose {sense}\n\n\
+                     {title}\n{condition}\na positive elevator turns the nose {sense}\n\n\
                      longitudinal\n{equations}\npitch over elevator\n{plant}"
                 )
             }

@@ -170,6 +170,17 @@ const B747: [&str; 4] = [
     "aircraft.model=linear",
 ];
 
+const HEAD: &str = r#"
+name = "boeing"
+source = "computed"
+kind = "linear"
+[condition]
+airspeed_ft_s = 673.0
+altitude_ft = 20000.0
+[geometry]
+span_ft = 196.0
+"#;
+
 /// The linear model of the Boeing 747 with derivatives as a file, in m and s, with w or with alpha.
 fn boeing(downward: &str) -> String {
     let data = aircraft("b747-cruise-low").expect("carried");
@@ -188,10 +199,7 @@ fn boeing(downward: &str) -> String {
     let by_gust = |place: usize| (more[place] - less[place]) / 2e-3;
     let by_gust = [by_gust(3), by_gust(5), by_gust(11), 0.0];
     let sizes = if downward == "alpha_rad" { [1.0, airspeed_m_s, 1.0, 1.0] } else { [1.0; 4] };
-    let mut text = format!(
-        "name = \"boeing\"\nsource = \"computed\"\nkind = \"linear\"\n\
-         [condition]\nairspeed_ft_s = 673.0\naltitude_ft = 20000.0\n[geometry]\nspan_ft = 196.0\n"
-    );
+    let mut text = String::from(HEAD);
     for (row, state) in ["u_m_s", downward, "q_rad_s", "theta_rad"].into_iter().enumerate() {
         let entry = |column: usize| model.a().get(row, column).expect("it is there");
         let states: Vec<f64> =
