@@ -1,9 +1,9 @@
 //! An aircraft as its source describes it, in SI units, before anything is made of it.
 
+mod linear;
+
 use std::fmt;
 use std::sync::Arc;
-
-use fspid_lti::{Matrix, StateSpace, TransferFunction};
 
 use crate::aerodynamics::ForceModel;
 use crate::aerodynamics::derivatives::{
@@ -13,8 +13,8 @@ use crate::aircraft::Aircraft;
 use crate::atmosphere::{Air, AirModel, Environment};
 use crate::error::AircraftError;
 use crate::mass::MassProperties;
-use crate::transfer::transfer_function;
 use crate::validity::{Travel, Validity};
+pub use linear::{LinearCondition, LinearData, LinearElevator, LinearState};
 
 /// What is known about an aircraft, and from where.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,34 +128,6 @@ pub struct Inertia {
     pub ixz_kg_m2: f64,
 }
 
-/// A longitudinal linear model: states and elevator.
-///
-/// $$ \dot x = A x + b\, \delta_e $$
-#[derive(Debug, Clone, PartialEq)]
-pub struct LinearData {
-    /// What the states are, in the order of the rows.
-    pub states: Vec<LinearState>,
-    /// State matrix.
-    pub a: Matrix,
-    /// Input column.
-    pub b: Matrix,
-}
-
-/// A longitudinal state, as a deviation from the condition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LinearState {
-    /// Forward velocity in m/s.
-    ForwardVelocity,
-    /// Downward velocity in m/s.
-    DownwardVelocity,
-    /// Angle of attack in rad.
-    Alpha,
-    /// Pitch rate in rad/s.
-    PitchRate,
-    /// Pitch in rad.
-    Theta,
-}
-
 /// How an aircraft is to behave away from the flight condition of its data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Laws {
@@ -224,28 +196,6 @@ impl AircraftData {
         environment: Environment,
     ) -> Result<Aircraft<DerivativeModel>, AircraftError> {
         self.derivatives()?.aircraft(laws, environment)
-    }
-}
-
-impl LinearData {
-    /// The model as a system: elevator in, all states out.
-    ///
-    /// # Errors
-    /// Matrices that do not fit each other.
-    pub fn system(&self) -> Result<StateSpace, AircraftError> {
-        let states = self.states.len();
-        let (c, d) = (Matrix::identity(states), Matrix::zeros(states, 1));
-        Ok(StateSpace::new(self.a.clone(), self.b.clone(), c, d)?)
-    }
-
-    /// Pitch over elevator.
-    ///
-    /// # Errors
-    /// Matrices that do not fit each other; a model without pitch among its states, or one that the elevator does not
-    /// reach.
-    pub fn theta_over_elevator(&self) -> Result<TransferFunction, AircraftError> {
-        let theta = self.states.iter().position(|state| *state == LinearState::Theta);
-        transfer_function(&self.system()?, 0, theta.ok_or(AircraftError::NoPitch)?)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Flights of a campaign are those of `simulate`, whatever flies beside them.
 
 use fspid_campaign::engine::{self, FlightResult};
+use fspid_sim::batch::{Entrant, LANES, fly_group};
 use fspid_study::file::{Extra, NewValue, SettingPath, Study, Template};
 use fspid_study::simulation::Simulation;
 
@@ -95,6 +96,50 @@ fn flights_of_different_lengths_and_orders_fly_in_one_call() {
         .into();
     for (study, flown) in studies.iter().zip(engine::fly(&studies)) {
         assert_eq!(flown.expect("it flies"), alone(study));
+    }
+}
+
+/// The step of the 747 by aircraft of which files have linear models alone: groups of one of them fly in lanes, a mixed
+/// one, whose orders differ, one by one.
+#[test]
+fn aircraft_known_by_linear_models_alone_fly_side_by_side_as_they_fly_alone() {
+    let plant = "[plant]\npreset = \"b747-paper\"";
+    let aircraft = "[aircraft]\nname = \"etkin-747\"\nairspeed_ft_s = 774.0\naltitude_ft = 40000.0";
+    assert!(STEP.contains(plant));
+    let template = template(&STEP.replace(plant, aircraft));
+    let (name, kp) = (path("aircraft.name"), path("controller.PC.kp"));
+    let moment = path("aircraft.name.equations[1].by_elevator");
+    let study = |run: usize| {
+        let changes = match run / LANES == 1 || run == 2 * LANES + 1 {
+            true => (NewValue::Text("ctms-transport".to_owned()), 0.0203),
+            false => (NewValue::Text("etkin-747".to_owned()), -17.85),
+        };
+        let x = run as f64;
+        let changes = [
+            (&name, changes.0),
+            (&kp, NewValue::Number(0.5 + 0.3 * x)),
+            (&moment, NewValue::Number(changes.1 * (1.0 + 0.01 * x))),
+        ];
+        template.with(&changes).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let studies: Vec<Study> = (0..2 * LANES + 3).map(study).collect();
+    for group in studies[..2 * LANES].chunks(LANES) {
+        let prepared: Vec<_> =
+            group.iter().map(|it| it.scenario.prepare().expect("it flies")).collect();
+        let entrant = |(study, prepared)| {
+            let study: &Study = study;
+            Entrant { prepared, controller: &study.scenario.controllers[0].controller }
+        };
+        let entrants: Vec<_> = group.iter().zip(&prepared).map(entrant).collect();
+        assert!(fly_group::<LANES>(&entrants, |_| ()).is_ok());
+    }
+    for (study, flown) in studies.iter().zip(engine::fly(&studies)) {
+        let flown = flown.expect("it flies");
+        assert_eq!(flown, alone(study));
+        let simulation = Simulation::of(study).expect("it flies");
+        for (flight, result) in flown.iter().zip(&simulation.results) {
+            assert_eq!((&flight.metrics, flight.faults), (&result.metrics, result.trace.faults));
+        }
     }
 }
 

@@ -89,6 +89,11 @@ fn an_aircraft_is_shown_in_the_units_that_are_asked_for() {
     near(&si["travel"]["elevator_deg"][0], -25.0, 1e-9);
     let shown = text(&["show", "etkin-747"]);
     assert!(shown.contains("cannot be trimmed") && shown.contains("s⁴ + 0.7504680 s³"), "{shown}");
+    assert!(shown.contains("altitude       12192.0 m"), "{shown}");
+    assert!(shown.contains("a positive elevator turns the nose down"), "{shown}");
+    let transport = json(&["show", "ctms-transport"]);
+    assert_eq!(transport["elevator_sign"], "nose-up-positive");
+    assert_eq!(transport["condition"], serde_json::json!({}));
 }
 
 #[test]
@@ -229,6 +234,22 @@ fn a_plant_file_of_a_linear_model_flies_in_a_scenario() {
     let written = std::fs::read_to_string(folder.path().join("slow.toml")).expect("read");
     assert!(written.contains("speed_m_s = 39.62") && written.contains("Nelson"), "{written}");
     assert!(written.contains("elevator_sign = \"nose-down-positive\""));
+}
+
+#[test]
+fn a_plant_file_counts_the_elevator_as_its_aircraft_does_and_knows_where_it_holds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let written = |name: &str| {
+        let output = fspid(&["aircraft", "linearise", name, "--plant", "it.toml"], folder.path());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        std::fs::read_to_string(folder.path().join("it.toml")).expect("read")
+    };
+    let transport = written("ctms-transport");
+    assert!(transport.contains("elevator_sign = \"nose-up-positive\""), "{transport}");
+    assert!(!transport.contains("speed_m_s"), "{transport}");
+    let etkin = written("etkin-747");
+    assert!(etkin.contains("elevator_sign = \"nose-down-positive\""), "{etkin}");
+    assert!(etkin.contains("speed_m_s = 235.9152\naltitude_m = 12192.0\nmach = 0.8"), "{etkin}");
 }
 
 #[test]

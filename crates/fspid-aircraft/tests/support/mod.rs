@@ -6,7 +6,8 @@ use fspid_aircraft::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
 use fspid_aircraft::data::{
-    AircraftData, DerivativeData, Inertia, LinearData, LinearState, ModelData, Reference,
+    AircraftData, DerivativeData, Inertia, LinearData, LinearElevator, LinearState, ModelData,
+    Reference,
 };
 use fspid_aircraft::{Range, Travel, Validity};
 use fspid_lti::Matrix;
@@ -152,6 +153,13 @@ fn linear(file: &Table) -> LinearData {
         states: names.iter().map(|name| state(name)).collect(),
         a: Matrix::from_rows(&a.collect::<Vec<_>>()).expect("a matrix"),
         b: Matrix::from_rows(&b.collect::<Vec<_>>()).expect("a column"),
+        elevator: match string(file, "elevator_sign").as_str() {
+            "nose-up-positive" => LinearElevator::NoseUpPositive,
+            _ => LinearElevator::NoseDownPositive,
+        },
+        by_pitch_gust: None,
+        condition: None,
+        span_m: None,
     }
 }
 

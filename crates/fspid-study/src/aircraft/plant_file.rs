@@ -1,5 +1,7 @@
 //! A linear model as a plant file.
 
+use fspid_aircraft::data::{LinearCondition, LinearElevator, ModelData};
+
 use super::linearise::Linear;
 use super::trim::Trimmed;
 
@@ -10,13 +12,21 @@ pub(super) fn text(linear: &Linear) -> String {
     let denominator = list(linear.plant.denominator().coefficients());
     let data = &linear.data;
     let title = format!("{}; {}", data.title, linear.condition());
+    let model = match &data.model {
+        ModelData::Linear(model) => Some(model),
+        _ => None,
+    };
+    let sign = match model.map(|model| model.elevator) {
+        Some(LinearElevator::NoseUpPositive) => "\"nose-up-positive\"",
+        _ => "\"nose-down-positive\"",
+    };
     let mut out = format!(
         "# Written by `fspid aircraft linearise`; in a scenario: [plant] with file = \"…\".\n\
          name = {}\n\
          title = {}\n\
          numerator = {numerator}\n\
          denominator = {denominator}\n\
-         elevator_sign = \"nose-down-positive\"\n\
+         elevator_sign = {sign}\n\
          source = {}\n\
          \n[condition]\n\
          aircraft = {}\n",
@@ -27,8 +37,16 @@ pub(super) fn text(linear: &Linear) -> String {
     );
     if let Some(trimmed) = &linear.trimmed {
         out.push_str(&condition(trimmed));
+    } else if let Some(held) = model.and_then(|model| model.condition) {
+        out.push_str(&condition_of_source(&held));
     }
     out
+}
+
+fn condition_of_source(held: &LinearCondition) -> String {
+    let LinearCondition { airspeed_m_s, altitude_m, mach } = held;
+    let mach = mach.map_or_else(String::new, |mach| format!("mach = {mach:?}\n"));
+    format!("speed_m_s = {airspeed_m_s:?}\naltitude_m = {altitude_m:?}\n{mach}")
 }
 
 fn condition(trimmed: &Trimmed) -> String {

@@ -3,7 +3,7 @@
 use fspid_aircraft::aerodynamics::derivatives::{
     Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
-use fspid_aircraft::data::{AircraftData, DerivativeData, ModelData};
+use fspid_aircraft::data::{AircraftData, DerivativeData, LinearData, LinearElevator, ModelData};
 use serde_json::{Value, json};
 
 use super::facts::Facts;
@@ -57,6 +57,30 @@ fn reference(data: &DerivativeData) -> Facts {
         )
         .number("gravity", "gravity", Kind::Acceleration, reference.gravity_m_s2)
         .number("angle of attack of the fuselage", "alpha_body", Kind::Angle, reference.alpha_rad)
+}
+
+/// Where a linear model holds, as far as its source tells.
+fn condition(data: &LinearData) -> Facts {
+    let mut facts = Facts::default();
+    if let Some(condition) = data.condition {
+        facts = facts
+            .number("true airspeed", "airspeed", Kind::Speed, condition.airspeed_m_s)
+            .number("altitude", "altitude", Kind::Length, condition.altitude_m);
+        if let Some(mach) = condition.mach {
+            facts = facts.number("Mach number", "mach", Kind::Plain, mach);
+        }
+    }
+    match data.span_m {
+        Some(span_m) => facts.number("span", "span", Kind::Length, span_m),
+        None => facts,
+    }
+}
+
+const fn positive_elevator(data: &LinearData) -> &'static str {
+    match data.elevator {
+        LinearElevator::NoseDownPositive => "down",
+        LinearElevator::NoseUpPositive => "up",
+    }
 }
 
 fn body(data: &DerivativeData) -> Facts {
@@ -157,11 +181,18 @@ impl Show {
                 travel(AT_REFERENCE, &data.travel).text(units),
             ),
             (ModelData::Forces(data), _) => tables::text(data, units),
-            (_, Some(linear)) => {
+            (ModelData::Linear(data), Some(linear)) => {
+                let title = match data.condition {
+                    Some(_) => "flight condition of the model",
+                    None => "its source gives no flight condition",
+                };
+                let condition = condition(data).text(units);
+                let sense = positive_elevator(data);
                 let equations = linear.longitudinal.text(units);
                 let plant = polynomial::fraction(&linear.plant);
                 format!(
                     "known by its linear model alone; it cannot be trimmed or flown elsewhere\n\n\
+                     {title}\n{condition}\na positive elevator turns the nose {sense}\n\n\
                      longitudinal\n{equations}\npitch over elevator\n{plant}"
                 )
             }
@@ -186,6 +217,10 @@ impl Show {
         }
         if let ModelData::Forces(data) = &self.data.model {
             tables::json(data, self.units, &mut whole);
+        }
+        if let ModelData::Linear(data) = &self.data.model {
+            whole["condition"] = condition(data).json(self.units);
+            whole["elevator_sign"] = json!(format!("nose-{}-positive", positive_elevator(data)));
         }
         if let Some(linear) = &self.linear {
             whole["longitudinal"] = linear.longitudinal.json(self.units);

@@ -1,15 +1,14 @@
 //! Aircraft that the program carries, and files of the same form: from the units of a source to SI.
 
+mod linear;
+
 use std::path::Path;
 
 use fspid_aircraft::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
-use fspid_aircraft::data::{
-    AircraftData, DerivativeData, Inertia, LinearData, LinearState, ModelData, Reference,
-};
+use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, ModelData, Reference};
 use fspid_aircraft::{Range, Travel, Validity};
-use fspid_lti::Matrix;
 
 use crate::file::check;
 use crate::file::document;
@@ -102,7 +101,7 @@ pub(super) fn aircraft_data(
 ) -> Option<AircraftData> {
     let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
     let model = match section.kind {
-        "linear" => ModelData::Linear(linear(report, section.sections("equations"))?),
+        "linear" => ModelData::Linear(linear::model(report, section)?),
         "tables" => ModelData::Forces(Box::new(tables(report, files, (section, place))?)),
         _ => ModelData::Derivatives(Box::new(derivatives(report, section)?)),
     };
@@ -227,45 +226,6 @@ pub(super) fn surfaces(section: &Section) -> Option<Travel> {
         rudder_rad: range(section, "rudder")?,
         throttle: Range { min: 0.0, max: 1.0 },
     })
-}
-
-/// Velocities become metres in the states and in their rates; angles stay.
-fn linear(report: &mut Report, equations: &[Section]) -> Option<LinearData> {
-    let names: Vec<&str> = equations.iter().filter_map(|row| row.text("state")).collect();
-    let sizes: Vec<f64> = names.iter().map(|name| state_size(name)).collect();
-    let (mut a, mut b) = (Vec::new(), Vec::new());
-    for (row, rate) in equations.iter().zip(&sizes) {
-        let values = row.numbers("by_states")?;
-        if values.len() != sizes.len() {
-            let message = format!("{} numbers for {} states", values.len(), sizes.len());
-            let allowed = "one number a state".to_owned();
-            report.value(row.at("by_states"), &row.path("by_states"), message, allowed);
-            return None;
-        }
-        let scaled = values.iter().zip(&sizes).map(|(value, state)| value * rate / state);
-        a.push(scaled.collect::<Vec<_>>());
-        b.push([row.number("by_elevator")? * rate]);
-    }
-    Some(LinearData {
-        states: names.iter().filter_map(|name| state(name)).collect(),
-        a: Matrix::from_rows(&a).ok()?,
-        b: Matrix::from_rows(&b).ok()?,
-    })
-}
-
-fn state(name: &str) -> Option<LinearState> {
-    Some(match name {
-        "u_ft_s" | "u_m_s" => LinearState::ForwardVelocity,
-        "w_ft_s" | "w_m_s" => LinearState::DownwardVelocity,
-        "alpha_rad" => LinearState::Alpha,
-        "q_rad_s" => LinearState::PitchRate,
-        "theta_rad" => LinearState::Theta,
-        _ => return None,
-    })
-}
-
-fn state_size(name: &str) -> f64 {
-    if name.ends_with("_ft_s") { FOOT_M } else { 1.0 }
 }
 
 /// A coefficient, 0 if it is left out.

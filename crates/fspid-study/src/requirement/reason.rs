@@ -140,7 +140,7 @@ impl fmt::Display for NotEvaluated {
             Self::Aircraft(error) => error.fmt(f),
             Self::Quality(reason) => reason.fmt(f),
             Self::SpeedUnknown => f.write_str(
-                "nobody says how fast the aircraft flies: a plant file with `speed_m_s` in its condition does, or an `aircraft`",
+                "nobody says how fast the aircraft flies: a plant file with `speed_m_s` in its condition does, or an `aircraft` whose file has a flight condition",
             ),
         }
     }

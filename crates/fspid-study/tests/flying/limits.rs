@@ -71,7 +71,7 @@ fn what_an_aircraft_cannot_do_is_refused_with_a_reason() {
         (
             "name = \"navion\"\nair",
             "name = \"etkin-747\"\nair",
-            "only a linear model of it is known",
+            "only a linear model of the aircraft is known, which holds at one flight condition",
         ),
         (
             "[loop]",

@@ -4,6 +4,7 @@
 mod agreement;
 mod gallery;
 mod limits;
+mod linear_file;
 mod moving_air;
 
 use fspid_sim::Trace;

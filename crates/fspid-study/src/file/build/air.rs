@@ -18,8 +18,9 @@ use crate::file::section::Section;
 pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> Option<Weather> {
     let parts = ["wind", "turbulence"].map(|name| section.section(name));
     let parts = parts.into_iter().flatten().chain(section.sections("gust"));
-    let Some(way) = flown.way else {
-        parts.for_each(|part| refuse(report, part));
+    let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());
+    let Some(way) = flown.way.filter(|_| !silent) else {
+        parts.for_each(|part| refuse(report, part, flown.way.is_some()));
         return None;
     };
     let calm = parts.count() == 0;
@@ -32,9 +33,19 @@ pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> 
     (!(calm && linear)).then_some(weather)
 }
 
-fn refuse(report: &mut Report, part: &Section) {
-    let message = "a plant does not say how moving air acts on it";
-    report.value(part.place, &part.path, message, "an `aircraft` in place of the plant");
+/// Of a plant, or of an aircraft whose file has too little on it.
+fn refuse(report: &mut Report, part: &Section, is_aircraft: bool) {
+    let (message, allowed) = match is_aircraft {
+        false => (
+            "a plant does not say how moving air acts on it",
+            "an `aircraft` in place of the plant",
+        ),
+        true => (
+            "the linear model of the aircraft does not say how moving air acts on it",
+            "still air, or an aircraft file with a condition, equations of u and of w or alpha, and by_pitch_gust in them",
+        ),
+    };
+    report.value(part.place, &part.path, message, allowed);
 }
 
 fn winds(section: &Section, way: Way) -> Vec<Wind> {
@@ -98,7 +109,15 @@ fn turbulence(report: &mut Report, part: Option<&Section>, way: Way) -> Option<T
         intensity: judged(report, (part, "w20_m_s"), intensity)?,
         height_m: way.course.height_m,
         airspeed_m_s: way.course.airspeed_m_s,
-        wing_span_m: way.span_m,
+        wing_span_m: span_m(report, part, way)?,
         seed: u64::try_from(part.integer("seed")?).ok()?,
     })
+}
+
+fn span_m(report: &mut Report, part: &Section, way: Way) -> Option<f64> {
+    if way.span_m.is_none() {
+        let message = "the aircraft's file has no span, on which turbulence depends";
+        report.value(part.place, &part.path, message, "an aircraft file with a span");
+    }
+    way.span_m
 }

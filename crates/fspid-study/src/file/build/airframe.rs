@@ -27,7 +27,7 @@ pub(super) fn airframes(
     };
     let first = match flown.and_then(|flown| flown.way) {
         Some(way) => Some(Airframe {
-            airspeed_m_s: Some(way.course.airspeed_m_s),
+            airspeed_m_s: (!way.assumed).then_some(way.course.airspeed_m_s),
             gravity_m_s2: way.gravity_m_s2,
         }),
         None => section.section("plant").map(of_file),

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
-use fspid_aircraft::{Aircraft, TrimTarget};
+use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
-use super::{data, judged, rad};
+use super::{data, judged, linear_aircraft, rad};
 use crate::file::aircraft::{aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -27,10 +27,13 @@ pub(super) struct Flown {
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     pub(super) course: Course,
-    pub(super) span_m: f64,
+    /// `None` where the aircraft's file has none.
+    pub(super) span_m: Option<f64>,
     pub(super) gravity_m_s2: f64,
     /// At the trim, before any wind.
     pub(super) dynamic_pressure_pa: f64,
+    /// Whether airspeed and altitude are the scenario's alone, since the aircraft's file has no condition.
+    pub(super) assumed: bool,
 }
 
 /// What flies, of the scenario's `plant` or `aircraft`.
@@ -53,12 +56,7 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     let span_m = match &data.model {
         ModelData::Derivatives(data) => data.geometry.span_m,
         ModelData::Forces(data) => data.geometry.span_m,
-        ModelData::Linear(_) => {
-            let message = "only a linear model of it is known; it has no trim";
-            let allowed = "an aircraft with stability derivatives or tables, or a `plant`";
-            report.value(part.at(key), &part.path(key), message, allowed);
-            return None;
-        }
+        ModelData::Linear(model) => return linear_aircraft::flown(report, (part, key), model),
     };
     fits(report, part, &data)?;
     let target = target(part)?;
@@ -66,15 +64,24 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     let aircraft = flyer(&data, laws(part)?, part.text("atmosphere")? == "reference");
     let aircraft = judged(report, (part, key), aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
-    let plant = match part.text("model")? {
-        "linear" => Plant::Linear(judged(report, (part, key), plant.linear())?),
+    let plant = match part.text("model") {
+        Some("linear") => Plant::Linear(judged(report, (part, key), plant.linear())?),
         _ => plant.into(),
     };
-    let gravity_m_s2 = aircraft.environment().gravity_m_s2;
-    let density_kg_m3 = aircraft.environment().air_at(target.altitude_m).density_kg_m3;
-    let dynamic_pressure_pa = 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s;
-    let way = Way { course: course(part, target)?, span_m, gravity_m_s2, dynamic_pressure_pa };
-    Some(Flown { plant, way: Some(way) })
+    let way = way(part, target, aircraft.environment())?;
+    Some(Flown { plant, way: Some(Way { span_m: Some(span_m), ..way }) })
+}
+
+/// Along a target in the air of an environment, by an aircraft without a span.
+pub(super) fn way(part: &Section, target: TrimTarget, environment: &Environment) -> Option<Way> {
+    let density_kg_m3 = environment.air_at(target.altitude_m).density_kg_m3;
+    Some(Way {
+        course: course(part, target)?,
+        span_m: None,
+        gravity_m_s2: environment.gravity_m_s2,
+        dynamic_pressure_pa: 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s,
+        assumed: false,
+    })
 }
 
 fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {
@@ -96,7 +103,7 @@ fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Ai
     aircraft
 }
 
-fn target(part: &Section) -> Option<TrimTarget> {
+pub(super) fn target(part: &Section) -> Option<TrimTarget> {
     Some(TrimTarget {
         airspeed_m_s: quantity(part, "airspeed")?,
         altitude_m: quantity(part, "altitude")?,
@@ -104,7 +111,7 @@ fn target(part: &Section) -> Option<TrimTarget> {
     })
 }
 
-fn check_ground(report: &mut Report, part: &Section, target: TrimTarget) {
+pub(super) fn check_ground(report: &mut Report, part: &Section, target: TrimTarget) {
     let ground_m = part.number("ground_m").filter(|_| part.given("ground_m"));
     if ground_m.is_some_and(|ground_m| ground_m > target.altitude_m) {
         let allowed = format!("up to the altitude of the aircraft, {:?} m", target.altitude_m);
@@ -127,19 +134,31 @@ fn laws(part: &Section) -> Option<Laws> {
 
 /// Refuses what only derivatives can do, where there are tables.
 fn fits(report: &mut Report, part: &Section, data: &AircraftData) -> Option<()> {
+    let ModelData::Forces(data) = &data.model else {
+        return Some(());
+    };
     let before = report.count();
-    if let ModelData::Forces(data) = &data.model {
-        for key in ["drag", "thrust"].into_iter().filter(|key| part.given(key)) {
-            let message = "the aircraft is known by tables, which say it themselves";
-            report.value(part.at(key), &part.path(key), message, "nothing; leave it out");
-        }
-        if part.text("atmosphere") == Some("reference") && data.air.is_none() {
-            let message = "the aircraft is known by tables, and its file says no air of its own";
-            let at = (part.at("atmosphere"), part.path("atmosphere"));
-            report.value(at.0, &at.1, message, "\"standard\"");
-        }
+    refuse_laws(report, part, "the aircraft is known by tables, which say it themselves");
+    if data.air.is_none() {
+        let message = "the aircraft is known by tables, and its file says no air of its own";
+        refuse_own_air(report, part, message);
     }
     (report.count() == before).then_some(())
+}
+
+/// Refuses the laws that are for derivatives.
+pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
+    for key in ["drag", "thrust"].into_iter().filter(|key| part.given(key)) {
+        report.value(part.at(key), &part.path(key), message, "nothing; leave it out");
+    }
+}
+
+/// Refuses the air of a source that has none.
+pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str) {
+    if part.text("atmosphere") == Some("reference") {
+        let at = (part.at("atmosphere"), part.path("atmosphere"));
+        report.value(at.0, &at.1, message, "\"standard\"");
+    }
 }
 
 /// The aircraft at its trim, or a problem at the speed that it cannot fly.
@@ -151,12 +170,16 @@ fn trimmed(
 ) -> Option<AircraftPlant> {
     let plant = AircraftPlant::trimmed(aircraft.clone(), target);
     if let Err(SimError::Trim(failure)) = &plant {
-        let keys = ["airspeed_m_s", "airspeed_kt", "airspeed_ft_s"];
-        let key = keys.into_iter().find(|key| part.given(key)).unwrap_or("airspeed_m_s");
+        let key = airspeed_key(part);
         let allowed = "a speed and an altitude at which the aircraft can be trimmed";
         report.value(part.at(key), &part.path(key), failure.to_string(), allowed);
     }
     plant.ok()
+}
+
+pub(super) fn airspeed_key(part: &Section) -> &'static str {
+    let keys = ["airspeed_m_s", "airspeed_kt", "airspeed_ft_s"];
+    keys.into_iter().find(|key| part.given(key)).unwrap_or("airspeed_m_s")
 }
 
 fn course(part: &Section, target: TrimTarget) -> Option<Course> {

@@ -7,6 +7,7 @@ mod controller;
 pub(crate) mod data;
 mod derived;
 mod flight;
+mod linear_aircraft;
 mod lqi;
 mod schedule;
 mod sensor;

@@ -73,7 +73,8 @@ pub(super) fn check_plant(
     plant: &LinearPlant,
     loop_: (Timing, Servo),
 ) {
-    if let Some(part) = section.section("plant") {
+    let parts = ["plant", "aircraft"].map(|name| section.section(name));
+    if let Some(part) = parts.into_iter().flatten().next() {
         let key = key_of(part);
         judged(report, (part, key), can_be_sampled(plant, loop_));
     }
@@ -81,7 +82,7 @@ pub(super) fn check_plant(
 
 /// The key that gave a plant.
 fn key_of(part: &Section) -> &'static str {
-    let keys = ["preset", "file", "denominator"];
+    let keys = ["preset", "file", "name", "denominator"];
     keys.into_iter().find(|key| part.given(key)).unwrap_or("denominator")
 }
 

@@ -1,5 +1,6 @@
 //! Aircraft files: stability derivatives, a linear model or tables, in the units of their source.
 
+use super::scenario::ELEVATOR_SIGNS;
 use super::tables::TABLES;
 use super::{
     Choice, Key, Kind, Range, Table, Variant, Way, finite, optional, plain, positive, required,
@@ -44,11 +45,47 @@ const DERIVATIVES: &[Key] = &[
     required("travel", Kind::Table(&TRAVEL), "How far the controls go."),
 ];
 
-const LINEAR: &[Key] = &[required(
-    "equations",
-    Kind::Tables { table: &EQUATION, least: 1, most: 4 },
-    "One equation a state; all list the states in this order.",
-)];
+const LINEAR: &[Key] = &[
+    optional(
+        "elevator_sign",
+        Kind::Word(&ELEVATOR_SIGNS),
+        "What a positive elevator does; \"nose-down-positive\" if left out.",
+    ),
+    optional(
+        "condition",
+        Kind::Table(&CONDITION),
+        "Where the model holds; without it a scenario's airspeed and altitude are assumptions.",
+    ),
+    optional("geometry", Kind::Table(&SPAN), "The wing, on which turbulence depends."),
+    required(
+        "equations",
+        Kind::Tables { table: &EQUATION, least: 1, most: 4 },
+        "One equation a state; all list the states in this order.",
+    ),
+];
+
+static CONDITION: Table = Table {
+    doc: "The level flight around which a linear model holds.",
+    groups: &[&[
+        optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
+        optional("airspeed_m_s", positive("m/s"), "True airspeed."),
+        optional("altitude_ft", finite("ft"), "Geopotential altitude."),
+        optional("altitude_m", finite("m"), "Geopotential altitude."),
+        optional("mach", positive(""), "Mach number."),
+    ]],
+    choices: &[one_of!("airspeed_ft_s", "airspeed_m_s"), one_of!("altitude_ft", "altitude_m")],
+    variants: &[],
+};
+
+static SPAN: Table = Table {
+    doc: "The wing of a linear model.",
+    groups: &[&[
+        optional("span_ft", positive("ft"), "Span."),
+        optional("span_m", positive("m"), "Span."),
+    ]],
+    choices: &[one_of!("span_ft", "span_m")],
+    variants: &[],
+};
 
 static REFERENCE: Table = Table {
     doc: "Flight condition of the derivatives.",
@@ -202,5 +239,10 @@ static EQUATION: Table = plain(
             "By each of the states, in the order of the equations.",
         ),
         required("by_elevator", finite(""), "By the elevator in rad."),
+        optional(
+            "by_pitch_gust",
+            finite(""),
+            "By the pitch rate of the air in rad/s: 0 if left out; known if any equation has it.",
+        ),
     ]],
 );

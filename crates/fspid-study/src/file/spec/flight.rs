@@ -37,11 +37,10 @@ pub(super) static AIRCRAFT: Table = Table {
             Kind::Number { unit: "ft", range: ALTITUDE_FT },
             "Geopotential altitude.",
         ),
-        defaulted(
+        optional(
             "model",
             Kind::Word(&MODELS),
-            Default::Word("nonlinear"),
-            "All six degrees of freedom, or the linear pitch model at the trim.",
+            "All six degrees of freedom, or the linear pitch model at the trim; if left out, what the data allow most.",
         ),
         defaulted(
             "drag",

@@ -1,0 +1,120 @@
+//! An aircraft of which only a linear model is known, flown where that holds.
+
+use fspid_aircraft::data::{LinearCondition, LinearData, LinearElevator};
+use fspid_aircraft::{Environment, TrimTarget};
+use fspid_sim::{ElevatorSign, LinearPlant};
+
+use super::flight::{self, Flown, Way};
+use super::judged;
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::units::{FOOT_M, KNOT_M_S};
+
+/// How far an airspeed may be from that of the model, as a share of it: the dynamic pressure changes by 1 %, less than
+/// the derivatives of any source are good for, and speeds rounded to whole knots fit in above 100 kt.
+const AIRSPEED_SHARE: f64 = 0.005;
+/// How far an altitude may be from that of the model: 200 ft, over which the density of the air changes by 1 % at most.
+const ALTITUDE_M: f64 = 200.0 * FOOT_M;
+
+/// The linear model at its condition, or at that of the scenario where its file has none.
+pub(super) fn flown(
+    report: &mut Report,
+    (part, key): (&Section, &str),
+    model: &LinearData,
+) -> Option<Flown> {
+    fits(report, part)?;
+    let target = flight::target(part)?;
+    match model.condition {
+        Some(condition) => holds(report, part, (target, condition))?,
+        None => assume(report, (part, key), target),
+    }
+    flight::check_ground(report, part, target);
+    let plant = plant(report, (part, key), model)?;
+    let way = flight::way(part, target, &Environment::STANDARD)?;
+    let way = Way { span_m: model.span_m, assumed: model.condition.is_none(), ..way };
+    Some(Flown { plant: plant.into(), way: Some(way) })
+}
+
+/// Refuses what a linear model cannot do.
+fn fits(report: &mut Report, part: &Section) -> Option<()> {
+    let before = report.count();
+    if part.text("model") == Some("nonlinear") {
+        let message =
+            "only a linear model of the aircraft is known; it has no forces to fly nonlinear";
+        report.value(part.at("model"), &part.path("model"), message, "\"linear\", or leave it out");
+    }
+    flight::refuse_laws(
+        report,
+        part,
+        "only a linear model of the aircraft is known, which says it itself",
+    );
+    let message =
+        "only a linear model of the aircraft is known, and its file says no air of its own";
+    flight::refuse_own_air(report, part, message);
+    (report.count() == before).then_some(())
+}
+
+/// Refuses another condition than that of the model.
+fn holds(
+    report: &mut Report,
+    part: &Section,
+    (target, condition): (TrimTarget, LinearCondition),
+) -> Option<()> {
+    let before = report.count();
+    let message =
+        "only a linear model of the aircraft is known, which holds at one flight condition";
+    let off_m_s = (target.airspeed_m_s - condition.airspeed_m_s).abs();
+    // Both written so that NaN fails.
+    if !(off_m_s <= AIRSPEED_SHARE * condition.airspeed_m_s) {
+        let key = flight::airspeed_key(part);
+        let allowed = format!("{}, or within 0.5 % of it", in_unit(key, condition.airspeed_m_s));
+        report.value(part.at(key), &part.path(key), message, allowed);
+    }
+    if !((target.altitude_m - condition.altitude_m).abs() <= ALTITUDE_M) {
+        let key = if part.given("altitude_ft") { "altitude_ft" } else { "altitude_m" };
+        let allowed = format!("{}, or within 200 ft of it", in_unit(key, condition.altitude_m));
+        report.value(part.at(key), &part.path(key), message, allowed);
+    }
+    (report.count() == before).then_some(())
+}
+
+/// A value in the unit of a key, to the four decimals that say more than any source.
+fn in_unit(key: &str, value_si: f64) -> String {
+    let (size, unit) = match key {
+        "airspeed_kt" => (KNOT_M_S, "kt"),
+        "airspeed_ft_s" => (FOOT_M, "ft/s"),
+        "altitude_ft" => (FOOT_M, "ft"),
+        "altitude_m" => (1.0, "m"),
+        _ => (1.0, "m/s"),
+    };
+    let value = format!("{:.4}", value_si / size);
+    let value = value.trim_end_matches('0').trim_end_matches('.');
+    format!("{value} {unit}")
+}
+
+fn assume(report: &mut Report, (part, key): (&Section, &str), target: TrimTarget) {
+    let TrimTarget { airspeed_m_s, altitude_m, .. } = target;
+    report.warn(format!(
+        "{}: {:?} is a linear model without a flight condition; {airspeed_m_s:.1} m/s and {altitude_m:.0} m are an \
+         assumption, from which the dynamic pressure follows and nothing else",
+        part.path(key),
+        part.text(key).unwrap_or_default(),
+    ));
+}
+
+/// From elevator, and from gusts where the data tell how they act, to pitch.
+fn plant(report: &mut Report, place: (&Section, &str), model: &LinearData) -> Option<LinearPlant> {
+    let transfer = judged(report, place, model.theta_over_elevator())?;
+    let gusts = judged(report, place, model.theta_over_gusts())?;
+    let sign = match model.elevator {
+        LinearElevator::NoseDownPositive => ElevatorSign::NoseDownPositive,
+        LinearElevator::NoseUpPositive => ElevatorSign::NoseUpPositive,
+    };
+    let [numerator, denominator] =
+        [transfer.numerator(), transfer.denominator()].map(|part| part.coefficients());
+    let plant = judged(report, place, LinearPlant::new(numerator, denominator, sign))?;
+    match gusts {
+        Some(gusts) => judged(report, place, plant.with_gusts(gusts.each_ref().map(Vec::as_slice))),
+        None => Some(plant),
+    }
+}
