@@ -163,7 +163,9 @@ pub(crate) fn marks_of(study: &Study, controller: &str) -> Vec<Mark> {
 /// judges on, so that these can change and nothing is searched again.
 fn digest(marks: &[Mark], tuning: &Tuning, cases: &[FlownCase]) -> String {
     let Tuning { over, objectives, limits, .. } = tuning;
-    let mut all = format!("{marks:?}\n{over:?}\n{objectives:?}\n{limits:?}\n");
+    // Not where in the text they stand.
+    let free: Vec<_> = marks.iter().map(|mark| (mark.path.text(), &mark.free)).collect();
+    let mut all = format!("{free:?}\n{over:?}\n{objectives:?}\n{limits:?}\n");
     cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
     let bytes = Sha256::digest(all.as_bytes());
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
