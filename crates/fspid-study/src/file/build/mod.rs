@@ -11,6 +11,7 @@ mod lqi;
 mod schedule;
 mod sensor;
 mod signal;
+mod supervisor;
 mod timing;
 
 use actuator::Drive;
