@@ -16,7 +16,7 @@ use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: String,
     #[command(flatten)]
     loading: Loading,
@@ -77,15 +77,20 @@ impl From<Conclude> for Order {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let system = arguments.loading.load(&arguments.system)?;
+    let (system, teacher) = match &arguments.teacher {
+        None => (arguments.loading.load(&arguments.system)?, None),
+        Some(teacher) => {
+            let [system, teacher] = arguments.loading.load_both([&arguments.system, teacher])?;
+            (system, Some(teacher))
+        }
+    };
     let parts = match arguments.conclude {
         Some(conclude) => sugeno(system.parts(), conclude.into()),
         None => system.parts().clone(),
     };
-    let data = match (&arguments.data, &arguments.teacher) {
+    let data = match (&arguments.data, &teacher) {
         (Some(path), _) => Data::load(&parts, path),
         (None, Some(teacher)) => {
-            let teacher = arguments.loading.load(teacher)?;
             same_names(&parts, teacher.parts())?;
             Data::taught(teacher.parts(), &arguments.points)
         }

@@ -15,7 +15,7 @@ use crate::membership::ShapeKind;
 use crate::norm::TNormKind;
 use crate::number_table::NumberGrid;
 use crate::rule_table;
-use crate::supervisor::{OutOfRange, Supervisor};
+use crate::supervisor::Supervisor;
 
 impl From<&Supervisor<f64>> for Parts {
     /// Inputs `error` and `change`, outputs `delta_kp`, `delta_ki`, `delta_kd`; answers the same bits, and
@@ -29,11 +29,7 @@ impl From<&Supervisor<f64>> for Parts {
             description: String::new(),
             enabled: true,
             universe,
-            out_of_range: match (supervisor.out_of_range(), numbers) {
-                // The outermost triangles end where the supervisor is level.
-                (OutOfRange::Evaluate, Some(_)) => OutOfRange::Clamp,
-                (policy, _) => policy,
-            },
+            out_of_range: supervisor.out_of_range(),
             terms: input_terms(supervisor),
         };
         let output = |gain: rule_table::Output| Output {
@@ -77,12 +73,15 @@ impl From<&Supervisor<f64>> for Parts {
 }
 
 fn input_terms(supervisor: &Supervisor<f64>) -> Vec<Term> {
-    let is_triangle = supervisor.numbers().is_some();
+    let has_numbers = supervisor.numbers().is_some();
     let term = |(label, &[centre, width]): (Label, &[f64; 2])| Term {
         name: label.name().to_string(),
-        membership: match is_triangle {
-            false => shape(ShapeKind::Gaussian, vec![centre, width]),
-            true => shape(ShapeKind::Triangle, vec![centre - width, centre, centre + width]),
+        membership: match label {
+            _ if !has_numbers => shape(ShapeKind::Gaussian, vec![centre, width]),
+            // Level outwards, as the supervisor is beyond its range.
+            Label::NB => shape(ShapeKind::LinearZ, vec![centre, centre + width]),
+            Label::PB => shape(ShapeKind::LinearS, vec![centre - width, centre]),
+            _ => shape(ShapeKind::Triangle, vec![centre - width, centre, centre + width]),
         },
         lower: None,
     };

@@ -28,7 +28,7 @@ pub struct Numbers {
 /// [`NumberTable`](fspid_fuzzy::NumberTable) describes.
 ///
 /// Its inputs are `error` and `change`, in any order, each with seven triangles that reach from neighbour to
-/// neighbour, evenly over a range around zero; its outputs are `delta_kp`, `delta_ki` and `delta_kd`. One block of
+/// neighbour, evenly over a range around zero, the outermost of which may be level outwards; its outputs are `delta_kp`, `delta_ki` and `delta_kd`. One block of
 /// rules joins them by products, one rule or several for each of the 49 cells, with a number for each output.
 /// Beyond the range the system is not looked at.
 ///
@@ -107,7 +107,7 @@ impl Axis {
         for term in &input.terms {
             match triangle(term) {
                 Some(triangle) => corners.push(triangle),
-                None => told.push(format!("{name}: set {} is no triangle", term.name)),
+                None => told.push(format!("{name}: set {} is no triangle of height 1", term.name)),
             }
         }
         if told.len() > before {
@@ -148,17 +148,24 @@ impl Axis {
     }
 }
 
-/// Corners of a triangle of height 1.
+/// Foot, peak and foot of a triangle of height 1; a side that is level is infinitely far.
 #[allow(clippy::float_cmp, reason = "a height that is not exactly 1 changes the grades")]
 fn triangle(term: &Term) -> Option<[f64; 3]> {
-    match (&term.membership, &term.lower) {
-        (Membership::Shape { kind: ShapeKind::Triangle, params, height }, None)
-            if *height == 1.0 =>
-        {
-            params.as_slice().try_into().ok()
-        }
-        _ => None,
-    }
+    const FAR: f64 = f64::INFINITY;
+    let (Membership::Shape { kind, params, height }, None) = (&term.membership, &term.lower) else {
+        return None;
+    };
+    let corners = match (kind, params.as_slice()) {
+        (ShapeKind::Triangle, &[left, peak, right]) => [left, peak, right],
+        (ShapeKind::LinearZ, &[peak, right]) => [-FAR, peak, right],
+        (ShapeKind::LinearS, &[left, peak]) => [left, peak, FAR],
+        (ShapeKind::Ramp, &[foot, peak]) if foot < peak => [foot, peak, FAR],
+        (ShapeKind::Ramp, &[foot, peak]) => [-FAR, peak, foot],
+        (ShapeKind::Points, &[peak, 1.0, right, 0.0]) => [-FAR, peak, right],
+        (ShapeKind::Points, &[left, 0.0, peak, 1.0]) => [left, peak, FAR],
+        _ => return None,
+    };
+    (*height == 1.0).then_some(corners)
 }
 
 /// The one block of rules.

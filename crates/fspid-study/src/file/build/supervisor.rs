@@ -138,7 +138,7 @@ fn of_system(
 }
 
 /// What a system must be to fly.
-const ALLOWED_SYSTEM: &str = "inputs error and change with seven triangles each, neighbour to neighbour and evenly over \
+const ALLOWED_SYSTEM: &str = "inputs error and change with seven triangles each, from neighbour to neighbour and evenly over \
      -range to range, outputs delta_kp, delta_ki and delta_kd, and 49 rules with numbers of their own, \
      joined by products and a weighted average";
 
