@@ -101,7 +101,7 @@ fn iae(scenario: &str, folder: &Path) -> Vec<(String, f64)> {
     let answer: Value = serde_json::from_str(&stdout(&flown)).expect("JSON");
     let controllers = answer["controllers"].as_array().expect("a list");
     let of = |one: &Value| {
-        let iae = one["integrals"]["iae_deg_s"].as_f64().expect("a number");
+        let iae = one["metrics"]["iae"].as_f64().expect("a number");
         (one["name"].as_str().expect("a name").to_owned(), iae)
     };
     controllers.iter().map(of).collect()

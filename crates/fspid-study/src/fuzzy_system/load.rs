@@ -158,10 +158,7 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     let text = text(path)?;
     let loaded = match format == Format::Toml && scenario::is_one(&text) {
         true => scenario::read(path, &text, options.controller)?,
-        false if options.controller.is_some() => {
-            let misplaced = "--controller goes with a scenario file";
-            return Err(LoadError::Refused(Refused::one(misplaced)));
-        }
+        false if options.controller.is_some() => return Err(no_scenario()),
         false => read(name, &text, format, options)?,
     };
     Ok(Loaded { system: changed(loaded.system, options)?, notes: loaded.notes })
@@ -232,7 +229,14 @@ fn in_our_words(name: &str, problems: fspid_formats::Problems) -> Problems {
     Problems::new(name, problems.0.into_iter().map(problem).collect(), 0)
 }
 
+fn no_scenario() -> LoadError {
+    LoadError::Refused(Refused::one("--controller goes with a scenario file"))
+}
+
 fn shipped(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
+    if options.controller.is_some() {
+        return Err(no_scenario());
+    }
     let Some(range) = options.range else {
         let missing = format!("{name} needs --range, the half range of its inputs and outputs");
         return Err(LoadError::Refused(Refused::one(missing)));
