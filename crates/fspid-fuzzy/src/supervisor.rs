@@ -115,6 +115,10 @@ pub struct Supervisor<R> {
 
 /// What the rules conclude.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is no heap, and a supervisor is built once and then borrowed"
+)]
 enum Rules<R> {
     Labels([Consequents; 3]),
     Numbers(NumberTable<R>),

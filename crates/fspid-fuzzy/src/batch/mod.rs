@@ -159,8 +159,7 @@ impl<R: Real> Batch<'_, R> {
         Ok(())
     }
 
-    /// Answers everything in turn: four numbers out of a table for each gain are sooner looked up than
-    /// 49 are weighted side by side.
+    /// Answers everything in turn: which four numbers of a table are looked up differs from lane to lane.
     fn answer_one_by_one(&mut self) -> Result<(), BatchError> {
         let Self { supervisor, error, change, answers } = self;
         for (index, (&error, &change)) in error.iter().zip(*change).enumerate() {
