@@ -171,6 +171,21 @@ fn an_option_of_one_of_two_systems_is_refused_where_neither_has_a_use_for_it() {
         stderr(&refused)
     );
     assert_eq!(code(&fspid(&[&grid[..], &["--range", "5", "--sets-stay"]].concat(), folder)), 0);
+    // What is told of the numbers can be pasted into a scenario.
+    let stay = fspid(&[&grid[..], &["--range", "5", "--sets-stay"]].concat(), folder);
+    let told = stdout(&stay);
+    let (_, numbers) = told.split_once("rounded:\n\n").expect("numbers");
+    assert_eq!(code(&fspid(&["init", "flight.toml"], folder)), 0);
+    let path = folder.join("flight.toml");
+    let starter = std::fs::read_to_string(&path).expect("written").replace("range = 5.0 ", "#");
+    let pasted = starter.replace("table = \"mirrored\" ", &format!("{numbers}#"));
+    std::fs::write(&path, pasted).expect("written");
+    let checked = fspid(&["check", "flight.toml"], folder);
+    assert_eq!(code(&checked), 0, "{}", stderr(&checked));
+    // Sets that move do not fly, and that is said at once.
+    let moving = ["--range", "5", "--epochs", "2", "--out", "moved.fis"];
+    let moved = fspid(&[&grid[..6], &moving].concat(), folder);
+    assert!(stderr(&moved).contains("it does not fly: "), "{}", stderr(&moved));
     let both = [
         "learn",
         "a.fis",

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 
 use super::{Format, Loading, json_text};
 use crate::exit::{Failure, note, print};
-use fspid_study::fuzzy_system::{self, Parts, Target};
+use fspid_study::fuzzy_system::{self, NUMBER_GRID, Parts, Target};
 use fspid_study::output;
 use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
 
@@ -109,9 +109,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = fuzzy_system::write_as(&learned.parts, &arguments.out, Target::default());
     output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
     note(format_args!("wrote {}", arguments.out.display()));
+    let numbers = fuzzy_system::numbers_of(&learned.parts);
+    if let (true, Err(differences)) = (arguments.system == NUMBER_GRID, &numbers) {
+        let first = differences.first().map_or("", String::as_str);
+        note(format_args!("warning: it does not fly: {first}; --sets-stay keeps the sets"));
+    }
     match arguments.format {
-        Format::Text => print(&learned.text()),
-        Format::Json => print(&json_text(&learned.json())),
+        Format::Text => {
+            let numbers = numbers.map_or(String::new(), |numbers| {
+                format!("\nIt flies as `system` of a supervisor, or with its numbers, here rounded:\n\n{}", numbers.toml())
+            });
+            print(&format!("{}{numbers}", learned.text()))
+        }
+        Format::Json => {
+            let mut answer = learned.json();
+            if let Ok(numbers) = numbers {
+                answer["numbers"] = numbers.json();
+            }
+            print(&json_text(&answer))
+        }
     }
 }
 

@@ -12,6 +12,10 @@ use fspid_fuzzy::{LABEL_COUNT, Label, NumberGrid};
 const SAME_PLACE: f64 = 1e-9;
 /// Names of the inputs.
 const INPUTS: [&str; 2] = ["error", "change"];
+/// Digits of the range that are shown.
+const SHOWN_DIGITS: i32 = 4;
+/// Most digits behind the point.
+const MOST_DIGITS: i32 = 17;
 /// Most cells that a message names.
 const MOST_CELLS: usize = 3;
 
@@ -22,6 +26,36 @@ pub struct Numbers {
     pub range: f64,
     /// The numbers, in the order of [`fspid_fuzzy::Output::ALL`].
     pub grids: [NumberGrid<f64>; 3],
+}
+
+impl Numbers {
+    /// The numbers as a scenario takes them in `[controller.supervisor]`, rounded to what can be seen in a flight.
+    #[must_use]
+    pub fn toml(&self) -> String {
+        let digits = SHOWN_DIGITS - libm::ceil(libm::log10(self.range)) as i32;
+        let digits = digits.clamp(1, MOST_DIGITS) as usize;
+        let mut out = format!("range = {:?}\n", self.range);
+        for (output, grid) in fspid_fuzzy::Output::ALL.into_iter().zip(&self.grids) {
+            out.push_str(&format!("numbers.{} = [\n", output.name()));
+            let texts = grid.map(|row| row.map(|number| format!("{number:.digits$}")));
+            let width = texts.as_flattened().iter().map(String::len).max().unwrap_or(0);
+            for row in texts {
+                out.push_str(&format!(
+                    "  [{}],\n",
+                    row.map(|text| format!("{text:>width$}")).join(", ")
+                ));
+            }
+            out.push_str("]\n");
+        }
+        out
+    }
+
+    /// The range and the three grids, as they are.
+    #[must_use]
+    pub fn json(&self) -> serde_json::Value {
+        let [kp, ki, kd] = &self.grids;
+        serde_json::json!({ "range": self.range, "delta_kp": kp, "delta_ki": ki, "delta_kd": kd })
+    }
 }
 
 /// The numbers of a system of Takagi and Sugeno of order zero that is what a
