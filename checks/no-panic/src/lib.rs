@@ -7,7 +7,8 @@
 use core::panic::PanicInfo;
 
 use fspid_core::fuzzy::{
-    Defuzzifier, FuzzyError, Inference, InferenceError, OutOfRange, RuleTable, Supervisor,
+    Defuzzifier, FuzzyError, Inference, InferenceError, NumberGrid, NumberTable, OutOfRange,
+    RuleTable, Supervisor,
 };
 use fspid_core::{
     ConfigError, Fspid, Gains, Pid, Sample, SelfTuner, Shell, State, Step, TunerSettings,
@@ -26,7 +27,7 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 macro_rules! export {
     ($(
         $real:ty: $pid:ident $fspid:ident $infer:ident,
-        $new_pid:ident $new_fspid:ident $new_supervisor:ident;
+        $new_pid:ident $new_fspid:ident $new_supervisor:ident $new_numbers:ident;
     )*) => { $(
         #[unsafe(no_mangle)]
         pub extern "Rust" fn $pid(
@@ -72,12 +73,21 @@ macro_rules! export {
         ) -> Result<Supervisor<$real>, FuzzyError> {
             Supervisor::new(table, range, defuzzifier, policy)
         }
+
+        #[unsafe(no_mangle)]
+        pub extern "Rust" fn $new_numbers(
+            grids: &[NumberGrid<$real>; 3], range: $real, policy: OutOfRange,
+        ) -> Result<Supervisor<$real>, FuzzyError> {
+            Supervisor::of_numbers(&NumberTable::new(*grids)?, range, policy)
+        }
     )* };
 }
 
 export! {
-    f64: pid_step_f64 fspid_step_f64 infer_f64, new_pid_f64 new_fspid_f64 new_supervisor_f64;
-    f32: pid_step_f32 fspid_step_f32 infer_f32, new_pid_f32 new_fspid_f32 new_supervisor_f32;
+    f64: pid_step_f64 fspid_step_f64 infer_f64,
+        new_pid_f64 new_fspid_f64 new_supervisor_f64 new_numbers_f64;
+    f32: pid_step_f32 fspid_step_f32 infer_f32,
+        new_pid_f32 new_fspid_f32 new_supervisor_f32 new_numbers_f32;
 }
 
 /// Shows that the check can fail.

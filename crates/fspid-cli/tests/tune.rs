@@ -294,3 +294,71 @@ fn a_rule_does_not_write_gains_that_a_schedule_would_multiply_again() {
     let told = refused(&["tune", "scheduled.toml", "--rule", "simc"], folder);
     assert!(told.contains("whose gains come from a schedule"), "{told}");
 }
+
+/// The scenario with a self-tuning controller whose numbers for kp are free, and one cell of those for kd.
+fn with_numbers() -> String {
+    let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
+    let kd = zeros.replacen("0", "{ tune = [-1.0, 1.0] }", 1);
+    let tuner = format!(
+        r#"[[controller]]
+name = "TS"
+kind = "fspid"
+nominal = {{ kp = 1.0, ki = 0.5, kd = 0.1 }}
+derivative_filter_s = 0.05
+derivative_on = "measurement"
+
+[controller.supervisor]
+range = 2.0
+error_scale = 1.0
+change_scale = 0.2
+output_scale = {{ kp = 0.5, ki = 0.0, kd = 0.05 }}
+numbers.delta_kp = {{ tune = "numbers", reach = 1.0, start = {zeros} }}
+numbers.delta_ki = {zeros}
+numbers.delta_kd = {kd}
+
+[[requirement]]
+measure"#
+    );
+    SCENARIO
+        .replacen("[[requirement]]\nmeasure", &tuner, 1)
+        .replace("budget = 60", "budget = 60\ncontroller = \"TS\"")
+}
+
+#[test]
+fn free_numbers_of_a_supervisor_are_tuned_alike_on_any_number_of_threads() {
+    let folder = folder();
+    let folder = folder.path();
+    std::fs::write(folder.join("pitch.toml"), with_numbers()).expect("written");
+    let run = |threads: &str, out: &str| {
+        let arguments = [
+            "tune",
+            "pitch.toml",
+            "--threads",
+            threads,
+            "--out",
+            out,
+            "--history",
+            "history.parquet",
+            "--quiet",
+            "--format",
+            "json",
+        ];
+        (done(&arguments, folder), read(folder, out), read(folder, "history.parquet"))
+    };
+    let (one, three) = (run("1", "one.toml"), run("3", "three.toml"));
+    assert_eq!((&one.0, &one.2), (&three.0, &three.2));
+    let answer: serde_json::Value = serde_json::from_str(&one.0).expect("JSON");
+    let cost = |of: &str| answer[of]["cost"].as_f64().unwrap_or(f64::INFINITY);
+    assert!(cost("best") < cost("start"), "{answer:#}");
+    // 25 numbers of a symmetric grid, and the one cell.
+    let parameters = answer["parameters"].as_array().expect("a list");
+    assert_eq!(parameters.len(), 26);
+    assert_eq!(parameters[0]["path"], "controller.TS.supervisor.numbers.delta_kp[0][0]");
+    assert_eq!(parameters[0]["bounds"], serde_json::json!([-1.0, 1.0]));
+    // The design holds seven rows below each other, flies, and is as good as the search said.
+    let design = String::from_utf8(one.1).expect("UTF-8");
+    assert!(design.contains("numbers.delta_kp = [\n  ["), "{design}");
+    assert!(!design.contains("reach ="), "{design}");
+    done(&["check", "one.toml"], folder);
+    assert!(done(&["simulate", "one.toml"], folder).contains("TS"));
+}

@@ -228,6 +228,11 @@ impl<R: Real> SelfTuner<R> {
         &self.settings
     }
 
+    /// True for [plain](TunerSettings::is_plain) settings around rules that conclude labels.
+    pub fn is_plain(&self) -> bool {
+        self.settings.is_plain() && self.supervisor.numbers().is_none()
+    }
+
     /// The rules.
     pub fn supervisor(&self) -> &Supervisor<R> {
         &self.supervisor

@@ -15,7 +15,7 @@ use std::hint::black_box;
 use std::ops::Range;
 use std::time::Instant;
 
-use fspid_fuzzy::{Defuzzifier, Increments, OutOfRange, Real, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, Increments, NumberTable, OutOfRange, Real, RuleTable, Supervisor};
 
 const INPUTS: usize = 1_000_000;
 const BLOCK: usize = 10_000;
@@ -39,6 +39,21 @@ fn main() {
             }
         }
     });
+    let numbers = numbers();
+    report("numbers, one by one", Some(fixed), |block, answers| {
+        for (place, (error, change)) in inputs.pairs(block).enumerate() {
+            if let Ok(answer) = black_box(&numbers).infer(error, change) {
+                let Increments { kp, ki, kd } = answer.delta;
+                answers.put(place, [kp, ki, kd]);
+            }
+        }
+    });
+    #[cfg(feature = "batch")]
+    report("numbers, batch", Some(fixed), |block, answers| {
+        let (error, change) = (&inputs.error[block.clone()], &inputs.change[block]);
+        let answered = numbers.infer_many(error, change, answers.as_batch());
+        assert!(answered.is_ok(), "inputs within the range");
+    });
     #[cfg(feature = "batch")]
     {
         report_batches("f64", fixed, &inputs);
@@ -46,6 +61,15 @@ fn main() {
     }
     #[cfg(not(feature = "batch"))]
     println!("batches are not built; add --features batch");
+}
+
+/// Rules that conclude numbers, a plane that is bent.
+fn numbers() -> Supervisor<f64> {
+    let grid = std::array::from_fn(|i| {
+        std::array::from_fn(|j| RANGE * ((i as f64 - 3.0) * (j as f64 + 1.0)) / 21.0)
+    });
+    let table = NumberTable::new([grid; 3]).expect("finite");
+    Supervisor::of_numbers(&table, RANGE, OutOfRange::Clamp).expect("within the range")
 }
 
 /// Batches by each instruction set of this machine.

@@ -52,6 +52,19 @@ pub enum FuzzyError {
         /// What is wrong in it.
         error: GridError,
     },
+    /// A number of a [`NumberTable`](crate::NumberTable) that is not finite or beyond the range.
+    Number {
+        /// Which of the three grids.
+        output: Output,
+        /// Row of the cell, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// What was given.
+        found: f64,
+        /// Largest magnitude that is allowed.
+        allowed: f64,
+    },
     /// A supervisor's input that cannot be answered.
     Inference(crate::supervisor::InferenceError),
 }
@@ -79,6 +92,11 @@ impl fmt::Display for FuzzyError {
                 write!(f, "unknown defuzzifier; known are {}", Defuzzifier::NAMES)
             }
             Self::Grid { output, error } => write!(f, "{}: {error}", output.name()),
+            Self::Number { output, row, column, found, allowed } => write!(
+                f,
+                "{}: the number in row {row}, column {column} is {found:?}; allowed is -{allowed:?} to {allowed:?}",
+                output.name()
+            ),
             Self::Inference(error) => error.fmt(f),
         }
     }

@@ -3,7 +3,8 @@
 //! The crate answers one question: given an error and its change, by how much should the three
 //! gains of a PID controller move? [`Supervisor`] holds the rule base (seven Gaussian sets on each
 //! input, seven triangular sets on each output, 49 rules) and answers with the **exact** centroid;
-//! the sampled centroids of other tools are there by name ([`Defuzzifier`]) for comparison.
+//! the sampled centroids of other tools are there by name ([`Defuzzifier`]) for comparison. Instead of
+//! labels the rules may conclude numbers ([`NumberTable`], [`Supervisor::of_numbers`]).
 //!
 //! The feature `batch` adds `Supervisor::infer_many`: the same bits for arrays of inputs, with the
 //! vectors of the machine. It needs `std`; without it the crate depends on nothing.
@@ -57,6 +58,7 @@ mod label;
 mod lanes;
 pub mod membership;
 pub mod norm;
+mod number_table;
 pub mod quadrature;
 mod real;
 mod rule_table;
@@ -74,6 +76,7 @@ pub use formula::{Formula, FormulaError, FormulaErrorKind};
 pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
 pub use norm::{SNormKind, TNormKind};
+pub use number_table::{NumberGrid, NumberTable};
 pub use real::Real;
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 pub use scalar::Scalar;

@@ -2,7 +2,8 @@
 //!
 //! Mamdani inference as in the paper: Gaussian input sets whose neighbours cross at 0.5, `min` for
 //! *and* and for implication, `max` over the rules of one label, centroid. Inputs and outputs have
-//! the same half range.
+//! the same half range. Or rules that conclude numbers in place of labels, over triangular sets:
+//! [`NumberTable`].
 
 use core::fmt;
 
@@ -15,6 +16,7 @@ use crate::label::LABEL_COUNT;
 use crate::lanes::Lanes;
 use crate::lanes::{One, Two};
 use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
+use crate::number_table::{self, NumberTable};
 use crate::real::Real;
 use crate::rule_table::{Output, RuleTable};
 
@@ -29,7 +31,9 @@ pub enum OutOfRange {
     /// Move it to the nearest end of the range.
     #[default]
     Clamp,
-    /// Evaluate it as it is; where every rule has underflowed, answer as for the clamped input.
+    /// Evaluate it as it is; where every rule has underflowed, answer as for the clamped input. With
+    /// rules that conclude numbers the outermost sets are level beyond the range, so that the answer is
+    /// that for the clamped input everywhere.
     Evaluate,
     /// Refuse it.
     Error,
@@ -100,13 +104,24 @@ impl core::error::Error for InferenceError {}
 /// refuse inputs out of range, but nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supervisor<R> {
-    consequents: [Consequents; 3],
-    /// Centre and sigma of each input set.
+    rules: Rules<R>,
+    /// Centre and sigma of each input set; of a triangle centre and half the base.
     sets: [[R; 2]; LABEL_COUNT],
     range: R,
     spacing: R,
     defuzzifier: Defuzzifier,
     out_of_range: OutOfRange,
+}
+
+/// What the rules conclude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is no heap, and a supervisor is built once and then borrowed"
+)]
+enum Rules<R> {
+    Labels([Consequents; 3]),
+    Numbers(NumberTable<R>),
 }
 
 impl<R: Real> Supervisor<R> {
@@ -121,6 +136,35 @@ impl<R: Real> Supervisor<R> {
         defuzzifier: Defuzzifier,
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {
+        let rules = Rules::Labels(Output::ALL.map(|output| Consequents::new(table.grid(output))));
+        let defuzzifier = defuzzifier.checked()?;
+        Self::built(rules, (range, R::from_f64(SIGMA_PER_SPACING)), defuzzifier, out_of_range)
+    }
+
+    /// A supervisor whose rules conclude numbers, over `[-range, range]` for both inputs; they lie within
+    /// the range as the answers of labels do, so that factors behind the supervisor mean the same.
+    ///
+    /// # Errors
+    /// [`FuzzyError::Range`] as for [`new`](Self::new), [`FuzzyError::Number`] for a number beyond the
+    /// range.
+    pub fn of_numbers(
+        table: &NumberTable<R>,
+        range: R,
+        out_of_range: OutOfRange,
+    ) -> Result<Self, FuzzyError> {
+        let rules = Rules::Numbers(*table);
+        let built = Self::built(rules, (range, R::ONE), Defuzzifier::Exact, out_of_range)?;
+        table.check_within(range)?;
+        Ok(built)
+    }
+
+    /// A supervisor whose sets have this width in spacings.
+    fn built(
+        rules: Rules<R>,
+        (range, width): (R, R),
+        defuzzifier: Defuzzifier,
+        out_of_range: OutOfRange,
+    ) -> Result<Self, FuzzyError> {
         let found = range.to_f64();
         let limits =
             if R::MIN_POSITIVE.to_f64() > 1e-100 { RANGE_LIMITS_F32 } else { RANGE_LIMITS };
@@ -128,19 +172,12 @@ impl<R: Real> Supervisor<R> {
             return Err(FuzzyError::Range { found });
         }
         let spacing = range / R::from_f64(3.0);
-        let sigma = spacing * R::from_f64(SIGMA_PER_SPACING);
-        let mut sets = [[R::ZERO, sigma]; LABEL_COUNT];
+        let width = spacing * width;
+        let mut sets = [[R::ZERO, width]; LABEL_COUNT];
         for (steps, set) in (-3_i8..).zip(&mut sets) {
-            *set = [spacing * R::from_f64(f64::from(steps)), sigma];
+            *set = [spacing * R::from_f64(f64::from(steps)), width];
         }
-        Ok(Self {
-            consequents: Output::ALL.map(|output| Consequents::new(table.grid(output))),
-            sets,
-            range,
-            spacing,
-            defuzzifier: defuzzifier.checked()?,
-            out_of_range,
-        })
+        Ok(Self { rules, sets, range, spacing, defuzzifier, out_of_range })
     }
 
     /// Half range of inputs and outputs.
@@ -148,17 +185,31 @@ impl<R: Real> Supervisor<R> {
         self.range
     }
 
-    /// Centre and sigma of the Gaussian input sets, from `NB` to `PB`.
+    /// Centre and sigma of the Gaussian input sets, from `NB` to `PB`; where rules conclude numbers, centre
+    /// of the triangles and their distance.
     pub fn sets(&self) -> &[[R; 2]; LABEL_COUNT] {
         &self.sets
     }
 
-    /// The rules.
-    pub fn table(&self) -> RuleTable {
-        RuleTable::new(self.consequents.each_ref().map(Consequents::grid))
+    /// The rules; `None` where they conclude numbers.
+    pub fn table(&self) -> Option<RuleTable> {
+        match &self.rules {
+            Rules::Labels(consequents) => {
+                Some(RuleTable::new(consequents.each_ref().map(Consequents::grid)))
+            }
+            Rules::Numbers(_) => None,
+        }
     }
 
-    /// The rule for the centre of gravity.
+    /// The numbers that the rules conclude; `None` where they conclude labels.
+    pub fn numbers(&self) -> Option<&NumberTable<R>> {
+        match &self.rules {
+            Rules::Labels(_) => None,
+            Rules::Numbers(table) => Some(table),
+        }
+    }
+
+    /// The rule for the centre of gravity; of no meaning where rules conclude numbers.
     pub fn defuzzifier(&self) -> Defuzzifier {
         self.defuzzifier
     }
@@ -170,7 +221,14 @@ impl<R: Real> Supervisor<R> {
 
     /// Grades of an input in its seven sets, from `NB` to `PB`.
     pub fn grades(&self, input: R) -> [R; LABEL_COUNT] {
-        self.sets.map(|set| Gaussian::grade(&set, input))
+        match &self.rules {
+            Rules::Labels(_) => self.sets.map(|set| Gaussian::grade(&set, input)),
+            Rules::Numbers(_) => {
+                let input = input.limited(-self.range, self.range) / self.spacing;
+                [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
+                    .map(|step| number_table::triangle(input, R::from_f64(step)))
+            }
+        }
     }
 
     /// Increments of the gains for an error and its change.
@@ -193,19 +251,43 @@ impl<R: Real> Supervisor<R> {
 
     /// The answer within the range, where some rule always fires at 0.5 or nearly so.
     fn infer_inside(&self, error: R, change: R) -> Inference<R> {
+        let delta = match &self.rules {
+            Rules::Labels(consequents) => self.concluded(consequents, error, change),
+            Rules::Numbers(table) => self.interpolated(table, error, change),
+        };
+        Inference { delta, clamped: false, underflowed: false }
+    }
+
+    /// Increments by numbers, within the range.
+    #[inline]
+    pub(crate) fn interpolated(
+        &self,
+        table: &NumberTable<R>,
+        error: R,
+        change: R,
+    ) -> Increments<R> {
+        let last = R::from_f64(3.0);
+        // The quotient of the range may be rounded beyond three.
+        let [error, change] = [error, change].map(|x| (x / self.spacing).limited(-last, last));
+        table.interpolated(error, change)
+    }
+
+    /// Increments by labels, within the range.
+    #[inline(always)]
+    fn concluded(&self, consequents: &[Consequents; 3], error: R, change: R) -> Increments<R> {
         let mut grades = self.exponents(error, change);
         for grade in &mut grades.0 {
             // No input is more than six spacings from the centre of a set: these are -99.9 to 0.
             *grade = R::exp_inside_of(*grade);
         }
-        let delta = self.increments(&grades);
-        Inference { delta, clamped: false, underflowed: false }
+        self.increments(consequents, &grades)
     }
 
     #[cold]
     fn infer_outside(&self, error: R, change: R) -> Result<Inference<R>, InferenceError> {
         self.refuse_any(error, change)?;
-        if self.out_of_range == OutOfRange::Evaluate {
+        let evaluates = self.out_of_range == OutOfRange::Evaluate;
+        if evaluates && let Rules::Labels(consequents) = &self.rules {
             let mut grades = self.exponents(error, change);
             for grade in &mut grades.0 {
                 *grade = R::exp_of(*grade);
@@ -213,14 +295,14 @@ impl<R: Real> Supervisor<R> {
             // Below the normal range the quotient of moments would lose its digits, and further out
             // be 0/0.
             if grades.strongest_rule() >= R::MIN_POSITIVE {
-                let delta = self.increments(&grades);
+                let delta = self.increments(consequents, &grades);
                 return Ok(Inference { delta, clamped: false, underflowed: false });
             }
         }
         let ends = |input: R| input.limited(-self.range, self.range);
         let inference = self.infer_inside(ends(error), ends(change));
-        let underflowed = self.out_of_range == OutOfRange::Evaluate;
-        Ok(Inference { clamped: !underflowed, underflowed, ..inference })
+        let underflowed = evaluates && self.numbers().is_none();
+        Ok(Inference { clamped: !evaluates, underflowed, ..inference })
     }
 
     /// An error for the first of two inputs that has no answer.
@@ -253,10 +335,10 @@ impl<R: Real> Supervisor<R> {
 
     /// Increments of the gains for grades of which some make a rule fire.
     #[inline(always)]
-    fn increments(&self, grades: &Grades<R>) -> Increments<R> {
+    fn increments(&self, consequents: &[Consequents; 3], grades: &Grades<R>) -> Increments<R> {
         let [c0, c1, c2, c3, c4, c5, c6, e0, e1, e2, e3, e4, e5, e6] = grades.0;
         let firing = Firing::new(&[e0, e1, e2, e3, e4, e5, e6], &[c0, c1, c2, c3, c4, c5, c6]);
-        let [kp, ki, kd] = &self.consequents;
+        let [kp, ki, kd] = consequents;
         let (kp, ki, kd) = (kp.strengths(&firing), ki.strengths(&firing), kd.strengths(&firing));
         if self.defuzzifier != Defuzzifier::Exact {
             return self.sampled(&[kp, ki, kd]);
@@ -269,10 +351,24 @@ impl<R: Real> Supervisor<R> {
         Increments { kp, ki, kd }
     }
 
-    /// As within [`infer_inside`](Self::infer_inside), in each lane.
+    /// The rules as they are evaluated; `None` where they conclude numbers.
+    #[cfg(feature = "batch")]
+    pub(crate) fn consequents(&self) -> Option<&[Consequents; 3]> {
+        match &self.rules {
+            Rules::Labels(consequents) => Some(consequents),
+            Rules::Numbers(_) => None,
+        }
+    }
+
+    /// As within [`infer_inside`](Self::infer_inside) by labels, in each lane.
     #[cfg(feature = "batch")]
     #[inline(always)]
-    pub(crate) fn increments_in_lanes<L: Lanes<Number = R>>(&self, error: L, change: L) -> [L; 3] {
+    pub(crate) fn increments_in_lanes<L: Lanes<Number = R>>(
+        &self,
+        consequents: &[Consequents; 3],
+        error: L,
+        change: L,
+    ) -> [L; 3] {
         let (mut error_grades, mut change_grades) = ([error; LABEL_COUNT], [change; LABEL_COUNT]);
         for (grade, set) in error_grades.iter_mut().zip(&self.sets) {
             *grade = R::exp_inside_of(Gaussian::exponent(*set, error));
@@ -282,7 +378,7 @@ impl<R: Real> Supervisor<R> {
         }
         let firing = Firing::new(&error_grades, &change_grades);
         let mut increments = [error; 3];
-        for (increment, consequents) in increments.iter_mut().zip(&self.consequents) {
+        for (increment, consequents) in increments.iter_mut().zip(consequents) {
             let centre =
                 centroid(self.defuzzifier, &consequents.strengths(&firing), error.same(R::ZERO));
             *increment = centre * error.same(self.spacing);
@@ -334,7 +430,7 @@ mod tests {
             let table = RuleTable::new([mixed, alone, mixed.mirrored()]);
             let (rule, policy) = (Defuzzifier::Midpoint(100), OutOfRange::Error);
             let supervisor = Supervisor::new(&table, 5.0_f64, rule, policy).expect("allowed");
-            assert_eq!(supervisor.table(), table);
+            assert_eq!(supervisor.table(), Some(table));
             assert_eq!((supervisor.defuzzifier(), supervisor.out_of_range()), (rule, policy));
         }
     }

@@ -7,7 +7,7 @@ mod common;
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{
     Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, InstructionSet,
-    OutOfRange, Real, Supervisor,
+    LABEL_COUNT, NumberTable, OutOfRange, Real, Supervisor,
 };
 
 /// Arrays for answers, filled with what no supervisor answers.
@@ -75,6 +75,26 @@ fn compare<R: Real>(supervisor: &Supervisor<R>, error: &[R], change: &[R]) -> (u
 }
 
 /// Batches of all lengths to 40 with inputs of every kind; in every second only numbers.
+fn compare_lengths<R: Real>(supervisor: &Supervisor<R>, random: &mut Random) -> (usize, usize) {
+    let (policy, range) = (supervisor.out_of_range(), supervisor.range());
+    let (mut compared, mut refused) = (0, 0);
+    for length in 0..=40 {
+        let mut inputs = || -> Vec<R> {
+            let numbers = |_| loop {
+                let input = random.input(range);
+                let wanted = policy != OutOfRange::Error || input.abs() <= range;
+                if length % 2 == 0 || (input.is_finite() && wanted) {
+                    return input;
+                }
+            };
+            (0..length).map(numbers).collect()
+        };
+        let counts = compare(supervisor, &inputs(), &inputs());
+        (compared, refused) = (compared + counts.0, refused + counts.1);
+    }
+    (compared, refused)
+}
+
 fn compare_all<R: Real>(ranges: [R; 4]) {
     let mut random = Random(40);
     let (mut compared, mut refused) = (0, 0);
@@ -82,24 +102,36 @@ fn compare_all<R: Real>(ranges: [R; 4]) {
         for policy in OutOfRange::ALL {
             for range in ranges {
                 let supervisor = Supervisor::new(&table, range, rule, policy).expect("allowed");
-                for length in 0..=40 {
-                    let mut inputs = || -> Vec<R> {
-                        let numbers = |_| loop {
-                            let input = random.input(range);
-                            let wanted = policy != OutOfRange::Error || input.abs() <= range;
-                            if length % 2 == 0 || (input.is_finite() && wanted) {
-                                return input;
-                            }
-                        };
-                        (0..length).map(numbers).collect()
-                    };
-                    let counts = compare(&supervisor, &inputs(), &inputs());
-                    (compared, refused) = (compared + counts.0, refused + counts.1);
-                }
+                let counts = compare_lengths(&supervisor, &mut random);
+                (compared, refused) = (compared + counts.0, refused + counts.1);
             }
         }
     }
     assert!(compared > 20_000 && refused > 100, "{compared} compared, {refused} refused");
+}
+
+/// The same with rules that conclude numbers.
+fn compare_all_numbers<R: Real>(ranges: [R; 4]) {
+    let mut random = Random(41);
+    let (mut compared, mut refused) = (0, 0);
+    for range in ranges {
+        for policy in OutOfRange::ALL {
+            let mut cell = |_| range * R::from_f64(random.unit());
+            let grids = [[[R::ZERO; LABEL_COUNT]; LABEL_COUNT]; 3];
+            let grids = grids.map(|grid| grid.map(|row| row.map(&mut cell)));
+            let table = NumberTable::new(grids).expect("finite");
+            let supervisor = Supervisor::of_numbers(&table, range, policy).expect("allowed");
+            let counts = compare_lengths(&supervisor, &mut random);
+            (compared, refused) = (compared + counts.0, refused + counts.1);
+        }
+    }
+    assert!(compared > 5_000 && refused > 25, "{compared} compared, {refused} refused");
+}
+
+#[test]
+fn a_batch_of_numbers_has_the_bits_and_flags_of_single_inferences() {
+    compare_all_numbers(RANGES_F64);
+    compare_all_numbers(RANGES_F32);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fspid_core::{AntiWindup, Sees, TunerSettings};
+use fspid_core::{AntiWindup, Sees, SelfTuner};
 use fspid_fuzzy::scalar::Interval;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
@@ -65,7 +65,7 @@ impl fmt::Display for NotProvable {
             ),
             Self::Structure { what } => write!(
                 f,
-                "{what}; a proof speaks of supervisors that see the error and its change through even sets, and of controllers of which only the gains move"
+                "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
             ),
             Self::UnboundedGains(reason) => reason.fmt(f),
             Self::Plant(reason) => reason.fmt(f),
@@ -95,9 +95,13 @@ impl From<SimError> for NotProvable {
 }
 
 /// What keeps a self-tuner from being proved; nothing for one that is plain.
-fn beyond_proof(settings: &TunerSettings<f64>) -> Option<&'static str> {
-    if settings.is_plain() {
+fn beyond_proof(tuner: &SelfTuner<f64>) -> Option<&'static str> {
+    let settings = tuner.settings();
+    if tuner.is_plain() {
         return None;
+    }
+    if tuner.supervisor().numbers().is_some() {
+        return Some("the supervisor's rules conclude numbers (Takagi and Sugeno)");
     }
     Some(match settings.sees {
         Sees::ErrorAndRate => "the supervisor sees the measured pitch rate",
@@ -146,7 +150,7 @@ impl LoopDescription {
             return Err(NotProvable::NotLinearAroundRest { what: "play" });
         }
         if let Controller::SelfTuning(fspid) = &self.controller
-            && let Some(what) = beyond_proof(fspid.tuner().settings())
+            && let Some(what) = beyond_proof(fspid.tuner())
         {
             return Err(NotProvable::Structure { what });
         }

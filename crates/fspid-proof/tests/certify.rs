@@ -4,8 +4,9 @@ use fspid_core::{
     Derivative, Followers, Fspid, Gains, InputScale, InputSets, Law, Pid, ReferenceModel, Sees,
     SelfTuner, SetPlaces, Shell, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
+use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
 use fspid_proof::{Certificate, Claim, Effort, LoopDescription, NotProvable, Verdict, certify};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
@@ -182,6 +183,24 @@ fn an_input_that_the_supervisor_never_sees_refutes_nothing() {
     assert!(!matches!(outcome.verdict, Verdict::Refuted(..)), "{outcome:?}");
     certificate.description = description;
     assert!(certificate.check().is_err());
+}
+
+#[test]
+fn rules_that_conclude_numbers_are_refused_and_bounded_by_the_range_alone() {
+    let numbers = NumberTable::new([[[1.0; 7]; 7]; 3]).expect("finite");
+    let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
+    let tuner = SelfTuner::new(NOMINAL, supervisor, TunerSettings::literal()).expect("allowed");
+    let fspid = Fspid::new(tuner, shell()).expect("allowed");
+    let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &quick());
+    let refused = refused.expect_err("another structure").to_string();
+    assert!(refused.contains("conclude numbers"), "{refused}");
+    let map = IncrementMap::of(&tuner, 3).expect("bounded");
+    let holds = |cell: &IncrementCell| {
+        let bounds = cell.delta.map(|delta| [delta.lower(), delta.upper()]);
+        bounds.iter().all(|[lower, upper]| *lower <= -5.0 && *upper >= 5.0)
+    };
+    assert!(map.cells.iter().all(holds));
+    assert_eq!(IncrementSlopes::of(&tuner, [1.0; 2]), Err(NoSlopes::Unbounded));
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use fspid_core::fuzzy::{Defuzzifier, Label, OutOfRange, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, Label, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{Fspid, Gains, InputScale, Pid, SelfTuner, Shell, TunerSettings};
 use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
@@ -115,6 +115,19 @@ fn supervisor() -> Supervisor<f64> {
     Supervisor::new(&table(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
 }
 
+/// What the labels answer at the centres of the sets, as numbers.
+fn numbers() -> Supervisor<f64> {
+    let labels = supervisor();
+    let answer = |gain: usize, i: usize, j: usize| {
+        let centre = |set: usize| 5.0 * (set as f64 - 3.0) / 3.0;
+        let delta = labels.infer(centre(i), centre(j)).expect("within the range").delta;
+        [delta.kp, delta.ki, delta.kd][gain]
+    };
+    let grid = |gain| std::array::from_fn(|i| std::array::from_fn(|j| answer(gain, i, j)));
+    let table = NumberTable::new([0, 1, 2].map(grid)).expect("finite");
+    Supervisor::of_numbers(&table, 5.0, OutOfRange::Clamp).expect("within the range")
+}
+
 /// Noise for a command, so that every sample is another one.
 fn scenario(seed: u64) -> Scenario {
     let plant = LinearPlant::new(
@@ -129,8 +142,10 @@ fn scenario(seed: u64) -> Scenario {
         output_scale: Gains { kp: 0.1, ki: 0.001, kd: 0.05 },
         ..TunerSettings::literal()
     };
-    let tuner = SelfTuner::new(gains, supervisor(), settings).expect("allowed");
-    let fspid = Fspid::new(tuner, shell).expect("allowed");
+    let tuned = |supervisor| {
+        let tuner = SelfTuner::new(gains, supervisor, settings).expect("allowed");
+        Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"))
+    };
     let pid = Pid::new(gains, shell).expect("allowed");
     let named = |name: &str, controller| NamedController { name: name.to_owned(), controller };
     Scenario {
@@ -142,7 +157,8 @@ fn scenario(seed: u64) -> Scenario {
         setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![
-            named("FSPID", Controller::SelfTuning(fspid)),
+            named("FSPID", tuned(supervisor())),
+            named("FSPID by numbers", tuned(numbers())),
             named("PID", Controller::Fixed(pid)),
         ],
         surroundings: Surroundings::default(),

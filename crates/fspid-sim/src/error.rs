@@ -113,7 +113,7 @@ impl fmt::Display for SimError {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
             Self::Structure => f.write_str(
-                "gains along a flight are derived for supervisors that see the error and its change through even sets, and for controllers of which only the gains move",
+                "gains along a flight are derived for supervisors whose rules conclude labels and that see the error and its change through even sets, and for controllers of which only the gains move",
             ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),

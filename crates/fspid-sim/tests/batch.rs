@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits, Gains,
     Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner,
@@ -24,6 +24,8 @@ use proptest::test_runner::RngSeed;
 struct Structure {
     order: usize,
     self_tuning: bool,
+    /// Whether the rules conclude numbers, different ones in each flight.
+    numbers: bool,
     literal: bool,
     anti_windup: u8,
     accumulates: bool,
@@ -134,8 +136,14 @@ fn shell(random: &mut Random, structure: Structure) -> Shell<f64> {
 }
 
 fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTuner<f64> {
-    let supervisor =
-        Supervisor::new(&table(), 5.0, Defuzzifier::Exact, structure.policy).expect("allowed");
+    let supervisor = if structure.numbers {
+        let grids = [[[0.0; 7]; 7]; 3];
+        let grids = grids.map(|grid| grid.map(|row| row.map(|_| random.between(-5.0, 5.0))));
+        let numbers = NumberTable::new(grids).expect("finite");
+        Supervisor::of_numbers(&numbers, 5.0, structure.policy).expect("allowed")
+    } else {
+        Supervisor::new(&table(), 5.0, Defuzzifier::Exact, structure.policy).expect("allowed")
+    };
     let scale = if random.one_in(6) { 100.0 } else { 1.0 };
     let mut settings = TunerSettings {
         input_scale: InputScale {
@@ -326,12 +334,22 @@ fn compare(structure: Structure, seed: u64, count: usize) {
 
 fn structure() -> impl Strategy<Value = Structure> {
     let policy = prop::sample::select(OutOfRange::ALL.to_vec());
-    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
     let kinds = (0_u8..4, 0_u8..3);
     (1_usize..=5, flags, kinds, policy).prop_map(|(order, flags, kinds, policy)| {
-        let (self_tuning, literal, accumulates, wild) = flags;
+        let (self_tuning, literal, accumulates, wild, numbers) = flags;
         let (anti_windup, sees) = kinds;
-        Structure { order, self_tuning, literal, anti_windup, accumulates, sees, policy, wild }
+        Structure {
+            order,
+            self_tuning,
+            numbers,
+            literal,
+            anti_windup,
+            accumulates,
+            sees,
+            policy,
+            wild,
+        }
     })
 }
 
@@ -354,6 +372,7 @@ proptest! {
 const PLAIN: Structure = Structure {
     order: 4,
     self_tuning: true,
+    numbers: false,
     literal: false,
     anti_windup: 0,
     accumulates: false,
@@ -361,6 +380,13 @@ const PLAIN: Structure = Structure {
     policy: OutOfRange::Clamp,
     wild: false,
 };
+
+#[test]
+fn flights_with_numbers_of_their_own_have_the_bits_of_single_flights() {
+    for (seed, policy) in (7_u64..).zip(OutOfRange::ALL) {
+        compare(Structure { numbers: true, wild: seed % 2 == 0, policy, ..PLAIN }, seed, 19);
+    }
+}
 
 #[test]
 fn the_wild_flights_meet_what_they_are_for() {
@@ -428,6 +454,8 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     let what = "the form of its integral";
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
     mixed[3] = flights(Structure { policy: OutOfRange::Error, ..PLAIN }, 1, 1).remove(0);
+    assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
+    mixed[3] = flights(Structure { numbers: true, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
     mixed[3] = flights(Structure { sees: 1, ..PLAIN }, 1, 1).remove(0);
     let what = "what its supervisor sees";

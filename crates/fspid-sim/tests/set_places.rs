@@ -1,7 +1,7 @@
 //! Bent inputs of a supervisor against general fuzzy systems whose triangles are moved.
 
-use fspid_core::SetPlaces;
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
+use fspid_core::{Gains, InputSets, SelfTuner, SetPlaces, TunerSettings};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{Answer, Membership, Parts, System};
 
@@ -52,6 +52,49 @@ fn bending_the_input_of_even_triangles_is_the_same_as_moving_the_triangles() {
                     // The grades differ by the rounding of quotients.
                     assert!((found - expected).abs() < 1e-11, "{input:?}: {found} {expected}");
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tuner_with_numbers_and_uneven_sets_answers_as_a_system_whose_triangles_are_moved() {
+    let grid = |seed: usize| {
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| ((i * 7 + j + seed) * 37 % 101) as f64 / 10.1 - 5.0)
+        })
+    };
+    let numbers = NumberTable::new([1, 2, 3].map(grid)).expect("finite");
+    let supervisor = Supervisor::of_numbers(&numbers, RANGE, OutOfRange::Clamp).expect("allowed");
+    let mut parts = Parts::from(&supervisor);
+    let moved = [centres(0.1, 0.5), centres(0.5, 0.9)];
+    for (input, centres) in parts.inputs.iter_mut().zip(moved) {
+        for (at, term) in input.terms.iter_mut().enumerate() {
+            let (kind, params) = match at {
+                0 => (ShapeKind::LinearZ, vec![centres[0], centres[1]]),
+                6 => (ShapeKind::LinearS, vec![centres[5], centres[6]]),
+                at => (ShapeKind::Triangle, centres[at - 1..=at + 1].to_vec()),
+            };
+            term.membership = Membership::Shape { kind, params, height: 1.0 };
+        }
+    }
+    let general = System::new(parts).expect("sound");
+    let places = |small, medium| SetPlaces::new(small, medium).ok();
+    let settings = TunerSettings {
+        input_sets: InputSets { error: places(0.1, 0.5), change: places(0.5, 0.9) },
+        ..TunerSettings::literal()
+    };
+    let tuner = SelfTuner::new(Gains::ZERO, supervisor, settings).expect("allowed");
+    let mut workspace = general.workspace();
+    for row in -28..=28_i32 {
+        for column in -28..=28_i32 {
+            let [error, change] = [row, column].map(|k| 0.2 * f64::from(k) - 0.01);
+            let found = tuner.increments_where_seen(error, change).expect("clamped");
+            let expected = general.evaluate(&[error, change], &mut workspace).expect("clamped");
+            for (found, expected) in [found.kp, found.ki, found.kd].into_iter().zip(expected) {
+                let expected = expected.value.expect("some rule fires");
+                // The grades differ by the rounding of quotients.
+                assert!((found - expected).abs() < 1e-11, "{error} {change}: {found} {expected}");
             }
         }
     }

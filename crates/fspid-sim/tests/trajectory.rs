@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
     InputScale, IntegralForm, Law, Limits, Pid, Sees, SelfTuner, SetpointWeights, Shell,
@@ -367,5 +367,17 @@ fn a_tuner_that_sees_the_rate_has_no_small_signals_along_its_flight() {
     let mut case = base();
     case.settings.sees = Sees::ErrorAndRate;
     let refused = linearise_along(&case.scenario(), &case.controller(), 10);
+    assert!(matches!(refused, Err(SimError::Structure)), "{refused:?}");
+}
+
+#[test]
+fn rules_that_conclude_numbers_have_no_small_signals_along_a_flight() {
+    let case = base();
+    let numbers = NumberTable::new([[[0.5; 7]; 7]; 3]).expect("finite");
+    let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
+    let Controller::SelfTuning(fspid) = case.controller() else { panic!("self-tuning") };
+    let tuner = SelfTuner::new(fspid.tuner().nominal(), supervisor, *fspid.tuner().settings());
+    let fspid = Fspid::new(tuner.expect("allowed"), *fspid.shell()).expect("allowed");
+    let refused = linearise_along(&case.scenario(), &Controller::SelfTuning(fspid), 10);
     assert!(matches!(refused, Err(SimError::Structure)), "{refused:?}");
 }

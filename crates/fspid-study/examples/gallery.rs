@@ -161,6 +161,7 @@ fn rules() -> Svg {
         column_header: "change of error ec".to_owned(),
         labels: SEVEN.map(str::to_owned).to_vec(),
         cells: rows.iter().map(|row| row.split(' ').map(str::to_owned).collect()).collect(),
+        shades: Vec::new(),
         marked: vec![
             mark(5, 1, "breaks the symmetry of its row: the mirrored cell says PS"),
             mark(4, 1, "breaks the symmetry of its row: the mirrored cell says PS"),

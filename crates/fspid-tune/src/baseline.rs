@@ -116,7 +116,7 @@ impl Baseline {
         let is_start = template.study().marks.iter().any(|mark| {
             let holds = match &mark.free {
                 Free::Number(free) => (free.lower..=free.upper).contains(&number),
-                Free::Grid(_) => false,
+                Free::Grid(_) | Free::Numbers(_) => false,
             };
             let is_it = mark.path.text().ends_with(&format!(".{key}"));
             mark.controller() == Some(&self.controller) && is_it && holds

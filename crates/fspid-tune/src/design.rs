@@ -107,6 +107,21 @@ pub(crate) fn with_changes(body: &str, heading: &[String], changes: &[String]) -
 fn written(mark: &Mark, value: &NewValue) -> String {
     match (&mark.free, value) {
         (Free::Grid(_), NewValue::Text(text)) => format!("\"\"\"\n{text}\n\"\"\""),
+        (Free::Numbers(_), NewValue::Rows(rows)) => rows_of(rows),
         _ => value.to_string(),
     }
+}
+
+/// Rows of numbers, one in a line, the columns below each other.
+fn rows_of(rows: &[Vec<f64>]) -> String {
+    let texts: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|number| format!("{number:?}")).collect()).collect();
+    let width = texts.iter().flatten().map(String::len).max().unwrap_or(0);
+    let mut out = "[\n".to_owned();
+    for row in texts {
+        let row: Vec<String> = row.iter().map(|text| format!("{text:>width$}")).collect();
+        out.push_str(&format!("  [{}],\n", row.join(", ")));
+    }
+    out.push(']');
+    out
 }

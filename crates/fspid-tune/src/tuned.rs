@@ -275,6 +275,7 @@ fn numbers(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Number> {
     let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
         Free::Number(number) => vec![Some([number.lower, number.upper])],
         Free::Grid(_) => vec![None; mark.dimensions()],
+        Free::Numbers(numbers) => numbers.bounds().into_iter().map(Some).collect(),
     });
     let values = space.numbers(&start.point).into_iter().zip(space.numbers(&best.point));
     let rows = space.names().into_iter().zip(values).zip(bounds).zip(&best.point);

@@ -15,7 +15,7 @@ use fspid_study::output;
 /// and tells the error.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     #[arg(value_name = "IN")]
     system: String,
     #[command(flatten)]

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 
 use super::{Format, Loading, json_text};
 use crate::exit::{Failure, note, print};
-use fspid_study::fuzzy_system::{self, Parts, Target};
+use fspid_study::fuzzy_system::{self, NUMBER_GRID, Parts, Target};
 use fspid_study::output;
 use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
 
@@ -16,7 +16,7 @@ use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), or the rule table `printed` or `mirrored` with --range.
+    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: String,
     #[command(flatten)]
     loading: Loading,
@@ -77,15 +77,20 @@ impl From<Conclude> for Order {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let system = arguments.loading.load(&arguments.system)?;
+    let (system, teacher) = match &arguments.teacher {
+        None => (arguments.loading.load(&arguments.system)?, None),
+        Some(teacher) => {
+            let [system, teacher] = arguments.loading.load_both([&arguments.system, teacher])?;
+            (system, Some(teacher))
+        }
+    };
     let parts = match arguments.conclude {
         Some(conclude) => sugeno(system.parts(), conclude.into()),
         None => system.parts().clone(),
     };
-    let data = match (&arguments.data, &arguments.teacher) {
+    let data = match (&arguments.data, &teacher) {
         (Some(path), _) => Data::load(&parts, path),
         (None, Some(teacher)) => {
-            let teacher = arguments.loading.load(teacher)?;
             same_names(&parts, teacher.parts())?;
             Data::taught(teacher.parts(), &arguments.points)
         }
@@ -104,9 +109,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = fuzzy_system::write_as(&learned.parts, &arguments.out, Target::default());
     output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
     note(format_args!("wrote {}", arguments.out.display()));
+    let numbers = fuzzy_system::numbers_of(&learned.parts);
+    if let (true, Err(differences)) = (arguments.system == NUMBER_GRID, &numbers) {
+        let first = differences.first().map_or("", String::as_str);
+        note(format_args!("warning: it does not fly: {first}; --sets-stay keeps the sets"));
+    }
     match arguments.format {
-        Format::Text => print(&learned.text()),
-        Format::Json => print(&json_text(&learned.json())),
+        Format::Text => {
+            let numbers = numbers.map_or(String::new(), |numbers| {
+                format!("\nIt flies as `system` of a supervisor, or with its numbers, here rounded:\n\n{}", numbers.toml())
+            });
+            print(&format!("{}{numbers}", learned.text()))
+        }
+        Format::Json => {
+            let mut answer = learned.json();
+            if let Ok(numbers) = numbers {
+                answer["numbers"] = numbers.json();
+            }
+            print(&json_text(&answer))
+        }
     }
 }
 

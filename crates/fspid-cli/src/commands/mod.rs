@@ -47,6 +47,9 @@ pub(crate) struct Loading {
     /// The function block of an .fcl file, if there are several.
     #[arg(long, value_name = "NAME")]
     pub(crate) block: Option<String>,
+    /// The controller of a scenario file whose supervisor is meant, if several have one.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) controller: Option<String>,
 }
 
 /// A tool with a dialect of FCL.
@@ -79,12 +82,38 @@ impl Loading {
             out_of_range: self.out_of_range.as_deref(),
             dialect: self.dialect.map(Dialect::from),
             block: self.block.as_deref(),
+            controller: self.controller.as_deref(),
         }
     }
 
     /// The system of that name; what had to be assumed is told as warnings.
     pub(crate) fn load(&self, name: &str) -> Result<System, Failure> {
-        let loaded = fuzzy_system::load(name, self.options()).map_err(Failure::input)?;
+        Self::load_with(name, self.options())
+    }
+
+    /// Two systems, of which each takes the options that belong to its kind: --range what is shipped,
+    /// --controller what is a scenario.
+    pub(crate) fn load_both(&self, names: [&str; 2]) -> Result<[System; 2], Failure> {
+        let options = self.options();
+        let is_any = |has: fn(&str) -> bool| names.iter().any(|name| has(name));
+        let load = |name: &str| {
+            let (shipped, scenario) =
+                (fuzzy_system::needs_range(name), fuzzy_system::is_scenario(name));
+            // Where neither of the two has a use for an option, the first one refuses it.
+            let mine = Options {
+                range: options.range.filter(|_| shipped || !is_any(fuzzy_system::needs_range)),
+                controller: options
+                    .controller
+                    .filter(|_| scenario || !is_any(fuzzy_system::is_scenario)),
+                ..options
+            };
+            Self::load_with(name, mine)
+        };
+        Ok([load(names[0])?, load(names[1])?])
+    }
+
+    fn load_with(name: &str, options: Options<'_>) -> Result<System, Failure> {
+        let loaded = fuzzy_system::load(name, options).map_err(Failure::input)?;
         for found in &loaded.notes {
             note(format_args!("warning: {found}"));
         }

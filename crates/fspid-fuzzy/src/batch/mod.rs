@@ -159,12 +159,29 @@ impl<R: Real> Batch<'_, R> {
         Ok(())
     }
 
+    /// Answers everything in turn: which four numbers of a table are looked up differs from lane to lane.
+    fn answer_one_by_one(&mut self) -> Result<(), BatchError> {
+        let Self { supervisor, error, change, answers } = self;
+        for (index, (&error, &change)) in error.iter().zip(*change).enumerate() {
+            let refused = |error| BatchError::Refused { index, error };
+            let Inference { delta, clamped, underflowed } =
+                supervisor.infer(error, change).map_err(refused)?;
+            (answers.kp[index], answers.ki[index], answers.kd[index]) =
+                (delta.kp, delta.ki, delta.kd);
+            (answers.clamped[index], answers.underflowed[index]) = (clamped, underflowed);
+        }
+        Ok(())
+    }
+
     /// Answers everything with vectors of type `V`.
     #[inline(always)]
     pub(crate) fn answer<S: Simd, V: SimdFloat<S, Element = R>>(
         &mut self,
         simd: S,
     ) -> Result<(), BatchError> {
+        let Some(consequents) = self.supervisor.consequents() else {
+            return self.answer_one_by_one();
+        };
         let high = V::simd_from(simd, self.supervisor.range());
         let low = V::simd_from(simd, -self.supervisor.range());
         let mut begin = 0;
@@ -176,7 +193,7 @@ impl<R: Real> Batch<'_, R> {
 
             let error = Vector::new(error.max(low).min(high));
             let change = Vector::new(change.max(low).min(high));
-            let [kp, ki, kd] = self.supervisor.increments_in_lanes(error, change);
+            let [kp, ki, kd] = self.supervisor.increments_in_lanes(consequents, error, change);
             store(kp.0, &mut self.answers.kp[places.clone()]);
             store(ki.0, &mut self.answers.ki[places.clone()]);
             store(kd.0, &mut self.answers.kd[places.clone()]);

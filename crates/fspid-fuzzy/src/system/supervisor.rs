@@ -4,22 +4,26 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::defuzzifier::Defuzzifier;
+use super::defuzzifier::{Defuzzifier, SetReading};
 use super::norms::{SNorm, TNorm};
 use super::parts::{
     Activation, Antecedent, Conclusion, Consequent, Fallback, FallbackValue, Input, Membership,
     Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
-use crate::label::Label;
+use crate::label::{LABEL_COUNT, Label};
 use crate::membership::ShapeKind;
+use crate::norm::TNormKind;
+use crate::number_table::NumberGrid;
 use crate::rule_table;
 use crate::supervisor::Supervisor;
 
 impl From<&Supervisor<f64>> for Parts {
-    /// Inputs `error` and `change`, outputs `delta_kp`, `delta_ki`, `delta_kd`; answers the same bits.
+    /// Inputs `error` and `change`, outputs `delta_kp`, `delta_ki`, `delta_kd`; answers the same bits, and
+    /// where rules conclude numbers the same but for rounding.
     fn from(supervisor: &Supervisor<f64>) -> Self {
         let range = supervisor.range();
         let universe = Some(Universe { lower: -range, upper: range });
+        let numbers = supervisor.numbers();
         let input = |name: &str| Input {
             name: name.to_string(),
             description: String::new(),
@@ -28,30 +32,39 @@ impl From<&Supervisor<f64>> for Parts {
             out_of_range: supervisor.out_of_range(),
             terms: input_terms(supervisor),
         };
-        let defuzzifier = Defuzzifier::Centroid(supervisor.defuzzifier());
-        let output = |name: &str| Output {
-            name: name.to_string(),
+        let output = |gain: rule_table::Output| Output {
+            name: gain.name().to_string(),
             description: String::new(),
             enabled: true,
             universe,
             clamp: false,
-            terms: output_terms(range),
+            terms: match numbers {
+                None => output_terms(range),
+                Some(table) => number_terms(table.grid(gain)),
+            },
             aggregation: SNorm::default(),
-            defuzzifier,
+            defuzzifier: match numbers {
+                None => Defuzzifier::Centroid(supervisor.defuzzifier()),
+                Some(_) => Defuzzifier::WeightedAverage(SetReading::default()),
+            },
             fallback: Fallback { previous: false, value: FallbackValue::Middle },
+        };
+        let product = || match numbers {
+            None => TNorm::default(),
+            Some(_) => TNormKind::AlgebraicProduct.into(),
         };
         Self {
             name: "supervisor".to_string(),
             description: "Fuzzy supervisor of a self-tuning PID controller".to_string(),
             inputs: ["error", "change"].map(input).into(),
-            outputs: ["delta_kp", "delta_ki", "delta_kd"].map(output).into(),
+            outputs: rule_table::Output::ALL.map(output).into(),
             blocks: vec![RuleBlock {
                 name: String::new(),
                 description: String::new(),
                 enabled: true,
-                and: TNorm::default(),
+                and: product(),
                 or: SNorm::default(),
-                implication: TNorm::default(),
+                implication: product(),
                 activation: Activation::General,
                 rules: rules(supervisor),
             }],
@@ -60,12 +73,31 @@ impl From<&Supervisor<f64>> for Parts {
 }
 
 fn input_terms(supervisor: &Supervisor<f64>) -> Vec<Term> {
-    let term = |(label, params): (Label, &[f64; 2])| Term {
+    let has_numbers = supervisor.numbers().is_some();
+    let term = |(label, &[centre, width]): (Label, &[f64; 2])| Term {
         name: label.name().to_string(),
-        membership: shape(ShapeKind::Gaussian, params.to_vec()),
+        membership: match label {
+            _ if !has_numbers => shape(ShapeKind::Gaussian, vec![centre, width]),
+            // Level outwards, as the supervisor is beyond its range.
+            Label::NB => shape(ShapeKind::LinearZ, vec![centre, centre + width]),
+            Label::PB => shape(ShapeKind::LinearS, vec![centre - width, centre]),
+            _ => shape(ShapeKind::Triangle, vec![centre - width, centre, centre + width]),
+        },
         lower: None,
     };
     Label::ALL.into_iter().zip(supervisor.sets()).map(term).collect()
+}
+
+/// A conclusion for each cell, row by row.
+fn number_terms(grid: &NumberGrid<f64>) -> Vec<OutputTerm> {
+    let cells = Label::ALL.into_iter().zip(grid).flat_map(|(error, row)| {
+        Label::ALL.into_iter().zip(row).map(move |(change, number)| (error, change, *number))
+    });
+    let term = |(error, change, number): (Label, Label, f64)| OutputTerm {
+        name: [error.name(), change.name()].join("_"),
+        conclusion: Conclusion::Constant(number),
+    };
+    cells.map(term).collect()
 }
 
 fn output_terms(range: f64) -> Vec<OutputTerm> {
@@ -99,7 +131,10 @@ fn rules(supervisor: &Supervisor<f64>) -> Vec<Rule> {
             .enumerate()
             .map(|(output, gain)| Consequent {
                 output,
-                term: table.grid(gain).at(error, change).index(),
+                term: match &table {
+                    Some(table) => table.grid(gain).at(error, change).index(),
+                    None => error.index() * LABEL_COUNT + change.index(),
+                },
                 hedges: Vec::new(),
             })
             .collect(),

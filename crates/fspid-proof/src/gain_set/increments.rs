@@ -174,9 +174,11 @@ impl<'a> Enclosure<'a> {
         let (range, rule) = (supervisor.range(), supervisor.defuzzifier());
         let samples = samples(rule);
         let slack = range * (ROUNDING + ROUNDING_PER_SAMPLE * f64::from(samples));
-        let reach = system.filter(|_| is_dense(rule)).map(Reach::new);
+        // Numbers lie anywhere within the range, and of what is in between nothing more is claimed.
+        let has_labels = supervisor.numbers().is_none();
+        let reach = system.filter(|_| has_labels && is_dense(rule)).map(Reach::new);
         let slack = Interval::between(-slack, slack);
-        let half = furthest(range, rule);
+        let half = if has_labels { furthest(range, rule) } else { range };
         let universe = Interval::between(-half, half) + slack;
         let settings = tuner.settings();
         let zone = settings.dead_zone.map(|zone| {

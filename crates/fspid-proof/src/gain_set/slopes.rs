@@ -74,7 +74,7 @@ impl IncrementSlopes {
         if !clamps && !within.iter().all(inside) {
             return Err(NoSlopes::BeyondRange);
         }
-        if !is_dense(supervisor.defuzzifier()) {
+        if supervisor.numbers().is_some() || !is_dense(supervisor.defuzzifier()) {
             return Err(NoSlopes::Unbounded);
         }
         let system = System::new(Parts::from(supervisor)).map_err(|_| NoSlopes::Unbounded)?;

@@ -1,6 +1,6 @@
 //! The gains of all lanes' self-tuning controllers.
 
-use fspid_core::fuzzy::{Answers, InstructionSet, OutOfRange, Supervisor};
+use fspid_core::fuzzy::{Answers, Inference, InstructionSet, OutOfRange, Supervisor};
 use fspid_core::{
     Change, ErrorSign, Gains, InputSets, Law, ModelState, ReferenceModel, Sees, SelfTuner,
 };
@@ -121,10 +121,12 @@ impl Second {
 /// A model that stays at rest.
 const STILL: ReferenceModel<f64> = ReferenceModel { bandwidth_rad_s: 0.0, damping: 0.0 };
 
-/// Self-tuners of all lanes, around one supervisor.
+/// Self-tuners of all lanes, around one supervisor, or around one of each lane whose numbers alone differ.
 #[derive(Clone, Debug)]
 pub(super) struct SelfTuners<const W: usize> {
     supervisor: Supervisor<f64>,
+    /// Where rules conclude numbers, each lane has its own: candidates of a search fly side by side.
+    own: Option<Box<[Supervisor<f64>; W]>>,
     instructions: InstructionSet,
     accumulates: bool,
     sees: Second,
@@ -144,6 +146,7 @@ impl<const W: usize> SelfTuners<W> {
         let refuses = supervisor.out_of_range() == OutOfRange::Error;
         Self {
             supervisor,
+            own: supervisor.numbers().map(|_| Box::new([supervisor; W])),
             instructions,
             accumulates: matches!(tuner.settings().law, Law::Accumulating { .. }),
             sees: Second::of(tuner),
@@ -164,11 +167,19 @@ impl<const W: usize> SelfTuners<W> {
         if Second::of(tuner) != self.sees {
             return Some("what its supervisor sees");
         }
-        (*tuner.supervisor() != self.supervisor).then_some("its supervisor")
+        let (one, other) = (&self.supervisor, tuner.supervisor());
+        let only_numbers_differ = one.numbers().is_some()
+            && other.numbers().is_some()
+            && one.range().to_bits() == other.range().to_bits()
+            && one.out_of_range() == other.out_of_range();
+        (!only_numbers_differ && one != other).then_some("its supervisor")
     }
 
     pub(super) fn load(&mut self, lane: usize, tuner: &SelfTuner<f64>, dt_s: f64) {
         self.numbers.set(lane, Tuner::new(tuner, dt_s));
+        if let Some(own) = &mut self.own {
+            own[lane] = *tuner.supervisor();
+        }
         let settings = tuner.settings();
         self.sets[lane] = settings.input_sets;
         self.bends |= !settings.input_sets.are_even();
@@ -277,6 +288,9 @@ impl<const W: usize> SelfTuners<W> {
 
     #[inline(always)]
     fn inferred(&self, error: &Lanes<W>, change: &Lanes<W>, plain: &mut Mask<W>) -> [Lanes<W>; 3] {
+        if let Some(own) = &self.own {
+            return interpolated(own, error, change, plain);
+        }
         let [mut kp, mut ki, mut kd] = [[0.0; W]; 3];
         let (mut clamped, mut underflowed) = ([false; W], [false; W]);
         let answers = Answers {
@@ -337,4 +351,25 @@ impl<const W: usize> SelfTuners<W> {
         }
         gains
     }
+}
+
+/// What the numbers of each lane answer.
+#[inline(never)]
+fn interpolated<const W: usize>(
+    supervisors: &[Supervisor<f64>; W],
+    error: &Lanes<W>,
+    change: &Lanes<W>,
+    plain: &mut Mask<W>,
+) -> [Lanes<W>; 3] {
+    let [mut kp, mut ki, mut kd] = [[0.0; W]; 3];
+    for lane in 0..W {
+        match supervisors[lane].infer(error[lane], change[lane]) {
+            Ok(Inference { delta, .. }) => {
+                (kp[lane], ki[lane], kd[lane]) = (delta.kp, delta.ki, delta.kd);
+            }
+            // No input is refused that is near; were one, a single flight's step would tell.
+            Err(_) => plain[lane] = NO,
+        }
+    }
+    [kp, ki, kd]
 }

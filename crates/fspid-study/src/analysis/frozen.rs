@@ -102,11 +102,29 @@ impl<'a> Mapper<'a> {
         let points = inputs
             .map(|(row, column)| self.point([place(row), place(column)]))
             .collect::<Result<Vec<_>, _>>()?;
-        let Some(worst) = worst_of(&points) else { return Ok(None) };
+        let nodes = self.nodes().into_iter().map(|input| self.point(input));
+        let nodes = nodes.collect::<Result<Vec<_>, _>>()?;
+        let Some(worst) = worst_of(points.iter().chain(&nodes)) else { return Ok(None) };
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
         worst.margins = self.margins(worst.gains)?;
         let beside = self.fspid.tuner().settings().sees.beside();
         Ok(Some(FrozenMap { beside, side, points, worst }))
+    }
+
+    /// Inputs at the numbers themselves, where rules conclude some: between them the gains are mixtures, so
+    /// that the largest and the smallest of each are there.
+    fn nodes(&self) -> Vec<[f64; 2]> {
+        let tuner = self.fspid.tuner();
+        if tuner.supervisor().numbers().is_none() {
+            return Vec::new();
+        }
+        let (range, sets) = (tuner.supervisor().range(), tuner.settings().input_sets);
+        let [errors, changes] = [sets.error, sets.change].map(|places| {
+            let [small, medium] =
+                places.map_or([1.0 / 3.0, 2.0 / 3.0], |it| [it.small(), it.medium()]);
+            [-1.0, -medium, -small, 0.0, small, medium, 1.0].map(|part| part * range)
+        });
+        errors.into_iter().flat_map(|error| changes.map(|change| [error, change])).collect()
     }
 
     /// Looks around a point, nearer and nearer, for a worse one.
@@ -174,6 +192,6 @@ impl<'a> Mapper<'a> {
     }
 }
 
-fn worst_of(points: &[FrozenPoint]) -> Option<&FrozenPoint> {
-    points.iter().min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
+fn worst_of<'a>(points: impl Iterator<Item = &'a FrozenPoint>) -> Option<&'a FrozenPoint> {
+    points.min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
 }

@@ -20,6 +20,8 @@ pub struct RuleTable {
     pub labels: Vec<String>,
     /// Rows of cells; a missing cell is left empty.
     pub cells: Vec<Vec<String>>,
+    /// Where cells are numbers, their parts of the range, from -1 to 1: these decide the colours then.
+    pub shades: Vec<Vec<f64>>,
     /// Cells that are odd, and why.
     pub marked: Vec<Mark>,
 }
@@ -101,8 +103,10 @@ impl RuleTable {
         let label =
             self.cells.get(row).and_then(|cells| cells.get(column)).map_or("", String::as_str);
         let middle = (self.labels.len().saturating_sub(1)) as f64 / 2.0;
-        let place = self.labels.iter().position(|known| known == label);
-        let fill = place.map(|n| diverging((n as f64 - middle) * 0.8, middle));
+        let place = self.labels.iter().position(|known| known == label).map(|n| n as f64 - middle);
+        let shade = self.shades.get(row).and_then(|row| row.get(column));
+        let place = place.or(shade.map(|part| part * middle));
+        let fill = place.map(|place| diverging(place * 0.8, middle));
         let face = Paint::face(fill.map_or(Role::None, Role::Fixed));
         canvas.rect(x + 0.75, y + 0.75, CELL_WIDTH - 1.5, CELL_HEIGHT - 1.5, &face);
         let ink = match fill {

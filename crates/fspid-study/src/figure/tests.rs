@@ -114,6 +114,7 @@ fn table() -> RuleTable {
         column_header: "ec".to_owned(),
         labels: SEVEN.map(str::to_owned).to_vec(),
         cells: vec![vec!["PB".to_owned(), "??".to_owned()], Vec::new()],
+        shades: Vec::new(),
         marked: vec![
             Mark { row: 0, column: 1, reason: "not a label".to_owned() },
             Mark { row: 90, column: 90, reason: "outside".to_owned() },

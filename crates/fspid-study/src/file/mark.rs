@@ -1,15 +1,15 @@
 //! Marks: `{ tune = [0.1, 10.0], scale = "log" }` in place of a number, `{ tune = "rules", ... }` in place
-//! of a grid of rules. A mark flies as its start; it is taken out of the document before the check.
+//! of a grid of rules, `{ tune = "numbers", ... }` in place of a grid of numbers. A mark flies as its start; it is taken out of the document before the check.
 
-use fspid_fuzzy::{Grid, Label};
+use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
 use crate::file::document::{Item, Member, Value};
 use crate::file::problem::{Problems, nearest};
 use crate::file::report::{Place, Report};
 use crate::file::setting::{grid_text, named_step};
-use crate::file::{SettingPath, Template};
+use crate::file::{NewValue, SettingPath, Template};
 use crate::tune::Scale;
-use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark};
+use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
 
 /// The key that makes a table a mark.
 const KEY: &str = "tune";
@@ -17,6 +17,7 @@ const KEY: &str = "tune";
 const SCALES: [(Scale, &str); 2] = [(Scale::Linear, "linear"), (Scale::Logarithmic, "log")];
 const NUMBER_KEYS: [&str; 3] = [KEY, "scale", "start"];
 const GRID_KEYS: [&str; 6] = [KEY, "start", "reach", "symmetric", "at_rest", "monotone"];
+const NUMBERS_KEYS: [&str; 4] = [KEY, "start", "reach", "symmetric"];
 /// How many labels a cell may move, unless the mark says.
 const USUAL_REACH: u8 = 2;
 /// Top-level tables in which nothing can be free.
@@ -50,6 +51,21 @@ pub(crate) fn schemas() -> serde_json::Value {
                 "monotone": { "description": "How labels run from the middle outwards.", "type": "string", "enum": orders, "default": "no" },
             },
             "required": [KEY, "start"],
+            "additionalProperties": false,
+        },
+        "numbers": {
+            "description": "A grid of numbers that `fspid tune` may choose.",
+            "type": "object",
+            "properties": {
+                KEY: { "const": "numbers" },
+                "start": {
+                    "description": "Seven lists of seven numbers.", "type": "array", "minItems": 7, "maxItems": 7,
+                    "items": { "type": "array", "items": { "type": "number" }, "minItems": 7, "maxItems": 7 },
+                },
+                "reach": { "description": "How far a cell may move, in the units of the range.", "type": "number", "exclusiveMinimum": 0 },
+                "symmetric": { "description": "A fall is answered as a rise.", "type": "boolean", "default": true },
+            },
+            "required": [KEY, "start", "reach"],
             "additionalProperties": false,
         },
     })
@@ -117,11 +133,16 @@ impl Walk<'_> {
             mark.report.missing(item.place, path, "nothing can be tuned here", "a value");
         }
         let Some(free) = mark.free() else {
-            // A number that no check refuses, so that the mark's problem is the only one.
-            item.value = Value::Float(1.0);
+            // What no check refuses, so that the mark's problem is the only one.
+            let is_numbers = members.iter().any(|member| is_word(&member.item.value, "numbers"));
+            item.value = match is_numbers {
+                true => rows(&[[0.0; LABEL_COUNT]; LABEL_COUNT], item.place),
+                false => Value::Float(1.0),
+            };
             return;
         };
         item.value = match &free {
+            Free::Numbers(numbers) => rows(&numbers.start, item.place),
             Free::Number(number) => Value::Float(number.start),
             Free::Grid(grid) => Value::Text(grid_text(&grid.start)),
         };
@@ -131,6 +152,19 @@ impl Walk<'_> {
             self.marks.push(Mark { path, free, controller: self.controller.clone(), bytes });
         }
     }
+}
+
+fn is_word(value: &Value, word: &str) -> bool {
+    matches!(value, Value::Text(text) if text == word)
+}
+
+/// A grid of numbers as a list of lists.
+fn rows(grid: &NumberGrid<f64>, place: Place) -> Value {
+    let item = |value| Item { place, value };
+    let row = |row: &[f64; LABEL_COUNT]| {
+        item(Value::Array(row.iter().map(|number| item(Value::Float(*number))).collect()))
+    };
+    Value::Array(grid.iter().map(row).collect())
 }
 
 /// A name as a step of a path.
@@ -164,12 +198,20 @@ impl Fields<'_> {
 
     fn free(self) -> Option<Free> {
         let before = self.report.count();
-        let is_grid = matches!(self.member(KEY).map(|item| &item.value), Some(Value::Text(_)));
         let mut fields = self;
-        fields.check_keys(if is_grid { &GRID_KEYS } else { &NUMBER_KEYS });
-        let free = match is_grid {
-            true => fields.grid().map(Free::Grid),
-            false => fields.number().map(Free::Number),
+        let free = match fields.member(KEY).map(|item| &item.value) {
+            Some(Value::Text(word)) if word == "numbers" => {
+                fields.check_keys(&NUMBERS_KEYS);
+                fields.numbers().map(|numbers| Free::Numbers(Box::new(numbers)))
+            }
+            Some(Value::Text(_)) => {
+                fields.check_keys(&GRID_KEYS);
+                fields.grid().map(Free::Grid)
+            }
+            _ => {
+                fields.check_keys(&NUMBER_KEYS);
+                fields.number().map(Free::Number)
+            }
         };
         free.filter(|_| fields.report.count() == before)
     }
@@ -245,18 +287,14 @@ impl Fields<'_> {
     }
 
     fn grid(&mut self) -> Option<GridMark> {
-        self.word(KEY, &[((), "rules")], ())?;
+        self.word(KEY, &[((), "rules"), ((), "numbers")], ())?;
         let start = self.start_grid()?;
         let reach = |value: &Value| match value {
             Value::Integer(_, Some(reach @ 1..=6)) => Some(*reach as u8),
             _ => None,
         };
         let reach = self.of_kind("reach", reach, USUAL_REACH, "a whole number from 1 to 6")?;
-        let truth = |value: &Value| match value {
-            Value::Boolean(truth) => Some(*truth),
-            _ => None,
-        };
-        let symmetric = self.of_kind("symmetric", truth, true, "true or false")?;
+        let symmetric = self.symmetric()?;
         let labels = Label::ALL.map(|label| (Some(label), label.name()));
         let at_rest = self.word("at_rest", &labels, None)?;
         let monotone = self.word("monotone", &Monotone::NAMES, Monotone::No)?;
@@ -267,6 +305,64 @@ impl Fields<'_> {
             return None;
         }
         Some(mark)
+    }
+
+    fn symmetric(&mut self) -> Option<bool> {
+        let truth = |value: &Value| match value {
+            Value::Boolean(truth) => Some(*truth),
+            _ => None,
+        };
+        self.of_kind("symmetric", truth, true, "true or false")
+    }
+
+    fn numbers(&mut self) -> Option<NumbersMark> {
+        let start = self.start_numbers();
+        let reach = self.reach();
+        let symmetric = self.symmetric();
+        let mark = NumbersMark { start: start?, reach: reach?, symmetric: symmetric? };
+        if !mark.start_is_allowed() {
+            let message = "cell (i, j) is not cell (6 - i, 6 - j) everywhere";
+            self.wrong("start", message, "a symmetric grid, or symmetric = false");
+            return None;
+        }
+        Some(mark)
+    }
+
+    /// How far numbers move.
+    fn reach(&mut self) -> Option<f64> {
+        let reach = self.member("reach").map(number_of);
+        match reach {
+            Some(Some(reach)) if reach > 0.0 => Some(reach),
+            found => {
+                let message = if found.is_some() { "wrong value" } else { "missing key" };
+                self.wrong("reach", message, "a number above 0, in the units of the range");
+                None
+            }
+        }
+    }
+
+    fn start_numbers(&mut self) -> Option<NumberGrid<f64>> {
+        const GRID: &str = "seven lists of seven finite numbers";
+        let row = |item: &Item| match &item.value {
+            Value::Array(items) => {
+                let numbers = items.iter().map(number_of).collect::<Option<Vec<f64>>>()?;
+                <[f64; LABEL_COUNT]>::try_from(numbers).ok()
+            }
+            _ => None,
+        };
+        let grid = match self.member("start").map(|item| &item.value) {
+            None => {
+                self.wrong("start", "missing key", GRID);
+                return None;
+            }
+            Some(Value::Array(rows)) => rows.iter().map(row).collect::<Option<Vec<_>>>(),
+            Some(_) => None,
+        };
+        let grid = grid.and_then(|rows| NumberGrid::<f64>::try_from(rows).ok());
+        if grid.is_none() {
+            self.wrong("start", "no grid of numbers", GRID);
+        }
+        grid
     }
 
     fn start_grid(&mut self) -> Option<Grid> {
@@ -323,7 +419,10 @@ impl Template {
             });
             if let Some((end, problem)) = wrong {
                 let path = mark.path.text();
-                let message = format!("{end} is not allowed: {problem}");
+                let message = match end {
+                    NewValue::Rows(_) => format!("an end of its reach is not allowed: {problem}"),
+                    end => format!("{end} is not allowed: {problem}"),
+                };
                 let allowed = "bounds within what the scenario allows";
                 report.missing(self.place_of(path), path, message, allowed);
             }

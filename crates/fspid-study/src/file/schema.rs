@@ -27,6 +27,7 @@ fn allow_marks(schema: &mut Value) {
             let of = match words.get("type").and_then(Value::as_str) {
                 Some("number") => Some("mark"),
                 Some("string") if words.contains_key(GRID_WORD) => Some("rules"),
+                Some("array") if words.contains_key(NUMBERS_WORD) => Some("numbers"),
                 _ => None,
             };
             words.values_mut().for_each(allow_marks);
@@ -36,6 +37,7 @@ fn allow_marks(schema: &mut Value) {
                     .filter_map(|word| words.remove_entry(word))
                     .collect::<Map<String, Value>>();
                 words.remove(GRID_WORD);
+                words.remove(NUMBERS_WORD);
                 let plain = Value::Object(std::mem::replace(words, kept));
                 let marked = json!({ "$ref": format!("#/$defs/{of}") });
                 words.insert("anyOf".to_owned(), json!([plain, marked]));
@@ -48,6 +50,8 @@ fn allow_marks(schema: &mut Value) {
 
 /// Tells grids of rules from other texts, until marks are allowed.
 const GRID_WORD: &str = "x-grid";
+/// The same for grids of numbers and other lists.
+const NUMBERS_WORD: &str = "x-numbers";
 
 /// The JSON Schema (draft 2020-12) of files with these keys.
 pub(crate) fn schema_of(spec: &'static Table, title: &str) -> Value {
@@ -157,6 +161,10 @@ fn kind(kind: &'static Kind) -> Map<String, Value> {
             ] })
         }
         Kind::Grid => json!({ "type": "string", GRID_WORD: true }),
+        Kind::NumberGrid => {
+            let row = json!({ "type": "array", "items": number(Range::Finite), "minItems": 7, "maxItems": 7 });
+            json!({ "type": "array", "items": row, "minItems": 7, "maxItems": 7, NUMBERS_WORD: true })
+        }
         Kind::Defuzzifier => {
             json!({ "type": "string", "pattern": "^(exact|(endpoints|midpoint|trapezoid|left-end|vertices):[0-9]+)$" })
         }

@@ -39,6 +39,8 @@ pub(crate) enum Checked {
     Text(String),
     Numbers(Vec<(f64, Place)>),
     Grid(Grid),
+    /// The cells of a grid of numbers, row by row.
+    NumberGrid(Vec<(f64, Place)>),
     Defuzzifier(Defuzzifier),
     /// As written; its reader checks it.
     Item(Item),
@@ -118,6 +120,14 @@ impl Section {
     pub(crate) fn grid(&self, name: &str) -> Option<Grid> {
         match self.entry(name)?.value {
             Checked::Grid(grid) => Some(grid),
+            _ => None,
+        }
+    }
+
+    /// The cells of a grid of numbers with their places, row by row.
+    pub(crate) fn number_grid(&self, name: &str) -> Option<&[(f64, Place)]> {
+        match &self.entry(name)?.value {
+            Checked::NumberGrid(cells) => Some(cells),
             _ => None,
         }
     }

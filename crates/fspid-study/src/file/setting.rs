@@ -1,6 +1,6 @@
 //! Every setting of a scenario in one list, whether the file gave it or a default filled it in.
 
-use fspid_fuzzy::{Grid, Label};
+use fspid_fuzzy::{Grid, LABEL_COUNT, Label};
 
 use crate::file::check::default_value;
 use crate::file::files::Files;
@@ -158,6 +158,13 @@ fn written(value: &Checked) -> String {
             numbers(&values)
         }
         Checked::Grid(grid) => text(&grid_text(grid)),
+        Checked::NumberGrid(cells) => {
+            let row = |cells: &[(f64, _)]| -> String {
+                let cells: Vec<String> = cells.iter().map(|(cell, _)| number(*cell)).collect();
+                format!("[{}]", cells.join(", "))
+            };
+            format!("[{}]", cells.chunks(LABEL_COUNT).map(row).collect::<Vec<_>>().join(", "))
+        }
         Checked::Defuzzifier(rule) => text(&rule.to_string()),
         Checked::Item(item) => rewrite::written(&item.value),
         // Their own keys are written, one by one.

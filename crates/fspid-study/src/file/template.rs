@@ -56,15 +56,24 @@ pub enum NewValue {
     Text(String),
     /// True or false.
     Boolean(bool),
+    /// Numbers in rows.
+    Rows(Vec<Vec<f64>>),
 }
 
 impl NewValue {
-    fn value(&self) -> Value {
+    fn value(&self, place: Place) -> Value {
+        let item = |value| Item { place, value };
         match self {
             Self::Number(number) => Value::Float(*number),
             Self::Integer(integer) => Value::Integer(*integer as f64, Some(*integer)),
             Self::Text(text) => Value::Text(text.clone()),
             Self::Boolean(boolean) => Value::Boolean(*boolean),
+            Self::Rows(rows) => {
+                let row = |row: &Vec<f64>| {
+                    Value::Array(row.iter().map(|number| item(Value::Float(*number))).collect())
+                };
+                Value::Array(rows.iter().map(|numbers| item(row(numbers))).collect())
+            }
         }
     }
 }
@@ -77,6 +86,8 @@ impl fmt::Display for NewValue {
             Self::Integer(integer) => write!(f, "{integer}"),
             Self::Text(text) => write!(f, "{text:?}"),
             Self::Boolean(boolean) => write!(f, "{boolean}"),
+            // As a list of lists of TOML.
+            Self::Rows(rows) => write!(f, "{rows:?}"),
         }
     }
 }
@@ -250,7 +261,7 @@ fn setting(report: &mut Report, path: &SettingPath, value: &NewValue) -> Setting
     let origin = format!("--set {}={text}", path.text);
     let source = report.add_source(Some(origin.clone()), &text);
     let place = Place { source, start: 0, end: text.len() };
-    Setting { origin, item: Item { place, value: value.value() } }
+    Setting { origin, item: Item { place, value: value.value(place) } }
 }
 
 fn text_at<'a>(item: &'a Item, key: &str) -> Option<&'a str> {

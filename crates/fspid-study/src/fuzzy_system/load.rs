@@ -7,8 +7,9 @@ use fspid_core::fuzzy::OutOfRange;
 use fspid_formats::fcl::{Dialect, ReadOptions};
 use fspid_formats::{fcl, fis, fll};
 use fspid_fuzzy::system::{Parts, Sampling, System};
+use fspid_fuzzy::{LABEL_COUNT, NumberTable, Supervisor};
 
-use super::toml_file;
+use super::{scenario, toml_file};
 use crate::file::files::read_regular;
 use crate::file::{Problem, Problems, rule_table_names};
 use crate::inference::{Question, Refused};
@@ -26,6 +27,8 @@ pub struct Options<'a> {
     pub dialect: Option<Dialect>,
     /// The function block of an `.fcl` file, if there are several.
     pub block: Option<&'a str>,
+    /// The controller of a scenario file whose supervisor is meant, if it has several.
+    pub controller: Option<&'a str>,
 }
 
 /// A system and what is worth knowing about how it was read.
@@ -65,7 +68,7 @@ impl fmt::Display for LoadError {
                 let tables = rule_table_names().join(", ");
                 write!(
                     f,
-                    "{name}: no fuzzy system; known are files that end in .toml, .fis, .fcl or .fll, and the rule tables {tables}"
+                    "{name}: no fuzzy system; known are files that end in .toml, .fis, .fcl or .fll, the rule tables {tables}, and {NUMBER_GRID}"
                 )
             }
             Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
@@ -115,12 +118,29 @@ pub fn is_system(path: &Path) -> bool {
     }
 }
 
-/// The system in a file, or that of a shipped rule table with a half range.
+/// Name of the supervisor whose rules conclude numbers, all of them 0 so far: what learning begins from.
+pub const NUMBER_GRID: &str = "sugeno-grid";
+
+/// True for a name that stands for a system of any half range.
+#[must_use]
+pub fn needs_range(name: &str) -> bool {
+    name == NUMBER_GRID || rule_table_names().contains(&name)
+}
+
+/// True for a file with a scenario.
+#[must_use]
+pub fn is_scenario(name: &str) -> bool {
+    let path = Path::new(name);
+    Format::of(path) == Some(Format::Toml) && text(path).is_ok_and(|text| scenario::is_one(&text))
+}
+
+/// The system in a file, or that of a shipped rule table with a half range. A scenario file stands for the
+/// supervisor of its self-tuning controller.
 ///
 /// # Errors
 /// [`LoadError`] with everything that is wrong.
 pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
-    if rule_table_names().contains(&name) {
+    if needs_range(name) {
         return shipped(name, options);
     }
     let path = Path::new(name);
@@ -135,7 +155,12 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     if !misplaced.is_empty() {
         return Err(LoadError::Refused(Refused::all(misplaced)));
     }
-    let loaded = read(name, &text(path)?, format, options)?;
+    let text = text(path)?;
+    let loaded = match format == Format::Toml && scenario::is_one(&text) {
+        true => scenario::read(path, &text, options.controller)?,
+        false if options.controller.is_some() => return Err(no_scenario()),
+        false => read(name, &text, format, options)?,
+    };
     Ok(Loaded { system: changed(loaded.system, options)?, notes: loaded.notes })
 }
 
@@ -204,18 +229,34 @@ fn in_our_words(name: &str, problems: fspid_formats::Problems) -> Problems {
     Problems::new(name, problems.0.into_iter().map(problem).collect(), 0)
 }
 
+fn no_scenario() -> LoadError {
+    LoadError::Refused(Refused::one("--controller goes with a scenario file"))
+}
+
 fn shipped(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
+    if options.controller.is_some() {
+        return Err(no_scenario());
+    }
     let Some(range) = options.range else {
         let missing = format!("{name} needs --range, the half range of its inputs and outputs");
         return Err(LoadError::Refused(Refused::one(missing)));
     };
-    let question = Question {
-        table: name,
-        range,
-        defuzzifier: "exact",
-        out_of_range: options.out_of_range.unwrap_or(OutOfRange::Clamp.name()),
+    let supervisor = if name == NUMBER_GRID {
+        let zeros = [[[0.0; LABEL_COUNT]; LABEL_COUNT]; 3];
+        NumberTable::new(zeros)
+            // Its outermost sets are level: nothing is to be clamped, which not every format could say.
+            .and_then(|table| Supervisor::of_numbers(&table, range, OutOfRange::Evaluate))
+            .map_err(|error| LoadError::Refused(Refused::one(error.to_string())))?
+    } else {
+        let question = Question {
+            table: name,
+            range,
+            defuzzifier: "exact",
+            out_of_range: options.out_of_range.unwrap_or(OutOfRange::Clamp.name()),
+        };
+        question.supervisor().map_err(LoadError::Refused)?
     };
-    let mut parts = Parts::from(&question.supervisor().map_err(LoadError::Refused)?);
+    let mut parts = Parts::from(&supervisor);
     parts.name = name.to_owned();
     let system = built(parts)?;
     Ok(Loaded { system: changed(system, options)?, notes: Vec::new() })
@@ -252,7 +293,7 @@ fn changed(system: System, options: Options<'_>) -> Result<System, LoadError> {
     if problems.is_empty() { built(parts) } else { Err(LoadError::Refused(Refused::all(problems))) }
 }
 
-fn built(parts: Parts) -> Result<System, LoadError> {
+pub(super) fn built(parts: Parts) -> Result<System, LoadError> {
     System::new(parts).map_err(|errors| {
         LoadError::Refused(Refused::all(errors.iter().map(ToString::to_string).collect()))
     })

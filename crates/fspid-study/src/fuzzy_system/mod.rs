@@ -9,6 +9,8 @@ mod audit;
 mod convert;
 mod explain;
 mod load;
+mod numbers;
+mod scenario;
 mod slice;
 mod table;
 mod toml_file;
@@ -21,7 +23,11 @@ pub use answer::{Asked, ask};
 pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
 pub use convert::{ConvertError, Converted, Target, convert, write_as};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
-pub use load::{Format, LoadError, Loaded, Options, is_system, load, read};
+pub use load::{
+    Format, LoadError, Loaded, NUMBER_GRID, Options, is_scenario, is_system, load, needs_range,
+    read,
+};
+pub use numbers::{Numbers, numbers_of};
 pub use slice::{Question as SliceQuestion, Slice, slice};
 pub use table::SystemTable;
 pub use toml_file::{parse, schema, write};

@@ -51,16 +51,25 @@ pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
     });
     let input_label = "error e, change of error ec (supervisor units)";
     let output_label = "increments \u{394}k_{p}, \u{394}k_{i}, \u{394}k_{d} (supervisor units)";
-    vec![
-        Figure::new(
-            format!("{prefix}-inputs"),
-            memberships("Input sets of the supervisor", input_label, inputs.collect()),
-            format!(
-                "Membership functions of both inputs: seven Gaussian sets, neighbours cross at a grade of 0.5 \
-                 (half range {}). Computed by the supervisor that flies.",
-                number::exact(range)
-            ),
+    let shapes = match supervisor.numbers() {
+        None => "Gaussian sets, neighbours cross at a grade of 0.5",
+        Some(_) => "triangles from neighbour to neighbour",
+    };
+    let inputs = Figure::new(
+        format!("{prefix}-inputs"),
+        memberships("Input sets of the supervisor", input_label, inputs.collect()),
+        format!(
+            "Membership functions of both inputs: seven {shapes} (half range {}). Computed by the supervisor \
+             that flies.",
+            number::exact(range)
         ),
+    );
+    if supervisor.numbers().is_some() {
+        // Numbers have no sets.
+        return vec![inputs];
+    }
+    vec![
+        inputs,
         Figure::new(
             format!("{prefix}-outputs"),
             memberships("Output sets of the supervisor", output_label, outputs.collect()),
@@ -138,11 +147,44 @@ pub(super) fn rule_tables(
             column_header: "change of error ec".to_owned(),
             labels: SEVEN.map(str::to_owned).to_vec(),
             cells: cells.collect(),
+            shades: Vec::new(),
             marked: if marks == Marks::None { Vec::new() } else { marked(output, &odd, marks) },
         };
         let plain = symbol.replace("_{", "").replace('}', "");
         let caption =
             format!("{plain} of the {name} for each label of the error and of its change.");
+        Figure::new(format!("{prefix}-{letter}"), drawn.render(), caption)
+    };
+    NAMES.into_iter().map(figure).collect()
+}
+
+/// The rules of a supervisor, labels or numbers.
+pub(super) fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
+    if let Some(table) = supervisor.table() {
+        return rule_tables(prefix, name, &table, Marks::None);
+    }
+    let Some(table) = supervisor.numbers() else {
+        return Vec::new();
+    };
+    let figure = |(output, letter, symbol): (Output, &str, &str)| {
+        let grid = table.grid(output);
+        let drawn = figure::RuleTable {
+            title: format!("Rules for {symbol}, {name}"),
+            row_header: "error e".to_owned(),
+            column_header: "change of error ec".to_owned(),
+            labels: SEVEN.map(str::to_owned).to_vec(),
+            cells: grid
+                .iter()
+                .map(|row| row.iter().map(|n| number::significant(*n, 3)).collect())
+                .collect(),
+            shades: grid.iter().map(|row| row.map(|n| n / supervisor.range()).to_vec()).collect(),
+            marked: Vec::new(),
+        };
+        let plain = symbol.replace("_{", "").replace('}', "");
+        let caption = format!(
+            "{plain} of {name} in supervisor units at the centres of the sets; interpolated in between (Takagi and \
+             Sugeno)."
+        );
         Figure::new(format!("{prefix}-{letter}"), drawn.render(), caption)
     };
     NAMES.into_iter().map(figure).collect()

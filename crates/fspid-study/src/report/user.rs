@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::html::{self, context};
 use super::number::{capital, fixed, measured, significant, with_sign};
 use super::page::{self, Cell, Figure, Section, Table};
-use super::supervisor::{self, Marks};
+use super::supervisor;
 use super::traces::{Drawing, fails};
 use super::{measures, settings};
 use crate::figure::SurfaceKind;
@@ -225,12 +225,7 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
         structure: structure(fspid.tuner().settings()),
         law,
         sets: supervisor::sets(&prefix("sets"), supervisor),
-        tables: supervisor::rule_tables(
-            &prefix("rules"),
-            &named.name,
-            &supervisor.table(),
-            Marks::None,
-        ),
+        tables: supervisor::rules(&prefix("rules"), &named.name, supervisor),
         maps: supervisor::surfaces(
             &prefix("surface"),
             &named.name,

@@ -1,6 +1,6 @@
 //! A place of a scenario that tuning may change.
 
-use super::GridMark;
+use super::{GridMark, NumbersMark};
 use crate::file::{NewValue, SettingPath};
 use crate::tune::Scale;
 
@@ -24,6 +24,8 @@ pub enum Free {
     Number(NumberMark),
     /// A grid of rules.
     Grid(GridMark),
+    /// A grid of numbers.
+    Numbers(Box<NumbersMark>),
 }
 
 /// A free number.
@@ -72,6 +74,7 @@ impl Mark {
         match &self.free {
             Free::Number(_) => 1,
             Free::Grid(grid) => grid.cells().len(),
+            Free::Numbers(numbers) => numbers.cells().len(),
         }
     }
 
@@ -79,13 +82,12 @@ impl Mark {
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let path = self.path.text();
-        match &self.free {
-            Free::Number(_) => vec![path.to_owned()],
-            Free::Grid(grid) => {
-                let name = |(row, column): &(usize, usize)| format!("{path}[{row}][{column}]");
-                grid.cells().iter().map(name).collect()
-            }
-        }
+        let cells = match &self.free {
+            Free::Number(_) => return vec![path.to_owned()],
+            Free::Grid(grid) => grid.cells(),
+            Free::Numbers(numbers) => numbers.cells(),
+        };
+        cells.into_iter().map(|(row, column)| format!("{path}[{row}][{column}]")).collect()
     }
 
     /// The coordinates of the start.
@@ -93,7 +95,7 @@ impl Mark {
     pub fn start(&self) -> Vec<f64> {
         match &self.free {
             Free::Number(number) => vec![number.unit()],
-            Free::Grid(grid) => vec![0.5; grid.cells().len()],
+            Free::Grid(_) | Free::Numbers(_) => vec![0.5; self.dimensions()],
         }
     }
 
@@ -105,6 +107,9 @@ impl Mark {
                 NewValue::Number(number.at(unit.first().copied().unwrap_or(0.5)))
             }
             Free::Grid(grid) => NewValue::Text(crate::file::grid_text(&grid.at(unit))),
+            Free::Numbers(numbers) => {
+                NewValue::Rows(numbers.at(unit).iter().map(|row| row.to_vec()).collect())
+            }
         }
     }
 
@@ -114,6 +119,7 @@ impl Mark {
         match &self.free {
             Free::Number(number) => vec![number.at(unit.first().copied().unwrap_or(0.5))],
             Free::Grid(grid) => grid.numbers(unit),
+            Free::Numbers(numbers) => numbers.numbers(unit),
         }
     }
 

@@ -4,9 +4,11 @@
 
 mod grid_mark;
 mod mark;
+mod numbers_mark;
 
 pub use grid_mark::{GridMark, Monotone};
 pub use mark::{Free, Mark, NumberMark};
+pub use numbers_mark::NumbersMark;
 
 use crate::requirement::Requirement;
 

@@ -96,3 +96,26 @@ fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     assert!(!map.is_stable() && map.unstable() > 0 && !analysis.all_stable());
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
 }
+
+#[test]
+fn the_worst_frozen_gain_of_numbers_is_at_the_number_that_no_point_of_the_map_meets() {
+    let row = "[0, 0, 0, 0, 0, 0, 0]";
+    let zeros = format!("[{}]", [row; 7].join(", "));
+    let mut rows = [row; 7];
+    // Error PS, change NM.
+    rows[4] = "[0, 5, 0, 0, 0, 0, 0]";
+    let kp = format!("[{}]", rows.join(", "));
+    let numbers =
+        format!("numbers = {{ delta_kp = {kp}, delta_ki = {zeros}, delta_kd = {zeros} }}");
+    let text = TUNED.replace("table = \"printed\"", &numbers);
+    let sets = ["controller.C.supervisor.error_sets=[0.1, 0.5]"];
+    for (set, error) in [(&[][..], 5.0 / 3.0), (&sets, 0.5)] {
+        let analysis = analysed(&text, set);
+        let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+        let [found_error, found_change] = map.worst.input;
+        assert!((found_error - error).abs() < 1e-12, "{:?}", map.worst);
+        assert!((found_change + 10.0 / 3.0).abs() < 1e-12, "{:?}", map.worst);
+        assert!((map.worst.gains.kp - 3.0).abs() < 1e-12, "{:?}", map.worst);
+        assert!(map.points.iter().all(|point| point.gains.kp < 2.99));
+    }
+}

@@ -9,6 +9,7 @@ mod dispersions;
 mod lqi;
 mod marks;
 mod messages;
+mod numbers;
 mod overrides;
 mod reading;
 mod schedule;

@@ -119,6 +119,11 @@ fn what_the_check_refuses_of_form_the_schema_refuses_too() {
         ("kp = 1.0\n", ""),
         ("kp = 1.0\n", "kp = 1.0\nisa = { gain = 1.0 }\n"),
         ("table = \"mirrored\"", "table = \"tilted\""),
+        (
+            "table = \"mirrored\"",
+            "numbers = { delta_kp = [[0]], delta_ki = [[0]], delta_kd = [[0]] }",
+        ),
+        ("table = \"mirrored\"", "table = \"mirrored\"\nsystem = \"mine.fis\""),
         ("range = 5.0", "range = -5.0"),
         ("kp_min", "kp_least"),
     ];

@@ -490,3 +490,20 @@ fn gains_beyond_the_map_have_no_frozen_margins() {
         assert!(at_rest.met, "{at_rest:?}");
     }
 }
+
+#[test]
+fn numbers_are_level_beyond_the_range_so_that_their_map_is_whole() {
+    let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
+    let numbers =
+        format!("numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }} #");
+    let text = JUMBO
+        .replace("range = 5.0", "range = 5.0\nout_of_range = \"evaluate\"")
+        .replace("table = ", &numbers);
+    let requirement = "measure = \"frozen_disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"";
+    let frozen = one(&text, requirement, &[]);
+    let at_rest = "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"";
+    let at_rest = one(&text, at_rest, &[]);
+    // Zeros add nothing: every frozen gain is the nominal one.
+    let value = |judgement: &Judgement| judgement.found.as_ref().expect("found").value;
+    assert!(frozen.met && (value(&frozen) - value(&at_rest)).abs() < 1e-9, "{frozen:?}");
+}

@@ -68,7 +68,7 @@ pub(super) fn walk(
     mut visit: impl FnMut(&SmallSignal, &[Vec<f64>]) -> ControlFlow<()>,
 ) -> Result<(Outcome, Vec<String>), SimError> {
     if let Controller::SelfTuning(fspid) = controller
-        && !fspid.tuner().settings().is_plain()
+        && !fspid.tuner().is_plain()
     {
         return Err(SimError::Structure);
     }

@@ -5,11 +5,10 @@ use fspid_core::{
     Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees,
     SelfTuner, SetPlaces, SetpointWeights, Shell, TunerSettings,
 };
-use fspid_fuzzy::{FuzzyError, OutOfRange, Supervisor};
 use fspid_sim::Controller;
 
 use super::schedule::{self, Pressure};
-use super::{data, judged, lqi, rad};
+use super::{judged, lqi, rad, supervisor};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
@@ -203,7 +202,7 @@ fn tuner(
     nominal: Option<Gains<f64>>,
 ) -> Option<SelfTuner<f64>> {
     let part = section.section("supervisor")?;
-    let supervisor = supervisor(report, files, part);
+    let supervisor = supervisor::supervisor(report, files, part);
     let limits = section.section("gain_limits");
     let gain_limits = limits.map(|limits| gain_limits(report, limits));
     let law = law(report, section);
@@ -338,23 +337,6 @@ fn law(report: &mut Report, section: &Section) -> Option<Law<f64>> {
         return None;
     }
     Some(Law::Memoryless)
-}
-
-fn supervisor(
-    report: &mut Report,
-    files: &mut Files<'_>,
-    part: &Section,
-) -> Option<Supervisor<f64>> {
-    let table = data::rules(report, files, part)?;
-    let word = part.text("out_of_range")?;
-    let policy = OutOfRange::ALL.into_iter().find(|p| p.name() == word)?;
-    let range = part.number("range")?;
-    let supervisor = Supervisor::new(&table, range, part.defuzzifier("defuzzifier")?, policy);
-    let key = match supervisor {
-        Err(FuzzyError::SampleCount { .. }) => "defuzzifier",
-        _ => "range",
-    };
-    judged(report, (part, key), supervisor)
 }
 
 /// The limits of each gain; an end that is not given is open.

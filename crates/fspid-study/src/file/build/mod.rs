@@ -12,6 +12,7 @@ mod lqi;
 mod schedule;
 mod sensor;
 mod signal;
+mod supervisor;
 mod timing;
 
 use actuator::Drive;

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::Defuzzifier;
 
-use crate::file::check::{grid, in_words, quoted, table};
+use crate::file::check::{grid, in_words, number_grid, quoted, table};
 use crate::file::document::{Item, Value};
 use crate::file::preset::rule_table_names;
 use crate::file::problem::nearest;
@@ -44,6 +44,7 @@ pub(super) fn check(
         Kind::Preset(list) => word(report, item, path, &list(), "preset").map(Checked::Text),
         Kind::Rules(grids) => rules(report, item, path, grids),
         Kind::Grid => grid::check(report, item, path).map(Checked::Grid),
+        Kind::NumberGrid => number_grid::check(report, item, path).map(Checked::NumberGrid),
         Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
         Kind::Own { .. } => Some(Checked::Item(item.clone())),
         Kind::Numbers { unit, range, least, most } => {
@@ -73,6 +74,7 @@ pub(super) fn allowed(kind: &Kind) -> String {
             quoted(&rule_table_names())
         ),
         Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
+        Kind::NumberGrid => number_grid::ALLOWED.to_owned(),
         Kind::Defuzzifier => Defuzzifier::NAMES.to_owned(),
         Kind::Own { allowed, .. } => allowed(),
         Kind::Numbers { range: Range::Finite, .. } => "a list of finite numbers".to_owned(),
@@ -98,7 +100,7 @@ pub(super) fn wrong_type<T>(
     None
 }
 
-fn number(
+pub(super) fn number(
     report: &mut Report,
     item: &Item,
     path: &str,

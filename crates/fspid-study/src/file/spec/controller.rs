@@ -1,6 +1,6 @@
 //! The controllers.
 
-use super::data::GRIDS;
+use super::data::{GRIDS, NUMBER_GRIDS};
 use super::lqi::LQI;
 use super::schedule::SCHEDULE;
 use super::{
@@ -239,79 +239,93 @@ const TUNER: &[Key] = &[
     ),
 ];
 
-static SUPERVISOR: Table = plain(
-    "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
-    &[&[
-        required(
-            "table",
-            Kind::Rules(&GRIDS),
-            "The rules: a name, a file, or the three grids themselves.",
-        ),
-        required(
-            "range",
-            Kind::Number { unit: "", range: Range::Between(1e-100, 1e100) },
-            "Half range of inputs and outputs.",
-        ),
-        defaulted(
-            "defuzzifier",
-            Kind::Defuzzifier,
-            Default::Word("exact"),
-            "How the answer becomes a number.",
-        ),
-        defaulted(
-            "out_of_range",
-            Kind::Word(&["clamp", "evaluate", "error"]),
-            Default::Word("clamp"),
-            "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
-        ),
-        defaulted(
-            "error_sign",
-            Kind::Word(&["setpoint-minus-measurement", "measurement-minus-setpoint"]),
-            Default::Word("setpoint-minus-measurement"),
-            "Sign of the supervisor's error and of its change.",
-        ),
-        defaulted(
-            "error_scale",
-            finite("1/deg"),
-            Default::Number(1.0),
-            "The supervisor sees this times the error in degrees.",
-        ),
-        optional(
-            "error_sets",
-            Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-            "Where the small and the medium sets of the error lie, as parts of the range; a third and two thirds if left out.",
-        ),
-        defaulted(
-            "sees",
-            Kind::Word(&["error-and-change", "error-and-rate", "error-and-model-error"]),
-            Default::Word("error-and-change"),
-            "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
-        ),
-        optional("model", Kind::Table(&MODEL), "The reference model of `error-and-model-error`."),
-        defaulted(
-            "change",
-            Kind::Word(&["rate", "delta"]),
-            Default::Word("rate"),
-            "Change of error per second or per sample.",
-        ),
-        defaulted(
-            "change_scale",
-            finite(""),
-            Default::Number(1.0),
-            "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
-        ),
-        optional(
-            "change_sets",
-            Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-            "As `error_sets`, of what is seen beside the error.",
-        ),
-        optional(
-            "output_scale",
-            Kind::Table(&OUTPUT_SCALE),
-            "Factors of the increments; 1 if left out.",
-        ),
-    ]],
-);
+static SUPERVISOR: Table = Table {
+    doc: "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
+    groups: &[SUPERVISOR_KEYS],
+    choices: &[one_of!("table", "numbers", "system")],
+    variants: &[],
+};
+
+const SUPERVISOR_KEYS: &[Key] = &[
+    optional(
+        "table",
+        Kind::Rules(&GRIDS),
+        "The rules: a name, a file, or the three grids themselves.",
+    ),
+    optional(
+        "numbers",
+        Kind::Table(&NUMBER_GRIDS),
+        "Rules that conclude numbers (Takagi and Sugeno): the answer is interpolated between them.",
+    ),
+    optional(
+        "system",
+        Kind::Path,
+        "A file with such rules (.toml, .fis, .fcl, .fll), as `fspid learn` writes it.",
+    ),
+    required(
+        "range",
+        Kind::Number { unit: "", range: Range::Between(1e-100, 1e100) },
+        "Half range of inputs and outputs.",
+    ),
+    defaulted(
+        "defuzzifier",
+        Kind::Defuzzifier,
+        Default::Word("exact"),
+        "How the answer becomes a number; with `table` only.",
+    ),
+    defaulted(
+        "out_of_range",
+        Kind::Word(&["clamp", "evaluate", "error"]),
+        Default::Word("clamp"),
+        "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
+    ),
+    defaulted(
+        "error_sign",
+        Kind::Word(&["setpoint-minus-measurement", "measurement-minus-setpoint"]),
+        Default::Word("setpoint-minus-measurement"),
+        "Sign of the supervisor's error and of its change.",
+    ),
+    defaulted(
+        "error_scale",
+        finite("1/deg"),
+        Default::Number(1.0),
+        "The supervisor sees this times the error in degrees.",
+    ),
+    optional(
+        "error_sets",
+        Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
+        "Where the small and the medium sets of the error lie, as parts of the range; a third and two thirds if left out.",
+    ),
+    defaulted(
+        "sees",
+        Kind::Word(&["error-and-change", "error-and-rate", "error-and-model-error"]),
+        Default::Word("error-and-change"),
+        "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
+    ),
+    optional("model", Kind::Table(&MODEL), "The reference model of `error-and-model-error`."),
+    defaulted(
+        "change",
+        Kind::Word(&["rate", "delta"]),
+        Default::Word("rate"),
+        "Change of error per second or per sample.",
+    ),
+    defaulted(
+        "change_scale",
+        finite(""),
+        Default::Number(1.0),
+        "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
+    ),
+    optional(
+        "change_sets",
+        Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
+        "As `error_sets`, of what is seen beside the error.",
+    ),
+    optional(
+        "output_scale",
+        Kind::Table(&OUTPUT_SCALE),
+        "Factors of the increments; 1 if left out.",
+    ),
+];
 
 static MODEL: Table = plain(
     "A reference model of second order: how the pitch should follow the set-point.",

@@ -49,6 +49,16 @@ pub(super) static GRIDS: Table = plain(
     &[GRID_KEYS],
 );
 
+/// Three grids of numbers in place of labels.
+pub(super) static NUMBER_GRIDS: Table = plain(
+    "Three grids of seven lists of seven numbers, each within the range; rows are the error from NB to PB, columns its change.",
+    &[&[
+        required("delta_kp", Kind::NumberGrid, "Increment of the proportional gain."),
+        required("delta_ki", Kind::NumberGrid, "Increment of the integral gain."),
+        required("delta_kd", Kind::NumberGrid, "Increment of the derivative gain."),
+    ]],
+);
+
 /// A rule table in a file of its own.
 pub(crate) static RULE_FILE: Table = plain(
     "A rule table.",

@@ -129,6 +129,8 @@ pub(crate) enum Kind {
     Rules(&'static Table),
     /// A rule grid: seven lines of seven labels.
     Grid,
+    /// A grid of numbers: seven lists of seven.
+    NumberGrid,
     /// A defuzzifier by name.
     Defuzzifier,
     /// Something that its reader checks: what it may be in words, and its JSON Schema.

@@ -1,0 +1,161 @@
+//! The supervisor: rules that conclude labels, or numbers.
+
+use fspid_fuzzy::{
+    FuzzyError, LABEL_COUNT, NumberGrid, NumberTable, OutOfRange, Output, Supervisor,
+};
+
+use super::{data, judged};
+use crate::file::files::Files;
+use crate::file::report::Report;
+use crate::file::section::Section;
+use crate::fuzzy_system::{Format, LoadError, Options, numbers_of, read};
+
+/// How far the range of a system may be from that of the supervisor, as a part of it: a range that was
+/// printed with ten digits and read again.
+const SAME_RANGE: f64 = 1e-9;
+
+/// The supervisor of a sound section.
+pub(super) fn supervisor(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    part: &Section,
+) -> Option<Supervisor<f64>> {
+    let word = part.text("out_of_range")?;
+    let policy = OutOfRange::ALL.into_iter().find(|policy| policy.name() == word)?;
+    let range = part.number("range")?;
+    if !part.given("table") {
+        let before = report.count();
+        refuse_defuzzifier(report, part);
+        let table = numbers(report, files, part, range)?;
+        let supervisor = Supervisor::of_numbers(&table, range, policy);
+        let supervisor = judged(report, (part, "range"), supervisor);
+        return supervisor.filter(|_| report.count() == before);
+    }
+    let table = data::rules(report, files, part)?;
+    let supervisor = Supervisor::new(&table, range, part.defuzzifier("defuzzifier")?, policy);
+    let key = match supervisor {
+        Err(FuzzyError::SampleCount { .. }) => "defuzzifier",
+        _ => "range",
+    };
+    judged(report, (part, key), supervisor)
+}
+
+/// Numbers are weighted; nothing is left to choose.
+fn refuse_defuzzifier(report: &mut Report, part: &Section) {
+    if part.given("defuzzifier") {
+        let message = "rules that conclude numbers are not defuzzified";
+        let path = part.path("defuzzifier");
+        report.value(part.at("defuzzifier"), &path, message, "only with `table`");
+    }
+}
+
+/// The numbers of `numbers` or of the file that `system` names.
+fn numbers(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    part: &Section,
+    range: f64,
+) -> Option<NumberTable<f64>> {
+    match part.section("numbers") {
+        Some(grids) => of_grids(report, grids, range),
+        None => of_system(report, files, part, range),
+    }
+}
+
+fn of_grids(report: &mut Report, section: &Section, range: f64) -> Option<NumberTable<f64>> {
+    let mut grids = [[[0.0; LABEL_COUNT]; LABEL_COUNT]; 3];
+    let mut is_sound = true;
+    for (output, grid) in Output::ALL.into_iter().zip(&mut grids) {
+        let cells = section.number_grid(output.name())?;
+        for (index, (cell, (number, place))) in
+            grid.as_flattened_mut().iter_mut().zip(cells).enumerate()
+        {
+            *cell = *number;
+            if !(number.abs() <= range) {
+                let (row, column) = (index / LABEL_COUNT, index % LABEL_COUNT);
+                let path = format!("{}[{row}][{column}]", section.path(output.name()));
+                report.value(*place, &path, "beyond the supervisor's range", within(range));
+                is_sound = false;
+            }
+        }
+    }
+    NumberTable::new(grids).ok().filter(|_| is_sound)
+}
+
+fn within(range: f64) -> String {
+    format!("-{range:?} to {range:?}; `output_scale` makes increments larger")
+}
+
+/// The numbers of a fuzzy system in a file.
+fn of_system(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    part: &Section,
+    range: f64,
+) -> Option<NumberTable<f64>> {
+    const ALLOWED: &str =
+        "a readable .toml, .fis, .fcl or .fll file, its path relative to the scenario's folder";
+    let name = part.text("system")?;
+    let (place, path) = (part.at("system"), part.path("system"));
+    let text = match (Format::of(name.as_ref()), files.read(name)) {
+        (None, _) => {
+            report.value(place, &path, "no file of a known format", ALLOWED);
+            return None;
+        }
+        (_, Err(reason)) => {
+            report.value(place, &path, format!("cannot be read: {reason}"), ALLOWED);
+            return None;
+        }
+        (Some(_), Ok(text)) => text,
+    };
+    files.digest(&text);
+    let loaded = match read(name, &text, Format::of(name.as_ref())?, Options::default()) {
+        Ok(loaded) => loaded,
+        Err(LoadError::Problems(problems)) => {
+            for found in &problems.list {
+                let message = format!("{name}:{}:{}: {}", found.line, found.column, found.message);
+                report.missing(place, &path, message, found.allowed.clone());
+            }
+            return None;
+        }
+        Err(error) => {
+            report.missing(place, &path, error.to_string(), "a fuzzy system");
+            return None;
+        }
+    };
+    let told = match numbers_of(loaded.system.parts()) {
+        Ok(found) if !((found.range - range).abs() <= SAME_RANGE * range) => {
+            vec![format!("its sets reach to {:?}, and the range is {range:?}", found.range)]
+        }
+        Ok(found) => beyond(&found.grids, range),
+        Err(differences) => differences,
+    };
+    for difference in &told {
+        report.value(place, &path, difference.clone(), ALLOWED_SYSTEM);
+    }
+    let found = numbers_of(loaded.system.parts()).ok().filter(|_| told.is_empty())?;
+    NumberTable::new(found.grids).ok()
+}
+
+/// What a system must be to fly.
+const ALLOWED_SYSTEM: &str = "inputs error and change with seven triangles each, from neighbour to neighbour and evenly over \
+     -range to range, outputs delta_kp, delta_ki and delta_kd, and 49 rules with numbers of their own, \
+     joined by products and a weighted average";
+
+/// A line for each grid with numbers beyond the range.
+fn beyond(grids: &[NumberGrid<f64>; 3], range: f64) -> Vec<String> {
+    let largest = |grid: &NumberGrid<f64>| {
+        grid.as_flattened().iter().fold(0.0, |most: f64, number| most.max(number.abs()))
+    };
+    let line = |(output, grid): (Output, &NumberGrid<f64>)| {
+        let largest = largest(grid);
+        let told = || {
+            format!(
+                "{} has numbers up to {largest:?}, beyond the range of {range:?}",
+                output.name()
+            )
+        };
+        (largest > range).then(told)
+    };
+    Output::ALL.into_iter().zip(grids).filter_map(line).collect()
+}
