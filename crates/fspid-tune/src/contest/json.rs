@@ -21,6 +21,7 @@ pub(super) fn json(outcome: &Outcome) -> Value {
             "budget": effort.budget,
             "seeds": setting.efforts.iter().map(|it| it.seed).collect::<Vec<_>>(),
             "objectives": setting.objectives,
+            "limits": setting.limits,
             "cases": setting.training,
             "runs": setting.training_runs,
         })

@@ -215,6 +215,7 @@ impl Contest {
             efforts: self.efforts.clone(),
             training: training.iter().map(|case| case.name.clone()).collect(),
             objectives: self.tuning.as_ref().map_or(Vec::new(), words::objectives),
+            limits: self.tuning.as_ref().map_or(Vec::new(), words::limits),
             training_runs: self.tuning.as_ref().map_or(0, |it| it.runs),
             runs: self.rules.runs,
         }

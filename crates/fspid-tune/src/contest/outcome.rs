@@ -27,6 +27,8 @@ pub struct Setting {
     pub training: Vec<String>,
     /// What the tuning made small, in words.
     pub objectives: Vec<String>,
+    /// Limits of means over the training flights, in words.
+    pub limits: Vec<String>,
     /// Draws of each training case; 0 for none.
     pub training_runs: u64,
     /// Draws of each case of the contest; 0 for none.

@@ -1,6 +1,7 @@
 //! Numbers and findings in words.
 
 use fspid_study::report::number::{fixed, significant};
+use fspid_study::requirement::Requirement;
 use fspid_study::tuning::{Over, Tuning};
 
 use super::compare::{CONFIDENCE, Comparison, Standing};
@@ -27,6 +28,12 @@ pub(super) fn objectives(tuning: &Tuning) -> Vec<String> {
         }
     }
     all
+}
+
+/// Limits of means over the training flights.
+pub(super) fn limits(tuning: &Tuning) -> Vec<String> {
+    let one = |it: &Requirement| format!("{} {}", it.measure.name(), it.limits_in_words());
+    tuning.limits.iter().map(one).collect()
 }
 
 /// A number with four digits.

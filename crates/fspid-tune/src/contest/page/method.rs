@@ -14,11 +14,15 @@ fn items(outcome: &Outcome) -> Vec<Item> {
         Item::Text(match setting.efforts.first() {
             None => "Nobody has free numbers; all fly as they are written.".to_owned(),
             Some(effort) => format!(
-                "Every controller with free numbers was tuned with {} and {} candidates from each of {}, to make small: {}. Each candidate flew {}{}. A requirement of the scenario that is broken comes before any cost. Controllers without free numbers fly as they are written.",
+                "Every controller with free numbers was tuned with {} and {} candidates from each of {}, to make small: {}{}. Each candidate flew {}{}. A requirement of the scenario that is broken comes before any cost. Controllers without free numbers fly as they are written.",
                 effort.optimiser,
                 effort.budget,
                 counted(setting.efforts.len(), "seed", "seeds"),
                 setting.objectives.join(" + "),
+                match setting.limits.is_empty() {
+                    true => String::new(),
+                    false => format!(", with on average {}", setting.limits.join(", ")),
+                },
                 training(outcome),
                 if setting.training_runs > 0 {
                     format!(", with {} of the dispersions each", counted(setting.training_runs as usize, "draw", "draws"))

@@ -103,6 +103,9 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
         facts.push(fact("candidates of each tuning", effort.budget.to_string()));
         facts.push(fact("seeds", cut(&list(&seeds), 200)));
         facts.push(fact("made small", setting.objectives.join(" + ")));
+        if !setting.limits.is_empty() {
+            facts.push(fact("on average", setting.limits.join(", ")));
+        }
     }
     facts.push(fact("digest of the scenario", setting.digest.clone()));
     facts.push(fact("by", Plan::this_program()));
