@@ -70,7 +70,7 @@ pub enum CampaignError {
         difference: String,
     },
     /// Another process works in the folder.
-    #[error("{}: another process is working on this campaign; wait until it has ended", path.display())]
+    #[error("{}: another process is working in this folder; wait until it has ended", path.display())]
     Busy {
         /// The folder.
         path: PathBuf,

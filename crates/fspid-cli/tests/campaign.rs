@@ -195,7 +195,7 @@ fn a_killed_campaign_goes_on_to_the_bytes_of_one_that_was_not() {
         // The lock is held: a second one in the same folder is told so.
         let second = fspid(&with(&LARGE, &["--out", out]), folder);
         assert_eq!(code(&second), 2, "{}", text(&second.stdout));
-        assert!(text(&second.stderr).contains("another process is working on this campaign"));
+        assert!(text(&second.stderr).contains("another process is working in this folder"));
         // SIGKILL, which nobody can catch.
         child.kill().expect("killed");
         child.wait().expect("ended");

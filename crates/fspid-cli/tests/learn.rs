@@ -77,6 +77,12 @@ fn data_are_read_by_columns_and_bad_lines_are_told_before_anything_is_written() 
     let done = learn("rows.csv", "learned.toml");
     assert_eq!(code(&done), 0, "{}", stderr(&done));
     assert!(stdout(&done).contains("validation"), "{}", stdout(&done));
+    // Products up to 15.75 are beyond what a supervisor of this range takes.
+    let far = ["--range", "5", "--data", "rows.csv", "--sets-stay", "--out", "far.toml"];
+    let far = fspid(&[&["learn", "sugeno-grid"][..], &far].concat(), folder.path());
+    assert_eq!(code(&far), 0, "{}", stderr(&far));
+    assert!(stderr(&far).contains("warning: a scenario refuses it: delta_ki has numbers up to"));
+    assert!(!stdout(&far).contains("It flies") && stdout(&far).contains("beyond the range:"));
     std::fs::write(path("bad.csv"), rows.replace("-4.5,-4,", "-4.5,nan,")).expect("written");
     let refused = learn("bad.csv", "never.toml");
     assert_eq!(code(&refused), 2);

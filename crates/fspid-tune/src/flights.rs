@@ -5,7 +5,7 @@ use fspid_campaign::engine::{self, FlightResult, Memory, Stability};
 use fspid_campaign::sample::Sampling;
 use fspid_study::dispersion::Drawn;
 use fspid_study::file::{Study, Template};
-use fspid_study::requirement::Requirement;
+use fspid_study::requirement::{AskedIn, Requirement};
 use fspid_study::tuning::Case;
 use rayon::prelude::*;
 
@@ -32,6 +32,8 @@ pub(crate) struct FlownCase {
     /// None for the scenario as it is written, which is no case.
     group: Option<String>,
     pub(crate) weight: f64,
+    /// What is allowed there and probably not meant.
+    pub(crate) warnings: Vec<String>,
     /// Digest of the scenario with the changes of the case and one controller.
     pub(crate) digest: String,
     template: Template,
@@ -81,6 +83,11 @@ impl Flights {
 
     pub(crate) fn cases(&self) -> &[FlownCase] {
         &self.cases
+    }
+
+    /// What cases warn of, as often as they do.
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.cases.iter().flat_map(|case| &case.warnings)
     }
 
     /// How many flights a point has.
@@ -202,6 +209,7 @@ pub(crate) fn flown_case(
     controller: &str,
     dispersed: Dispersed,
 ) -> Result<FlownCase, TuneError> {
+    let warnings = warnings(template.study(), case.is_some());
     let template = template.only(controller)?;
     let digest = template.study().digest.clone();
     let draws = match dispersed.runs {
@@ -221,5 +229,22 @@ pub(crate) fn flown_case(
     };
     let name = case.map_or(AS_WRITTEN, |case| &case.name).to_owned();
     let (group, weight) = (case.map(|case| case.group.clone()), case.map_or(1.0, |it| it.weight));
-    Ok(FlownCase { name, group, weight, template, digest, draws, runs })
+    Ok(FlownCase { name, group, weight, warnings, template, digest, draws, runs })
+}
+
+/// What a study warns of; in a case it is no news that some requirements are asked in cases alone.
+fn warnings(study: &Study, is_case: bool) -> Vec<String> {
+    let tells = |it: &&String| !(is_case && it.ends_with(AskedIn::NOT_AS_WRITTEN));
+    study.warnings.iter().filter(tells).cloned().collect()
+}
+
+/// Warnings of many cases, each once.
+pub(crate) fn each_once<'a>(warnings: impl Iterator<Item = &'a String>) -> Vec<String> {
+    let mut once: Vec<String> = Vec::new();
+    for warning in warnings {
+        if !once.contains(warning) {
+            once.push(warning.clone());
+        }
+    }
+    once
 }

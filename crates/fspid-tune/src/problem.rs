@@ -6,7 +6,7 @@ use fspid_study::tuning::{Mark, Tuning};
 use sha2::{Digest as _, Sha256};
 
 use crate::error::TuneError;
-use crate::flights::{Dispersed, Flights, FlownCase, flown_cases};
+use crate::flights::{Dispersed, Flights, FlownCase, each_once, flown_cases};
 use crate::score::{FlightScore, Score};
 use crate::source::Source;
 use crate::space::Space;
@@ -71,6 +71,12 @@ impl Problem {
         self.digest.clone()
     }
 
+    /// What is allowed in the scenario and its cases and probably not meant, each once.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        each_once(self.flights.warnings())
+    }
+
     /// How many flights a candidate takes.
     #[must_use]
     pub fn flights(&self) -> usize {
@@ -116,7 +122,10 @@ impl Problem {
     fn flown(&self, points: &[Vec<f64>]) -> Vec<Vec<FlightScore>> {
         let measured = self.tuning.objectives.len() + self.tuning.limits.len();
         self.flights.flown(points, &|flight, duration_s| match flight {
-            Ok(flight) => FlightScore::of(flight, measured, duration_s),
+            Ok(flight) => {
+                let asked = flight.judgements.len().saturating_sub(measured);
+                FlightScore::of(flight, flight.judgements.split_at(asked), duration_s)
+            }
             Err(reason) => FlightScore::refused(reason),
         })
     }
@@ -159,8 +168,9 @@ pub(crate) fn marks_of(study: &Study, controller: &str) -> Vec<Mark> {
     study.marks.iter().filter(concerns).cloned().collect()
 }
 
-/// Of what is free, what makes a flight good, and what is flown; not of other controllers, nor of what a contest
-/// judges on, so that these can change and nothing is searched again.
+/// Of what is free, what makes a flight good, and what is flown; not of other controllers, nor of the cases that a
+/// contest judges on, so that these can change and nothing is searched again. Every requirement of the controller is part
+/// of it, also one that is asked in cases of the contest alone.
 fn digest(marks: &[Mark], tuning: &Tuning, cases: &[FlownCase]) -> String {
     let Tuning { over, objectives, limits, .. } = tuning;
     // Not where in the text they stand.

@@ -33,10 +33,12 @@ impl FlightScore {
         Self { violation: REFUSED, values: Vec::new(), reasons: vec![reason] }
     }
 
-    /// Of a flight whose judgements end with those of so many objectives and limits.
-    pub(crate) fn of(flight: &FlightResult, measured: usize, duration_s: f64) -> Self {
-        let split = flight.judgements.len().saturating_sub(measured);
-        let (asked, measured) = flight.judgements.split_at(split);
+    /// Of a flight, with the judgements of what is asked of it and of what is measured for objectives and limits.
+    pub(crate) fn of(
+        flight: &FlightResult,
+        (asked, measured): (&[Judgement], &[Judgement]),
+        duration_s: f64,
+    ) -> Self {
         if flight.metrics.verdict.is_failure() {
             let late = match flight.metrics.verdict {
                 Verdict::Diverged { at_s } => (at_s / duration_s).clamp(0.0, 1.0),

@@ -342,6 +342,26 @@ fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew_and_failed() {
 }
 
 #[test]
+fn a_self_tuner_that_is_unstable_at_rest_fails_though_its_case_asks_nothing_of_it() {
+    let gains = "nominal = { kp = 5.9, ki = 0.43, kd = 0.0 }\nlaw = \"memoryless\"\nsupervisor = { table = \"mirrored\", range = 5.0, output_scale = { kp = 0.0, ki = 0.0, kd = 0.0 } }";
+    let still = format!("\n[[controller]]\nname = \"still\"\nkind = \"fspid\"\n{gains}\n");
+    let asked = |words: &str| {
+        let requirement =
+            format!("\n[[requirement]]\nmeasure = \"sensitivity_peak\"\nmost = 5.0\n{words}\n");
+        let fixed = pid("fixed", "kp = 5.9\nki = 0.43\nkd = 0.0");
+        let text = format!("{LOOP}{fixed}{still}{requirement}{}", cases(""));
+        let outcome = place(&text).held();
+        [0, 1].map(|place| outcome.summaries[place].whole.count)
+    };
+    let [fixed, tuned] = asked("");
+    assert!(fixed.unstable > 0 && fixed.lost < fixed.of, "{fixed:?}");
+    assert_eq!((tuned.unstable, tuned.failed), (fixed.unstable, fixed.failed));
+    let [fixed, tuned] = asked("not_in = [\"commands\", \"plants\"]");
+    assert_eq!((tuned.unstable, tuned.failed), (fixed.unstable, fixed.failed));
+    assert!(tuned.failed > 0);
+}
+
+#[test]
 fn what_makes_a_contest_none_is_told_at_once_and_before_anything_is_flown() {
     let twice = "\n[[contest.case]]\nname = \"trained\"\nset = [\" actuator.time_constant_s=0.1\"]\n\n[[contest.case]]\nname = \"wrong\"\nset = [\"loop.sample_period_s=-1.0\"]\n";
     let alone = "\n[[controller]]\nname = \"P\"\nkind = \"p\"\nkp = { tune = [0.1, 3.0], scale = \"log\", start = 0.8 }\n";

@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
     let options = Options { seeds: arguments.seeds, budget: arguments.budget };
     let contest = Contest::new(&source, &options).map_err(failure)?;
+    contest.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let mut watch = Watch { telling, told: Instant::now(), kept: Instant::now(), last: None };
     let held = local::in_threads(arguments.threads, || {

@@ -114,11 +114,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let first = differences.first().map_or("", String::as_str);
         note(format_args!("warning: it does not fly: {first}; --sets-stay keeps the sets"));
     }
+    let beyond = numbers.as_ref().map_or(Vec::new(), |numbers| numbers.beyond(numbers.range));
+    for what in &beyond {
+        note(format_args!(
+            "warning: a scenario refuses it: {what}; teach smaller answers and let `output_scale` make them larger"
+        ));
+    }
     match arguments.format {
         Format::Text => {
-            let numbers = numbers.map_or(String::new(), |numbers| {
-                format!("\nIt flies as `system` of a supervisor, or with its numbers, here rounded:\n\n{}", numbers.toml())
-            });
+            let heading = match beyond.is_empty() {
+                true => "It flies as `system` of a supervisor, or with its numbers, here rounded:",
+                false => "Its numbers, here rounded; a scenario refuses those beyond the range:",
+            };
+            let numbers = numbers
+                .map_or(String::new(), |numbers| format!("\n{heading}\n\n{}", numbers.toml()));
             print(&format!("{}{numbers}", learned.text()))
         }
         Format::Json => {

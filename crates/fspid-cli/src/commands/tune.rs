@@ -82,6 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return by_rule(arguments, &source, rule);
     }
     let problem = Problem::new(&source, arguments.controller.as_deref()).map_err(failure)?;
+    problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     if let Some(out) = &arguments.out {
         design::check_place(&source, out).map_err(failure)?;
     }

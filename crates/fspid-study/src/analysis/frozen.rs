@@ -31,7 +31,9 @@ pub struct FrozenMap {
     pub side: usize,
     /// Row after row: the error rises from row to row, the change within one.
     pub points: Vec<FrozenPoint>,
-    /// The worst gain found, on the grid or between its points.
+    /// Gains at the cells themselves, row after row, where rules conclude numbers; empty for labels.
+    pub nodes: Vec<FrozenPoint>,
+    /// The worst gain found, on the grid, at a cell or between them.
     pub worst: FrozenPoint,
 }
 
@@ -52,17 +54,32 @@ impl FrozenMap {
         Mapper::new(scenario, plant, fspid, question)?.map()
     }
 
-    /// True if every gain on the map holds the plant.
-    #[must_use]
-    pub fn is_stable(&self) -> bool {
-        self.worst.margins.is_ok() && self.points.iter().all(|point| point.margins.is_ok())
+    /// Every gain that was looked at: on the map, at the cells, and the worst of the search.
+    pub fn all(&self) -> impl Iterator<Item = &FrozenPoint> {
+        self.points.iter().chain(&self.nodes).chain([&self.worst])
     }
 
-    /// Gains of the map that do not hold the plant.
+    /// True if every gain that was looked at holds the plant.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.all().all(|point| point.margins.is_ok())
+    }
+
+    /// Gains of the points of the map that do not hold the plant.
     #[must_use]
     pub fn unstable(&self) -> usize {
-        self.points.iter().filter(|point| point.margins.is_err()).count()
+        unstable(&self.points)
     }
+
+    /// Gains of the cells that do not hold the plant.
+    #[must_use]
+    pub fn unstable_nodes(&self) -> usize {
+        unstable(&self.nodes)
+    }
+}
+
+fn unstable(points: &[FrozenPoint]) -> usize {
+    points.iter().filter(|point| point.margins.is_err()).count()
 }
 
 /// The loops of all frozen gains, and how their margins are found.
@@ -108,7 +125,7 @@ impl<'a> Mapper<'a> {
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
         worst.margins = self.margins(worst.gains)?;
         let beside = self.fspid.tuner().settings().sees.beside();
-        Ok(Some(FrozenMap { beside, side, points, worst }))
+        Ok(Some(FrozenMap { beside, side, points, nodes, worst }))
     }
 
     /// Inputs at the numbers themselves, where rules conclude some: between them the gains are mixtures, so

@@ -125,13 +125,21 @@ fn triple(gains: Gains<f64>) -> Value {
     json!({ "kp": gains.kp, "ki": gains.ki, "kd": gains.kd })
 }
 
+/// Points of the map and, where rules conclude numbers, the cells beside them.
 fn frozen(map: &FrozenMap) -> Value {
-    json!({
+    let mut answer = json!({
+        "stable": map.is_stable(),
         "points": map.points.len(),
         "unstable": map.unstable(),
         "worst": frozen_point(&map.worst),
         "map": map.points.iter().map(frozen_point).collect::<Vec<_>>(),
-    })
+    });
+    if !map.nodes.is_empty() {
+        answer["cells"] = json!(map.nodes.len());
+        answer["unstable_cells"] = json!(map.unstable_nodes());
+        answer["map_of_cells"] = map.nodes.iter().map(frozen_point).collect();
+    }
+    answer
 }
 
 fn frozen_point(point: &FrozenPoint) -> Value {

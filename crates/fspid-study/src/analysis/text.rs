@@ -153,7 +153,6 @@ fn end(db: f64, omega_rad_s: Option<f64>, reason: &str) -> String {
 }
 
 fn push_map(out: &mut String, map: &FrozenMap) {
-    let (all, bad) = (map.points.len(), map.unstable());
     let worst = &map.worst;
     let at = format!(
         "error {:+.3}, change {:+.3} (supervisor units): {}",
@@ -165,7 +164,8 @@ fn push_map(out: &mut String, map: &FrozenMap) {
         Ok(margins) => line(
             out,
             format_args!(
-                "  frozen gains       all {all} on the map hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}",
+                "  frozen gains       all {} hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}",
+                all_of(map),
                 margins.disk_margin,
                 margins.smaller_gain_margin_db(),
                 margins.phase_margin_deg
@@ -174,9 +174,32 @@ fn push_map(out: &mut String, map: &FrozenMap) {
         Err(reason) => line(
             out,
             format_args!(
-                "  frozen gains       {bad} of {all} on the map DO NOT HOLD; the worst: {reason}\n                     at {at}"
+                "  frozen gains       {}; the worst: {reason}\n                     at {at}",
+                not_holding(map)
             ),
         ),
+    }
+}
+
+/// "81 on the map and 49 cells".
+fn all_of(map: &FrozenMap) -> String {
+    match (map.points.len(), map.nodes.len()) {
+        (points, 0) => format!("{points} on the map"),
+        (points, cells) => format!("{points} on the map and {cells} cells"),
+    }
+}
+
+/// "3 of 81 on the map and 1 of 49 cells DO NOT HOLD"; where none of them is meant, the search found one.
+fn not_holding(map: &FrozenMap) -> String {
+    let (points, cells) = (map.points.len(), map.nodes.len());
+    match (map.unstable(), map.unstable_nodes()) {
+        (0, 0) => format!("all {} hold, and one between them DOES NOT HOLD", all_of(map)),
+        (0, 1) => format!("1 of {cells} cells DOES NOT HOLD"),
+        (0, bad) => format!("{bad} of {cells} cells DO NOT HOLD"),
+        (bad, _) if cells == 0 => format!("{bad} of {points} on the map DO NOT HOLD"),
+        (bad, of_cells) => {
+            format!("{bad} of {points} on the map and {of_cells} of {cells} cells DO NOT HOLD")
+        }
     }
 }
 

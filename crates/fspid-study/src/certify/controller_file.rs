@@ -66,7 +66,8 @@ struct TunerFile {
     range: f64,
     defuzzifier: String,
     out_of_range: String,
-    rules: RulesFile,
+    /// None for numbers, of which no proof speaks.
+    rules: Option<RulesFile>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -91,7 +92,7 @@ enum LawFile {
 }
 
 /// Seven rows of seven labels for each gain, as in the files of rule tables.
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RulesFile {
     delta_kp: Vec<String>,
@@ -222,8 +223,7 @@ impl TunerFile {
             range: supervisor.range(),
             defuzzifier: supervisor.defuzzifier().to_string(),
             out_of_range: supervisor.out_of_range().name().to_owned(),
-            // No proof speaks of numbers; rules without a row are refused by whoever reads them.
-            rules: supervisor.table().as_ref().map(RulesFile::of).unwrap_or_default(),
+            rules: supervisor.table().as_ref().map(RulesFile::of),
         }
     }
 
@@ -264,7 +264,8 @@ impl TunerFile {
             format!("out_of_range: \"{}\"; allowed are {}", self.out_of_range, known.join(", "))
         })?;
         let defuzzifier: Defuzzifier = self.defuzzifier.parse().map_err(said("defuzzifier"))?;
-        let table = self.rules.build()?;
+        let rules = self.rules.as_ref().ok_or("rules: none; no proof speaks of numbers")?;
+        let table = rules.build()?;
         Supervisor::new(&table, self.range, defuzzifier, policy).map_err(said("supervisor"))
     }
 }
@@ -290,5 +291,26 @@ impl RulesFile {
     fn build(&self) -> Result<RuleTable, String> {
         let texts = [&self.delta_kp, &self.delta_ki, &self.delta_kd].map(|rows| rows.join("\n"));
         RuleTable::parse(texts.each_ref().map(String::as_str)).map_err(said("rules"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_that_conclude_numbers_are_written_as_none_and_refused_in_words() {
+        let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
+        let numbers =
+            format!("numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }} #");
+        let text = crate::file::starter().replace("table = \"mirrored\" ", &numbers);
+        let study = crate::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
+        let controllers = &study.scenario.controllers;
+        let is_tuned = |it: &Controller| matches!(it, Controller::SelfTuning(_));
+        let tuned = controllers.iter().find(|it| is_tuned(&it.controller)).expect("one");
+        let file = ControllerFile::of(&tuned.controller);
+        assert!(file.tuner.as_ref().is_some_and(|tuner| tuner.rules.is_none()));
+        let told = file.build(study.scenario.timing.dt_s()).expect_err("no labels");
+        assert_eq!(told, "rules: none; no proof speaks of numbers");
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct Files<'a> {
     hasher: Sha256,
     /// Path of the key that refers to a file, the file's specification, and what it says.
     referred: Vec<(String, &'static Table, Section)>,
+    /// Path of a key that is left out, and the word that a file makes its default.
+    filled: Vec<(String, &'static str)>,
     /// Changes that wait for the file that they are in, and whether it came.
     changes: Vec<(Change, bool)>,
     /// What was read, by the path of the key that names it; kept if asked for.
@@ -26,13 +28,30 @@ pub(crate) struct Files<'a> {
 impl<'a> Files<'a> {
     /// Relative paths are those of `folder`; without one, no file can be referred to.
     pub(crate) fn new(folder: Option<&'a Path>) -> Self {
-        let hasher = Sha256::new();
-        Self { folder, hasher, referred: Vec::new(), changes: Vec::new(), documents: None }
+        Self {
+            folder,
+            hasher: Sha256::new(),
+            referred: Vec::new(),
+            filled: Vec::new(),
+            changes: Vec::new(),
+            documents: None,
+        }
     }
 
     /// Keeps what the file says that the key at `path` refers to.
     pub(crate) fn keep(&mut self, path: String, spec: &'static Table, section: Section) {
         self.referred.push((path, spec, section));
+    }
+
+    /// Keeps the default of the key at `path`, which depends on what a file says.
+    pub(crate) fn fill(&mut self, path: String, word: &'static str) {
+        self.filled.push((path, word));
+    }
+
+    /// The default of the key at `path`, if what a file says makes it.
+    pub(crate) fn filled(&self, path: &str) -> Option<&'static str> {
+        let (_, word) = self.filled.iter().find(|(at, _)| at == path)?;
+        Some(word)
     }
 
     /// Keeps a change until the file has been read that it is in.

@@ -3,6 +3,7 @@
 
 use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
+use crate::file::check::number_grid;
 use crate::file::document::{Item, Member, Value};
 use crate::file::problem::{Problems, nearest};
 use crate::file::report::{Place, Report};
@@ -133,12 +134,7 @@ impl Walk<'_> {
             mark.report.missing(item.place, path, "nothing can be tuned here", "a value");
         }
         let Some(free) = mark.free() else {
-            // What no check refuses, so that the mark's problem is the only one.
-            let is_numbers = members.iter().any(|member| is_word(&member.item.value, "numbers"));
-            item.value = match is_numbers {
-                true => rows(&[[0.0; LABEL_COUNT]; LABEL_COUNT], item.place),
-                false => Value::Float(1.0),
-            };
+            item.value = stand_in(members, item.place);
             return;
         };
         item.value = match &free {
@@ -154,8 +150,27 @@ impl Walk<'_> {
     }
 }
 
-fn is_word(value: &Value, word: &str) -> bool {
-    matches!(value, Value::Text(text) if text == word)
+/// What stands where a mark is wrong: a value of the kind that is meant, so that the mark's problem is the only
+/// one. The start says it, or else the word behind `tune`.
+fn stand_in(members: &[Member], place: Place) -> Value {
+    let of = |key: &str| members.iter().find(|it| it.name == key).map(|it| &it.item.value);
+    let is_list = |item: &Item| matches!(item.value, Value::Array(_));
+    let is_word = |known: &str| matches!(of(KEY), Some(Value::Text(word)) if word == known);
+    match of("start") {
+        Some(Value::Array(start)) if start.iter().any(is_list) => {
+            rows(&[[0.0; LABEL_COUNT]; LABEL_COUNT], place)
+        }
+        Some(Value::Text(start)) if Grid::parse(start).is_ok() => rest(),
+        _ if is_word("numbers") => rows(&[[0.0; LABEL_COUNT]; LABEL_COUNT], place),
+        _ if is_word("rules") => rest(),
+        _ => Value::Float(1.0),
+    }
+}
+
+/// A grid of rules that conclude nothing.
+fn rest() -> Value {
+    let line = [Label::ZO.name(); LABEL_COUNT].join(" ");
+    Value::Text([line.as_str(); LABEL_COUNT].join("\n"))
 }
 
 /// A grid of numbers as a list of lists.
@@ -342,33 +357,24 @@ impl Fields<'_> {
     }
 
     fn start_numbers(&mut self) -> Option<NumberGrid<f64>> {
-        const GRID: &str = "seven lists of seven finite numbers";
-        let row = |item: &Item| match &item.value {
-            Value::Array(items) => {
-                let numbers = items.iter().map(number_of).collect::<Option<Vec<f64>>>()?;
-                <[f64; LABEL_COUNT]>::try_from(numbers).ok()
-            }
-            _ => None,
+        let Some(start) = self.members.iter().find(|member| member.name == "start") else {
+            self.wrong("start", "missing key", number_grid::ALLOWED);
+            return None;
         };
-        let grid = match self.member("start").map(|item| &item.value) {
-            None => {
-                self.wrong("start", "missing key", GRID);
-                return None;
-            }
-            Some(Value::Array(rows)) => rows.iter().map(row).collect::<Option<Vec<_>>>(),
-            Some(_) => None,
-        };
-        let grid = grid.and_then(|rows| NumberGrid::<f64>::try_from(rows).ok());
-        if grid.is_none() {
-            self.wrong("start", "no grid of numbers", GRID);
+        let path = format!("{}.start", self.path);
+        let cells = number_grid::check(self.report, &start.item, &path)?;
+        let mut grid = [[0.0; LABEL_COUNT]; LABEL_COUNT];
+        for (cell, (number, _)) in grid.as_flattened_mut().iter_mut().zip(cells) {
+            *cell = number;
         }
-        grid
+        Some(grid)
     }
 
     fn start_grid(&mut self) -> Option<Grid> {
         const GRID: &str = "seven lines of seven labels out of NB NM NS ZO PS PM PB";
         let Some(Value::Text(text)) = self.member("start").map(|item| &item.value) else {
-            self.wrong("start", "missing key", GRID);
+            let message = self.member("start").map_or("missing key", |_| "no grid of labels");
+            self.wrong("start", message, GRID);
             return None;
         };
         let grid = Grid::parse(text);

@@ -79,12 +79,21 @@ pub(crate) fn check_cases(report: &mut Report, scenario: &Section) {
                 }
             }
         }
-        if section.given(ONLY_IN) {
+        if let Some(only) = section.item(ONLY_IN) {
+            let asked = asked_in(section);
+            let is_asked = |case: &&Section| {
+                let text = |key| case.text(key).unwrap_or_default();
+                asked.case(text("name"), text("group"))
+            };
+            if !asked.only.is_empty()
+                && asked.only.iter().all(|name| known(name))
+                && !cases.iter().any(is_asked)
+            {
+                let message = "`not_in` takes every case away again: it would be asked nowhere";
+                report.missing(only.place, &section.path(ONLY_IN), message, names_in_words());
+            }
             let measure = section.text("measure").or(section.text("set")).unwrap_or_default();
-            report.warn(format!(
-                "{}: {measure} is asked in some cases of tuning or contest only, not of the scenario as it is written",
-                section.path
-            ));
+            report.warn(format!("{}: {measure} {}", section.path, AskedIn::NOT_AS_WRITTEN));
         }
     }
 }

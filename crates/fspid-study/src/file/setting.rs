@@ -58,7 +58,7 @@ impl Walk<'_> {
             let inner = join(path, key.name);
             match section.entry(key.name) {
                 Some(entry) => self.entry(key, entry, inner, &section.path(key.name)),
-                None => self.absent(key, inner),
+                None => self.absent(key, inner, &section.path(key.name)),
             }
         }
     }
@@ -84,8 +84,12 @@ impl Walk<'_> {
         }
     }
 
-    /// A key that the file leaves out and that has no default; the keys of its table may have some.
-    fn absent(&mut self, key: &'static Key, path: String) {
+    /// A key that the file leaves out: its default may be what another file makes it, and the keys of its table may
+    /// have some.
+    fn absent(&mut self, key: &'static Key, path: String, place: &str) {
+        if let Some(word) = self.files.filled(place) {
+            return self.push(path, text(word), key.kind.unit(), false);
+        }
         match (&key.presence, &key.kind) {
             (Presence::Default(default), kind) => {
                 self.push(path, written(&default_value(kind, *default)), kind.unit(), false);
@@ -93,7 +97,7 @@ impl Walk<'_> {
             (_, Kind::Table(spec)) if spec.may_be_empty() => {
                 self.inside(path, |walk, path| {
                     for key in spec.keys() {
-                        walk.absent(key, join(path, key.name));
+                        walk.absent(key, join(path, key.name), &join(place, key.name));
                     }
                 });
             }

@@ -6,6 +6,7 @@ use crate::file::report::Report;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
+use crate::metrics::Measure;
 use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
 
@@ -95,6 +96,13 @@ fn objective(report: &mut Report, section: &Section, index: usize) -> Option<Obj
 
 /// Limits of means.
 fn limits(report: &mut Report, section: &Section) -> Vec<Requirement> {
+    for part in section.sections("limit") {
+        if part.text("measure").and_then(Measure::from_name).is_some_and(Measure::is_yes_or_no) {
+            let message = "has no mean that could be limited: it is yes or no";
+            let allowed = "a measure with a unit or a number; as a [[requirement]] it is asked of each flight";
+            report.value(part.at("measure"), &part.path("measure"), message, allowed);
+        }
+    }
     let sound = section.sections("limit").iter().filter(|part| part.sound).enumerate();
     sound.filter_map(|(index, part)| limit_requirement(report, part, index)).collect()
 }

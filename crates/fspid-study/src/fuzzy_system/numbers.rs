@@ -29,15 +29,36 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// The numbers as a scenario takes them in `[controller.supervisor]`, rounded to what can be seen in a flight.
+    /// A line for each grid with numbers beyond a range: such numbers no supervisor of that range flies.
+    #[must_use]
+    pub fn beyond(&self, range: f64) -> Vec<String> {
+        let largest = |grid: &NumberGrid<f64>| {
+            grid.as_flattened().iter().fold(0.0, |most: f64, number| most.max(number.abs()))
+        };
+        let line = |(output, grid): (fspid_fuzzy::Output, &NumberGrid<f64>)| {
+            let (name, largest) = (output.name(), largest(grid));
+            let told =
+                || format!("{name} has numbers up to {largest:?}, beyond the range of {range:?}");
+            (!is_within(largest, range)).then(told)
+        };
+        fspid_fuzzy::Output::ALL.into_iter().zip(&self.grids).filter_map(line).collect()
+    }
+
+    /// The grids as a supervisor of this range takes them: what printing put a trace beyond the range is at its
+    /// end. Numbers that are further away stay there, and [`beyond`](Self::beyond) tells them.
+    #[must_use]
+    pub fn grids_within(&self, range: f64) -> [NumberGrid<f64>; 3] {
+        self.grids.map(|grid| grid.map(|row| row.map(|number| at_most(number, range))))
+    }
+
+    /// The numbers as a scenario takes them in `[controller.supervisor]`, rounded to what can be seen in a flight
+    /// and, where they lie within the range, not past it.
     #[must_use]
     pub fn toml(&self) -> String {
-        let digits = SHOWN_DIGITS - libm::ceil(libm::log10(self.range)) as i32;
-        let digits = digits.clamp(1, MOST_DIGITS) as usize;
         let mut out = format!("range = {:?}\n", self.range);
         for (output, grid) in fspid_fuzzy::Output::ALL.into_iter().zip(&self.grids) {
             out.push_str(&format!("numbers.{} = [\n", output.name()));
-            let texts = grid.map(|row| row.map(|number| format!("{number:.digits$}")));
+            let texts = grid.map(|row| row.map(|number| self.shown(number)));
             let width = texts.as_flattened().iter().map(String::len).max().unwrap_or(0);
             for row in texts {
                 out.push_str(&format!(
@@ -50,12 +71,39 @@ impl Numbers {
         out
     }
 
+    /// A number rounded to the digits that the range asks for; all of its digits where they are too many for
+    /// decimals.
+    fn shown(&self, number: f64) -> String {
+        let number = at_most(number, self.range);
+        let digits = SHOWN_DIGITS - libm::ceil(libm::log10(self.range)) as i32;
+        if digits > MOST_DIGITS {
+            return format!("{number:?}");
+        }
+        let digits = digits.max(1) as usize;
+        let text = format!("{number:.digits$}");
+        let is_past = text.parse().is_ok_and(|rounded: f64| rounded.abs() > self.range);
+        match is_past && number.abs() <= self.range {
+            true => format!("{number:?}"),
+            false => text,
+        }
+    }
+
     /// The range and the three grids, as they are.
     #[must_use]
     pub fn json(&self) -> serde_json::Value {
         let [kp, ki, kd] = &self.grids;
         serde_json::json!({ "range": self.range, "delta_kp": kp, "delta_ki": ki, "delta_kd": kd })
     }
+}
+
+/// Whether a number is within a range that was printed and read again.
+fn is_within(number: f64, range: f64) -> bool {
+    number.abs() <= range * (1.0 + SAME_PLACE)
+}
+
+/// A number a trace beyond the range at its end; every other as it is.
+fn at_most(number: f64, range: f64) -> f64 {
+    if is_within(number, range) { number.clamp(-range, range) } else { number }
 }
 
 /// The numbers of a system of Takagi and Sugeno of order zero that is what a

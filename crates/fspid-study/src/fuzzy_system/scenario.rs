@@ -8,12 +8,28 @@ use fspid_sim::Controller;
 use super::load::{LoadError, Loaded, built};
 use super::toml_file;
 use crate::file;
+use crate::file::document::{Item, Value, read as read_document};
+use crate::file::report::Report;
 use crate::inference::Refused;
 
-/// True for a text with controllers.
+/// True for a text with controllers, however they are written.
+///
+/// A text that is no TOML is one if a line of it looks like their heading, so that what is wrong with it is told
+/// as of a scenario.
 pub(super) fn is_one(text: &str) -> bool {
-    let is_heading = |line: &str| line.trim_start().starts_with("[[controller]]");
-    !toml_file::is_of_this_kind(text) && text.lines().any(is_heading)
+    if toml_file::is_of_this_kind(text) {
+        return false;
+    }
+    let is_heading = |line: &str| {
+        let heading: String = line.chars().filter(|c| !c.is_whitespace()).collect();
+        heading.starts_with("[[controller]]")
+    };
+    match read_document(&mut Report::default(), None, text) {
+        Some(Item { value: Value::Table(members), .. }) => {
+            members.iter().any(|member| member.name == "controller")
+        }
+        _ => text.lines().any(is_heading),
+    }
 }
 
 /// The supervisor of the controller of this name, or of the only one that has any.

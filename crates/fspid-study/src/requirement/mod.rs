@@ -59,6 +59,10 @@ pub struct AskedIn {
 }
 
 impl AskedIn {
+    /// How the warning ends that something is not asked of the scenario as it is written.
+    pub const NOT_AS_WRITTEN: &'static str =
+        "is asked in some cases of tuning or contest only, not of the scenario as it is written";
+
     /// True if the scenario as it is written is asked.
     #[must_use]
     pub fn as_written(&self) -> bool {

@@ -53,6 +53,8 @@ pub enum VerifyError {
     NothingRequired {
         /// Path of the scenario.
         path: String,
+        /// Requirements that cases of a tuning or a contest are asked, and the scenario as it is written is not.
+        in_cases: usize,
     },
     /// The scenario cannot be flown.
     Simulation(SimError),
@@ -63,7 +65,11 @@ impl fmt::Display for VerifyError {
         match self {
             Self::Load(error) => error.fmt(f),
             Self::Simulation(error) => error.fmt(f),
-            Self::NothingRequired { path } => write!(
+            Self::NothingRequired { path, in_cases } if *in_cases > 0 => write!(
+                f,
+                "{path}: nothing is required of it as it is written: `only_in` limits all its {in_cases} requirements to cases of tuning or contest\n    leave `only_in` out, or judge a case by `--set` with its changes and requirements of a file\n"
+            ),
+            Self::NothingRequired { path, .. } => write!(
                 f,
                 "{path}: nothing is required of it\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n"
             ),
@@ -98,7 +104,8 @@ pub fn verify(question: &Question<'_>) -> Result<Verification, VerifyError> {
     let study = file::parse_with(&scenario_text, &path, Some(folder), &extra)
         .map_err(|problems: Problems| VerifyError::Load(LoadError::Problems(problems)))?;
     if study.requirements.is_empty() {
-        return Err(VerifyError::NothingRequired { path });
+        let in_cases = study.case_requirements.len();
+        return Err(VerifyError::NothingRequired { path, in_cases });
     }
     let judgements = Simulation::of(&study)?.judgements;
     Ok(Verification { path, scenario_text, overrides, study, judgements })

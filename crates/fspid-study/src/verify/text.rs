@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use fspid_sim::{Controller, Scenario};
+
 use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
 use crate::metrics::{Family, Measure};
@@ -101,10 +103,13 @@ impl Verification {
             notes.extend(not_in_the_linear_loop(&self.study.scenario));
         }
         if asks(Family::Frozen) {
-            notes.push(
-                "Frozen gains are those of a map of 9 x 9 inputs of the supervisor, and a search about its worst point."
-                    .to_owned(),
-            );
+            let cells = match concludes_numbers(&self.study.scenario) {
+                true => ", the 49 cells where rules conclude numbers,",
+                false => ",",
+            };
+            notes.push(format!(
+                "Frozen gains are those of a map of 9 x 9 inputs of the supervisor{cells} and a search about the worst of them."
+            ));
         }
         if self.judgements.iter().any(|j| j.requirement.measure == Measure::EquivalentDelay) {
             notes.push(
@@ -123,6 +128,14 @@ impl Verification {
         }));
         notes
     }
+}
+
+/// Whether a supervisor of the scenario has numbers.
+fn concludes_numbers(scenario: &Scenario) -> bool {
+    scenario.controllers.iter().any(|named| match &named.controller {
+        Controller::SelfTuning(fspid) => fspid.tuner().supervisor().numbers().is_some(),
+        Controller::Fixed(_) => false,
+    })
 }
 
 const COLUMNS: usize = 8;

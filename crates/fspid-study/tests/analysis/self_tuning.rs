@@ -97,25 +97,67 @@ fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
 }
 
+/// The scenario with numbers for kp and kd at some cells, and 0 at the others.
+fn with_cells(cells: &[([usize; 2], [f64; 2])]) -> String {
+    let grid = |gain: usize| {
+        let cell = |row: usize, column: usize| {
+            let own = cells.iter().find(|(at, _)| *at == [row, column]);
+            format!(
+                "{:?}",
+                own.map_or(0.0, |(_, numbers)| numbers.get(gain).copied().unwrap_or(0.0))
+            )
+        };
+        let row = |row| format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(|it| cell(row, it)).join(", "));
+        format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(row).join(", "))
+    };
+    let [kp, kd, ki] = [0, 1, 2].map(grid);
+    let numbers = format!("numbers = {{ delta_kp = {kp}, delta_ki = {ki}, delta_kd = {kd} }}");
+    TUNED.replace("table = \"printed\"", &numbers)
+}
+
 #[test]
-fn the_worst_frozen_gain_of_numbers_is_at_the_number_that_no_point_of_the_map_meets() {
-    let row = "[0, 0, 0, 0, 0, 0, 0]";
-    let zeros = format!("[{}]", [row; 7].join(", "));
-    let mut rows = [row; 7];
-    // Error PS, change NM.
-    rows[4] = "[0, 5, 0, 0, 0, 0, 0]";
-    let kp = format!("[{}]", rows.join(", "));
-    let numbers =
-        format!("numbers = {{ delta_kp = {kp}, delta_ki = {zeros}, delta_kd = {zeros} }}");
-    let text = TUNED.replace("table = \"printed\"", &numbers);
+fn every_number_is_among_the_frozen_gains_and_the_worst_of_them_is_found() {
+    // Error PS, change NM; and error NM, change PB, which is on no point of the map either.
+    let text = with_cells(&[([4, 1], [5.0, 0.0]), ([1, 6], [-1.5, 2.0])]);
     let sets = ["controller.C.supervisor.error_sets=[0.1, 0.5]"];
-    for (set, error) in [(&[][..], 5.0 / 3.0), (&sets, 0.5)] {
+    for (set, [small, medium]) in [(&[][..], [5.0 / 3.0, 10.0 / 3.0]), (&sets, [0.5, 2.5])] {
         let analysis = analysed(&text, set);
         let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
         let [found_error, found_change] = map.worst.input;
-        assert!((found_error - error).abs() < 1e-12, "{:?}", map.worst);
+        assert!((found_error - small).abs() < 1e-12, "{:?}", map.worst);
         assert!((found_change + 10.0 / 3.0).abs() < 1e-12, "{:?}", map.worst);
         assert!((map.worst.gains.kp - 3.0).abs() < 1e-12, "{:?}", map.worst);
         assert!(map.points.iter().all(|point| point.gains.kp < 2.99));
+        assert_eq!(map.nodes.len(), 49);
+        for (index, node) in map.nodes.iter().enumerate() {
+            // Output scales of 0.2 and 0.1.
+            let [kp, kd] = match index {
+                29 => [3.0, 1.0],
+                13 => [2.0 - 0.3, 1.0 + 0.2],
+                _ => [2.0, 1.0],
+            };
+            let gains = node.gains;
+            assert!((gains.kp - kp).abs() < 1e-12 && (gains.kd - kd).abs() < 1e-12, "{node:?}");
+        }
+        assert!((map.nodes[13].input[0] + medium).abs() < 1e-12, "{:?}", map.nodes[13]);
+        assert!((map.nodes[13].input[1] - 5.0).abs() < 1e-12, "{:?}", map.nodes[13]);
     }
+}
+
+#[test]
+fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
+    // kp is 2 + 5 * 4.0 at the cell and, on the nearest point of the map, 2 + 0.75^2 * 5 * 4.0.
+    let set = ["controller.C.supervisor.output_scale.kp=4.0"];
+    let analysis = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &set);
+    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    assert_eq!((map.unstable(), map.unstable_nodes()), (0, 1), "{:?}", map.worst);
+    assert!(!map.is_stable() && !analysis.all_stable());
+    let text = analysis.text();
+    assert!(text.contains("1 of 49 cells DOES NOT HOLD; the worst: unstable"), "{text}");
+    let frozen = &analysis.json()["controllers"][0]["frozen_gains"];
+    assert_eq!((&frozen["unstable"], &frozen["unstable_cells"]), (&0.into(), &1.into()));
+    assert_eq!((&frozen["cells"], &frozen["stable"]), (&49.into(), &false.into()));
+    let set = [set[0].replace("4.0", "0.2")];
+    let text = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &[&set[0]]).text();
+    assert!(text.contains("all 81 on the map and 49 cells hold"), "{text}");
 }

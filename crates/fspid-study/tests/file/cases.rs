@@ -88,3 +88,20 @@ fn a_limit_of_a_mean_is_read_with_its_conditions_and_refused_without_a_number() 
     let told = problems("[[tuning.limit]]\nmeasure = \"elevator_travel_deg\"\n");
     assert!(told.contains("tuning.limit[0].most") && told.contains("has a limit"), "{told}");
 }
+
+#[test]
+fn a_requirement_that_no_case_is_left_for_is_refused() {
+    let text = |not: &str| {
+        format!(
+            "[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 1.0\nonly_in = [\"rough\"]\nnot_in = [\"{not}\"]\n"
+        )
+    };
+    assert!(problems(&text("gusts")).contains("it would be asked nowhere"));
+    assert_eq!(study(&text("calm")).case_requirements.len(), study("").case_requirements.len() + 1);
+}
+
+#[test]
+fn what_is_yes_or_no_has_no_mean_that_could_be_limited() {
+    let told = problems("[[tuning.limit]]\nmeasure = \"stable\"\nleast = 0.9\n");
+    assert!(told.contains("it is yes or no") && told.contains("tuning.limit[0].measure"), "{told}");
+}

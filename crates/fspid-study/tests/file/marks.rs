@@ -98,6 +98,9 @@ fn a_grid_of_rules_may_be_free_within_its_reach() {
     assert_ne!(before.controllers, after.scenario.controllers);
     let told = problems(&free("\"NB NM\""));
     assert!(told.contains("supervisor.table.delta_kp.start"), "{told}");
+    assert!(told.contains("\n1 problem"), "{told}");
+    let told = problems(&text.replace("tune = \"rules\"", "tune = \"rule\""));
+    assert!(told.contains("unknown word") && told.contains("\n1 problem"), "{told}");
 }
 
 #[test]

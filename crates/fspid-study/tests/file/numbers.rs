@@ -157,6 +157,7 @@ fn a_system_that_is_no_grid_of_numbers_is_refused_with_everything_that_differs()
     ] {
         assert!(told.contains(expected), "{expected}: {told}");
     }
+    assert_eq!(told.matches("allowed: ").count(), 1, "{told}");
     // Rules are looked at where the sets are right.
     let (folder, text) = with_system("toml", |parts| {
         parts.blocks[0].rules[5].weight = 0.5;
@@ -180,6 +181,7 @@ fn a_system_of_another_range_of_labels_or_unreadable_is_refused_in_words() {
     let (folder, text) = with_system("fis", |_| {});
     let told = problems(&text.replace("range = 5.0", "range = 4.0"), Some(folder.path()));
     assert!(told.contains("its sets reach to 5.0, and the range is 4.0"), "{told}");
+    assert!(told.contains("allowed: `range = 5.0`\n"), "{told}");
     let told = problems(&text.replace("mine.fis", "other.fis"), Some(folder.path()));
     assert!(told.contains("cannot be read: there is no such file"), "{told}");
     let told = problems(&text.replace("mine.fis", "mine.csv"), Some(folder.path()));
@@ -194,6 +196,74 @@ fn a_system_of_another_range_of_labels_or_unreadable_is_refused_in_words() {
     let told = problems(&text.replace("mine.fis", "labels.toml"), Some(folder.path()));
     assert!(told.contains("error: set NB is no triangle of height 1"), "{told}");
     assert!(told.contains("delta_kp is the centroid of its rules"), "{told}");
+}
+
+/// The first conclusion of delta_kp and the range of both inputs, as a file has them.
+fn with_first(number: f64) -> (tempfile::TempDir, String) {
+    with_system("toml", |parts| {
+        parts.outputs[0].universe = None;
+        parts.outputs[0].clamp = false;
+        parts.outputs[0].terms[0].conclusion = fspid_fuzzy::system::Conclusion::Constant(number);
+    })
+}
+
+#[test]
+fn numbers_of_a_system_a_trace_beyond_the_range_are_at_its_end_and_others_are_refused() {
+    let (folder, text) = with_first(-5.0 * (1.0 + 2e-10));
+    let study = file::parse(&text, "mine.toml", Some(folder.path()), &[]).expect("a scenario");
+    let numbers = self_tuner(&study).supervisor().numbers().expect("numbers");
+    assert_eq!(numbers.grid(Output::DeltaKp)[0][0], -5.0);
+    let (folder, text) = with_first(5.1);
+    let told = problems(&text, Some(folder.path()));
+    assert!(told.contains("delta_kp has numbers up to 5.1, beyond the range of 5.0"), "{told}");
+    assert!(told.contains("-5.0 to 5.0; `output_scale` makes increments larger"), "{told}");
+    assert!(!told.contains("seven triangles"), "{told}");
+}
+
+#[test]
+fn numbers_that_are_shown_do_not_round_past_their_range_nor_to_nothing() {
+    let numbers = |range: f64, number: f64| {
+        let mut grids = [[[0.0; 7]; 7]; 3];
+        (grids[1][2][3], grids[2][6][6]) = (-number, number / 2.0);
+        fuzzy_system::Numbers { range, grids }
+    };
+    for range in [3.3337, 5.0, 0.99996, 1e-3, 1e-90, 1e12] {
+        let own = numbers(range, range);
+        assert_eq!(own.beyond(range), Vec::<String>::new());
+        let shown: toml::Table = own.toml().parse().expect("TOML");
+        let read = |name: &str, row: usize, column: usize| {
+            shown["numbers"][name][row][column].as_float().expect("a number")
+        };
+        let (most, half) = (-read("delta_ki", 2, 3), read("delta_kd", 6, 6));
+        assert!(most <= range && most > 0.999 * range, "{range}: {most}");
+        assert!((half - range / 2.0).abs() < 1e-3 * range, "{range}: {half}");
+    }
+    // What lies beyond is told, not moved.
+    let far = numbers(5.0, 6.0);
+    assert_eq!(far.beyond(5.0), ["delta_ki has numbers up to 6.0, beyond the range of 5.0"]);
+    assert!(far.toml().contains("-6.000"), "{}", far.toml());
+    assert_eq!(far.grids_within(5.0), far.grids);
+}
+
+#[test]
+fn a_scenario_is_known_by_its_controllers_however_they_are_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml");
+    let name = path.display().to_string();
+    let document: toml::Table = file::starter().parse().expect("TOML");
+    let controllers = document["controller"].to_string();
+    let mut others = document;
+    others.remove("controller");
+    let in_a_line = format!("controller = {controllers}\n{others}");
+    let spaced = file::starter().replace("[[controller]]", " [[ controller ]]  # tuned");
+    for text in [spaced, in_a_line] {
+        std::fs::write(&path, &text).expect("written");
+        assert!(fuzzy_system::is_scenario(&name), "{text}");
+        let own = fuzzy_system::load(&name, Options::default()).expect("one supervisor");
+        assert_eq!(own.system.parts().name, "FSPID");
+    }
+    std::fs::write(&path, "range = 5.0\n# [[controller]]\n").expect("written");
+    assert!(!fuzzy_system::is_scenario(&name));
 }
 
 #[test]
@@ -252,16 +322,26 @@ fn what_is_wrong_with_a_free_grid_is_told_with_what_is_allowed() {
             "cell (i, j) is not cell (6 - i, 6 - j)",
         ),
         (
-            "{ tune = \"numbers\", reach = 1, start = [[0]] }".to_owned(),
-            "start: no grid of numbers",
+            format!(
+                "{{ tune = \"numbers\", reach = 1, start = {} }}",
+                grid().replacen("0.0", "nan", 1)
+            ),
+            "delta_kp.start[0][0]: not a number",
         ),
+        ("{ tune = \"numbers\", reach = 1, start = 3 }".to_owned(), "start: wrong type: a number"),
+        (
+            format!("{{ tune = \"rules\", reach = 1, start = {} }}", grid()),
+            "start: no grid of labels",
+        ),
+        (format!("{{ tune = \"number\", start = {} }}", grid()), "unknown word"),
+        (format!("{{ tune = [0.0, 1.0], start = {} }}", grid()), "start: not within the bounds"),
         (
             format!("{{ tune = \"numbers\", reach = 1, at_rest = 0, start = {} }}", grid()),
             "unknown key of a mark",
         ),
     ] {
         let told = problems(&numbers(&mark), None);
-        assert!(told.contains(expected) && told.contains("1 problem"), "{expected}: {told}");
+        assert!(told.contains(expected) && told.contains("\n1 problem"), "{expected}: {told}");
     }
     let far = numbers(&format!("{{ tune = \"numbers\", reach = 4.5, start = {} }}", grid()));
     let template = Template::parse(&far, "mine.toml", None, &Extra::default()).expect("it flies");

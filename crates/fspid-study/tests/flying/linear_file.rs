@@ -260,8 +260,126 @@ fn a_file_that_does_not_say_how_air_acts_flies_in_calm_air_alone() {
     read(UPDRAUGHT).expect("a gust needs none");
     write(&boeing("w_m_s").replace("by_pitch_gust", "#"));
     assert!(read(UPDRAUGHT).expect_err("silent").to_string().contains("moving air acts"));
-    write(&boeing("w_m_s").replace("state = \"theta_rad\"", "state = \"alpha_rad\""));
+    write(HEAVE);
     assert!(read("").expect_err("no pitch").to_string().contains("is the pitch angle"));
+}
+
+/// A linear file without pitch.
+const HEAVE: &str = r#"
+name = "heave"
+source = "made up"
+kind = "linear"
+[[equations]]
+state = "w_m_s"
+by_states = [-1.0, 200.0]
+by_elevator = -5.0
+[[equations]]
+state = "q_rad_s"
+by_states = [-0.01, -1.0]
+by_elevator = -1.0
+"#;
+
+/// The flight of an aircraft file at the speed and altitude of the Boeing, or what is wrong with it.
+fn of_file(aircraft: &str, air: &str) -> Result<file::Study, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("mine.toml"), aircraft).expect("written");
+    let text = NAVION
+        .replace("name = \"navion\"\nair", "file = \"mine.toml\"\nair")
+        .replace("176.0", "673.0")
+        .replace("1000.0", "20000.0");
+    let study = file::parse(&format!("{text}{air}"), "t", Some(folder.path()), &[]);
+    study.map_err(|problems| problems.to_string())
+}
+
+const CONDITION: &str = "[condition]\nairspeed_ft_s = 673.0\naltitude_ft = 20000.0\n";
+
+/// It says how the air acts on it by equations of u and w, but turbulence at an assumed speed would be another at another.
+#[test]
+fn a_linear_file_without_a_condition_flies_in_calm_air_alone() {
+    let whole = boeing("w_m_s");
+    let assumed = whole.replace(CONDITION, "");
+    assert_ne!(assumed, whole);
+    for air in [SEVERE, UPDRAUGHT, "[wind]\nkind = \"steady\"\nspeed_kt = 30.0\nfrom_deg = 0.0\n"] {
+        of_file(&whole, air).expect("its speed is known");
+        let problems = of_file(&assumed, air).expect_err("its speed is not known");
+        assert!(problems.contains("the aircraft's file has no condition"), "{problems}");
+        assert!(problems.contains("allowed: still air, or an aircraft file with a condition"));
+    }
+    let calm = of_file(&assumed, "").expect("calm air");
+    let [warning] = &calm.warnings[..] else { panic!("{:?}", calm.warnings) };
+    assert!(warning.contains("it flies in calm air alone"), "{warning}");
+}
+
+#[test]
+fn a_linear_file_says_each_state_once() {
+    let u = |state: &str| boeing("w_m_s").replace("state = \"theta_rad\"", state);
+    for (aircraft, message) in [
+        (u("state = \"u_m_s\""), "the state is that of equations[0]"),
+        (u("state = \"u_ft_s\""), "the state is that of equations[0]"),
+        (u("state = \"alpha_rad\""), "w and alpha are one state, which is that of equations[1]"),
+    ] {
+        let problems = of_file(&aircraft, "").expect_err("twice");
+        assert!(problems.contains(&format!("equations[3].state: {message}")), "{problems}");
+        assert!(problems.contains("allowed: one equation a state"), "{problems}");
+        let alone = file::parse_aircraft(&aircraft, "mine.toml", None).expect_err("twice");
+        assert!(alone.to_string().contains(message), "{alone}");
+    }
+}
+
+#[test]
+fn the_condition_of_a_linear_file_is_where_a_scenario_can_fly() {
+    for (key, range) in [
+        ("altitude_ft = 4000000.0", "-16404 to 278385"),
+        ("altitude_m = 1e6", "-5000 to 84852"),
+        ("altitude_m = -6000.0", "-5000 to 84852"),
+    ] {
+        let aircraft = boeing("w_m_s").replace("altitude_ft = 20000.0", key);
+        let problems = of_file(&aircraft, "").expect_err("beyond the atmosphere");
+        let name = key.split(' ').next().expect("a name");
+        assert!(problems.contains(&format!("condition.{name}: ")), "{problems}");
+        assert!(problems.contains(range), "{problems}");
+    }
+}
+
+/// The nose turns by a moment; what would move it at once is refused at its key, and not by the order of a polynomial.
+#[test]
+fn air_that_would_change_the_pitch_angle_at_once_is_refused_at_its_equation() {
+    let theta = |from: &str, to: &str| {
+        let text = boeing("w_m_s");
+        let (before, last) = text.split_at(text.rfind("[[equations]]").expect("four"));
+        let changed = last.replace(from, to);
+        assert_ne!(last, changed);
+        format!("{before}{changed}")
+    };
+    let problems = of_file(&theta("by_pitch_gust = 0.0", "by_pitch_gust = 0.5"), "");
+    let problems = problems.expect_err("it jumps");
+    assert!(problems.contains("equations[3].by_pitch_gust: the air turns the aircraft"));
+    assert!(problems.contains("found: 0.5; allowed: 0, or leave it out"), "{problems}");
+    assert!(!problems.contains("numerator"), "{problems}");
+    of_file(&theta("by_pitch_gust = 0.0", ""), UPDRAUGHT).expect("0 if left out");
+    let moved = theta("by_states = [", "by_states = [0.1, 0.0, 1.0, 0.0] # [");
+    let problems = of_file(&moved, "").expect_err("it jumps");
+    assert!(problems.contains("equations[3].by_states: a gust would change the pitch"));
+    // No gust acts on it, and the matrix is as good as any.
+    of_file(&moved.replace("by_pitch_gust", "#"), "").expect("calm air");
+}
+
+#[test]
+fn what_flies_where_a_linear_file_or_forces_choose_is_told_as_a_default() {
+    let told = |set: &[&str]| {
+        let settings = study(NAVION, set).settings;
+        let mut model = settings.into_iter().filter(|setting| setting.path == "aircraft.model");
+        let (first, second) = (model.next().expect("it is told"), model.next());
+        assert!(second.is_none() && first.table == "aircraft" && first.unit.is_empty());
+        (first.value, first.given)
+    };
+    assert_eq!(told(&[]), ("\"nonlinear\"".to_owned(), false));
+    for aircraft in [ETKIN, CTMS] {
+        assert_eq!(told(&aircraft), ("\"linear\"".to_owned(), false));
+    }
+    assert_eq!(told(&["aircraft.model=linear"]), ("\"linear\"".to_owned(), true));
+    let by_file = of_file(&boeing("w_m_s"), "").expect("right").settings;
+    assert!(by_file.iter().any(|it| it.path == "aircraft.model" && it.value == "\"linear\""));
 }
 
 /// No airspeed, load factor or altitude is made up for a flight that has none.

@@ -5,7 +5,7 @@ use fspid_study::metrics::{Absent, Family, Measure};
 use fspid_study::requirement::{Judgement, NotEvaluated};
 use fspid_study::simulation::Simulation;
 
-use crate::{JUMBO, judged, study, values};
+use crate::{JUMBO, judged, study, values, verified, written};
 
 /// The only judgement.
 fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
@@ -491,19 +491,89 @@ fn gains_beyond_the_map_have_no_frozen_margins() {
     }
 }
 
+/// Grids with numbers for the three gains at some cells, and 0 at the others.
+fn with_cells(text: &str, cells: &[([usize; 2], [f64; 3])]) -> String {
+    let grid = |gain: usize| {
+        let cell = |row: usize, column: usize| {
+            let own = cells.iter().find(|(at, _)| *at == [row, column]);
+            format!("{:?}", own.map_or(0.0, |(_, numbers)| numbers[gain]))
+        };
+        let row = |row| format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(|it| cell(row, it)).join(", "));
+        format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(row).join(", "))
+    };
+    let [kp, ki, kd] = [0, 1, 2].map(grid);
+    let numbers = format!("numbers = {{ delta_kp = {kp}, delta_ki = {ki}, delta_kd = {kd} }} #");
+    text.replace("table = ", &numbers)
+}
+
+/// What is found for fixed gains in place of the self-tuning ones, with the same filter of the derivative.
+fn fixed(text: &str, measure: &str, [kp, ki, kd]: [f64; 3]) -> f64 {
+    let filter = text.lines().find(|line| line.starts_with("derivative_filter_s"));
+    let filter = filter.unwrap_or_default();
+    let gains = format!("kp = {kp:?}\nki = {ki:?}\nkd = {kd:?}\n{filter}");
+    let text = text.replacen("kp = 1.0", &gains, 1);
+    let requirement = format!("measure = \"{measure}\"\nleast = 0.0\ncontroller = \"P\"");
+    one(&text, &requirement, &[]).found.expect("stable").value
+}
+
 #[test]
 fn numbers_are_level_beyond_the_range_so_that_their_map_is_whole() {
-    let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
-    let numbers =
-        format!("numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }} #");
-    let text = JUMBO
-        .replace("range = 5.0", "range = 5.0\nout_of_range = \"evaluate\"")
-        .replace("table = ", &numbers);
+    // The corner of the greatest error and change adds 5 * 0.1 to kp.
+    let clamping = with_cells(JUMBO, &[([6, 6], [5.0, 0.0, 0.0])]);
+    let evaluating = clamping.replace("range = 5.0", "range = 5.0\nout_of_range = \"evaluate\"");
     let requirement = "measure = \"frozen_disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"";
-    let frozen = one(&text, requirement, &[]);
-    let at_rest = "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"";
-    let at_rest = one(&text, at_rest, &[]);
-    // Zeros add nothing: every frozen gain is the nominal one.
+    let frozen = |text: &str| one(text, requirement, &[]);
     let value = |judgement: &Judgement| judgement.found.as_ref().expect("found").value;
-    assert!(frozen.met && (value(&frozen) - value(&at_rest)).abs() < 1e-9, "{frozen:?}");
+    assert!(frozen(&evaluating).met);
+    assert_eq!(value(&frozen(&evaluating)), value(&frozen(&clamping)));
+    // Two ways to the margins, the family's and that of the eigenvalues.
+    let [at_rest, corner] = [1.33, 1.83].map(|kp| fixed(JUMBO, "disk_margin", [kp, 1.0, 1.22]));
+    assert!((at_rest - corner).abs() > 1e-3, "{at_rest} {corner}");
+    assert!((value(&frozen(&evaluating)) - at_rest.min(corner)).abs() < 1e-9, "{corner}");
+}
+
+/// The cell with the least disk margin need not have the least gain margin, nor the least phase margin: every
+/// measure asks for its own worst.
+#[test]
+fn frozen_margins_of_numbers_are_no_better_than_those_of_any_of_their_cells() {
+    let text = JUMBO
+        .replace("b747-paper", "navion-full")
+        .replace("time_constant_s = 0.1", "time_constant_s = 0.05")
+        .replace("derivative_filter_s = 0.05", "")
+        .replace("{ kp = 1.33, ki = 1.0, kd = 1.22 }", "{ kp = 1.0, ki = 1.0, kd = 0.1 }")
+        .replace("{ kp = 0.1, ki = 0.05, kd = 0.05 }", "{ kp = 1.0, ki = 1.0, kd = 1.0 }");
+    // The first of each pair is the worst by its disk margin in one case, the second in the other.
+    for [first, second] in
+        [[[0.82, 5.0, 0.165], [3.0, 2.0, 0.0]], [[0.85, 4.8, 0.165], [3.0, 2.0, 0.0]]]
+    {
+        let added = |[kp, ki, kd]: [f64; 3]| [kp - 1.0, ki - 1.0, kd - 0.1];
+        let numbers = with_cells(&text, &[([1, 1], added(first)), ([5, 1], added(second))]);
+        for measure in ["gain_margin_db", "phase_margin_deg", "disk_margin"] {
+            let requirement =
+                format!("measure = \"frozen_{measure}\"\nleast = 6.0\ncontroller = \"FSPID\"");
+            let judgement = one(&numbers, &requirement, &[]);
+            let found = judgement.found.as_ref().expect("stable").value;
+            let least = [first, second].map(|gains| fixed(&text, measure, gains));
+            assert!(found <= least[0].min(least[1]) + 1e-9, "{measure}: {found} {least:?}");
+            if measure == "gain_margin_db" {
+                // That of (3, 2, 0), by `analyse` of these gains as fixed ones.
+                assert!(!judgement.met && (found - 3.8813).abs() < 1e-4, "{judgement:?}");
+                let place = judgement.place().frozen.expect("it is told");
+                assert!((place.gains.kp - 3.0).abs() < 1e-9, "{place:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_answer_says_that_the_cells_of_numbers_are_among_the_frozen_gains() {
+    let told = |text: &str| {
+        let requirement = "[[requirement]]\nmeasure = \"frozen_stable\"\n";
+        let (_folder, path) = written(&format!("{text}\n{requirement}"));
+        let text = verified(&path, &[], &[]).text(None);
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let cells = "the 49 cells where rules conclude numbers";
+    assert!(told(&with_cells(JUMBO, &[])).contains(cells));
+    assert!(!told(JUMBO).contains("49 cells"));
 }

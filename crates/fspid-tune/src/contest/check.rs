@@ -4,7 +4,7 @@ use fspid_campaign::engine::Stability;
 use fspid_study::file::{Study, Template};
 use fspid_study::tuning::{Contest as Rules, Tuning};
 
-use super::{Contest, Entrant, Options};
+use super::{Contest, Entrant, Options, flight};
 use crate::error::TuneError;
 use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
 use crate::problem::{Problem, marks_of};
@@ -149,8 +149,8 @@ fn entrant(
         .zip(&rules.cases)
         .map(|(template, case)| flown_case(template, Some(case), name, dispersed));
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
-    let objectives = study.tuning.iter().flat_map(|tuning| &tuning.objectives);
-    let measured = objectives.map(|it| it.requirement.clone()).collect();
+    let objectives = study.tuning.as_ref().map_or(&[][..], |tuning| &tuning.objectives);
+    let measured = flight::measured(objectives);
     let flights = Flights::new(Space::new(marks), flown, measured).with(Stability::AsFlown);
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -2,8 +2,8 @@
 
 use fspid_campaign::engine::FlightResult;
 use fspid_campaign::rows;
-use fspid_study::metrics::Absent;
-use fspid_study::requirement::{Judgement, NotEvaluated};
+use fspid_study::metrics::{Absent, Measure};
+use fspid_study::requirement::{AskedIn, Conditions, Judgement, NotEvaluated, Origin, Requirement};
 use fspid_study::tuning::Objective;
 use fspid_study::units::degrees;
 
@@ -69,9 +69,11 @@ impl Flight {
         }
     }
 
-    /// Of a flight whose judgements end with those of the objectives.
+    /// Of a flight whose judgements end with those of [`measured`].
     pub(crate) fn of(flight: &FlightResult, objectives: &[Objective], duration_s: f64) -> Self {
-        let score = FlightScore::of(flight, objectives.len(), duration_s);
+        let judged = flight.judgements.split_last().map_or(&[][..], |(_stability, rest)| rest);
+        let (asked, costs) = judged.split_at(judged.len().saturating_sub(objectives.len()));
+        let score = FlightScore::of(flight, (asked, costs), duration_s);
         let measures = MEASURES.map(|(name, _)| rows::measured(flight, name));
         let is_far = !(degrees(flight.largest_error_rad) <= LOST_DEG);
         let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none() || is_far;
@@ -80,8 +82,7 @@ impl Flight {
         for (index, value) in counted.iter_mut().enumerate() {
             *value = value.or_else(|| stand_in(flight, index, is_lost));
         }
-        let asked = flight.judgements.len().saturating_sub(objectives.len());
-        let unmet = flight.judgements.iter().take(asked).any(|judgement| !judgement.met);
+        let unmet = asked.iter().any(|judgement| !judgement.met);
         let costs = score.values.iter().zip(objectives);
         let cost = costs.map(|(value, objective)| objective.weight * value).sum::<f64>();
         let has_cost = !objectives.is_empty() && !is_lost && !score.values.is_empty();
@@ -106,11 +107,31 @@ impl Flight {
     }
 }
 
-/// Of fixed gains the engine knows; of gains that move, what was asked of them at rest.
+/// What is measured of each flight of a contest beside its requirements: what the objectives cost, and last whether
+/// the loop is stable at rest, which everybody is asked whatever the requirements of the case are.
+pub(crate) fn measured(objectives: &[Objective]) -> Vec<Requirement> {
+    let stable = Requirement {
+        id: "stability at rest".to_owned(),
+        controller: None,
+        measure: Measure::Stable,
+        least: Some(1.0),
+        most: None,
+        conditions: Conditions::default(),
+        origin: Origin::default(),
+        cases: AskedIn::default(),
+    };
+    objectives.iter().map(|it| it.requirement.clone()).chain([stable]).collect()
+}
+
+/// Of fixed gains the engine knows; of gains that move, the linear loop at the gains at rest says it. Where there is no
+/// linear loop, there is nothing but the flight.
 fn is_unstable(flight: &FlightResult) -> bool {
-    let refuses =
-        |judgement: &Judgement| matches!(judgement.found, Err(NotEvaluated::Unstable { .. }));
-    flight.unstable.is_some() || flight.judgements.iter().any(refuses)
+    let of_loop = |judgement: &Judgement| match &judgement.found {
+        Err(NotEvaluated::Unstable { .. }) => true,
+        Ok(case) => judgement.requirement.measure == Measure::Stable && !(case.value >= 1.0),
+        Err(_) => false,
+    };
+    flight.unstable.is_some() || flight.judgements.iter().any(of_loop)
 }
 
 /// What stands for a measure that a flight does not have.

@@ -53,7 +53,7 @@ pub use tuning::{Found, Progress, Then};
 pub use two_way::{TwoWay, holm};
 
 use crate::error::TuneError;
-use crate::flights::Flights;
+use crate::flights::{Flights, each_once};
 use crate::problem::Problem;
 use crate::search::Effort;
 use crate::source::Source;
@@ -103,6 +103,15 @@ impl Contest {
     /// scenario wrong, a tuning that is none.
     pub fn new(source: &Source, options: &Options) -> Result<Self, TuneError> {
         check::checked(source, options)
+    }
+
+    /// What is allowed in the scenario and its cases and probably not meant, each once.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let tuned = self.entrants.iter().filter_map(|entrant| entrant.problem.as_ref());
+        let tuned: Vec<String> = tuned.flat_map(Problem::warnings).collect();
+        let judged = self.entrants.iter().flat_map(|entrant| entrant.flights.warnings());
+        each_once(tuned.iter().chain(judged))
     }
 
     /// Tunes what is to be tuned, judges all, and writes `contest.parquet`, `contest.json` and `contest.html` into

@@ -33,11 +33,15 @@ pub(super) fn held(outcome: &Outcome) -> String {
     let mut text = match setting.efforts.first().filter(|_| tuned > 0) {
         None => "Nobody was tuned; all fly as they are written".to_owned(),
         Some(effort) => format!(
-            "{} tuned alike by {}, {} candidates, {}{}",
+            "{} tuned alike by {}, {} candidates, {}{}{}",
             counted(tuned, "controller", "controllers"),
             effort.optimiser,
             effort.budget,
             counted(setting.efforts.len(), "seed", "seeds"),
+            match setting.limits.is_empty() {
+                true => String::new(),
+                false => format!(", on average {}", setting.limits.join(", ")),
+            },
             match judged.contestants.len() - tuned {
                 0 => String::new(),
                 1 => "; one as it is written".to_owned(),

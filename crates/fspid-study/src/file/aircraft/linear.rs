@@ -11,6 +11,7 @@ use crate::units::FOOT_M;
 /// Velocities become metres in the states and in their rates; angles stay.
 pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData> {
     let equations = section.sections("equations");
+    check_states(report, equations)?;
     let names: Vec<&str> = equations.iter().filter_map(|row| row.text("state")).collect();
     let sizes: Vec<f64> = names.iter().map(|name| state_size(name)).collect();
     let (mut a, mut b) = (Vec::new(), Vec::new());
@@ -26,8 +27,10 @@ pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData
         a.push(scaled.collect::<Vec<_>>());
         b.push([row.number("by_elevator")? * rate]);
     }
+    let states: Vec<LinearState> = names.iter().filter_map(|name| state(name)).collect();
+    check_pitch(report, equations, &states)?;
     Some(LinearData {
-        states: names.iter().filter_map(|name| state(name)).collect(),
+        states,
         a: Matrix::from_rows(&a).ok()?,
         b: Matrix::from_rows(&b).ok()?,
         elevator: match section.text("elevator_sign") {
@@ -38,6 +41,61 @@ pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData
         condition: section.section("condition").and_then(condition),
         span_m: section.section("geometry").and_then(|part| quantity(part, "span")),
     })
+}
+
+/// Refuses a state that an earlier equation is for, in whatever unit, and w beside alpha, which is w over the airspeed.
+fn check_states(report: &mut Report, equations: &[Section]) -> Option<()> {
+    let before = report.count();
+    let of = |row: &Section| row.text("state").and_then(state);
+    for (index, row) in equations.iter().enumerate() {
+        let earlier = equations.get(..index).unwrap_or_default();
+        if let Some(twin) = earlier.iter().find(|twin| of(twin).map(axis) == of(row).map(axis)) {
+            let message = match of(twin) == of(row) {
+                true => format!("the state is that of {}", twin.path),
+                false => format!("w and alpha are one state, which is that of {}", twin.path),
+            };
+            report.value(row.at("state"), &row.path("state"), message, "one equation a state");
+        }
+    }
+    (report.count() == before).then_some(())
+}
+
+/// What a state is a measure of: the velocity down is one by the angle of attack as well.
+fn axis(state: LinearState) -> LinearState {
+    match state {
+        LinearState::Alpha => LinearState::DownwardVelocity,
+        other => other,
+    }
+}
+
+/// Refuses air that turns the nose at once: it acts by forces and moments, and the pitch angle follows the pitch rate.
+fn check_pitch(report: &mut Report, equations: &[Section], states: &[LinearState]) -> Option<()> {
+    let before = report.count();
+    let rows = || equations.iter().zip(states);
+    // Without any, no gust can act on the model.
+    let felt = rows().any(|(row, _)| row.given("by_pitch_gust"));
+    for (row, _) in rows().filter(|(_, state)| felt && **state == LinearState::Theta) {
+        if row.number("by_pitch_gust").is_some_and(|by_gust| by_gust != 0.0) {
+            let message = "the air turns the aircraft by its moment, and does not change the pitch angle at once";
+            let key = "by_pitch_gust";
+            report.value(row.at(key), &row.path(key), message, "0, or leave it out");
+        }
+        let moves = |(value, state): (&f64, &LinearState)| *value != 0.0 && is_by_air(*state);
+        if row.numbers("by_states")?.iter().zip(states).any(moves) {
+            let message = "a gust would change the pitch angle at once, without a moment";
+            let allowed = "0 by u, w and alpha, or no by_pitch_gust in any equation";
+            report.value(row.at("by_states"), &row.path("by_states"), message, allowed);
+        }
+    }
+    (report.count() == before).then_some(())
+}
+
+/// True for a motion through the air, which a gust changes.
+fn is_by_air(state: LinearState) -> bool {
+    matches!(
+        state,
+        LinearState::ForwardVelocity | LinearState::DownwardVelocity | LinearState::Alpha
+    )
 }
 
 /// Known as soon as one equation has it.

@@ -14,13 +14,14 @@ use crate::file::section::Section;
 
 /// The air that the file lets move, `None` for calm air around a linear plant.
 ///
+/// What gusts and turbulence are along the way depends on the airspeed, so that an assumed one flies in calm air alone.
 /// A nonlinear aircraft always has a course, since its heading is one.
 pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> Option<Weather> {
     let parts = ["wind", "turbulence"].map(|name| section.section(name));
     let parts = parts.into_iter().flatten().chain(section.sections("gust"));
     let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());
-    let Some(way) = flown.way.filter(|_| !silent) else {
-        parts.for_each(|part| refuse(report, part, flown.way.is_some()));
+    let Some(way) = flown.way.filter(|way| !silent && !way.assumed) else {
+        parts.for_each(|part| refuse(report, part, (flown.way.is_some(), silent)));
         return None;
     };
     let calm = parts.count() == 0;
@@ -34,15 +35,19 @@ pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> 
 }
 
 /// Of a plant, or of an aircraft whose file has too little on it.
-fn refuse(report: &mut Report, part: &Section, is_aircraft: bool) {
-    let (message, allowed) = match is_aircraft {
-        false => (
+fn refuse(report: &mut Report, part: &Section, (is_aircraft, silent): (bool, bool)) {
+    const ENOUGH: &str = "still air, or an aircraft file with a condition, equations of u and of w or alpha, and by_pitch_gust in them";
+    let (message, allowed) = match (is_aircraft, silent) {
+        (false, _) => (
             "a plant does not say how moving air acts on it",
             "an `aircraft` in place of the plant",
         ),
-        true => (
-            "the linear model of the aircraft does not say how moving air acts on it",
-            "still air, or an aircraft file with a condition, equations of u and of w or alpha, and by_pitch_gust in them",
+        (true, true) => {
+            ("the linear model of the aircraft does not say how moving air acts on it", ENOUGH)
+        }
+        (true, false) => (
+            "the aircraft's file has no condition, so that its speed through moving air would be an assumption",
+            ENOUGH,
         ),
     };
     report.value(part.place, &part.path, message, allowed);

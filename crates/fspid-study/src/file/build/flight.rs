@@ -53,6 +53,9 @@ pub(super) fn flown(
 fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
     let key = if part.given("file") { "file" } else { "name" };
     let data = read(report, files, part)?;
+    if part.text("model").is_none() {
+        files.fill(part.path("model"), default_model(&data));
+    }
     let span_m = match &data.model {
         ModelData::Derivatives(data) => data.geometry.span_m,
         ModelData::Forces(data) => data.geometry.span_m,
@@ -82,6 +85,14 @@ pub(super) fn way(part: &Section, target: TrimTarget, environment: &Environment)
         dynamic_pressure_pa: 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s,
         assumed: false,
     })
+}
+
+/// What flies where the scenario does not choose: the most that the data allow.
+fn default_model(data: &AircraftData) -> &'static str {
+    match data.model {
+        ModelData::Linear(_) => "linear",
+        ModelData::Derivatives(_) | ModelData::Forces(_) => "nonlinear",
+    }
 }
 
 fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {

@@ -96,7 +96,7 @@ fn assume(report: &mut Report, (part, key): (&Section, &str), target: TrimTarget
     let TrimTarget { airspeed_m_s, altitude_m, .. } = target;
     report.warn(format!(
         "{}: {:?} is a linear model without a flight condition; {airspeed_m_s:.1} m/s and {altitude_m:.0} m are an \
-         assumption, from which the dynamic pressure follows and nothing else",
+         assumption, from which the dynamic pressure follows and nothing else; it flies in calm air alone",
         part.path(key),
         part.text(key).unwrap_or_default(),
     ));

@@ -1,7 +1,7 @@
 //! The supervisor: rules that conclude labels, or numbers.
 
 use fspid_fuzzy::{
-    FuzzyError, LABEL_COUNT, NumberGrid, NumberTable, OutOfRange, Output, Supervisor,
+    Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, OutOfRange, Output, Supervisor,
 };
 
 use super::{data, judged};
@@ -31,8 +31,12 @@ pub(super) fn supervisor(
         let supervisor = judged(report, (part, "range"), supervisor);
         return supervisor.filter(|_| report.count() == before);
     }
+    if !part.given("defuzzifier") {
+        files.fill(part.path("defuzzifier"), "exact");
+    }
+    let defuzzifier = part.defuzzifier("defuzzifier").unwrap_or(Defuzzifier::Exact);
     let table = data::rules(report, files, part)?;
-    let supervisor = Supervisor::new(&table, range, part.defuzzifier("defuzzifier")?, policy);
+    let supervisor = Supervisor::new(&table, range, defuzzifier, policy);
     let key = match supervisor {
         Err(FuzzyError::SampleCount { .. }) => "defuzzifier",
         _ => "range",
@@ -123,39 +127,27 @@ fn of_system(
             return None;
         }
     };
-    let told = match numbers_of(loaded.system.parts()) {
+    let (told, allowed) = match numbers_of(loaded.system.parts()) {
         Ok(found) if !((found.range - range).abs() <= SAME_RANGE * range) => {
-            vec![format!("its sets reach to {:?}, and the range is {range:?}", found.range)]
+            let told = format!("its sets reach to {:?}, and the range is {range:?}", found.range);
+            (vec![told], format!("`range = {:?}`", found.range))
         }
-        Ok(found) => beyond(&found.grids, range),
-        Err(differences) => differences,
+        Ok(found) => match found.beyond(range) {
+            told if told.is_empty() => return NumberTable::new(found.grids_within(range)).ok(),
+            told => (told, within(range)),
+        },
+        Err(differences) => (differences, ALLOWED_SYSTEM.to_owned()),
     };
-    for difference in &told {
-        report.value(place, &path, difference.clone(), ALLOWED_SYSTEM);
+    // What is allowed is said once, behind the last of them.
+    let last = told.len().saturating_sub(1);
+    for (index, difference) in told.into_iter().enumerate() {
+        let allowed = if index == last { allowed.as_str() } else { "" };
+        report.value(place, &path, difference, allowed);
     }
-    let found = numbers_of(loaded.system.parts()).ok().filter(|_| told.is_empty())?;
-    NumberTable::new(found.grids).ok()
+    None
 }
 
 /// What a system must be to fly.
 const ALLOWED_SYSTEM: &str = "inputs error and change with seven triangles each, from neighbour to neighbour and evenly over \
      -range to range, outputs delta_kp, delta_ki and delta_kd, and 49 rules with numbers of their own, \
      joined by products and a weighted average";
-
-/// A line for each grid with numbers beyond the range.
-fn beyond(grids: &[NumberGrid<f64>; 3], range: f64) -> Vec<String> {
-    let largest = |grid: &NumberGrid<f64>| {
-        grid.as_flattened().iter().fold(0.0, |most: f64, number| most.max(number.abs()))
-    };
-    let line = |(output, grid): (Output, &NumberGrid<f64>)| {
-        let largest = largest(grid);
-        let told = || {
-            format!(
-                "{} has numbers up to {largest:?}, beyond the range of {range:?}",
-                output.name()
-            )
-        };
-        (largest > range).then(told)
-    };
-    Output::ALL.into_iter().zip(grids).filter_map(line).collect()
-}

@@ -2,7 +2,7 @@
 
 mod choice;
 mod grid;
-mod number_grid;
+pub(crate) mod number_grid;
 mod value;
 
 use crate::file::document::{Item, Member, Value};

@@ -7,12 +7,12 @@ use crate::file::document::{Item, Value};
 use crate::file::report::{Place, Report};
 use crate::file::spec::{Kind, Range};
 
-pub(super) const ALLOWED: &str =
+pub(crate) const ALLOWED: &str =
     "seven lists of seven numbers, one list for each error from NB to PB";
 const ROW: &str = "seven numbers, one for each change from NB to PB";
 
 /// The cells row by row, each with its place; every problem in them is reported.
-pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Vec<(f64, Place)>> {
+pub(crate) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Vec<(f64, Place)>> {
     let Value::Array(rows) = &item.value else {
         return wrong_type(report, item, path, &Kind::NumberGrid);
     };

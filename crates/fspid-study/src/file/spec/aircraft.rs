@@ -1,5 +1,6 @@
 //! Aircraft files: stability derivatives, a linear model or tables, in the units of their source.
 
+use super::flight::{ALTITUDE, ALTITUDE_FT};
 use super::scenario::ELEVATOR_SIGNS;
 use super::tables::TABLES;
 use super::{
@@ -54,7 +55,7 @@ const LINEAR: &[Key] = &[
     optional(
         "condition",
         Kind::Table(&CONDITION),
-        "Where the model holds; without it a scenario's airspeed and altitude are assumptions.",
+        "Where the model holds; without it a scenario's airspeed and altitude are assumptions, and the air is calm.",
     ),
     optional("geometry", Kind::Table(&SPAN), "The wing, on which turbulence depends."),
     required(
@@ -69,8 +70,16 @@ static CONDITION: Table = Table {
     groups: &[&[
         optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
         optional("airspeed_m_s", positive("m/s"), "True airspeed."),
-        optional("altitude_ft", finite("ft"), "Geopotential altitude."),
-        optional("altitude_m", finite("m"), "Geopotential altitude."),
+        optional(
+            "altitude_ft",
+            Kind::Number { unit: "ft", range: ALTITUDE_FT },
+            "Geopotential altitude.",
+        ),
+        optional(
+            "altitude_m",
+            Kind::Number { unit: "m", range: ALTITUDE },
+            "Geopotential altitude.",
+        ),
         optional("mach", positive(""), "Mach number."),
     ]],
     choices: &[one_of!("airspeed_ft_s", "airspeed_m_s"), one_of!("altitude_ft", "altitude_m")],
@@ -242,7 +251,7 @@ static EQUATION: Table = plain(
         optional(
             "by_pitch_gust",
             finite(""),
-            "By the pitch rate of the air in rad/s: 0 if left out; known if any equation has it.",
+            "By the pitch rate of the air in rad/s: 0 if left out, as it is for theta_rad; known if any equation has it.",
         ),
     ]],
 );

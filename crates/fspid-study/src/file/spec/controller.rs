@@ -267,11 +267,10 @@ const SUPERVISOR_KEYS: &[Key] = &[
         Kind::Number { unit: "", range: Range::Between(1e-100, 1e100) },
         "Half range of inputs and outputs.",
     ),
-    defaulted(
+    optional(
         "defuzzifier",
         Kind::Defuzzifier,
-        Default::Word("exact"),
-        "How the answer becomes a number; with `table` only.",
+        "How the answer becomes a number; with `table` only, where it is \"exact\" if left out.",
     ),
     defaulted(
         "out_of_range",

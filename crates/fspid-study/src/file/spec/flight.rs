@@ -15,9 +15,9 @@ const THRUST_LAWS: [&str; 2] = ["constant", "with-speed"];
 const ATMOSPHERES: [&str; 2] = ["standard", "reference"];
 
 /// The standard atmosphere.
-const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
+pub(super) const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
 /// The same in feet.
-const ALTITUDE_FT: Range = Range::Between(-16_404.0, 278_385.0);
+pub(super) const ALTITUDE_FT: Range = Range::Between(-16_404.0, 278_385.0);
 
 pub(super) static AIRCRAFT: Table = Table {
     doc: "An aircraft from its data, in trimmed level flight; pitch counts from the trim.",
@@ -40,7 +40,7 @@ pub(super) static AIRCRAFT: Table = Table {
         optional(
             "model",
             Kind::Word(&MODELS),
-            "All six degrees of freedom, or the linear pitch model at the trim; if left out, what the data allow most.",
+            "All six degrees of freedom, or the linear pitch model at the trim; if left out \"nonlinear\", for an aircraft of which only a linear model is known \"linear\".",
         ),
         defaulted(
             "drag",

@@ -40,15 +40,14 @@ pub(super) fn cases(
     loops.iter().map(of_plant).collect()
 }
 
-/// The least of the frozen-gain map and the worst gains between its points.
+/// The least of the frozen-gain map, the cells of numbers, and the worst gains between them.
 fn mapped(
     plant: &PlantEvidence,
     map: &FrozenMap,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
-    let points = || map.points.iter().chain([&map.worst]);
     let of = |point: &FrozenPoint| case(point.margins, requirement, place(plant, point));
-    let unstable = points().filter_map(|point| match point.margins {
+    let unstable = map.all().filter_map(|point| match point.margins {
         Err(Absent::Unstable { spectral_radius }) => Some((spectral_radius, point)),
         _ => None,
     });
@@ -56,7 +55,7 @@ fn mapped(
     if let Some((_, point)) = unstable.max_by(|(one, _), (other, _)| one.total_cmp(other)) {
         return of(point);
     }
-    let cases = points().map(of).collect::<Result<Vec<_>, _>>()?;
+    let cases = map.all().map(of).collect::<Result<Vec<_>, _>>()?;
     let least = cases.into_iter().min_by(|one, other| one.value.total_cmp(&other.value));
     least.ok_or(NotEvaluated::Absent(Absent::NotFinite))
 }
