@@ -174,6 +174,8 @@ fn flights_allocate_nothing_while_they_fly() {
             let studies = [study];
             allocation_counter::measure(|| drop(engine::fly(&studies))).count_total
         };
+        // The first flight of a thread takes the room for its random numbers.
+        count(1.0);
         assert_eq!(count(8.0), count(4.0));
     }
 }
