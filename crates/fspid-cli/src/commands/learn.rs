@@ -8,7 +8,7 @@ use super::{Format, Loading, json_text};
 use crate::exit::{Failure, note, print};
 use fspid_study::fuzzy_system::{self, NUMBER_GRID, Parts, Target};
 use fspid_study::output;
-use fspid_tune::anfis::{Data, Order, Plan, learn, sugeno};
+use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
 
 /// Learn a fuzzy system from data: what rules conclude by least squares, where their sets lie by gradient descent (ANFIS).
 ///
@@ -109,6 +109,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = fuzzy_system::write_as(&learned.parts, &arguments.out, Target::default());
     output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
     note(format_args!("wrote {}", arguments.out.display()));
+    tell(arguments, &learned)
+}
+
+/// What was learned, and whether it flies.
+fn tell(arguments: &Arguments, learned: &Learned) -> Result<(), Failure> {
     let numbers = fuzzy_system::numbers_of(&learned.parts);
     if let (true, Err(differences)) = (arguments.system == NUMBER_GRID, &numbers) {
         let first = differences.first().map_or("", String::as_str);

@@ -87,7 +87,7 @@ fn schema() -> Result<Schema, TuneError> {
         column("unstable", Kind::Boolean).meaning(
             "the loop is unstable at rest, with the gains that it has there; such a flight counts as failed",
         ),
-        column("failed", Kind::Boolean).meaning("it is lost or breaks a requirement"),
+        column("failed", Kind::Boolean).meaning("it is lost, breaks a requirement, or is of a loop that is unstable at rest"),
         column("reasons", Kind::Text).meaning("why it failed or has no cost"),
         column("cost", Kind::Float)
             .meaning("what the objectives of the tuning cost; empty for a lost flight"),
