@@ -128,10 +128,7 @@ fn forces(
 }
 
 fn gearing(engine: &Section) -> Option<Gearing> {
-    Some(match engine.text("gearing")? {
-        "stevens-lewis" => Gearing::StevensLewis,
-        _ => Gearing::Proportional,
-    })
+    engine.word("gearing")
 }
 
 /// A part of the aircraft, or a problem at the file that does not make it.
