@@ -78,9 +78,13 @@ fn write_below(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
 fn summary(out: &Path, reproduction: &Reproduction) -> String {
     let counts =
         Status::ALL.map(|status| format!("{} {}", reproduction.count(status), status.name()));
+    let (numbers, sentences) = (reproduction.claims.len(), reproduction.statements.len());
+    let [own, shared] = reproduction.numbers_reproduced();
     format!(
-        "{} claims: {}\nreport: {}\n",
-        reproduction.statuses().count(),
+        "{} claims, {numbers} numbers and {sentences} sentences, with parameters of each figure's own: {}\n\
+         of the {numbers} numbers {own} come out so, and {shared} with one set of parameters for all figures of a range\n\
+         report: {}\n",
+        numbers + sentences,
         counts.join(", "),
         out.join("report.html").display()
     )
