@@ -252,7 +252,11 @@ fn a_controller_that_is_better_everywhere_wins_significantly() {
     assert_eq!(found.typical.expect("ranks").p, 2.0 / 256.0);
     let [_, upper] = found.ratio.interval.expect("an interval");
     assert!(found.p_adjusted < 0.05 && upper < 1.0, "{found:?}");
-    assert!(outcome.text().starts_with("good wins:"), "{}", outcome.text());
+    assert!(
+        outcome.text().starts_with("good wins, as these designs are written:"),
+        "{}",
+        outcome.text()
+    );
 }
 
 /// Used to end with "wins, p = 0.0004" after one tuning each, where three seeds name nobody.
@@ -346,7 +350,9 @@ fn flights_that_are_lost_in_many_cases_are_significantly_worse() {
     // Six cases of one sign: 2 in 64.
     assert_eq!((found.lost.p, found.is_sure), (0.03125, true));
     assert!(
-        outcome.text().starts_with("calm wins: it loses 0 of 14 flights"),
+        outcome
+            .text()
+            .starts_with("calm wins, as these designs are written: it loses 0 of 14 flights"),
         "{}",
         outcome.text()
     );

@@ -220,6 +220,10 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
         return Headline { is_decided: false, word, winner: None, why };
     }
     let word = match is_decided {
+        // Nothing is known of how the designs were found.
+        true if !outcome.judged.contestants.iter().any(|it| it.is_tuned) => {
+            format!("{winner} wins, as these designs are written")
+        }
         true => format!("{winner} wins"),
         false => format!("{winner} is first, and nobody wins"),
     };
