@@ -13,6 +13,11 @@ use crate::file::{self, aircraft_names};
 /// # Errors
 /// [`AircraftFailure`]: a name that is not known, a file that cannot be read or is wrong.
 pub fn load(name: &str) -> Result<AircraftData, AircraftFailure> {
+    load_at(name, None)
+}
+
+/// As [`load`], an aircraft of tables with its centre of gravity at a share of its chord.
+pub(super) fn load_at(name: &str, cg_mac: Option<f64>) -> Result<AircraftData, AircraftFailure> {
     if let Some(data) = file::aircraft(name) {
         return Ok(data);
     }
@@ -22,7 +27,7 @@ pub fn load(name: &str) -> Result<AircraftData, AircraftFailure> {
         return Err(AircraftFailure::unknown(name, &aircraft_names()));
     }
     let text = text(path)?;
-    file::parse_aircraft(&text, name, path.parent()).map_err(AircraftFailure::Problems)
+    file::parse_aircraft_at(&text, name, (path.parent(), cg_mac)).map_err(AircraftFailure::Problems)
 }
 
 /// The text of a file.

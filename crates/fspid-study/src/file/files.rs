@@ -21,6 +21,8 @@ pub(crate) struct Files<'a> {
     filled: Vec<(String, &'static str)>,
     /// Changes that wait for the file that they are in, and whether it came.
     changes: Vec<(Change, bool)>,
+    /// What files say that were changed, before the changes, by the path of the key that names them.
+    written: Vec<(String, Item)>,
     /// What was read, by the path of the key that names it; kept if asked for.
     documents: Option<Vec<(String, Item)>>,
 }
@@ -34,6 +36,7 @@ impl<'a> Files<'a> {
             referred: Vec::new(),
             filled: Vec::new(),
             changes: Vec::new(),
+            written: Vec::new(),
             documents: None,
         }
     }
@@ -66,6 +69,9 @@ impl<'a> Files<'a> {
 
     /// Changes what the file says that the key at `path` refers to; every file passes here.
     pub(crate) fn apply_changes(&mut self, report: &mut Report, path: &str, document: &mut Item) {
+        if self.changes.iter().any(|(change, _)| change.path == path) {
+            self.written.push((path.to_owned(), document.clone()));
+        }
         for (change, used) in self.changes.iter_mut().filter(|(change, _)| change.path == path) {
             change.apply(report, document);
             *used = true;
@@ -73,6 +79,12 @@ impl<'a> Files<'a> {
         if let Some(documents) = &mut self.documents {
             documents.push((path.to_owned(), document.clone()));
         }
+    }
+
+    /// What the file says that the key at `path` names, without the changes; none where there are no changes.
+    pub(crate) fn written(&self, path: &str) -> Option<&Item> {
+        let (_, document) = self.written.iter().find(|(at, _)| at == path)?;
+        Some(document)
     }
 
     /// Keeps what is read from here on.

@@ -50,6 +50,7 @@ use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
+pub(crate) use aircraft::parse_aircraft_at;
 pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
 pub use preset::{

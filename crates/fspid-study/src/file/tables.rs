@@ -28,11 +28,12 @@ pub(super) fn tables(
     report: &mut Report,
     files: &mut Files<'_>,
     (section, place): (&Section, &Path),
+    cg_mac: Option<f64>,
 ) -> Option<ForceData> {
     let part = section.section("tables")?;
     let [aerodynamics, inertia, propulsion] = ["aerodynamics", "inertia", "propulsion"]
         .map(|key| model(report, files, (part, key), place));
-    let body = inertia.and_then(|inertia| body(report, section, &inertia));
+    let body = inertia.and_then(|inertia| body(report, section, (&inertia, cg_mac)));
     // Without a body the forces are looked at all the same, so that all problems are told at once.
     let centre_of_mass_m = body.map_or(Vector3::ZERO, |body| body.centre_of_mass_m);
     let forces = forces(report, section, [aerodynamics?, propulsion?], centre_of_mass_m)?;
@@ -103,8 +104,13 @@ fn offset(text: &str, place: fspid_daveml::Place) -> usize {
     begin + column.map(char::len_utf8).sum::<usize>()
 }
 
-fn body(report: &mut Report, section: &Section, inertia: &Model) -> Option<Body> {
-    let place_pct = section.section("body")?.number("centre_of_mass_pct");
+fn body(
+    report: &mut Report,
+    section: &Section,
+    (inertia, cg_mac): (&Model, Option<f64>),
+) -> Option<Body> {
+    let loaded_pct = cg_mac.map(|share| 100.0 * share);
+    let place_pct = loaded_pct.or(section.section("body")?.number("centre_of_mass_pct"));
     let engine_kg_m2_s = quantity(section.section("engine")?, "angular_momentum")?;
     fitting(report, (section, "inertia"), Body::placed(inertia, place_pct, engine_kg_m2_s))
 }

@@ -7,8 +7,8 @@ use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
-use super::{data, judged, linear_aircraft, rad};
-use crate::file::aircraft::{aircraft_data, aircraft_text, quantity};
+use super::{data, judged, linear_aircraft, loading, rad};
+use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
@@ -57,6 +57,7 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     if part.text("model").is_none() {
         files.fill(part.path("model"), model.name());
     }
+    let data = loading::loaded(report, (part, key), data)?;
     let span_m = match &data.model {
         ModelData::Derivatives(data) => data.geometry.span_m,
         ModelData::Forces(data) => data.geometry.span_m,
@@ -111,7 +112,8 @@ fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Ai
         }
     };
     let place = place.unwrap_or(Path::new(""));
-    let aircraft = aircraft_data(report, files, (&section, place));
+    let given = Given::of(files.written(&part.path(key)), part.number("cg_mac"));
+    let aircraft = aircraft_data(report, files, (&section, place), given);
     files.keep(part.path(key), &AIRCRAFT_FILE, section);
     aircraft
 }

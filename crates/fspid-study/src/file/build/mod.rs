@@ -8,6 +8,7 @@ pub(crate) mod data;
 mod derived;
 mod flight;
 mod linear_aircraft;
+mod loading;
 mod lqi;
 mod schedule;
 mod sensor;

@@ -2,7 +2,7 @@
 
 use fspid_sim::ElevatorSign;
 
-use super::flight::{ALTITUDE, ALTITUDE_FT};
+use super::flight::{ALTITUDE, ALTITUDE_FT, CG_MAC};
 use super::tables::TABLES;
 use super::word::{Word, words};
 use super::{
@@ -137,6 +137,11 @@ static REFERENCE: Table = Table {
         optional("gravity_ft_s2", positive("ft/s2"), "With which masses are made of weights."),
         optional("gravity_m_s2", positive("m/s2"), "With which masses are made of weights."),
         required("alpha_deg", DEG, "Angle of attack of the fuselage."),
+        optional(
+            "cg_mac",
+            CG_MAC,
+            "Centre of gravity of the derivatives behind the leading edge of the mean chord, as a share of it; without it a scenario cannot move it.",
+        ),
     ]],
     choices: &[
         one_of!("airspeed_ft_s", "airspeed_m_s"),
@@ -166,7 +171,7 @@ static GEOMETRY: Table = Table {
 };
 
 static MASS: Table = Table {
-    doc: "Weight, and moments of inertia about the axes of the fuselage.",
+    doc: "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
     groups: &[&[
         optional("weight_lbf", positive("lbf"), "Weight."),
         optional("weight_n", positive("N"), "Weight."),
