@@ -1,10 +1,9 @@
 //! `fspid explain`: why a fuzzy system answers as it does.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::{Format, Loading, drawings, json_text};
+use crate::argument::{Drawings, Source};
 use crate::exit::{Failure, print};
 use fspid_study::fuzzy_system;
 
@@ -12,7 +11,7 @@ use fspid_study::fuzzy_system;
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: String,
+    system: Source,
     #[command(flatten)]
     loading: Loading,
     /// The value of an input; once for each input.
@@ -23,7 +22,7 @@ pub(crate) struct Arguments {
     why_not: Option<String>,
     /// Draw the joined sets with the part of each rule: a file, or a folder for several outputs.
     #[arg(long, value_name = "FILE.svg or FOLDER")]
-    svg: Option<PathBuf>,
+    svg: Option<Drawings>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,

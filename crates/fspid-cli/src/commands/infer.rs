@@ -1,11 +1,12 @@
 //! `fspid infer`: ask a fuzzy system, or the supervisor of the paper.
 
 use std::io::{self, BufReader, BufWriter};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{ArgGroup, Args};
 
 use super::{Format, Loading, json_text};
+use crate::argument::{InFile, Source};
 use crate::exit::{Failure, print};
 use fspid_study::fuzzy_system::{self, SystemTable};
 use fspid_study::inference::{self, Question, SupervisorTable};
@@ -18,7 +19,7 @@ use fspid_study::rows::{self, RowsError, Table};
 #[command(group = ArgGroup::new("inputs").required(true).args(["error", "points", "input"]))]
 pub(crate) struct Arguments {
     /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: Option<String>,
+    system: Option<Source>,
     #[command(flatten)]
     loading: Loading,
     /// The value of an input; once for each input.
@@ -30,10 +31,10 @@ pub(crate) struct Arguments {
     /// is checked first, and nothing is written if one of its rows is wrong. Standard input is
     /// answered as it comes, up to the first row that is wrong.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["error", "change", "input", "format"])]
-    points: Option<PathBuf>,
+    points: Option<InFile>,
     /// Without SYSTEM: the rule table, `printed`, `mirrored`, or a file.
     #[arg(long, default_value = "printed", conflicts_with = "system")]
-    table: String,
+    table: Source,
     /// Without SYSTEM: the error, in the supervisor's units.
     #[arg(long, allow_negative_numbers = true, requires = "change", conflicts_with = "system")]
     error: Option<f64>,

@@ -25,7 +25,7 @@ pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};
 
-use crate::exit::{Failure, note};
+use crate::exit::{Failure, note, print};
 use fspid_study::fuzzy_system::{self, Dialect, Options, System};
 
 /// How a fuzzy system answers, where its file shall not decide.
@@ -128,6 +128,20 @@ pub(crate) enum Format {
     Text,
     /// For programs.
     Json,
+}
+
+impl Format {
+    /// Prints the form that was asked for.
+    pub(crate) fn print(
+        self,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> serde_json::Value,
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Text => print(&text()),
+            Self::Json => print(&json_text(&json())),
+        }
+    }
 }
 
 /// Pretty JSON with a line end.
