@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use super::{Format, Loading, drawings, json_text};
-use crate::argument::{Drawings, OutFile, Source, written};
+use super::{Format, Which, drawings, json_text};
+use crate::argument::{Drawings, OutFile, written};
 use crate::exit::{Failure, print, wrote};
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
@@ -13,10 +13,8 @@ use fspid_study::output;
 /// Without --out the drawing of the one output goes to standard output.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: Source,
     #[command(flatten)]
-    loading: Loading,
+    which: Which,
     /// The input to the right; the first one if left out.
     #[arg(long, value_name = "NAME")]
     x: Option<String>,
@@ -24,7 +22,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     y: Option<String>,
     /// Where another input stays; the middle of its range if left out.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     fix: Vec<String>,
     /// The range over which an input is drawn; that of the file if left out.
     #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
@@ -47,7 +45,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let system = arguments.loading.load(&arguments.system)?;
+    let system = arguments.which.load()?;
     let question = SliceQuestion {
         x: arguments.x.as_deref(),
         y: arguments.y.as_deref(),

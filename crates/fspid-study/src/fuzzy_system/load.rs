@@ -142,6 +142,17 @@ pub fn needs_range(name: &str) -> bool {
     name == NUMBER_GRID || rule_table_names().contains(&name)
 }
 
+/// True for a text with a rule table alone: three grids, and neither a fuzzy system nor a scenario.
+pub(crate) fn is_rule_table(text: &str) -> bool {
+    let has = |key: &str| {
+        let lines = text.lines().map(str::trim_start);
+        let mut values = lines.filter_map(|line| line.strip_prefix(key));
+        values.any(|rest| rest.trim_start().starts_with('='))
+    };
+    let has_grids = ["delta_kp", "delta_ki", "delta_kd"].into_iter().all(has);
+    has_grids && !toml_file::is_of_this_kind(text) && !scenario::is_one(text)
+}
+
 /// True for a file with a scenario.
 #[must_use]
 pub fn is_scenario(name: &str) -> bool {
@@ -160,6 +171,9 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     }
     let path = Path::new(name);
     let format = Format::of(path).ok_or_else(|| LoadError::UnknownFormat { name: name.into() })?;
+    if format == Format::Toml && text(path).is_ok_and(|text| is_rule_table(&text)) {
+        return shipped(name, options);
+    }
     let mut misplaced = Vec::new();
     if options.range.is_some() {
         misplaced.push("--range goes with a shipped rule table; a file says its own ranges".into());
