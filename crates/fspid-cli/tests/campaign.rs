@@ -101,7 +101,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (vec!["campaign", "run", "pitch.toml", "--out", "here"], "another campaign is there"),
         (
             vec!["campaign", "search", "pitch.toml", "--measure", "overshot"],
-            "the measure is \"overshot\"",
+            "there is no measure `overshot`; did you mean",
         ),
         (vec!["campaign", "run", "none.toml", "--out", "x"], "none.toml: cannot be read"),
     ] {

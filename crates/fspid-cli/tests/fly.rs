@@ -196,7 +196,7 @@ fn no_controller_is_guessed() {
     let several = told(&["fly", "pitch.toml"]);
     assert!(several.contains("several controllers; choose one with --controller: PID, FSPID"));
     let unknown = told(&["fly", "pitch.toml", "--controller", "FSIPD"]);
-    assert!(unknown.contains("no controller `FSIPD`; did you mean `FSPID`? known are PID, FSPID"));
+    assert!(unknown.contains("no controller `FSIPD`; did you mean `FSPID`? Known are PID, FSPID"));
     assert!(told(&["fly", "nowhere.toml"]).contains("nowhere.toml: cannot be read"));
 }
 

@@ -57,7 +57,8 @@ pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use problem::{Problem, Problems};
+pub use files::unread_in_words;
+pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
