@@ -11,6 +11,7 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod bearing;
 mod certificate;
 pub mod check;
 mod description;
@@ -18,8 +19,10 @@ pub mod gain_set;
 mod limits;
 mod prove;
 mod recheck;
+pub mod sizes;
 pub mod solve;
 
+pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;

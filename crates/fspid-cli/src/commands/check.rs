@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::exit::{Failure, note, print};
-use fspid_study::file::{self, Template};
+use fspid_study::file::{self, Study, Template};
 use fspid_study::fuzzy_system;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
+///
+/// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
+/// with what the scenario flies.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
@@ -44,7 +47,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         scenario.timing.rows(),
         scenario.timing.dt_s(),
         study.digest,
-    ))
+    ))?;
+    beside(arguments, &study)
+}
+
+/// Verifies the certificate beside a scenario, if there is one.
+fn beside(arguments: &Arguments, study: &Study) -> Result<(), Failure> {
+    let path = arguments.file.with_extension("certificate.json");
+    if !path.is_file() {
+        return Ok(());
+    }
+    let mut checked = super::certify::read(&path)?;
+    checked.compare(study).map_err(Failure::input)?;
+    print(&format!("{}\n{}", path.display(), checked.text()))?;
+    if checked.holds() {
+        return Ok(());
+    }
+    let unmet = super::certify::unmet(checked.answer());
+    // With --set something else flies than what stands in the file, as was asked for.
+    if !arguments.overrides.is_empty() {
+        note(format_args!("warning: {}: {unmet}", path.display()));
+        return Ok(());
+    }
+    Err(Failure::not_met(format_args!("{}: {unmet}", path.display())))
 }
 
 fn system(path: &Path) -> Result<(), Failure> {

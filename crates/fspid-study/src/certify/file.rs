@@ -1,17 +1,24 @@
 //! Certificates as files: JSON that is complete in itself, read back bit for bit.
+//!
+//! A file is asked in this order, so that a short text that names much costs nothing: how long it is, whether
+//! it is JSON, the shape of every key, and only then what its numbers make.
 
 use fspid_lti::Matrix;
-use fspid_proof::{BoundedRate, Certificate, Claim, LoopDescription};
+use fspid_proof::{BoundedRate, Certificate, Claim};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::NoCertificate;
 use super::controller_file::ControllerFile;
+use super::digest::digest;
+use super::json_text;
 use super::loop_file::LoopFile;
+use super::shape::{self, CERTIFICATE, Wrong};
 
 /// First words of every certificate.
 const KIND: &str = "fspid stability certificate";
 /// Version of the shape.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// Longest certificate that is read, bytes.
 pub(super) const MOST_BYTES: usize = 10 << 20;
 
@@ -34,6 +41,8 @@ pub struct Origin {
 struct CertificateFile {
     kind: String,
     schema: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    content_digest: Option<String>,
     origin: Origin,
     #[serde(rename = "loop")]
     plant: LoopFile,
@@ -81,12 +90,37 @@ enum ClaimFile {
     },
 }
 
+/// Whether a certificate is as it was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Seal {
+    /// Its digest is that of its content.
+    Whole,
+    /// It has no digest.
+    Missing,
+    /// Something was changed after it was written: any key, names and digests of the origin as well.
+    Broken {
+        /// The digest that it states.
+        stated: String,
+        /// The digest of its content.
+        content: String,
+    },
+}
+
+/// A certificate's file, read and not yet checked.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    pub(super) certificate: Certificate,
+    pub(super) origin: Origin,
+    pub(super) seal: Seal,
+}
+
 /// A certificate as text.
 #[must_use]
 pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
-    let file = CertificateFile {
+    let mut file = CertificateFile {
         kind: KIND.to_owned(),
         schema: SCHEMA,
+        content_digest: None,
         origin: origin.clone(),
         plant: LoopFile::of(&certificate.description),
         controller: ControllerFile::of(&certificate.description.controller),
@@ -95,36 +129,98 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         claim: claim_file(&certificate.claim),
         level: certificate.level,
     };
+    file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
     format!("{value:#}\n")
 }
 
-/// Reads a certificate.
+/// Reads a certificate; whether its claim holds is another question.
 ///
 /// # Errors
-/// What is wrong, in a sentence.
-pub fn from_text(text: &str) -> Result<(Certificate, Origin), String> {
+/// Everything that is wrong with the text.
+pub fn from_text(text: &str) -> Result<(Certificate, Origin), NoCertificate> {
+    read(text).map(|read| (read.certificate, read.origin))
+}
+
+pub(super) fn read(text: &str) -> Result<Read, NoCertificate> {
+    let whole = |what: String| NoCertificate::of(Wrong { path: String::new(), what });
     if text.len() > MOST_BYTES {
-        return Err(format!("longer than {MOST_BYTES} bytes"));
+        return Err(whole(format!("longer than {MOST_BYTES} bytes")));
     }
-    let value: Value = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+    let (value, twice) =
+        json_text::read(text).map_err(|error| whole(format!("no JSON: {error}")))?;
     if value.get("kind").and_then(Value::as_str) != Some(KIND) {
-        return Err(format!("no certificate: `kind` is not \"{KIND}\""));
+        return Err(whole(format!("no certificate: `kind` is not \"{KIND}\"")));
     }
     if value.get("schema").and_then(Value::as_u64) != Some(u64::from(SCHEMA)) {
-        return Err(format!("`schema` is {}; this program reads {SCHEMA}", value["schema"]));
+        return Err(whole(other_schema(value.get("schema"))));
     }
-    let file: CertificateFile = serde_json::from_value(value).map_err(|error| error.to_string())?;
-    let controller = file.controller.build(file.plant.sample_period_s)?;
-    let description: LoopDescription = file.plant.build(controller)?;
-    let certificate = Certificate {
-        description,
-        output_factor: file.output_factor,
-        divisions: file.divisions,
-        claim: file.claim.build()?,
-        level: file.level,
+    let problems = shape::problems(&CERTIFICATE, &value, &twice);
+    if !problems.is_empty() {
+        return Err(NoCertificate { problems });
+    }
+    let file: CertificateFile =
+        serde_json::from_value(value).map_err(|error| whole(error.to_string()))?;
+    file.build()
+}
+
+fn other_schema(found: Option<&Value>) -> String {
+    let found = found.filter(|value| value.is_number()).map(Value::to_string);
+    let found = found.unwrap_or_else(|| "no number".to_owned());
+    let older = if found == "1" {
+        "; certificates of schema 1 did not say what they cover: certify the scenario anew"
+    } else {
+        ""
     };
-    Ok((certificate, file.origin))
+    format!("`schema` is {found}; this program reads {SCHEMA}{older}")
+}
+
+impl CertificateFile {
+    /// The digest of everything that the file says but that digest.
+    fn content(&self) -> String {
+        let value = serde_json::to_value(self).unwrap_or(Value::Null);
+        digest(&value, "content_digest")
+    }
+
+    fn seal(&self) -> Seal {
+        let content = self.content();
+        match &self.content_digest {
+            None => Seal::Missing,
+            Some(stated) if *stated == content => Seal::Whole,
+            Some(stated) => Seal::Broken { stated: stated.clone(), content },
+        }
+    }
+
+    /// The certificate, or everything that does not fit.
+    fn build(self) -> Result<Read, NoCertificate> {
+        let seal = self.seal();
+        let mut problems = Vec::new();
+        let dt_s = self.plant.sample_period_s;
+        let controller = kept(&mut problems, "controller", self.controller.build(dt_s));
+        let parts = self.plant.parts();
+        let plant = parts.map_err(|wrong| problems.extend(wrong)).ok();
+        let claim = kept(&mut problems, "claim", self.claim.build());
+        let description = controller.zip(plant).and_then(|(controller, plant)| {
+            let described = plant.with(controller).provable();
+            kept(&mut problems, "loop", described.map_err(|error| error.to_string()))
+        });
+        let Some((description, claim)) = description.zip(claim) else {
+            return Err(NoCertificate { problems });
+        };
+        let certificate = Certificate {
+            description,
+            output_factor: self.output_factor,
+            divisions: self.divisions,
+            claim,
+            level: self.level,
+        };
+        Ok(Read { certificate, origin: self.origin, seal })
+    }
+}
+
+/// What was built; a problem is kept with its path.
+fn kept<T>(problems: &mut Vec<Wrong>, path: &str, built: Result<T, String>) -> Option<T> {
+    built.map_err(|what| problems.push(Wrong { path: path.to_owned(), what })).ok()
 }
 
 fn rows(matrix: &Matrix) -> Rows {

@@ -3,17 +3,19 @@
 //! Each controller is certified with each plant that lasts. A certificate is a file that is complete in
 //! itself; [`check_text`] proves its claim anew and trusts nothing in it but its numbers.
 
+mod against;
+mod checked;
+mod checked_text;
 mod controller_file;
+mod digest;
 mod file;
 mod json;
+mod json_text;
 mod loop_file;
+mod shape;
 mod text;
 
-use std::fmt;
-
-use fspid_proof::{
-    Certificate, Doubt, LoopDescription, NotProvable, Outcome, Rechecked, Verdict, certify,
-};
+use fspid_proof::{Certificate, LoopDescription, NotProvable, Outcome, Verdict, certify};
 use fspid_sim::SimError;
 
 use crate::analysis::lasting_plants;
@@ -21,7 +23,10 @@ use crate::file::Study;
 
 pub use fspid_proof::Effort;
 
-pub use file::{Origin, from_text, to_text};
+pub use against::{Comparison, Difference};
+pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use file::{Origin, Seal, from_text, to_text};
+pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.
 #[derive(Clone, Debug)]
@@ -130,40 +135,4 @@ fn left_out(study: &Study, plants: usize) -> Vec<String> {
     }
     sentences.push("Rounding in the controller's own arithmetic is left out.");
     sentences.into_iter().map(str::to_owned).collect()
-}
-
-/// A certificate that was checked.
-#[derive(Clone, Debug)]
-pub struct CheckedFile {
-    /// The certificate.
-    pub certificate: Certificate,
-    /// Where it says that it comes from.
-    pub origin: Origin,
-    /// What the re-check found.
-    pub result: Result<Rechecked, Doubt>,
-}
-
-/// Why a text is no certificate.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoCertificate {
-    /// The reason.
-    pub reason: String,
-}
-
-impl fmt::Display for NoCertificate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for NoCertificate {}
-
-/// Proves the claim of a certificate anew.
-///
-/// # Errors
-/// [`NoCertificate`] for a text that is none; a claim that does not hold is a result.
-pub fn check_text(text: &str) -> Result<CheckedFile, NoCertificate> {
-    let (certificate, origin) = from_text(text).map_err(|reason| NoCertificate { reason })?;
-    let result = certificate.check();
-    Ok(CheckedFile { certificate, origin, result })
 }
