@@ -11,6 +11,7 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod asked;
 mod certificate;
 pub mod check;
 mod description;
@@ -18,6 +19,7 @@ pub mod gain_set;
 mod limits;
 mod prove;
 mod recheck;
+mod scope;
 pub mod solve;
 
 pub use certificate::{BoundedRate, Certificate, Claim};
@@ -25,3 +27,4 @@ pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};
 pub use recheck::{Doubt, Kept, Rechecked};
+pub use scope::{Asked, LeftOut, Range, Scope};

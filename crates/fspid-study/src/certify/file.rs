@@ -1,7 +1,7 @@
 //! Certificates as files: JSON that is complete in itself, read back bit for bit.
 
 use fspid_lti::Matrix;
-use fspid_proof::{BoundedRate, Certificate, Claim, LoopDescription};
+use fspid_proof::{BoundedRate, Certificate, Claim, LeftOut, LoopDescription, Range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use super::loop_file::LoopFile;
 /// First words of every certificate.
 const KIND: &str = "fspid stability certificate";
 /// Version of the shape.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 /// Longest certificate that is read, bytes.
 pub(super) const MOST_BYTES: usize = 10 << 20;
 
@@ -40,9 +40,19 @@ struct CertificateFile {
     controller: ControllerFile,
     output_factor: f64,
     divisions: usize,
+    range: RangeFile,
+    not_in_this_claim: Vec<String>,
     claim: ClaimFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     level: Option<f64>,
+}
+
+/// Constant set-points and loads of the claim.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RangeFile {
+    setpoint_rad: f64,
+    load_rad: f64,
 }
 
 type Rows = Vec<Vec<f64>>;
@@ -92,6 +102,11 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         controller: ControllerFile::of(&certificate.description.controller),
         output_factor: certificate.output_factor,
         divisions: certificate.divisions,
+        range: RangeFile {
+            setpoint_rad: certificate.range.setpoint_rad,
+            load_rad: certificate.range.load_rad,
+        },
+        not_in_this_claim: certificate.left_out.iter().map(|one| one.name().to_owned()).collect(),
         claim: claim_file(&certificate.claim),
         level: certificate.level,
     };
@@ -112,7 +127,11 @@ pub fn from_text(text: &str) -> Result<(Certificate, Origin), String> {
         return Err(format!("no certificate: `kind` is not \"{KIND}\""));
     }
     if value.get("schema").and_then(Value::as_u64) != Some(u64::from(SCHEMA)) {
-        return Err(format!("`schema` is {}; this program reads {SCHEMA}", value["schema"]));
+        let old = match value.get("schema").and_then(Value::as_u64) {
+            Some(1) => ": a certificate of schema 1 does not say for which set-points it is made; certify anew",
+            _ => "",
+        };
+        return Err(format!("`schema` is {}; this program reads {SCHEMA}{old}", value["schema"]));
     }
     let file: CertificateFile = serde_json::from_value(value).map_err(|error| error.to_string())?;
     let controller = file.controller.build(file.plant.sample_period_s)?;
@@ -121,10 +140,19 @@ pub fn from_text(text: &str) -> Result<(Certificate, Origin), String> {
         description,
         output_factor: file.output_factor,
         divisions: file.divisions,
+        range: Range { setpoint_rad: file.range.setpoint_rad, load_rad: file.range.load_rad },
+        left_out: file.not_in_this_claim.iter().map(|name| left_out(name)).collect::<Result<_, _>>()?,
         claim: file.claim.build()?,
         level: file.level,
     };
     Ok((certificate, file.origin))
+}
+
+fn left_out(name: &str) -> Result<LeftOut, String> {
+    LeftOut::named(name).ok_or_else(|| {
+        let known: Vec<&str> = LeftOut::ALL.into_iter().map(LeftOut::name).collect();
+        format!("not_in_this_claim: \"{name}\"; allowed are {}", known.join(", "))
+    })
 }
 
 fn rows(matrix: &Matrix) -> Rows {
