@@ -11,6 +11,7 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod asked;
 mod bearing;
 mod certificate;
 pub mod check;
@@ -19,6 +20,7 @@ pub mod gain_set;
 mod limits;
 mod prove;
 mod recheck;
+mod scope;
 pub mod sizes;
 pub mod solve;
 
@@ -28,3 +30,4 @@ pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};
 pub use recheck::{Doubt, Kept, Rechecked};
+pub use scope::{Asked, LeftOut, Range, Scope};

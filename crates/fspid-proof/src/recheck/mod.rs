@@ -35,6 +35,12 @@ pub struct Rechecked {
     /// Where a level is claimed: how far the pitch angle may be off, everything else at rest, to lie within,
     /// rad.
     pub pitch_within_rad: Option<f64>,
+    /// The claim is about every constant set-point, as long as no limit acts, not only about those in its range.
+    pub any_setpoint: bool,
+    /// The claim is about every constant load, likewise.
+    pub any_load: bool,
+    /// How far from rest the pitch angle may stay, rad; 0 where every deviation falls for ever.
+    pub remains_rad: f64,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -173,7 +179,16 @@ impl<'a> Recheck<'a> {
         }
         let Proved { inequalities, kept, pitch_within_rad } = self.proved()?;
         let bounds = self.set.bounds();
-        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds, kept, pitch_within_rad })
+        Ok(Rechecked {
+            cells: self.set.cells.len(),
+            inequalities,
+            bounds,
+            kept,
+            pitch_within_rad,
+            any_setpoint: false,
+            any_load: false,
+            remains_rad: 0.0,
+        })
     }
 
     fn proved(&self) -> Result<Proved, Doubt> {

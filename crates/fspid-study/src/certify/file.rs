@@ -4,7 +4,7 @@
 //! it is JSON, the shape of every key, and only then what its numbers make.
 
 use fspid_lti::Matrix;
-use fspid_proof::{BoundedRate, Certificate, Claim};
+use fspid_proof::{BoundedRate, Certificate, Claim, LeftOut, Range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -49,9 +49,42 @@ struct CertificateFile {
     controller: ControllerFile,
     output_factor: f64,
     divisions: usize,
+    range: RangeFile,
+    not_in_this_claim: Vec<String>,
+    limits: LimitsFile,
     claim: ClaimFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     level: Option<f64>,
+}
+
+/// What becomes of limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum LimitsFile {
+    /// The loop has none.
+    NoneAreThere,
+    /// The claim is about motions in which none acts, and the level says which.
+    NoneActsWithinTheLevel,
+    /// The claim leaves them out.
+    LeftOut,
+}
+
+impl LimitsFile {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::NoneAreThere => "none-are-there",
+            Self::NoneActsWithinTheLevel => "none-acts-within-the-level",
+            Self::LeftOut => "left-out",
+        }
+    }
+}
+
+/// Constant set-points and loads of the claim.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RangeFile {
+    setpoint_rad: f64,
+    load_rad: f64,
 }
 
 type Rows = Vec<Vec<f64>>;
@@ -126,6 +159,12 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         controller: ControllerFile::of(&certificate.description.controller),
         output_factor: certificate.output_factor,
         divisions: certificate.divisions,
+        range: RangeFile {
+            setpoint_rad: certificate.range.setpoint_rad,
+            load_rad: certificate.range.load_rad,
+        },
+        not_in_this_claim: certificate.left_out.iter().map(|one| one.name().to_owned()).collect(),
+        limits: limits_of(certificate),
         claim: claim_file(&certificate.claim),
         level: certificate.level,
     };
@@ -204,16 +243,28 @@ impl CertificateFile {
             let described = plant.with(controller).provable();
             kept(&mut problems, "loop", described.map_err(|error| error.to_string()))
         });
-        let Some((description, claim)) = description.zip(claim) else {
+        let range = Range { setpoint_rad: self.range.setpoint_rad, load_rad: self.range.load_rad };
+        let named = |name: &String| LeftOut::named(name).ok_or_else(|| unknown_left_out(name));
+        let left_out = self.not_in_this_claim.iter().map(named).collect::<Result<Vec<_>, _>>();
+        let left_out = kept(&mut problems, "not_in_this_claim", left_out);
+        let Some(((description, claim), left_out)) = description.zip(claim).zip(left_out) else {
             return Err(NoCertificate { problems });
         };
         let certificate = Certificate {
             description,
             output_factor: self.output_factor,
             divisions: self.divisions,
+            range,
+            left_out,
             claim,
             level: self.level,
         };
+        let stated = limits_of(&certificate);
+        if self.limits != stated {
+            let what =
+                format!("says \"{}\" of a claim with \"{}\"", self.limits.name(), stated.name());
+            return Err(NoCertificate::of(Wrong { path: "limits".to_owned(), what }));
+        }
         Ok(Read { certificate, origin: self.origin, seal })
     }
 }
@@ -221,6 +272,20 @@ impl CertificateFile {
 /// What was built; a problem is kept with its path.
 fn kept<T>(problems: &mut Vec<Wrong>, path: &str, built: Result<T, String>) -> Option<T> {
     built.map_err(|what| problems.push(Wrong { path: path.to_owned(), what })).ok()
+}
+
+fn unknown_left_out(name: &str) -> String {
+    let known: Vec<&str> = LeftOut::ALL.into_iter().map(LeftOut::name).collect();
+    format!("\"{name}\"; allowed are {}", known.join(", "))
+}
+
+/// What a certificate says of limits: bound to its level, so that neither can be taken away alone.
+fn limits_of(certificate: &Certificate) -> LimitsFile {
+    match (certificate.level, certificate.description.limits().is_empty()) {
+        (Some(_), _) => LimitsFile::NoneActsWithinTheLevel,
+        (None, true) => LimitsFile::NoneAreThere,
+        (None, false) => LimitsFile::LeftOut,
+    }
 }
 
 fn rows(matrix: &Matrix) -> Rows {

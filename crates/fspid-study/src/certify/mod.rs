@@ -15,8 +15,10 @@ mod loop_file;
 mod shape;
 mod text;
 
-use fspid_proof::{Certificate, LoopDescription, NotProvable, Outcome, Verdict, certify};
-use fspid_sim::SimError;
+use fspid_proof::{
+    Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
+};
+use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
 use crate::file::Study;
@@ -92,15 +94,16 @@ impl Certification {
         let scenario = &study.scenario;
         let plants = lasting_plants(scenario)?;
         let mut results = Vec::new();
-        let asked = |name: &str| only.is_none_or(|only| only == name);
-        for named in scenario.controllers.iter().filter(|named| asked(&named.name)) {
+        let wanted = |name: &str| only.is_none_or(|only| only == name);
+        for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 let limits = described.as_ref().map(LoopDescription::limits).unwrap_or_default();
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
-                    outcome: described.and_then(|loop_| certify(&loop_, effort)),
+                    outcome: described
+                        .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     limits,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -120,6 +123,15 @@ impl Certification {
     pub fn all_proved(&self) -> bool {
         !self.results.is_empty() && self.results.iter().all(Certified::is_proved)
     }
+}
+
+/// What is asked of a loop of a study.
+fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> Asked {
+    let mut asked = Asked::of(&study.scenario, plant, description);
+    if !study.dispersions.is_empty() {
+        asked.left_out.push(LeftOut::Dispersions);
+    }
+    asked
 }
 
 fn left_out(study: &Study, plants: usize) -> Vec<String> {

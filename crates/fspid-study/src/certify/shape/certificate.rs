@@ -18,6 +18,9 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     key("controller", CONTROLLER),
     key("output_factor", Number(0.0, 1e6)),
     key("divisions", Whole(1, MOST_DIVISIONS as u64)),
+    key("range", RANGE),
+    key("not_in_this_claim", List(&Text(64), [0, 64])),
+    key("limits", Word(&["none-are-there", "none-acts-within-the-level", "left-out"])),
     key("claim", CLAIM),
     optional("level", Positive(LARGE)),
 ]);
@@ -53,6 +56,9 @@ const ORIGIN: Shape = Object(&[
     key("digest", Digest),
     key("controller", Text(NAME)),
 ]);
+
+const RANGE: Shape =
+    Object(&[key("setpoint_rad", Number(0.0, ANGLE)), key("load_rad", Number(0.0, ANGLE))]);
 
 const LOOP: Shape = Object(&[
     key("sample_period_s", Positive(TIME)),
