@@ -10,6 +10,7 @@ use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 use crate::gain_set::NoBound;
+use crate::sizes::WrongSize;
 
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +48,8 @@ pub enum NotProvable {
     },
     /// Nothing bounds the gains of an accumulating law.
     UnboundedGains(NoBound),
+    /// The loop has more states than a proof may speak of.
+    TooLarge(WrongSize),
     /// The model is refused.
     Model(SimError),
     /// The plant cannot be enclosed.
@@ -68,6 +71,7 @@ impl fmt::Display for NotProvable {
                 "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
             ),
             Self::UnboundedGains(reason) => reason.fmt(f),
+            Self::TooLarge(wrong) => wrong.fmt(f),
             Self::Plant(reason) => reason.fmt(f),
             Self::Model(error) => error.fmt(f),
         }
@@ -157,6 +161,10 @@ impl LoopDescription {
         let uses_rate = self.controller.shell().rate_gain_s != 0.0;
         if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {
             return Err(NotProvable::ChangingAge);
+        }
+        // Before anything is enclosed: the size of everything that follows.
+        if let Some(wrong) = self.too_large() {
+            return Err(NotProvable::TooLarge(wrong));
         }
         Ok(self)
     }

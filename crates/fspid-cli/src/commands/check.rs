@@ -1,6 +1,6 @@
 //! `fspid check`: is a file right?
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::json;
@@ -8,10 +8,14 @@ use serde_json::json;
 use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
-use fspid_study::file::{self, Template};
+use fspid_study::certify::CheckedFile;
+use fspid_study::file::{self, Study, Template};
 use fspid_study::fuzzy_system;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
+///
+/// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
+/// with what the scenario flies.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
@@ -43,15 +47,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let scenario = &study.scenario;
     let (file, timing) = (arguments.file.display(), scenario.timing);
+    let certificate = beside(&arguments.file, &study)?;
     let text = || {
-        format!(
+        let mut text = format!(
             "{file}: good; {} with {} controller(s), {} samples of {} s, digest {}\n",
             scenario.name,
             scenario.controllers.len(),
             timing.rows(),
             timing.dt_s(),
             study.digest,
-        )
+        );
+        if let Some((path, checked)) = &certificate {
+            text.push_str(&format!("{}\n{}", path.display(), checked.text()));
+        }
+        text
     };
     let names = scenario.controllers.iter().map(|named| named.name.as_str());
     let json = || {
@@ -59,9 +68,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "schema": 1, "file": file.to_string(), "kind": "scenario", "good": true,
             "name": scenario.name, "controllers": names.collect::<Vec<_>>(), "samples": timing.rows(),
             "sample_period_s": timing.dt_s(), "digest": study.digest, "warnings": study.warnings,
+            "certificate": certificate.as_ref().map(|(_, checked)| checked.json()),
         })
     };
-    arguments.format.print(text, json)
+    arguments.format.print(text, json)?;
+    certificate.map_or(Ok(()), |(path, checked)| judge(&path, &checked, arguments))
+}
+
+/// The certificate beside a scenario, verified and compared with what flies, if there is one.
+fn beside(scenario: &Path, study: &Study) -> Result<Option<(PathBuf, CheckedFile)>, Failure> {
+    let path = scenario.with_extension("certificate.json");
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let mut checked = super::certify::read(&path)?;
+    checked.compare(study).map_err(Failure::input)?;
+    Ok(Some((path, checked)))
+}
+
+fn judge(path: &Path, checked: &CheckedFile, arguments: &Arguments) -> Result<(), Failure> {
+    if checked.holds() {
+        return Ok(());
+    }
+    let unmet = super::certify::unmet(checked.answer());
+    // With --set something else flies than what stands in the file, as was asked for.
+    if !arguments.overrides.is_empty() {
+        note(format_args!("warning: {}: {unmet}", path.display()));
+        return Ok(());
+    }
+    Err(Failure::not_met(format_args!("{}: {unmet}", path.display())))
 }
 
 fn system(path: &Path, format: Format) -> Result<(), Failure> {

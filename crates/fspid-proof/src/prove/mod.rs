@@ -17,6 +17,7 @@ use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::{GainSet, IncrementMap};
 use crate::limits;
 use crate::recheck::{Kept, Recheck, Rechecked};
+use crate::scope::{Asked, Range};
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,8 +53,13 @@ impl Default for Effort {
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The answer.
+    /// The answer, for the whole range of set-points and loads that was asked for.
     pub verdict: Verdict,
+    /// What was asked for.
+    pub asked: Range,
+    /// Where the answer is neither for the range that was asked for: what is proved of a smaller one, the
+    /// largest that was found.
+    pub instead: Option<(Certificate, Rechecked)>,
     /// Bounds of every gain that the controller can have.
     pub bounds: [Interval; 3],
     /// The largest output scale that was proved, as a factor on the loop's own.
@@ -90,17 +96,30 @@ pub struct Largest {
 ///
 /// # Errors
 /// [`NotProvable`] for a loop that a proof cannot speak of.
-pub fn certify(description: &LoopDescription, effort: &Effort) -> Result<Outcome, NotProvable> {
-    let prover = Prover::new(description, effort)?;
+pub fn certify(
+    description: &LoopDescription,
+    asked: &Asked,
+    effort: &Effort,
+) -> Result<Outcome, NotProvable> {
+    let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
     let verdict = prover.verdict(&set);
     let largest = prover.largest(&verdict);
     let (pitch_within_rad, limits_left_out) = prover.limits(&verdict);
-    Ok(Outcome { verdict, bounds: set.bounds(), largest, pitch_within_rad, limits_left_out })
+    Ok(Outcome {
+        verdict,
+        asked: asked.range,
+        instead: None,
+        bounds: set.bounds(),
+        largest,
+        pitch_within_rad,
+        limits_left_out,
+    })
 }
 
 struct Prover<'a> {
     description: &'a LoopDescription,
+    asked: &'a Asked,
     effort: &'a Effort,
     enclosed: LoopModel<Interval>,
     /// The same in ordinary arithmetic.
@@ -109,7 +128,11 @@ struct Prover<'a> {
 }
 
 impl<'a> Prover<'a> {
-    fn new(description: &'a LoopDescription, effort: &'a Effort) -> Result<Self, NotProvable> {
+    fn new(
+        description: &'a LoopDescription,
+        asked: &'a Asked,
+        effort: &'a Effort,
+    ) -> Result<Self, NotProvable> {
         description.clone().provable()?;
         let enclosed = description.enclosed()?;
         let model = enclosed.midpoint();
@@ -119,7 +142,7 @@ impl<'a> Prover<'a> {
                 Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
             }
         };
-        Ok(Self { description, effort, enclosed, model, increments })
+        Ok(Self { description, asked, effort, enclosed, model, increments })
     }
 
     fn set(&self, factor: f64) -> GainSet {
@@ -187,6 +210,8 @@ impl<'a> Prover<'a> {
             description: self.description.clone(),
             output_factor: factor,
             divisions: self.effort.divisions,
+            range: self.asked.range,
+            left_out: self.asked.left_out.clone(),
             claim,
             level,
         };

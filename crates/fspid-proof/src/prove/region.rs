@@ -44,6 +44,8 @@ impl<'a> Region<'a> {
             description: prover.description.clone(),
             output_factor: factor,
             divisions: prover.effort.divisions,
+            range: prover.asked.range,
+            left_out: prover.asked.left_out.clone(),
             claim: Claim::BoundedRate(claim.clone()),
             level: None,
         };

@@ -16,13 +16,9 @@ use crate::check::{IntervalMatrix, NotProved, falls, is_positive, prove_growth};
 use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, IncrementMap, producible};
 use crate::limits;
+use crate::sizes::{self, WrongSizes};
 
 pub(crate) use moving::{Corner, moved_inputs, part_in};
-
-/// Longest sequence of gains that is multiplied out.
-const MOST_SAMPLES: usize = 20_000;
-/// Most double cones of a claim, and most cells along an input: a file must not fill the memory.
-const MOST_PARTS: usize = 1000;
 
 /// What was re-checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +35,12 @@ pub struct Rechecked {
     /// Where a level is claimed: how far the pitch angle may be off, everything else at rest, to lie within,
     /// rad.
     pub pitch_within_rad: Option<f64>,
+    /// The claim is about every constant set-point, as long as no limit acts, not only about those in its range.
+    pub any_setpoint: bool,
+    /// The claim is about every constant load, likewise.
+    pub any_load: bool,
+    /// How far from rest the pitch angle may stay, rad; 0 where every deviation falls for ever.
+    pub remains_rad: f64,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -70,6 +72,8 @@ pub enum Doubt {
         /// What was found.
         reason: NotProved,
     },
+    /// The certificate is too large, or its parts do not fit the loop; nothing was computed.
+    Sizes(WrongSizes),
     /// The certificate does not fit together.
     Malformed {
         /// What is wrong.
@@ -85,12 +89,19 @@ impl fmt::Display for Doubt {
                 write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
             }
             Self::Inequality { gains: None, reason } => reason.fmt(f),
+            Self::Sizes(wrong) => wrong.fmt(f),
             Self::Malformed { what } => f.write_str(what),
         }
     }
 }
 
 impl core::error::Error for Doubt {}
+
+impl From<WrongSizes> for Doubt {
+    fn from(wrong: WrongSizes) -> Self {
+        Self::Sizes(wrong)
+    }
+}
 
 impl From<NotProvable> for Doubt {
     fn from(reason: NotProvable) -> Self {
@@ -136,9 +147,7 @@ impl<'a> Recheck<'a> {
         if !(certificate.output_factor >= 0.0 && certificate.output_factor.is_finite()) {
             return Err(malformed("the output factor is not 0 or more"));
         }
-        if !(1..=MOST_PARTS).contains(&certificate.divisions) {
-            return Err(malformed("the cells along an input are not 1 to 1000"));
-        }
+        sizes::check(certificate)?;
         let description = certificate.description.clone().provable()?;
         let model = description.enclosed()?;
         let set = match &description.controller {
@@ -160,6 +169,8 @@ impl<'a> Recheck<'a> {
     }
 
     pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
+        // Also of what the solver found: what is written must be read again.
+        sizes::check(self.certificate)?;
         let description = &self.certificate.description;
         if self.certificate.level.is_some()
             && let Some(what) = limits::not_covered(description)
@@ -168,7 +179,16 @@ impl<'a> Recheck<'a> {
         }
         let Proved { inequalities, kept, pitch_within_rad } = self.proved()?;
         let bounds = self.set.bounds();
-        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds, kept, pitch_within_rad })
+        Ok(Rechecked {
+            cells: self.set.cells.len(),
+            inequalities,
+            bounds,
+            kept,
+            pitch_within_rad,
+            any_setpoint: false,
+            any_load: false,
+            remains_rad: 0.0,
+        })
     }
 
     fn proved(&self) -> Result<Proved, Doubt> {
@@ -241,10 +261,7 @@ impl<'a> Recheck<'a> {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(malformed("gains that remember are not tied to the error of the moment"));
         }
-        // Without a cone nothing would be asked of the loop at all.
-        if !(1..=MOST_PARTS).contains(&multipliers.len()) {
-            return Err(malformed("the double cones are not 1 to 1000"));
-        }
+        // Without a cone nothing would be asked of the loop at all: sizes were checked.
         let corners: Vec<(usize, Gains<f64>)> = self.set.corners().collect();
         let mut proved = 1;
         for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
@@ -264,9 +281,6 @@ impl<'a> Recheck<'a> {
         factor: f64,
         (form, direction): (&Matrix, &[f64]),
     ) -> Result<usize, Doubt> {
-        if !(1..=MOST_SAMPLES).contains(&inputs.len()) {
-            return Err(malformed("a sequence of no samples, or of more than 20000"));
-        }
         if !(factor >= 1.0 && factor.is_finite()) {
             return Err(malformed("the factor of the growth is below 1"));
         }
