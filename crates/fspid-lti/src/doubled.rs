@@ -9,7 +9,7 @@ use crate::matrix::Matrix;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Doubled {
     pub(crate) high: f64,
-    low: f64,
+    pub(crate) low: f64,
 }
 
 /// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
@@ -22,7 +22,7 @@ impl Doubled {
     ///
     /// # Source
     /// D. E. Knuth, The Art of Computer Programming, volume 2, section 4.2.2, theorem B.
-    fn exact_sum(left: f64, right: f64) -> Self {
+    pub(crate) fn exact_sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let part = high - left;
         Self { high, low: (left - (high - part)) + (right - part) }
