@@ -54,7 +54,7 @@ mod transfer_function;
 pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
-pub use exponential::exponential;
+pub use exponential::{exponential, exponential_change};
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
 pub use hold::zero_order_hold;
 pub use integral_regulator::{
