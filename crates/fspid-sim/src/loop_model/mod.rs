@@ -91,7 +91,7 @@ impl From<LinearStep> for SampledPlant<f64> {
 pub struct LoopModel<T> {
     plant: SampledPlant<T>,
     settings: LoopSettings,
-    /// Rows of the plant over its states, less 1 on the diagonal, with the digits that 1 takes away.
+    /// Rows of the plant over states and command, less 1 on the diagonal, with the digits that 1 takes away.
     change: Option<Vec<T>>,
 }
 
