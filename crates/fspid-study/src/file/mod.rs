@@ -35,6 +35,8 @@ mod setting;
 pub(crate) mod spec;
 pub(crate) mod tables;
 mod template;
+mod templates;
+mod paths;
 mod tuning;
 
 use std::fmt;
@@ -63,7 +65,9 @@ pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
 pub(crate) use setting::grid_text;
+pub use paths::{PathRow, paths, paths_json, paths_text};
 pub use template::{NewValue, SettingPath, Template};
+pub use templates::{STARTERS, Starter, starter_named};
 
 /// A scenario with what its file asks of it.
 #[derive(Clone, Debug, PartialEq)]
