@@ -40,9 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Failure::input(format_args!("there is no template `{name}`{known}"))
     })?;
     let Some(path) = arguments.file.as_ref().filter(|path| !is_standard(path)) else {
-        return arguments
-            .format
-            .print(|| starter.text.to_owned(), || row_json(starter, None));
+        return arguments.format.print(|| starter.text.to_owned(), || row_json(starter, None));
     };
     if path.exists() {
         let path = path.display();

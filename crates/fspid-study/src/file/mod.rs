@@ -24,6 +24,7 @@ mod extra;
 pub(crate) mod files;
 mod mark;
 mod overrides;
+mod paths;
 mod preset;
 pub(crate) mod problem;
 pub(crate) mod report;
@@ -36,7 +37,6 @@ pub(crate) mod spec;
 pub(crate) mod tables;
 mod template;
 mod templates;
-mod paths;
 mod tuning;
 
 use std::fmt;
@@ -54,18 +54,18 @@ pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
+pub use files::unread_in_words;
+pub use paths::{PathRow, paths, paths_json, paths_text};
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use files::unread_in_words;
 pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
 pub(crate) use setting::grid_text;
-pub use paths::{PathRow, paths, paths_json, paths_text};
 pub use template::{NewValue, SettingPath, Template};
 pub use templates::{STARTERS, Starter, starter_named};
 

@@ -51,7 +51,8 @@ pub fn paths(path: &Path, overrides: &[String]) -> Result<Vec<PathRow>, LoadErro
         // What a file says that the scenario names is read while it is built.
         let _ = build::scenario(&mut report, &mut files, &section);
         files.report_unused_changes(&mut report);
-        let mut walk = Walk { files: &files, root: String::new(), in_file: false, rows: Vec::new() };
+        let mut walk =
+            Walk { files: &files, root: String::new(), in_file: false, rows: Vec::new() };
         walk.keys(&SCENARIO, &section, "");
         rows = walk.rows;
     }
@@ -67,10 +68,18 @@ pub fn paths_text(rows: &[PathRow]) -> String {
     let cells = |row: &PathRow| {
         let value = row.value.clone().unwrap_or_else(|| "-".to_owned());
         let value = cut(&value, 32);
-        [row.path.clone(), value, row.unit.to_owned(), cut(&row.allowed, 60), yes(row.drawn), yes(row.free)]
+        [
+            row.path.clone(),
+            value,
+            row.unit.to_owned(),
+            cut(&row.allowed, 60),
+            yes(row.drawn),
+            yes(row.free),
+        ]
     };
     let table: Vec<[String; 6]> = std::iter::once(head).chain(rows.iter().map(cells)).collect();
-    let width = |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let width =
+        |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
     let mut out = String::new();
     for row in &table {
