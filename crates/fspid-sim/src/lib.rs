@@ -26,6 +26,7 @@ pub mod describing;
 mod error;
 pub mod flown;
 mod gust_entry;
+mod gust_response;
 mod law;
 mod longitudinal;
 pub mod loop_model;

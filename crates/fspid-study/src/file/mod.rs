@@ -51,8 +51,8 @@ use crate::file::report::Report;
 use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
-pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub(crate) use aircraft::parse_aircraft_at;
+pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
 pub use files::unread_in_words;
