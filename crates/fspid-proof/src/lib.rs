@@ -19,6 +19,7 @@ pub mod gain_set;
 mod limits;
 mod prove;
 mod recheck;
+mod rest;
 mod scope;
 pub mod solve;
 
@@ -27,4 +28,5 @@ pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};
 pub use recheck::{Doubt, Kept, Rechecked};
+pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};
