@@ -95,7 +95,7 @@ impl LoopModel<f64> {
         let plant = SampledPlant { rows: rows.to_vec(), ..self.plant.clone() };
         let states = plant.states;
         let Broken { mut matrix, entry, .. } =
-            Self::new(plant, self.settings.clone()).assembly(gains).broken(point);
+            Self { plant, ..self.clone() }.assembly(gains).broken(point);
         for (place, row) in matrix.iter_mut().enumerate().skip(states) {
             row[place] -= 1.0;
         }

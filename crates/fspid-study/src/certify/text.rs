@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
+use fspid_proof::{
+    Bearing, BoundedRate, Certificate, Claim, Outcome, Range, Rechecked, Scope, Verdict,
+};
 
 use super::{Certification, Certified};
 use crate::metrics::short;
@@ -47,6 +49,10 @@ fn headline(outcome: &Outcome) -> String {
             let bearing = certificate.bearing(rechecked);
             format!("{}: {}; {bearing}", refuted(bearing), sentence(&certificate.claim))
         }
+        Verdict::Open if outcome.instead.is_some() => format!(
+            "OPEN for the set-points and loads of this scenario, {}: neither proved nor refuted; proved for less",
+            range_text(outcome.asked)
+        ),
         Verdict::Open => {
             "OPEN: neither proved nor refuted; do not call this loop proved".to_owned()
         }
@@ -98,10 +104,57 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         &outcome.verdict
     {
         push_claim(out, certificate, dt_s);
+        push_scope(out, &certificate.scope(rechecked));
         push_rechecked(out, rechecked);
+    }
+    if let Some((certificate, rechecked)) = &outcome.instead {
+        line(out, format_args!("  proved instead     {}", sentence(&certificate.claim)));
+        push_scope(out, &certificate.scope(rechecked));
     }
     push_largest(out, outcome);
     push_limits(out, certified, outcome);
+}
+
+/// For which set-points and loads, and what remains.
+fn push_scope(out: &mut String, scope: &Scope) {
+    let text = match (scope.any_setpoint, scope.any_load) {
+        (true, true) => "any constant set-point, any constant load".to_owned(),
+        (true, false) => {
+            format!("any constant set-point; loads within ±{} deg", deg(scope.range.load_rad))
+        }
+        (false, true) => format!(
+            "constant set-points within ±{} deg, any constant load",
+            deg(scope.range.setpoint_rad)
+        ),
+        (false, false) => range_text(scope.range),
+    };
+    line(out, format_args!("  set-points         {text}"));
+    if scope.rest_error_rad > 0.0 {
+        let error = deg(scope.rest_error_rad);
+        line(
+            out,
+            format_args!("  error at rest      up to {error} deg stay: there is no integral"),
+        );
+    }
+    if scope.remains_rad > 0.0 {
+        let remains = deg(scope.remains_rad);
+        line(
+            out,
+            format_args!("  remains            the pitch angle ends within {remains} deg of rest"),
+        );
+    }
+}
+
+fn range_text(range: Range) -> String {
+    format!(
+        "constant set-points within ±{} deg, constant loads within ±{} deg of elevator",
+        deg(range.setpoint_rad),
+        deg(range.load_rad)
+    )
+}
+
+fn deg(angle_rad: f64) -> String {
+    short(degrees(angle_rad))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.

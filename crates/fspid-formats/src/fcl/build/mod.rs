@@ -175,7 +175,8 @@ impl<'a> Builder<'a> {
     }
 
     fn membership_formula(&mut self, text: Token<'a>) -> Option<Membership> {
-        let names: Vec<&str> = ["x"].into_iter().chain(self.formula_names.iter().copied()).collect();
+        let names: Vec<&str> =
+            ["x"].into_iter().chain(self.formula_names.iter().copied()).collect();
         let formula = term::formula(text, &names, &mut self.report)?;
         Some(Membership::Formula { formula, height: 1.0 })
     }
