@@ -31,6 +31,7 @@
 //! ```
 
 mod balance;
+mod ball;
 mod complex;
 mod doubled;
 mod eigenvalues;
@@ -53,7 +54,7 @@ mod transfer_function;
 pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
-pub use exponential::exponential;
+pub use exponential::{exponential, exponential_change};
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
 pub use hold::zero_order_hold;
 pub use integral_regulator::{
@@ -65,8 +66,8 @@ pub use polynomial::{DEGREE_LIMIT, Polynomial};
 pub use regulator::{Regulator, regulator};
 pub use response::step_response;
 pub use sampled::{
-    DiskMargin, GainLimit, LoopFamily, Peak, SampledCrossover, SampledLoop, SampledMargins,
-    SeriesControl, Stability,
+    Bracket, DiskMargin, GainLimit, LoopFamily, Peak, Proved, SampledCrossover, SampledLoop,
+    SampledMargins, SeriesControl, Stability,
 };
 pub use state_space::StateSpace;
 pub use transfer_function::TransferFunction;

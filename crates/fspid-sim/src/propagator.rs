@@ -7,7 +7,7 @@
 //! is one matrix product. Where the rate limit holds the servo, $\dot \delta = \rho$ is constant,
 //! and the sample is cut at the instant the limit lets go; no step size and no error is involved.
 
-use fspid_lti::{Matrix, StateSpace, exponential};
+use fspid_lti::{Matrix, StateSpace, exponential, exponential_change};
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -218,6 +218,14 @@ impl Propagator {
         rate_row.push(self.rate_feedthrough * self.elevator_per_command);
         LinearStep { states: self.order + 1, rows: self.free_step.clone(), rate_row }
     }
+
+    /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over the states, less 1 on the
+    /// diagonal, with all digits.
+    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+        let states = self.order + 1;
+        let at_once = self.servo.is_at_once().then_some(self.order);
+        states_of_change(&self.free.scaled(self.dt_s), states, at_once)
+    }
 }
 
 /// One sample of plant and actuator without limits.
@@ -229,6 +237,23 @@ pub(crate) struct LinearStep {
     pub(crate) rows: Vec<f64>,
     /// Row from states to pitch rate.
     pub(crate) rate_row: Vec<f64>,
+}
+
+/// The part over some states of the exponential of a generator, less 1 on the diagonal; of a state that only remembers
+/// its input nothing is left.
+pub(crate) fn states_of_change(
+    generator: &Matrix,
+    states: usize,
+    remembers: Option<usize>,
+) -> Result<Vec<f64>, SimError> {
+    let change = exponential_change(generator)?;
+    let rows = change.data().chunks_exact(change.columns()).take(states);
+    let mut part: Vec<f64> = rows.flat_map(|row| &row[..states]).copied().collect();
+    if let Some(place) = remembers {
+        part[place * states..(place + 1) * states].fill(0.0);
+        part[place * states + place] = -1.0;
+    }
+    Ok(part)
 }
 
 enum ServoMotion {

@@ -1,10 +1,11 @@
 //! `fspid certify`: stability while the gains move.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 
 use super::{Format, json_text};
+use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
 use fspid_study::{file, output};
@@ -22,13 +23,13 @@ use fspid_study::{file, output};
 pub(crate) struct Arguments {
     /// The scenario file.
     #[arg(required_unless_present = "check")]
-    file: Option<PathBuf>,
+    file: Option<InFile>,
     /// Verify a certificate instead; nothing but this file is read.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "controller", "out"])]
-    check: Option<PathBuf>,
+    check: Option<InFile>,
     /// Compare the certificate with what this scenario flies, field by field.
     #[arg(long, value_name = "SCENARIO", requires = "check")]
-    against: Option<PathBuf>,
+    against: Option<InFile>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -37,7 +38,7 @@ pub(crate) struct Arguments {
     controller: Option<String>,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    out: Option<Folder>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -60,10 +61,8 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     if let Some(name) = only.filter(|name| !names.contains(name)) {
-        let known = names.join(", ");
-        return Err(Failure::input(format_args!(
-            "no controller is called \"{name}\"; there are {known}"
-        )));
+        let known = file::known_words(name, &names);
+        return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let certification =
         Certification::of(&study, only, &Effort::default()).map_err(Failure::input)?;

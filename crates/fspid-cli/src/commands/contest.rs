@@ -1,12 +1,12 @@
 //! `fspid contest`: controllers tuned alike, judged on what none of them was tuned on.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 
 use super::progress::{Telling, answer_after, grouped, tell};
 use super::{Format, json_text};
+use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
@@ -25,10 +25,10 @@ const SAVED_EVERY: Duration = Duration::from_secs(2);
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     /// The folder in which everything is kept.
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    out: Folder,
     /// How many seeds each controller is tuned with; by default as the scenario says.
     #[arg(long, value_name = "K")]
     seeds: Option<u64>,
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source =
-        Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+        Source { path: arguments.scenario.to_path_buf(), overrides: arguments.overrides.clone() };
     let options = Options { seeds: arguments.seeds, budget: arguments.budget };
     let contest = Contest::new(&source, &options).map_err(failure)?;
     contest.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));

@@ -1,9 +1,8 @@
 //! `fspid init`: a scenario to start from.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
+use crate::argument::{OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_study::{file, output};
 
@@ -11,7 +10,8 @@ use fspid_study::{file, output};
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Where to write it; standard output if left out. An existing file is not touched.
-    file: Option<PathBuf>,
+    #[arg(value_parser = written(&["toml"]))]
+    file: Option<OutFile>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -7,8 +7,10 @@ use clap::Args;
 
 use super::progress::{Telling, answer_after, duration, grouped, tell};
 use super::{Format, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{InFile, OutFile, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
+use fspid_study::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
@@ -26,7 +28,7 @@ const SAVED_EVERY: Duration = Duration::from_secs(2);
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     /// The controller; needed only where several have free numbers.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
@@ -56,11 +58,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     anywhere: bool,
     /// Write the design: the scenario with what was found in place of the marks.
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    #[arg(value_parser = written(&["toml"]), long, value_name = "FILE")]
+    out: Option<OutFile>,
     /// Write every candidate as a row of a Parquet file.
-    #[arg(long, value_name = "FILE")]
-    history: Option<PathBuf>,
+    #[arg(value_parser = written(&["parquet"]), long, value_name = "FILE")]
+    history: Option<OutFile>,
     /// Set a value before anything is read, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -77,7 +79,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source =
-        Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+        Source { path: arguments.scenario.to_path_buf(), overrides: arguments.overrides.clone() };
     if let Some(rule) = &arguments.rule {
         return by_rule(arguments, &source, rule);
     }
@@ -99,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let text = design::text(&source, problem.space(), &best, &heading).map_err(failure)?;
         output::write(out, text)?;
         remove(&state_path(out));
-        note(format_args!("wrote {}", out.display()));
+        wrote(out);
     }
     match tuned.is_allowed() {
         true => Ok(()),
@@ -115,11 +117,11 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
         let row = |rule: &Rule| format!("{:<18}{}\n", rule.name(), rule.about());
         return print(&Rule::ALL.iter().map(row).collect::<String>());
     }
-    let rule = Rule::from_name(name).ok_or_else(|| wrong("the rule", name, &Rule::NAMES))?;
+    let rule = Rule::from_name(name).ok_or_else(|| unknown("rule", name, &Rule::NAMES))?;
     let form = match arguments.form.as_deref() {
         None => None,
         Some(name) => Some(
-            Form::from_name(name).ok_or_else(|| wrong("the form", name, &["p", "pi", "pid"]))?,
+            Form::from_name(name).ok_or_else(|| unknown("form", name, &["p", "pi", "pid"]))?,
         ),
     };
     let options = Options { form, closed_loop_s: arguments.closed_loop_s, ..Options::default() };
@@ -137,7 +139,7 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
             found.design.verdict.sentence()
         )];
         output::write(out, found.text(source, out, &heading).map_err(failure)?)?;
-        note(format_args!("wrote {}", out.display()));
+        wrote(out);
     }
     match found.design.verdict {
         Verdict::NotHeld(_) => Err(Failure::not_met("the rule's gains do not hold this aircraft")),
@@ -145,9 +147,8 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
     }
 }
 
-fn wrong(what: &'static str, found: &str, allowed: &[&str]) -> Failure {
-    let (found, allowed) = (format!("\"{found}\""), allowed.join(", "));
-    failure(TuneError::Value { what, found, allowed })
+fn unknown(what: &str, found: &str, known: &[&str]) -> Failure {
+    Failure::input(format_args!("there is no {what} `{found}`{}", known_words(found, known)))
 }
 
 fn failure(error: TuneError) -> Failure {

@@ -91,13 +91,15 @@ impl From<LinearStep> for SampledPlant<f64> {
 pub struct LoopModel<T> {
     plant: SampledPlant<T>,
     settings: LoopSettings,
+    /// Rows of the plant over its states, less 1 on the diagonal, with the digits that 1 takes away.
+    change: Option<Vec<T>>,
 }
 
 impl<T: Scalar> LoopModel<T> {
     /// A loop of a sampled plant.
     #[must_use]
     pub fn new(plant: SampledPlant<T>, settings: LoopSettings) -> Self {
-        Self { plant, settings }
+        Self { plant, settings, change: None }
     }
 
     /// Everything but gains and plant.
@@ -188,6 +190,16 @@ impl LoopModel<f64> {
         let step = scenario.propagation(plant, shell.dt_s)?.linear_step();
         let step = step.ok_or(SimError::NotLinear)?;
         Ok(Self::new(step.into(), LoopSettings::of(scenario, shell, memory)))
+    }
+
+    /// The same loop with the digits of its slow modes, which the matrix of a sample has not beside its ones: for
+    /// margins, which are then proved of the loop itself. The plant and the scenario are those it was made of.
+    ///
+    /// # Errors
+    /// [`SimError`] where the plant cannot be sampled.
+    pub fn sharpened(self, scenario: &Scenario, plant: &LinearPlant) -> Result<Self, SimError> {
+        let change = scenario.propagation(plant, self.settings.shell.dt_s)?.linear_change()?;
+        Ok(Self { change: Some(change), ..self })
     }
 
     /// The one-sample matrix of the closed loop.

@@ -75,7 +75,31 @@ impl LoopModel<f64> {
         let Broken { matrix, entry, exit } = self.assembly(gains).broken(point);
         let returned = exit.iter().map(|value| -value).collect();
         let dt_s = self.settings.shell.dt_s;
-        Ok(SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?)
+        let open = SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?;
+        match &self.change {
+            Some(change) => Ok(open.with_change(self.change_when_broken(change, gains, point)?)?),
+            None => Ok(open),
+        }
+    }
+
+    /// The matrix of the loop broken at a point, less 1 on the diagonal.
+    fn change_when_broken(
+        &self,
+        change: &[f64],
+        gains: Gains<f64>,
+        point: BreakPoint,
+    ) -> Result<Matrix, SimError> {
+        let mut plant = self.plant.clone();
+        let states = plant.states;
+        for (row, own) in plant.rows.chunks_exact_mut(states + 1).zip(change.chunks_exact(states)) {
+            row[..states].copy_from_slice(own);
+        }
+        let mut matrix =
+            Self::new(plant, self.settings.clone()).assembly(gains).broken(point).matrix;
+        for (place, row) in matrix.iter_mut().enumerate().skip(states) {
+            row[place] -= 1.0;
+        }
+        Ok(Matrix::from_rows(&matrix)?)
     }
 }
 

@@ -69,7 +69,8 @@ impl AnalysedLoop {
         }
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
-            let open = open_loop(scenario, plant, (controller, gains), question.point)?;
+            let model = loop_model(scenario, plant, (controller, gains))?;
+            let open = model.sharpened(scenario, plant)?.open(gains, question.point)?;
             let map = match controller {
                 Controller::SelfTuning(fspid) if question.map_points > 0 => {
                     FrozenMap::of(scenario, plant, fspid, question)?
@@ -215,9 +216,17 @@ pub(crate) fn open_loop(
     (controller, gains): (&Controller, Gains<f64>),
     point: BreakPoint,
 ) -> Result<SampledLoop, SimError> {
+    loop_model(scenario, plant, (controller, gains))?.open(gains, point)
+}
+
+fn loop_model(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    (controller, gains): (&Controller, Gains<f64>),
+) -> Result<LoopModel<f64>, SimError> {
     let shell = controller.shell_at(gains);
     let memory = Memory::of_gains(gains, &shell);
-    LoopModel::of(scenario, plant, &shell, memory)?.open(gains, point)
+    LoopModel::of(scenario, plant, &shell, memory)
 }
 
 #[cfg(test)]

@@ -50,13 +50,15 @@ use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
+pub(crate) use aircraft::parse_aircraft_at;
 pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use problem::{Problem, Problems};
+pub use files::unread_in_words;
+pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;

@@ -13,9 +13,10 @@ mod trim;
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::Value;
 
-use super::{Format, json_text};
-use crate::exit::{Failure, print};
-use fspid_study::aircraft::{self, AirChoice, DragChoice, Question, ThrustChoice};
+use super::Format;
+use crate::argument::Source;
+use crate::exit::Failure;
+use fspid_study::aircraft::{self, AirChoice, DragChoice, LoadingQuestion, Question, ThrustChoice};
 
 /// Trim, linearise and judge aircraft anywhere in their envelope.
 ///
@@ -88,10 +89,7 @@ impl Answer {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> Value,
     ) -> Result<(), Failure> {
-        match self.format {
-            Format::Text => print(&text()),
-            Format::Json => print(&json_text(&json())),
-        }
+        self.format.print(text, json)
     }
 }
 
@@ -100,7 +98,7 @@ impl Answer {
 struct Plane {
     /// An aircraft that the program carries (see `fspid aircraft list`), or an aircraft file.
     #[arg(value_name = "NAME or FILE")]
-    name: String,
+    name: Source,
     /// The air: the standard atmosphere, or density and gravity of the aircraft's source everywhere.
     #[arg(long, value_enum, default_value_t = Air::Standard)]
     air: Air,
@@ -110,6 +108,16 @@ struct Plane {
     /// How thrust depends on speed while the throttle is held.
     #[arg(long, value_enum, default_value_t = Thrust::Constant)]
     thrust: Thrust,
+    /// Mass that flies, such as 907kg or 2000lb; the wing stays that of the source. That of the source if left out.
+    #[arg(long, value_name = "MASS")]
+    mass: Option<String>,
+    /// Centre of gravity behind the leading edge of the mean chord as a share of it, such as 0.33; that of the source if
+    /// left out.
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    cg: Option<String>,
+    /// Moment of inertia in pitch, such as "4000 kg m2" or "3000 slug ft2"; that of the source if left out.
+    #[arg(long, value_name = "INERTIA")]
+    iy: Option<String>,
 }
 
 /// Which air.
@@ -143,6 +151,11 @@ impl Plane {
     fn question(&self, units: aircraft::Units) -> Question<'_> {
         Question {
             aircraft: &self.name,
+            loading: LoadingQuestion {
+                mass: self.mass.as_deref(),
+                cg: self.cg.as_deref(),
+                iy: self.iy.as_deref(),
+            },
             units,
             air: match self.air {
                 Air::Standard => AirChoice::Standard,

@@ -1,20 +1,21 @@
 //! `fspid campaign run`: fly all of it here.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
+use super::super::Format;
 use super::super::progress::Telling;
 use super::progress::told;
 use super::{Place, Planned, failure, planned};
-use crate::exit::{Failure, print};
+use crate::argument::InFile;
+use crate::exit::Failure;
 use fspid_campaign::local;
 
 /// Plan, fly and merge a campaign on this machine; again after an interruption, it goes on.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file; left out, the campaign that is planned in the folder goes on.
-    scenario: Option<PathBuf>,
+    scenario: Option<InFile>,
     #[command(flatten)]
     planned: Planned,
     #[command(flatten)]
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     /// Say nothing while flying.
     #[arg(long)]
     quiet: bool,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 /// Who flies a campaign.
@@ -56,11 +60,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let flown =
         told(telling, runs, |progress| local::run(&folder, &campaign, arguments.threads, progress));
     let flown = flown.map_err(failure)?;
-    let merged = folder.merged_path();
-    print(&format!(
-        "{}: {runs} runs, {} rows\ndigest {}\n",
-        merged.display(),
-        runs * campaign.rows().of_run() as u64,
-        flown.digest,
-    ))
+    let (merged, rows) = (folder.merged_path(), runs * campaign.rows().of_run() as u64);
+    let (merged, digest) = (merged.display(), &flown.digest);
+    arguments.format.print(
+        || format!("{merged}: {runs} runs, {rows} rows\ndigest {digest}\n"),
+        || {
+            json!({
+                "schema": 1, "file": merged.to_string(), "runs": runs, "rows": rows,
+                "digest": digest.to_string(),
+            })
+        },
+    )
 }

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use fspid_formats::rule_text::RuleReader;
-use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{
-    Defuzzifier, Fallback, FallbackValue, Input, Output, Parts, RuleBlock, Sampling, SetReading,
-    System, SystemError, Universe,
+    Defuzzifier, Fallback, FallbackValue, Input, Output, Parts, RuleBlock, Sampling, System,
+    SystemError, Universe,
 };
 
 use super::conclusion::{self, Variables};
@@ -105,13 +104,12 @@ fn input(
     let terms = membership::terms(report, section.item("terms"), &path, of_sets, |term, item| {
         places.insert(format!("{place}, term `{term}`"), item.place);
     });
-    let policy = section.text("out_of_range")?;
     Some(Input {
         name,
         description: description(section),
         enabled: section.boolean("enabled")?,
         universe: universe(section),
-        out_of_range: OutOfRange::ALL.into_iter().find(|known| known.name() == policy)?,
+        out_of_range: section.word("out_of_range")?,
         terms: terms?,
     })
 }
@@ -147,10 +145,7 @@ fn output(
 }
 
 fn defuzzifier(report: &mut Report, section: &Section) -> Option<Defuzzifier> {
-    let reading = match section.text("set_reading")? {
-        "inverse-tsukamoto" => SetReading::InverseTsukamoto,
-        _ => SetReading::Tsukamoto,
-    };
+    let reading = section.word("set_reading")?;
     let method = match Defuzzifier::from_name(section.text("defuzzifier")?)? {
         Defuzzifier::WeightedAverage(_) => Defuzzifier::WeightedAverage(reading),
         Defuzzifier::WeightedSum(_) => Defuzzifier::WeightedSum(reading),

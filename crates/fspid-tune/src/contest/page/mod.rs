@@ -46,7 +46,7 @@ pub(super) fn page(contest: &Contest, outcome: &Outcome) -> String {
 
 fn verdict(outcome: &Outcome) -> Verdict {
     let against = outcome.judged.against;
-    let Headline { is_decided, word, why } = headline(outcome);
+    let Headline { is_decided, word, why, .. } = headline(outcome);
     let first = outcome.first().ranking.first().copied();
     let name = match first == Some(against) {
         true => "the controller that the others are compared with".to_owned(),
