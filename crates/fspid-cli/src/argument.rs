@@ -109,10 +109,10 @@ impl Drawings {
         }
         match path.extension() {
             None => Ok(Self(path)),
-            Some(_) => Err(
-                "unknown ending; known is .svg, and a name without an ending is a folder"
-                    .to_owned(),
-            ),
+            Some(_) => {
+                Err("unknown ending; known is .svg, and a name without an ending is a folder"
+                    .to_owned())
+            }
         }
     }
 

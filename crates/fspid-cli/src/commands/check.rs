@@ -111,7 +111,9 @@ fn system(path: &Path, format: Format) -> Result<(), Failure> {
     let (inputs, outputs) = (parts.inputs.len(), parts.outputs.len());
     let text = || {
         let called = if parts.name.is_empty() { "a fuzzy system" } else { &parts.name };
-        format!("{name}: good; {called} with {inputs} input(s), {outputs} output(s), {rules} rule(s)\n")
+        format!(
+            "{name}: good; {called} with {inputs} input(s), {outputs} output(s), {rules} rule(s)\n"
+        )
     };
     let json = || {
         json!({

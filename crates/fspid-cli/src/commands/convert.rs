@@ -69,8 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (name, options) = (&arguments.system, arguments.loading.options());
     let out = &arguments.out;
     let named = if is_standard(out) { arguments.written.file() } else { out.as_ref() };
-    let converted =
-        fuzzy_system::convert(name, options, named, target).map_err(Failure::input)?;
+    let converted = fuzzy_system::convert(name, options, named, target).map_err(Failure::input)?;
     for assumed in &converted.assumed {
         note(format_args!("warning: {assumed}"));
     }

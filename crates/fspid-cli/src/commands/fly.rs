@@ -1,8 +1,8 @@
 //! `fspid fly`: a scenario's controller over standard input and output.
 
-use std::io::{self, IsTerminal as _};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
+use std::io::{self, IsTerminal as _};
 
 use super::Format;
 use crate::argument::{InFile, is_standard};
@@ -65,7 +65,9 @@ impl From<Angles> for fly::Angles {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if is_standard(&arguments.file) {
-        return Err(Failure::input("the samples come on standard input; the scenario needs a file"));
+        return Err(Failure::input(
+            "the samples come on standard input; the scenario needs a file",
+        ));
     }
     let mut pilot = pilot(arguments)?;
     // Standard output holds commands from here on, and no answer of another kind.
@@ -97,7 +99,11 @@ fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
 }
 
 /// A simulator that has gone away is as good an end as one that closes its side.
-fn finish(pilot: &Pilot, arguments: &Arguments, done: Result<(), StreamError>) -> Result<(), Failure> {
+fn finish(
+    pilot: &Pilot,
+    arguments: &Arguments,
+    done: Result<(), StreamError>,
+) -> Result<(), Failure> {
     let summary = pilot.summary();
     match arguments.format {
         Format::Json => note(summary_json(&summary)),

@@ -97,7 +97,8 @@ impl Inputs {
     /// All of them as `name=value`.
     pub(crate) fn texts(&self) -> Vec<String> {
         let short = [("error", self.error), ("change", self.change)];
-        let short = short.into_iter().filter_map(|(name, value)| Some(format!("{name}={:?}", value?)));
+        let short =
+            short.into_iter().filter_map(|(name, value)| Some(format!("{name}={:?}", value?)));
         self.input.iter().cloned().chain(short).collect()
     }
 }

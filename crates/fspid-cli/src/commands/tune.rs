@@ -120,9 +120,9 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
     let rule = Rule::from_name(name).ok_or_else(|| unknown("rule", name, &Rule::NAMES))?;
     let form = match arguments.form.as_deref() {
         None => None,
-        Some(name) => Some(
-            Form::from_name(name).ok_or_else(|| unknown("form", name, &["p", "pi", "pid"]))?,
-        ),
+        Some(name) => {
+            Some(Form::from_name(name).ok_or_else(|| unknown("form", name, &["p", "pi", "pid"]))?)
+        }
     };
     let options = Options { form, closed_loop_s: arguments.closed_loop_s, ..Options::default() };
     let found = Baseline::of(source, arguments.controller.as_deref(), (rule, &options));

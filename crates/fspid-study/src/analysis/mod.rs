@@ -87,8 +87,7 @@ impl Analysis {
             .controllers
             .iter()
             .map(|named| {
-                AnalysedLoop::of(scenario, named, question)
-                    .map_err(|error| too_large(error, named))
+                AnalysedLoop::of(scenario, named, question).map_err(|error| too_large(error, named))
             })
             .collect::<Result<Vec<_>, _>>()?;
         let left_out = not_in_the_linear_loop(scenario);

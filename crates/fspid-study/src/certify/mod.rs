@@ -31,6 +31,7 @@ pub use fspid_proof::Effort;
 pub use against::{Comparison, Difference};
 pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
 pub use file::{Origin, Seal, from_text, to_text};
+pub(crate) use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.

@@ -104,9 +104,21 @@ pub(super) fn asked_in_words(range: Range) -> String {
     )
 }
 
+/// For a cell of a table: set-points, loads, and whether limits are covered.
+pub(crate) fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
+    let scope = certificate.scope(rechecked);
+    let limits = match (scope.limits.is_empty(), scope.pitch_within_rad) {
+        (true, _) => "",
+        (false, Some(_)) => "; near enough to rest that no limit acts",
+        (false, None) => "; saturation is not covered",
+    };
+    format!("for {}{limits}", range_in_words(&scope))
+}
+
 fn remains(scope: &Scope) -> String {
     match degrees(scope.remains_rad) {
         0.0 => "nothing: every deviation dies out".to_owned(),
+        most if most < 1e-3 => format!("the pitch angle may stay off by up to {most:.1e} deg"),
         most => format!("the pitch angle may stay off by up to {} deg", short(most)),
     }
 }

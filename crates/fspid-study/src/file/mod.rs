@@ -49,15 +49,15 @@ use crate::file::report::Report;
 use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
-pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub(crate) use aircraft::parse_aircraft_at;
+pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource};
 pub use extra::Extra;
+pub use files::unread_in_words;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use files::unread_in_words;
 pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};

@@ -21,7 +21,8 @@ const ALLOWED: &str =
 pub(crate) fn read_model(path: &Path, text: &str) -> Result<Reading, fspid_daveml::Problems> {
     let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     // Standard input has no ending; XML begins with a sign that no TOML begins with.
-    let is_toml = is_toml || (path == Path::new(STANDARD_INPUT) && !text.trim_start().starts_with('<'));
+    let is_toml =
+        is_toml || (path == Path::new(STANDARD_INPUT) && !text.trim_start().starts_with('<'));
     if is_toml { fspid_daveml::data::read(text) } else { fspid_daveml::read(text) }
 }
 

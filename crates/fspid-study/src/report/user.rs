@@ -160,9 +160,8 @@ impl User<'_> {
     fn measures(self) -> Section {
         let has_steps = self.simulation.results.iter().any(|it| !it.metrics.edges.is_empty());
         let failed = self.simulation.results.iter().any(fails);
-        let steps = || {
-            measures::table("Every step of the command, for every controller.", self.simulation)
-        };
+        let steps =
+            || measures::table("Every step of the command, for every controller.", self.simulation);
         let context = context! {
             part => "measures",
             steps => (has_steps || failed).then(steps),

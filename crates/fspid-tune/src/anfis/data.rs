@@ -123,11 +123,10 @@ impl Data {
             return Self::read(parts, &mut io::stdin().lock());
         }
         let file = File::open(path);
-        let file =
-            file.map_err(|error| {
-                let reason = format!(" cannot be read: {}", unread_in_words(&error));
-                AnfisError::Table { problems: vec![named(reason)] }
-            })?;
+        let file = file.map_err(|error| {
+            let reason = format!(" cannot be read: {}", unread_in_words(&error));
+            AnfisError::Table { problems: vec![named(reason)] }
+        })?;
         Self::read(parts, &mut BufReader::new(file)).map_err(|error| match error {
             AnfisError::Table { problems } => {
                 AnfisError::Table { problems: problems.into_iter().map(named).collect() }

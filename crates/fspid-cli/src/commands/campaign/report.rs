@@ -27,7 +27,9 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if is_standard(&arguments.file) {
-        return Err(Failure::input("a table is read here and there; name its file in place of `-`"));
+        return Err(Failure::input(
+            "a table is read here and there; name its file in place of `-`",
+        ));
     }
     let settings = SummarySettings { confidence: arguments.confidence };
     let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;

@@ -55,7 +55,12 @@ fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
     if time_constant_s > 0.0 && !(1.0 / time_constant_s).is_finite() {
         let path = section.path("time_constant_s");
         let allowed = "0 for none, or 1e-300 s or more";
-        report.value(section.at("time_constant_s"), &path, "so short that its rate is infinite", allowed);
+        report.value(
+            section.at("time_constant_s"),
+            &path,
+            "so short that its rate is infinite",
+            allowed,
+        );
         return None;
     }
     let servo =
