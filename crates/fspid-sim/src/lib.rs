@@ -27,6 +27,7 @@ mod error;
 pub mod flown;
 mod gust_entry;
 mod law;
+pub mod load;
 mod longitudinal;
 pub mod loop_model;
 mod math;

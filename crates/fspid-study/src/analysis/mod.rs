@@ -9,6 +9,7 @@
 //! in these numbers: see the frozen-gain map for every gain it can have while they stand still.
 
 mod answer;
+mod at_rest;
 mod equilibrium;
 pub(crate) mod figures;
 mod flights;
@@ -25,6 +26,7 @@ use fspid_sim::{Scenario, SimError};
 use crate::file::Study;
 
 pub use answer::{Margins, decibels};
+pub use at_rest::{AtRest, RestGains};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use flights::Flights;
 pub(crate) use flown::flown_inputs;

@@ -50,7 +50,7 @@ use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
-pub use build::{Airframe, DerivedGains, GainSource};
+pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
 pub use extra::Extra;
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
@@ -85,6 +85,8 @@ pub struct Study {
     pub tuning: Option<Tuning>,
     /// Where tuned controllers are compared.
     pub contest: Option<Contest>,
+    /// What is made of flights that leave the range in which the aircraft's data are trusted.
+    pub range_rule: RangeRule,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -111,6 +113,7 @@ impl Study {
             derived_gains,
             tuning,
             contest,
+            range_rule,
         } = built;
         let as_written = |it: &&Requirement| it.cases.as_written();
         Self {
@@ -123,6 +126,7 @@ impl Study {
             marks: Vec::new(),
             tuning,
             contest,
+            range_rule,
             settings: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),

@@ -53,6 +53,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
         cases: cases(report, section.sections("case")),
         objectives,
         limits: limits(report, section),
+        removes_constant_load: section.text("constant_load")? != "ignored",
     })
 }
 

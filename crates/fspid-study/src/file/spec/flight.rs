@@ -14,6 +14,9 @@ const THRUST_LAWS: [&str; 2] = ["constant", "with-speed"];
 /// Words for the air.
 const ATMOSPHERES: [&str; 2] = ["standard", "reference"];
 
+/// Words for what leaving the range of the data is.
+const VALIDITIES: [&str; 2] = ["fail", "warn"];
+
 /// The standard atmosphere.
 pub(super) const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
 /// The same in feet.
@@ -61,7 +64,18 @@ pub(super) static AIRCRAFT: Table = Table {
             "Air and gravity: standard, or everywhere those of the data's flight condition.",
         ),
         defaulted("heading_deg", angle(), Default::Number(0.0), "Clockwise from north."),
-        defaulted("ground_m", finite("m"), Default::Number(0.0), "Altitude of the ground."),
+        defaulted(
+            "ground_m",
+            finite("m"),
+            Default::Number(0.0),
+            "Altitude of the ground; a nonlinear flight begins above it and ends at it, a failure.",
+        ),
+        defaulted(
+            "validity",
+            Kind::Word(&VALIDITIES),
+            Default::Word("fail"),
+            "What a nonlinear flight comes to that leaves the range in which the aircraft's data are trusted: a failure, or a warning.",
+        ),
     ]],
     choices: &[
         one_of!("name", "file"),
