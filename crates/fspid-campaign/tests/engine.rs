@@ -226,7 +226,8 @@ fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
     assert!(far.is_failed() && far.reasons().iter().any(left), "{:?}", far.reasons());
     let allowed = template(&text.replace("[actuator]", "validity = \"warn\"\n\n[actuator]"));
     let allowed = allowed.with(&[(&step, NewValue::Number(25.0))]).expect("a scenario");
-    let flight = &engine::fly(&[allowed])[0].as_ref().expect("it flies")[0];
+    let flown = engine::fly(&[allowed]);
+    let flight = &flown[0].as_ref().expect("it flies")[0];
     assert!(flight.exit.is_some() && !flight.reasons().iter().any(left), "{:?}", flight.reasons());
 }
 
