@@ -20,9 +20,8 @@ pub(crate) struct Ball {
 impl Ball {
     pub(crate) const ZERO: Self = Self { value: Doubled::ZERO, error: 0.0 };
 
-    /// Exact difference of two numbers.
-    pub(crate) fn difference(left: f64, right: f64) -> Self {
-        Self { value: Doubled::exact_sum(left, -right), error: 0.0 }
+    pub(crate) fn new(value: Doubled, error: f64) -> Self {
+        Self { value, error }
     }
 
     pub(crate) fn is_zero(self) -> bool {

@@ -50,13 +50,14 @@ mod sampled;
 mod solve;
 mod state_space;
 mod transfer_function;
+mod wide;
 
 pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
 pub use exponential::{exponential, exponential_change};
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
-pub use hold::zero_order_hold;
+pub use hold::{held_change, zero_order_hold};
 pub use integral_regulator::{
     DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator,
 };

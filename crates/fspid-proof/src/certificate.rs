@@ -112,6 +112,7 @@ impl Certificate {
             range: self.range,
             any_setpoint: rechecked.any_setpoint,
             any_load: rechecked.any_load,
+            rest_error_rad: rechecked.rest_error_rad,
             remains_rad: rechecked.remains_rad,
             limits: self.description.limits(),
             pitch_within_rad: rechecked.pitch_within_rad,

@@ -13,6 +13,9 @@ use crate::gain_set::NoBound;
 use crate::limits;
 use crate::sizes::WrongSize;
 
+/// A flight whose pitch angle goes beyond this is lost: $10^6$ degrees, as in simulations.
+const LOST_RAD: f64 = 1e6 * core::f64::consts::PI / 180.0;
+
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopDescription {
@@ -193,6 +196,11 @@ impl LoopDescription {
         }
     }
 
+    /// True with a sample guard that a flight can reach before it counts as lost.
+    pub(crate) fn is_guarded(&self) -> bool {
+        !(self.controller.shell().guard.limit_rad() >= LOST_RAD)
+    }
+
     /// The loop with every number enclosed.
     ///
     /// # Errors
@@ -227,6 +235,7 @@ impl LoopDescription {
             (actuator.command_limits_rad().is_some(), "limits of the servo's command"),
             (actuator.travel_rad().is_some(), "ends of the actuator's travel"),
             (actuator.rate_limit_rad_s().is_some(), "rate limit of the actuator"),
+            (self.is_guarded(), "sample guard of the controller"),
         ]
         .into_iter()
         .filter_map(|(there, what)| there.then_some(what))

@@ -113,7 +113,7 @@ impl Propagation {
         &self,
         motion: &mut Motion,
         command_rad: f64,
-        held: &Held,
+        held: &Held<'_>,
     ) -> Result<(), SimError> {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => {
@@ -164,7 +164,7 @@ impl Propagation {
         &self,
         motion: &Motion,
         command_rad: f64,
-        held: &Held,
+        held: &Held<'_>,
     ) -> Result<SampledPlant<f64>, SimError> {
         let from = self.values(motion);
         let states = from.len();

@@ -219,12 +219,12 @@ impl Propagator {
         LinearStep { states: self.order + 1, rows: self.free_step.clone(), rate_row }
     }
 
-    /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over the states, less 1 on the
-    /// diagonal, with all digits.
+    /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over states and command, less 1
+    /// on the diagonal, with all digits.
     pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
         let states = self.order + 1;
         let at_once = self.servo.is_at_once().then_some(self.order);
-        states_of_change(&self.free.scaled(self.dt_s), states, at_once)
+        part_of_change(&self.free.scaled(self.dt_s), (states, states), at_once)
     }
 }
 
@@ -239,19 +239,21 @@ pub(crate) struct LinearStep {
     pub(crate) rate_row: Vec<f64>,
 }
 
-/// The part over some states of the exponential of a generator, less 1 on the diagonal; of a state that only remembers
-/// its input nothing is left.
-pub(crate) fn states_of_change(
+/// The part over some states and one input of the exponential of a generator, less 1 on the diagonal; of a state that
+/// only remembers its input nothing is left.
+pub(crate) fn part_of_change(
     generator: &Matrix,
-    states: usize,
+    (states, input): (usize, usize),
     remembers: Option<usize>,
 ) -> Result<Vec<f64>, SimError> {
     let change = exponential_change(generator)?;
     let rows = change.data().chunks_exact(change.columns()).take(states);
-    let mut part: Vec<f64> = rows.flat_map(|row| &row[..states]).copied().collect();
+    let mut part: Vec<f64> =
+        rows.flat_map(|row| [&row[..states], &row[input..=input]].concat()).collect();
     if let Some(place) = remembers {
-        part[place * states..(place + 1) * states].fill(0.0);
-        part[place * states + place] = -1.0;
+        let row = &mut part[place * (states + 1)..(place + 1) * (states + 1)];
+        row.fill(0.0);
+        (row[place], row[states]) = (-1.0, 1.0);
     }
     Ok(part)
 }

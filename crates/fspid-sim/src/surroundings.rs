@@ -2,7 +2,7 @@
 
 use crate::actuated::Held;
 use crate::actuator::Actuator;
-use crate::air::{AirMotion, Dryden, Place, Turbulence, Wind, sum_at};
+use crate::air::{AirMotion, Dryden, DrydenState, GRID_S, Grid, Place, Turbulence, Wind, sum_at};
 use crate::error::{SimError, finite, positive};
 use crate::math::sin_cos;
 use crate::sensor::Sensor;
@@ -64,6 +64,11 @@ impl Course {
         }
     }
 
+    /// When it is at a height above the ground; never, since it is level.
+    pub(crate) fn time_at_height_s(&self, _height_m: f64) -> Option<f64> {
+        None
+    }
+
     /// The air's velocity forward and down and its pitch rate.
     fn longitudinal(&self, motion: &AirMotion) -> [f64; 3] {
         let ([north, east, earth_down], [forward, _, down]) = (motion.earth_m_s, motion.body_m_s);
@@ -87,39 +92,65 @@ impl Weather {
         for value in [self.course.height_m, self.course.heading_rad, north_m, east_m] {
             finite("course", value)?;
         }
-        let at_start = self.wind(0.0);
-        let wind = |k: usize| {
-            let here = self.wind(timing.time_s(k));
-            let change: [f64; 3] = std::array::from_fn(|part| here[part] - at_start[part]);
-            change
-        };
+        let wind = |k: usize| self.wind_change(timing.time_s(k));
         let mut gusts: Vec<[f64; 3]> = (0..timing.rows()).map(wind).collect();
-        if let Some(turbulence) = &self.turbulence {
-            self.add_turbulence(&Dryden::new(turbulence, timing.dt_s())?, &mut gusts);
+        if let Some(mut walk) = self.walk()? {
+            let grid = Grid::new(timing.dt_s());
+            for (k, gust) in gusts.iter_mut().enumerate() {
+                let turbulent = walk.at(grid.tick(k));
+                gust.iter_mut().zip(turbulent).for_each(|(part, more)| *part += more);
+            }
         }
         Ok(gusts)
+    }
+
+    /// What the winds have changed since the start.
+    pub(crate) fn wind_change(&self, time_s: f64) -> [f64; 3] {
+        let (here, at_start) = (self.wind(time_s), self.wind(0.0));
+        std::array::from_fn(|part| here[part] - at_start[part])
+    }
+
+    /// The turbulence from the start on.
+    pub(crate) fn walk(&self) -> Result<Option<TurbulenceWalk>, SimError> {
+        let Some(turbulence) = &self.turbulence else {
+            return Ok(None);
+        };
+        let dryden = Dryden::new(turbulence, GRID_S)?;
+        Ok(Some(TurbulenceWalk { course: self.course, state: dryden.start(), dryden, tick: 0 }))
     }
 
     fn wind(&self, time_s: f64) -> [f64; 3] {
         self.course.longitudinal(&sum_at(&self.winds, &self.course.place(time_s)))
     }
+}
 
-    fn add_turbulence(&self, dryden: &Dryden, gusts: &mut [[f64; 3]]) {
-        let mut state = dryden.start();
-        for (k, gust) in gusts.iter_mut().enumerate() {
-            if k > 0 {
-                dryden.advance(&mut state, k);
-            }
-            let turbulent = self.course.longitudinal(&dryden.motion(&state));
-            for (part, more) in gust.iter_mut().zip(turbulent) {
-                *part += more;
-            }
+/// Turbulence along a course, tick by tick of its grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TurbulenceWalk {
+    course: Course,
+    dryden: Dryden,
+    state: DrydenState,
+    tick: usize,
+}
+
+impl TurbulenceWalk {
+    /// At a time of the grid that is not before the last one asked for.
+    pub(crate) fn at(&mut self, tick: usize) -> [f64; 3] {
+        while self.tick < tick {
+            self.tick += 1;
+            self.dryden.advance(&mut self.state, self.tick);
         }
+        self.course.longitudinal(&self.dryden.motion(&self.state))
     }
 }
 
 /// What enters the plant at a sample.
-pub(crate) fn held(elevator_rad: f64, gusts: Option<&[[f64; 3]]>, k: usize) -> Held {
+pub(crate) fn held<'a>(
+    elevator_rad: f64,
+    (gusts, responses): (Option<&[[f64; 3]]>, Option<&'a [Vec<f64>]>),
+    k: usize,
+) -> Held<'a> {
     let gust = gusts.and_then(|gusts| gusts.get(k)).copied().unwrap_or_default();
-    Held { elevator_rad, gust }
+    let added = responses.and_then(|responses| responses.get(k)).map(Vec::as_slice);
+    Held { elevator_rad, gust, added: added.unwrap_or_default() }
 }

@@ -18,17 +18,27 @@ use fspid_study::fuzzy_system;
 /// with what the scenario flies.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
+    /// The file: a scenario, a fuzzy system (.toml, .fis, .fcl, .fll), or a rule table.
     file: InFile,
     /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    /// List every path of a scenario that --set, dispersions and marks may take, with its value, unit and range.
+    #[arg(long)]
+    paths: bool,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.paths {
+        let rows = file::paths(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+        return arguments.format.print(|| file::paths_text(&rows), || file::paths_json(&rows));
+    }
+    if arguments.overrides.is_empty() && fuzzy_system::is_rule_table_file(&arguments.file) {
+        return rule_table(&arguments.file, arguments.format);
+    }
     if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
         return system(&arguments.file, arguments.format);
     }
@@ -97,6 +107,15 @@ fn judge(path: &Path, checked: &CheckedFile, arguments: &Arguments) -> Result<()
         return Ok(());
     }
     Err(Failure::not_met(format_args!("{}: {unmet}", path.display())))
+}
+
+fn rule_table(path: &Path, format: Format) -> Result<(), Failure> {
+    let name = path.display().to_string();
+    file::load_rule_table(&name, None).map_err(Failure::input)?;
+    format.print(
+        || format!("{name}: good; a rule table of three grids of 49 rules\n"),
+        || json!({ "schema": 1, "file": name, "kind": "rule-table", "good": true, "rules": 3 * 49 }),
+    )
 }
 
 fn system(path: &Path, format: Format) -> Result<(), Failure> {

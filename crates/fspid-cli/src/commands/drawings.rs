@@ -43,7 +43,7 @@ fn several_on_one(figures: &[(&str, &str)]) -> Failure {
 }
 
 /// A name that every file system takes.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
 }

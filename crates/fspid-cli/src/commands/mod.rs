@@ -14,6 +14,7 @@ pub(crate) mod explain;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
+mod interrupt;
 pub(crate) mod learn;
 mod progress;
 pub(crate) mod reproduce;

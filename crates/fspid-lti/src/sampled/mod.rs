@@ -23,10 +23,10 @@ mod zeros;
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::ball::Ball;
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
 use crate::matrix::Matrix;
+use crate::wide::WideBall;
 use bracket::Proof;
 use reduced::{Reduced, Response};
 
@@ -66,8 +66,8 @@ pub struct SampledLoop {
     c: Vec<f64>,
     dt_s: f64,
     reduced: Reduced,
-    /// $A - I$ with the digits that A has lost, if they are known.
-    change: Option<Matrix>,
+    /// $A - I$ and b with the digits that they have lost, if they are known.
+    change: Option<(Matrix, Vec<f64>)>,
 }
 
 impl SampledLoop {
@@ -82,14 +82,16 @@ impl SampledLoop {
         Ok(Self { a, b, c, dt_s, reduced, change: None })
     }
 
-    /// The same loop with $A - I$, whose small entries near the diagonal have digits that A has not.
+    /// The same loop with $A - I$, whose small entries near the diagonal have digits that A has not, and b with all of
+    /// its own.
     ///
     /// Slow modes of a loop that is sampled fast live in these: rounding A alone moves what a loop does below a
     /// thousandth of Nyquist's frequency by 10⁻⁸ and more. Peaks and crossings are proved for the loop given here.
     ///
     /// # Errors
-    /// A matrix of another shape, an entry that is not finite, or one that is not that of A to its rounding.
-    pub fn with_change(self, change: Matrix) -> Result<Self, LtiError> {
+    /// A matrix or vector of another shape, an entry that is not finite, or one that is not that of A or b to its
+    /// rounding.
+    pub fn with_change(self, change: Matrix, input: Vec<f64>) -> Result<Self, LtiError> {
         change.require_square_and_finite("change of the states")?;
         change.require_shape("change of the states", self.order(), self.order())?;
         for (index, (&given, &a)) in change.data().iter().zip(self.a.data()).enumerate() {
@@ -98,7 +100,14 @@ impl SampledLoop {
                 return Err(LtiError::OtherLoop { index, given, expected: a - one });
             }
         }
-        Ok(Self { change: Some(change), ..self })
+        Self::require(&self.a, &input, &self.c, self.dt_s)?;
+        let size = self.b.iter().fold(0.0, |size, b| f64::max(size, b.abs()));
+        for (index, (&given, &expected)) in input.iter().zip(&self.b).enumerate() {
+            if !((given - expected).abs() <= SAME_ENTRY * size) {
+                return Err(LtiError::OtherLoop { index, given, expected });
+            }
+        }
+        Ok(Self { change: Some((change, input)), ..self })
     }
 
     /// What is proved of the loop; `None` if nothing is.
@@ -108,17 +117,19 @@ impl SampledLoop {
 
     /// The same with a factor on its gain.
     fn proof_scaled(&self, factor: f64) -> Option<Proof> {
-        let change: Vec<Ball> = match &self.change {
-            Some(change) => change.data().iter().map(|&entry| entry.into()).collect(),
-            None => (0..self.a.data().len())
-                .map(|index| {
+        let (change, b): (Vec<WideBall>, _) = match &self.change {
+            Some((change, b)) => (change.data().iter().map(|&entry| entry.into()).collect(), b),
+            None => {
+                let entries = self.a.data().iter().enumerate();
+                let less_one = entries.map(|(index, &entry)| {
                     let one = if index.is_multiple_of(self.order() + 1) { 1.0 } else { 0.0 };
-                    Ball::difference(self.a.data()[index], one)
-                })
-                .collect(),
+                    WideBall::difference(entry, one)
+                });
+                (less_one.collect(), &self.b)
+            }
         };
         let c: Vec<f64> = self.c.iter().map(|c| factor * c).collect();
-        Proof::new(&change, &self.b, &c)
+        Proof::new(&change, b, &c)
     }
 
     /// `Ok` when a loop can be made of these.

@@ -2,13 +2,14 @@
 
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
-    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RigidState,
-    Vector3,
+    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RIGID_STATES,
+    RigidState, Vector3,
 };
 
+use super::corner::Corner;
 use super::{AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller};
 use crate::actuator::{Actuator, ActuatorState};
-use crate::air::Place;
+use crate::air::{self, DrydenState, Grid, Place};
 use crate::error::SimError;
 use crate::surroundings::Weather;
 use crate::timing::Timing;
@@ -20,6 +21,7 @@ pub(crate) struct AircraftFlight {
     actuator: Actuator,
     leveller: WingLeveller,
     steps: SubSteps,
+    grid: Grid,
     atmosphere: Atmosphere,
     start: RigidState,
     /// Pitch of the trim, rad.
@@ -38,6 +40,11 @@ struct SubSteps {
 pub(crate) struct AircraftMotion {
     /// Sample that has been reached.
     k: usize,
+    /// Time of the air's grid that has been reached, and the turbulence from it on.
+    tick: usize,
+    turbulence: Option<DrydenState>,
+    /// Aileron, within its travel, rad.
+    aileron_rad: f64,
     /// Way through the air since the start, m.
     distance_m: f64,
     state: RigidState,
@@ -88,13 +95,14 @@ impl AircraftFlight {
         weather: Option<&Weather>,
         timing: Timing,
     ) -> Result<Self, SimError> {
-        let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m, timing)?;
+        let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m)?;
         let start = start(plant, &atmosphere);
         Ok(Self {
             plant: plant.clone(),
             actuator,
             leveller: WingLeveller::of(plant.aircraft(), plant.trim()),
             steps: SubSteps::of(timing.dt_s()),
+            grid: Grid::new(timing.dt_s()),
             trim_theta_rad: start.euler().theta_rad,
             start,
             atmosphere,
@@ -108,6 +116,9 @@ impl AircraftFlight {
     pub(crate) fn at_rest(&self) -> AircraftMotion {
         AircraftMotion {
             k: 0,
+            tick: 0,
+            turbulence: self.atmosphere.start_turbulence(),
+            aileron_rad: self.aileron_rad(&self.start),
             distance_m: 0.0,
             state: self.start,
             theta_rad: 0.0,
@@ -138,8 +149,11 @@ impl AircraftFlight {
 
     /// The air where the aircraft is.
     fn air(&self, motion: &AircraftMotion) -> AirMotion {
-        let place = place(&motion.state, &self.atmosphere, motion.distance_m);
-        self.atmosphere.at(&place, motion.k)
+        self.atmosphere.at(&self.place(motion), self.atmosphere.turbulence(&motion.turbulence))
+    }
+
+    fn place(&self, motion: &AircraftMotion) -> Place {
+        place(&motion.state, &self.atmosphere, motion.distance_m)
     }
 
     /// One sample period with command and disturbance held.
@@ -149,28 +163,120 @@ impl AircraftFlight {
         command_rad: f64,
         disturbance_rad: f64,
     ) {
-        for _ in 0..self.steps.count {
-            self.sub_step(motion, command_rad, disturbance_rad);
+        let held = [command_rad, disturbance_rad];
+        if self.atmosphere.moves() {
+            for piece in self.grid.pieces(motion.k) {
+                self.reach(motion, piece.tick);
+                self.way(motion, held, piece.length_s);
+            }
+            motion.k += 1;
+            self.reach(motion, self.grid.tick(motion.k));
+        } else {
+            for _ in 0..self.steps.count {
+                motion.aileron_rad = self.aileron_rad(&motion.state);
+                *motion = self.stepped(motion, held, self.steps.step_s);
+            }
+            motion.aileron_rad = self.aileron_rad(&motion.state);
+            motion.k += 1;
         }
         motion.theta_rad = motion.state.euler().theta_rad - self.trim_theta_rad;
-        motion.k += 1;
     }
 
-    fn sub_step(&self, motion: &mut AircraftMotion, command_rad: f64, disturbance_rad: f64) {
-        let step_s = self.steps.step_s;
-        let air = self.air(motion);
-        let [begin, middle, end] = self.stages(motion, command_rad, disturbance_rad);
-        let rate = |time_s: f64, state: &_| {
+    /// Takes the turbulence and the aileron of a time of the grid.
+    fn reach(&self, motion: &mut AircraftMotion, tick: usize) {
+        while motion.tick < tick {
+            motion.tick += 1;
+            self.atmosphere.advance(&mut motion.turbulence, motion.tick);
+            motion.aileron_rad = self.aileron_rad(&motion.state);
+        }
+    }
+
+    /// A part of a period in moving air, cut where winds are not smooth.
+    fn way(&self, motion: &mut AircraftMotion, held: [f64; 2], length_s: f64) {
+        let mut left_s = length_s;
+        // Every corner is met once; the bound is for air that carries an aircraft to and fro.
+        for _ in 0..MOST_CORNERS {
+            let next = self.stepped(motion, held, left_s);
+            let Some(corner) = self.atmosphere.corner(&self.place(motion), &self.place(&next))
+            else {
+                *motion = next;
+                return;
+            };
+            let (there, step_s) = self.stepped_to(motion, held, (corner, left_s));
+            *motion = there;
+            left_s -= step_s;
+        }
+        *motion = self.stepped(motion, held, left_s);
+    }
+
+    /// The motion at a corner that a step of `most_s` passes, and how long a step reaches it: by regula falsi.
+    fn stepped_to(
+        &self,
+        motion: &AircraftMotion,
+        held: [f64; 2],
+        (corner, most_s): (Corner, f64),
+    ) -> (AircraftMotion, f64) {
+        let past_m = |motion: &AircraftMotion| corner.past_m(&self.place(motion));
+        let (mut before, mut after) = ((0.0, past_m(motion)), most_s);
+        let mut beyond_m = past_m(&self.stepped(motion, held, most_s));
+        let mut found = (motion.clone(), 0.0);
+        for _ in 0..MOST_TRIES {
+            let step_s = before.0 + (after - before.0) * before.1 / (before.1 - beyond_m);
+            let there = self.stepped(motion, held, step_s);
+            let here_m = past_m(&there);
+            found = (there, step_s);
+            if corner.is_at(&self.place(&found.0)) {
+                break;
+            }
+            if (here_m < 0.0) == (before.1 < 0.0) {
+                before = (step_s, here_m);
+            } else {
+                (after, beyond_m) = (step_s, here_m);
+            }
+        }
+        found
+    }
+
+    /// The motion after one step of Runge and Kutta, in the air of the place at each stage.
+    fn stepped(
+        &self,
+        motion: &AircraftMotion,
+        [command_rad, disturbance_rad]: [f64; 2],
+        step_s: f64,
+    ) -> AircraftMotion {
+        let mut next = motion.clone();
+        let turbulence = self.atmosphere.turbulence(&motion.turbulence);
+        let [begin, middle, end] = self.stages(&mut next, ([command_rad, disturbance_rad], step_s));
+        let rate = |time_s: f64, values: &[f64; STATES]| {
             let controls = match time_s {
                 t if t <= 0.0 => &begin,
                 t if t < step_s => &middle,
                 _ => &end,
             };
-            self.aircraft().rate(state, controls, &air)
+            self.rate(values, controls, turbulence)
         };
-        let next = RigidState::from_array(&rk4::step(rate, 0.0, &motion.state.to_array(), step_s));
-        motion.distance_m += step_s * self.aircraft().flow(&motion.state, &air).airspeed_m_s;
-        motion.state = RigidState { attitude: next.attitude.normalised(), ..next };
+        let values = rk4::step(rate, 0.0, &joined(&motion.state, motion.distance_m), step_s);
+        let (state, distance_m) = parted(&values);
+        next.state = RigidState { attitude: state.attitude.normalised(), ..state };
+        next.distance_m = distance_m;
+        next
+    }
+
+    /// Rates of the body's state and of the way through the air.
+    fn rate(
+        &self,
+        values: &[f64; STATES],
+        controls: &Controls,
+        turbulence: air::AirMotion,
+    ) -> [f64; STATES] {
+        let (state, distance_m) = parted(values);
+        let air = self.atmosphere.at(&place(&state, &self.atmosphere, distance_m), turbulence);
+        let instant = self.aircraft().instant(&state, controls, &air);
+        let rates = state.rate(&instant.accelerations);
+        let mut all = [0.0; STATES];
+        all[..RIGID_STATES].copy_from_slice(&rates);
+        all[RIGID_STATES] = instant.flow.airspeed_m_s;
+        all
     }
 
     /// The controls at the beginning, the middle and the end of a sub-step; the actuator is left at
@@ -178,16 +284,13 @@ impl AircraftFlight {
     fn stages(
         &self,
         motion: &mut AircraftMotion,
-        command_rad: f64,
-        disturbance_rad: f64,
+        ([command_rad, disturbance_rad], step_s): ([f64; 2], f64),
     ) -> [Controls; 3] {
-        let aileron_rad = self.aileron_rad(&motion.state);
         [0.0, 0.5, 0.5].map(|share| {
             if share > 0.0 {
-                let time_s = share * self.steps.step_s;
-                self.actuator.advance(&mut motion.actuator, command_rad, time_s);
+                self.actuator.advance(&mut motion.actuator, command_rad, share * step_s);
             }
-            self.controls(self.elevator_rad(motion, disturbance_rad), aileron_rad)
+            self.controls(self.elevator_rad(motion, disturbance_rad), motion.aileron_rad)
         })
     }
 
@@ -234,7 +337,7 @@ impl AircraftFlight {
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
         let (state, air) = (&motion.state, self.air(motion));
-        let aileron_rad = self.aileron_rad(state);
+        let aileron_rad = motion.aileron_rad;
         let instant =
             self.aircraft().instant(state, &self.controls(elevator_rad, aileron_rad), &air);
         let wind_body_m_s = state.attitude.to_body(air.wind_ned_m_s);
@@ -264,6 +367,25 @@ fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
     let felt = state.attitude.to_ned(load_factors);
     let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
     libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
+}
+
+/// States of a body and its way through the air.
+const STATES: usize = RIGID_STATES + 1;
+/// Most corners in a part of a period that a step ends at.
+const MOST_CORNERS: usize = 64;
+/// Most tries for a corner; three are usual.
+const MOST_TRIES: usize = 20;
+
+fn joined(state: &RigidState, distance_m: f64) -> [f64; STATES] {
+    let mut values = [distance_m; STATES];
+    values[..RIGID_STATES].copy_from_slice(&state.to_array());
+    values
+}
+
+fn parted(values: &[f64; STATES]) -> (RigidState, f64) {
+    let mut state = [0.0; RIGID_STATES];
+    state.copy_from_slice(&values[..RIGID_STATES]);
+    (RigidState::from_array(&state), values[RIGID_STATES])
 }
 
 fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> Place {

@@ -4,7 +4,7 @@ use fspid_core::Gains;
 use fspid_lti::{LoopFamily, Matrix, SampledLoop, SeriesControl};
 
 use super::assembly::Broken;
-use super::{LoopModel, LoopSettings, Memory};
+use super::{LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::error::SimError;
 
 /// Where a loop is broken. At each point the signal there is replaced by another, and what comes back
@@ -77,29 +77,29 @@ impl LoopModel<f64> {
         let dt_s = self.settings.shell.dt_s;
         let open = SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?;
         match &self.change {
-            Some(change) => Ok(open.with_change(self.change_when_broken(change, gains, point)?)?),
+            Some(rows) => {
+                let (change, input) = self.change_when_broken(rows, gains, point)?;
+                Ok(open.with_change(change, input)?)
+            }
             None => Ok(open),
         }
     }
 
-    /// The matrix of the loop broken at a point, less 1 on the diagonal.
+    /// The matrix of the loop broken at a point, less 1 on the diagonal, and what enters.
     fn change_when_broken(
         &self,
-        change: &[f64],
+        rows: &[f64],
         gains: Gains<f64>,
         point: BreakPoint,
-    ) -> Result<Matrix, SimError> {
-        let mut plant = self.plant.clone();
+    ) -> Result<(Matrix, Vec<f64>), SimError> {
+        let plant = SampledPlant { rows: rows.to_vec(), ..self.plant.clone() };
         let states = plant.states;
-        for (row, own) in plant.rows.chunks_exact_mut(states + 1).zip(change.chunks_exact(states)) {
-            row[..states].copy_from_slice(own);
-        }
-        let mut matrix =
-            Self::new(plant, self.settings.clone()).assembly(gains).broken(point).matrix;
+        let Broken { mut matrix, entry, .. } =
+            Self { plant, ..self.clone() }.assembly(gains).broken(point);
         for (place, row) in matrix.iter_mut().enumerate().skip(states) {
             row[place] -= 1.0;
         }
-        Ok(Matrix::from_rows(&matrix)?)
+        Ok((Matrix::from_rows(&matrix)?, entry))
     }
 }
 

@@ -20,7 +20,9 @@
 //!
 //! # Random streams
 //! Of the seed, from [`STREAM`] on, 4 for each channel number: noise 0, bias 1, drift 2. Sample j of
-//! the sensor takes number j, so that the noise does not depend on the loop's period.
+//! the sensor's own clock takes number j. With a sampling time of its own the noise and the drift at a
+//! time do not depend on the loop's period; without one the sensor's clock is the loop's, so that at
+//! another period the density is the same and the numbers belong to other times.
 //!
 //! Quantities are in any one unit: rad for pitch, rad/s for pitch rate, m for altitude, m/s for speed.
 

@@ -54,6 +54,7 @@ struct SensingFile {
     scale: f64,
     samples: usize,
     part: f64,
+    resolution: f64,
 }
 
 impl LoopFile {
@@ -160,15 +161,24 @@ impl ActuatorFile {
 
 impl SensingFile {
     fn of(sensing: &Sensing) -> Self {
-        Self { scale: sensing.scale, samples: sensing.samples, part: sensing.part }
+        Self {
+            scale: sensing.scale,
+            samples: sensing.samples,
+            part: sensing.part,
+            resolution: sensing.resolution,
+        }
     }
 
     fn build(&self) -> Result<Sensing, String> {
-        let Self { scale, samples, part } = *self;
-        let good = scale.is_finite() && (0.0..1.0).contains(&part) && samples <= MOST_STATES;
-        let sensing = Sensing { scale, samples, part, at_largest_age: false };
+        let Self { scale, samples, part, resolution } = *self;
+        let good = scale.is_finite()
+            && (0.0..1.0).contains(&part)
+            && samples <= MOST_STATES
+            && resolution >= 0.0
+            && resolution.is_finite();
+        let sensing = Sensing { scale, samples, part, resolution, at_largest_age: false };
         good.then_some(sensing).ok_or_else(|| {
-            format!("allowed are a finite scale, up to {MOST_STATES} samples, and a part from 0 to below 1")
+            format!("allowed are a finite scale, up to {MOST_STATES} samples, a part from 0 to below 1, and a resolution of 0 or more")
         })
     }
 }

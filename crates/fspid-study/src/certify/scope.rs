@@ -41,6 +41,9 @@ impl Told {
         let mut sentences = Vec::new();
         if let Some(stable) = &self.stable {
             sentences.push(("holds for", range_in_words(&stable.scope)));
+            if stable.scope.rest_error_rad > 0.0 {
+                sentences.push(("error at rest", rest_error(&stable.scope)));
+            }
             sentences.push(("remains", remains(&stable.scope)));
             sentences.push(("limits", stable.limits()));
         }
@@ -64,8 +67,16 @@ impl Told {
         });
         if let Some(stable) = &self.stable {
             let Scope {
-                range, any_setpoint, any_load, remains_rad, limits, pitch_within_rad, ..
+                range,
+                any_setpoint,
+                any_load,
+                rest_error_rad,
+                remains_rad,
+                limits,
+                pitch_within_rad,
+                left_out: _,
             } = &stable.scope;
+            told["rest_error_deg"] = json!(degrees(*rest_error_rad));
             told["setpoint_within_deg"] = json!(degrees(range.setpoint_rad));
             told["any_setpoint"] = json!(any_setpoint);
             told["load_within_deg"] = json!(degrees(range.load_rad));
@@ -113,6 +124,11 @@ pub(crate) fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> Stri
         (false, None) => "; saturation is not covered",
     };
     format!("for {}{limits}", range_in_words(&scope))
+}
+
+fn rest_error(scope: &Scope) -> String {
+    let most = short(degrees(scope.rest_error_rad));
+    format!("rest is up to {most} deg from the set-point: there is no integral")
 }
 
 fn remains(scope: &Scope) -> String {

@@ -134,7 +134,7 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
             report.missing(section.at(key), &section.path(key), message, allowed);
             return None;
         };
-        if ["dispersion", "requirement", "schema", "set"].contains(&path.root()) {
+        if super::paths::NEVER_DRAWN.contains(&path.root()) {
             let message = format!("`{text}` cannot differ from run to run");
             let allowed = "a place of what flies or of what disturbs it";
             report.missing(section.at(key), &section.path(key), message, allowed);

@@ -142,8 +142,14 @@ pub fn needs_range(name: &str) -> bool {
     name == NUMBER_GRID || rule_table_names().contains(&name)
 }
 
+/// True for a `.toml` file with a rule table alone.
+#[must_use]
+pub fn is_rule_table_file(path: &Path) -> bool {
+    Format::of(path) == Some(Format::Toml) && text(path).is_ok_and(|text| is_rule_table(&text))
+}
+
 /// True for a text with a rule table alone: three grids, and neither a fuzzy system nor a scenario.
-pub(crate) fn is_rule_table(text: &str) -> bool {
+fn is_rule_table(text: &str) -> bool {
     let has = |key: &str| {
         let lines = text.lines().map(str::trim_start);
         let mut values = lines.filter_map(|line| line.strip_prefix(key));

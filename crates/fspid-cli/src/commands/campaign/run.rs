@@ -3,13 +3,14 @@
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::super::Format;
 use super::super::progress::Telling;
+use super::super::{Format, interrupt};
 use super::progress::told;
 use super::{Place, Planned, failure, planned};
 use crate::argument::InFile;
 use crate::exit::Failure;
 use fspid_campaign::local;
+use fspid_study::shell;
 
 /// Plan, fly and merge a campaign on this machine; again after an interruption, it goes on.
 #[derive(Debug, Args)]
@@ -57,6 +58,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Engine::Local = arguments.engine;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let runs = campaign.plan().runs;
+    interrupt::ends_with(format!(
+        "interrupted; what is flown stays, and this goes on: fspid campaign run --out {}",
+        shell::word(&folder.path().display().to_string())
+    ));
     let flown =
         told(telling, runs, |progress| local::run(&folder, &campaign, arguments.threads, progress));
     let flown = flown.map_err(failure)?;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::super::{Format, json_text};
+use super::super::{Format, interrupt, json_text};
 use super::failure;
 use crate::argument::InFile;
 use crate::exit::{Failure, print};
@@ -49,6 +49,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         sampling: Sampling::Random,
         shard_runs: None,
     };
+    interrupt::ends_with(
+        "interrupted; a search for the worst case keeps nothing, so that it begins anew".to_owned(),
+    );
     // Nothing is kept, so that the folder is only what paths are seen from.
     let here = Folder::new(std::path::Path::new("."));
     let campaign = fspid_campaign::plan(&question, &here).map_err(failure)?;

@@ -3,8 +3,8 @@
 use clap::Args;
 use serde_json::json;
 
-use super::super::Format;
 use super::super::progress::Telling;
+use super::super::{Format, interrupt};
 use super::progress::told;
 use super::{Place, failure};
 use crate::exit::Failure;
@@ -39,6 +39,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let range = range.map_err(failure)?;
     let _shared = folder.lock(false).map_err(failure)?;
     let _alone = folder.lock_shard(range).map_err(failure)?;
+    interrupt::ends_with(format!(
+        "interrupted; whole shards stay, and this one is flown by the same command: {}",
+        interrupt::command()
+    ));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let done = told(telling, range.end - range.first, |progress| {
         local::in_threads(arguments.threads, || shard::fly(&folder, &campaign, number, progress))?

@@ -12,6 +12,7 @@ use core::f64::consts::PI;
 
 use super::family::bowl;
 use crate::ball::Ball;
+use crate::wide::WideBall;
 use parts::Parts;
 use real::{Real, difference};
 use sign::{Between, Sign};
@@ -83,7 +84,7 @@ pub(super) struct Proof {
 
 impl Proof {
     /// From $A - I$, b and c; `None` where nothing can be proved.
-    pub(super) fn new(change: &[Ball], b: &[f64], c: &[f64]) -> Option<Self> {
+    pub(super) fn new(change: &[WideBall], b: &[f64], c: &[f64]) -> Option<Self> {
         let parts = Parts::new(change, b, c)?;
         let closed = parts.closed().squared();
         Some(Self { parts, closed })

@@ -4,11 +4,12 @@ use super::real::Real;
 use crate::balance::balance;
 use crate::ball::Ball;
 use crate::matrix::Matrix;
+use crate::wide::WideBall;
 
 /// A square array of numbers with bounds.
 struct Square {
     size: usize,
-    data: Vec<Ball>,
+    data: Vec<WideBall>,
 }
 
 /// $L = N / D$ on the upper half of the unit circle, over a common factor.
@@ -35,24 +36,24 @@ impl Parts {
     /// # Source
     /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
     /// (1965), chapter 7.
-    pub(super) fn new(change: &[Ball], b: &[f64], c: &[f64]) -> Option<Self> {
+    pub(super) fn new(change: &[WideBall], b: &[f64], c: &[f64]) -> Option<Self> {
         let system = Square::bordered(change, b, c).reduced()?;
         let order = b.len();
         let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
         // minors[k] is the determinant of the rows and columns from k on, over (1 - s) to the power that is left.
-        let mut minors: Vec<Vec<Ball>> = vec![vec![Ball::from(1.0)]];
-        let mut over: Vec<Ball> = vec![Ball::ZERO];
+        let mut minors: Vec<Vec<WideBall>> = vec![vec![WideBall::from(1.0)]];
+        let mut over: Vec<WideBall> = vec![WideBall::ZERO];
         for row in (0..order).rev() {
             let corner = h(row, row);
-            let lead = corner.plus(Ball::from(2.0));
+            let lead = corner.plus(&WideBall::from(2.0));
             let mut minor = times_linear(minors.last()?, corner.negative(), lead);
             for minor in &mut minors {
-                *minor = times_linear(minor, Ball::from(1.0), Ball::from(-1.0));
+                *minor = times_one_less_s(minor);
             }
-            let mut below = Ball::from(1.0);
+            let mut below = WideBall::from(1.0);
             for column in row + 1..order {
-                below = below.times(h(column, column - 1));
-                let factor = below.times(h(row, column)).negative();
+                below = below.times(&h(column, column - 1));
+                let factor = below.times(&h(row, column)).negative();
                 add(&mut minor, minors.get(order - 1 - column)?, factor);
             }
             minors.push(minor);
@@ -62,9 +63,9 @@ impl Parts {
         let mut entry = system.at(1, 0);
         for (place, minor) in minors.iter().rev().enumerate() {
             if place > 0 {
-                entry = entry.times(h(place, place - 1));
+                entry = entry.times(&h(place, place - 1));
             }
-            add(&mut over, minor, entry.times(system.at(0, 1 + place)));
+            add(&mut over, minor, entry.times(&system.at(0, 1 + place)));
         }
         Some(Self { under: Real::of_s(&under, order), over: Real::of_s(&over, order) })
     }
@@ -76,43 +77,53 @@ impl Parts {
 }
 
 /// Times $a + b s$.
-fn times_linear(polynomial: &[Ball], a: Ball, b: Ball) -> Vec<Ball> {
-    let mut product = vec![Ball::ZERO; polynomial.len() + 1];
-    for (power, &value) in polynomial.iter().enumerate() {
-        product[power] = product[power].plus(a.times(value));
+fn times_linear(polynomial: &[WideBall], a: WideBall, b: WideBall) -> Vec<WideBall> {
+    let mut product = vec![WideBall::ZERO; polynomial.len() + 1];
+    for (power, value) in polynomial.iter().enumerate() {
+        product[power] = product[power].plus(&a.times(value));
         product[power + 1] = b.times(value);
     }
     product
 }
 
-fn add(sum: &mut Vec<Ball>, polynomial: &[Ball], factor: Ball) {
+/// Times $1 - s$.
+fn times_one_less_s(polynomial: &[WideBall]) -> Vec<WideBall> {
+    let mut product = polynomial.to_vec();
+    product.push(WideBall::ZERO);
+    for (power, value) in polynomial.iter().enumerate() {
+        product[power + 1] = product[power + 1].minus(value);
+    }
+    product
+}
+
+fn add(sum: &mut Vec<WideBall>, polynomial: &[WideBall], factor: WideBall) {
     if factor.is_zero() {
         return;
     }
     if sum.len() < polynomial.len() {
-        sum.resize(polynomial.len(), Ball::ZERO);
+        sum.resize(polynomial.len(), WideBall::ZERO);
     }
-    for (sum, &value) in sum.iter_mut().zip(polynomial) {
-        *sum = sum.plus(factor.times(value));
+    for (sum, value) in sum.iter_mut().zip(polynomial) {
+        *sum = sum.plus(&factor.times(value));
     }
 }
 
 impl Square {
-    fn at(&self, row: usize, column: usize) -> Ball {
+    fn at(&self, row: usize, column: usize) -> WideBall {
         self.data[row * self.size + column]
     }
 
     /// The loop with b as its first row and c as its first column, transposed about the other diagonal, balanced.
-    fn bordered(change: &[Ball], b: &[f64], c: &[f64]) -> Self {
+    fn bordered(change: &[WideBall], b: &[f64], c: &[f64]) -> Self {
         let order = b.len();
         let size = order + 1;
         let entry = |row: usize, column: usize| match (row.checked_sub(1), column.checked_sub(1)) {
             (Some(row), Some(column)) => change[(order - 1 - column) * order + order - 1 - row],
             (Some(row), None) => c[order - 1 - row].into(),
             (None, Some(column)) => b[order - 1 - column].into(),
-            (None, None) => Ball::ZERO,
+            (None, None) => WideBall::ZERO,
         };
-        let data: Vec<Ball> =
+        let data: Vec<WideBall> =
             (0..size * size).map(|index| entry(index / size, index % size)).collect();
         let mut plain =
             Matrix::from_function(size, size, |row, column| data[row * size + column].rounded());
@@ -139,7 +150,7 @@ impl Square {
             let head = self.at(target, column);
             for row in target + 1..self.size {
                 if !self.at(row, column).is_zero() {
-                    let factor = self.at(row, column).over(head)?;
+                    let factor = self.at(row, column).over(&head)?;
                     self.eliminate(row, target, column, factor);
                 }
             }
@@ -159,16 +170,16 @@ impl Square {
     }
 
     /// Takes a multiple of the target's row from a row, and adds the multiple of its column to the target's.
-    fn eliminate(&mut self, row: usize, target: usize, column: usize, factor: Ball) {
+    fn eliminate(&mut self, row: usize, target: usize, column: usize, factor: WideBall) {
         let size = self.size;
-        self.data[row * size + column] = Ball::ZERO;
+        self.data[row * size + column] = WideBall::ZERO;
         for k in column + 1..size {
-            let taken = factor.times(self.at(target, k));
-            self.data[row * size + k] = self.at(row, k).minus(taken);
+            let taken = factor.times(&self.at(target, k));
+            self.data[row * size + k] = self.at(row, k).minus(&taken);
         }
         for k in 0..size {
-            let added = factor.times(self.at(k, row));
-            self.data[k * size + target] = self.at(k, target).plus(added);
+            let added = factor.times(&self.at(k, row));
+            self.data[k * size + target] = self.at(k, target).plus(&added);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Real polynomials in $w = \tan^2(\omega T / 2)$ that are proved.
 
 use crate::ball::Ball;
+use crate::wide::WideBall;
 
 /// $R(w) + j t\, I(w)$, $w = t^2$: a polynomial in $s = j t$.
 #[derive(Debug, Clone)]
@@ -11,11 +12,11 @@ pub(super) struct Real {
 
 impl Real {
     /// From coefficients over s, lowest power first, of at most this degree.
-    pub(super) fn of_s(coefficients: &[Ball], degree: usize) -> Self {
+    pub(super) fn of_s(coefficients: &[WideBall], degree: usize) -> Self {
         let every_second = |first: usize| {
             let places = (first..=degree).step_by(2).enumerate();
             let signed = places.map(|(index, power)| {
-                let value = coefficients.get(power).copied().unwrap_or(Ball::ZERO);
+                let value = coefficients.get(power).map_or(Ball::ZERO, WideBall::ball);
                 if index % 2 == 0 { value } else { value.negative() }
             });
             signed.collect()

@@ -10,6 +10,7 @@
 //! approximate polynomials using Descartes' rule of signs, Saarbrücken (2008), section 2.
 
 use crate::ball::Ball;
+use crate::wide::power_of_two;
 
 /// Stretches end at powers of this, by its exponent of 2.
 const STRETCH: i32 = 4;
@@ -267,10 +268,6 @@ impl Stretch {
         }
         Some(1)
     }
-}
-
-fn power_of_two(exponent: i32) -> f64 {
-    libm::scalbn(1.0, exponent)
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ pub(super) static TURBULENCE: Table = plain(
             "seed",
             Kind::Integer { least: 0, most: i64::MAX },
             Default::Integer(1),
-            "The same seed gives the same turbulence.",
+            "The same seed gives the same turbulence at any sample period: it is drawn each 10 ms and held.",
         ),
     ]],
 );

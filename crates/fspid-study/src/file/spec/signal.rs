@@ -160,7 +160,7 @@ pub(super) static DISTURBANCE: Table = Table {
                     required(
                         "seed",
                         Kind::Integer { least: 0, most: i64::MAX },
-                        "The same seed gives the same noise.",
+                        "The same seed gives the same number at the same sample of the loop; another period is another noise.",
                     ),
                 ]],
             ),

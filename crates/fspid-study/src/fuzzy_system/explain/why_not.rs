@@ -144,7 +144,7 @@ impl Grader<'_> {
     }
 
     fn of_input(&self, input: usize, term: usize) -> f64 {
-        let inputs = self.workspace.inputs();
+        let inputs = self.workspace.variables();
         let part = self.system.parts().inputs.get(input).filter(|part| part.enabled);
         let set = part.and_then(|part| part.terms.get(term)).map(|term| &term.membership);
         let (Some(set), Some(&x)) = (set, inputs.get(input)) else { return 0.0 };

@@ -57,10 +57,11 @@ fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Pla
 }
 
 fn parts(report: &mut Report, section: &Section, places: &mut Places) -> Option<Parts> {
-    let names: Vec<&str> =
-        section.sections("input").iter().map(|s| s.text("name").unwrap_or_default()).collect();
-    let of_sets: Vec<&str> = std::iter::once("x").chain(names.iter().copied()).collect();
-    let variables = Variables { inputs: &names, of_sets: &of_sets };
+    let named = |kind| section.sections(kind).iter().map(|s| s.text("name").unwrap_or_default());
+    let names: Vec<&str> = named("input").collect();
+    let of_values: Vec<&str> = names.iter().copied().chain(named("output")).collect();
+    let of_sets: Vec<&str> = std::iter::once("x").chain(of_values.iter().copied()).collect();
+    let variables = Variables { inputs: &names, of_values: &of_values, of_sets: &of_sets };
     let mut found = (Vec::new(), Vec::new(), Vec::new());
     for part in section.sections("input") {
         found.0.extend(input(report, part, &of_sets, places));
