@@ -97,6 +97,7 @@ fn hostile() -> Vec<Value> {
         json!("x".repeat(100_000)),
         json!("\u{0}\u{202e}"),
         json!("midpoint:4000000000"),
+        json!("midpoint:1000000"),
         json!(0),
         json!(-0.0),
         json!(-1),
