@@ -4,6 +4,7 @@
 //! itself; [`check_text`] proves its claim anew and trusts nothing in it but its numbers.
 
 mod controller_file;
+mod coverage;
 mod file;
 mod json;
 mod loop_file;
@@ -22,6 +23,7 @@ use crate::file::Study;
 
 pub use fspid_proof::Effort;
 
+pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
 pub use file::{Origin, from_text, to_text};
 
 /// What came of certifying one controller with one plant.
