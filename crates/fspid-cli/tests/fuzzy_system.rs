@@ -136,7 +136,7 @@ fn a_file_of_points_is_answered_whole_or_not_at_all() {
     let missing = fspid(&["infer", "tip.toml", "--points", "nowhere.csv"], folder.path());
     assert_eq!(code(&missing), 2);
     assert!(
-        stderr(&missing).contains("nowhere.csv: there is no such file"),
+        stderr(&missing).contains("nowhere.csv: cannot be read: there is no such file"),
         "{}",
         stderr(&missing)
     );
@@ -258,7 +258,7 @@ fn surface_draws_a_file_a_folder_and_a_table() {
     assert_eq!(code(&all), 0, "{}", stderr(&all));
     assert_eq!(std::fs::read_dir(folder.path().join("all")).expect("made").count(), 3);
     let wrong = fspid(&["surface", "tip.toml", "--x", "fod"], folder.path());
-    assert!(code(&wrong) == 2 && stderr(&wrong).contains("did you mean food?"));
+    assert!(code(&wrong) == 2 && stderr(&wrong).contains("did you mean `food`?"));
 }
 
 #[test]
@@ -286,7 +286,10 @@ fn convert_tells_losses_and_writes_nothing_where_they_are_not_allowed() {
     };
     assert_eq!(ask("tip.fis")["outputs"], ask("back.toml")["outputs"]);
     for (arguments, part) in [
-        (&["convert", "tip.toml", "tip.txt"][..], "the ending says no format"),
+        (
+            &["convert", "tip.toml", "tip.txt"][..],
+            "unknown ending; known are .toml, .fis, .fcl, .fll",
+        ),
         (&["convert", "tip.toml", "tip.fis", "--to", "iec"], "goes with an .fcl file"),
         (&["convert", "nowhere.fcl", "tip.toml"], "there is no such file"),
     ] {
@@ -396,7 +399,7 @@ fn options_that_do_not_fit_are_refused_with_advice() {
     for (arguments, part) in [
         (&["infer"][..], "required"),
         (&["infer", "--error", "1", "--change", "1"], "add --range"),
-        (&["infer", "tip.toml", "--error", "1", "--change", "1"], "cannot be used with"),
+        (&["infer", "tip.toml", "--error", "1", "--change", "1"], "there is no input `error`"),
         (
             &["infer", "tip.toml", "--input", "service=1", "--input", "food=1", "--range", "5"],
             "--range goes with a shipped rule table",
