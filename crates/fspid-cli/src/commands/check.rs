@@ -11,7 +11,7 @@ use fspid_study::fuzzy_system;
 /// Check a scenario or a fuzzy system and tell every problem in it.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
+    /// The file: a scenario, or a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml).
     file: PathBuf,
     /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]

@@ -11,7 +11,7 @@ use fspid_study::fuzzy_system;
 /// Explain an answer: rules by strength, the share of each in every output, and why not another.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: String,
     #[command(flatten)]
     loading: Loading,

@@ -17,7 +17,7 @@ use fspid_study::rows::{self, RowsError, Table};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("inputs").required(true).args(["error", "points", "input"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: Option<String>,
     #[command(flatten)]
     loading: Loading,

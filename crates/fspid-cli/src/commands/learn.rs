@@ -16,7 +16,7 @@ use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: String,
     #[command(flatten)]
     loading: Loading,
@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Give every rule a conclusion of its own in place of those of the file.
     #[arg(long, value_enum, value_name = "WHAT")]
     conclude: Option<Conclude>,
-    /// The new file: .toml (everything can be said), .fis, .fcl or .fll.
+    /// The new file: .toml (everything can be said), .fis, .t2fis, .fcl, .fll or .xml.
     #[arg(long, value_name = "OUT")]
     out: PathBuf,
     /// Most epochs.

@@ -14,7 +14,7 @@ use fspid_study::output;
 /// Without --out the drawing of the one output goes to standard output.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: String,
     #[command(flatten)]
     loading: Loading,

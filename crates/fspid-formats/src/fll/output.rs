@@ -169,7 +169,8 @@ fn conclusion(
         return term::linear(class, &finite(rest, report)?, inputs, report);
     }
     if class.is("Function") && !integrates {
-        return term::formula(rest.take_raw('\n'), with_x.get(1..).unwrap_or_default(), report).map(Conclusion::Formula);
+        return term::formula(rest.take_raw('\n'), with_x.get(1..).unwrap_or_default(), report)
+            .map(Conclusion::Formula);
     }
     let membership = membership(term, with_x, report)?;
     Some(Conclusion::Set { membership, lower: None })
