@@ -60,6 +60,15 @@ impl Propagation {
         }
     }
 
+    /// True for an aircraft at or below the ground; a linear plant has no height.
+    #[inline(always)]
+    pub(crate) fn is_at_ground(&self, motion: &Motion) -> bool {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.is_at_ground(state),
+            _ => false,
+        }
+    }
+
     /// Pitch rate just before a sample, rad/s.
     #[inline(always)]
     pub(crate) fn rate_rad_s(&self, motion: &Motion, disturbance_rad: f64) -> f64 {

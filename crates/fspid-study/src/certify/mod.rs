@@ -7,6 +7,7 @@ mod against;
 mod checked;
 mod checked_text;
 mod controller_file;
+mod coverage;
 mod digest;
 mod file;
 mod json;
@@ -30,6 +31,7 @@ pub use fspid_proof::Effort;
 
 pub use against::{Comparison, Difference};
 pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
 pub use file::{Origin, Seal, from_text, to_text};
 pub(crate) use scope::in_short as scope_in_short;
 pub use shape::Wrong;

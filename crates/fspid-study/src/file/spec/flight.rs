@@ -21,6 +21,11 @@ words! {
 words_of!(DragLaw { Linear = "linear", Polar = "polar" });
 words_of!(ThrustLaw { Constant = "constant", WithSpeed = "with-speed" });
 
+words! {
+    /// What leaving the range of the data comes to.
+    ValidityWord { Fail = "fail", Warn = "warn" }
+}
+
 /// The standard atmosphere.
 pub(super) const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
 /// The same in feet.
@@ -109,7 +114,18 @@ pub(super) static AIRCRAFT: Table = Table {
                 "Air and gravity: standard, or everywhere those of the data's flight condition.",
             ),
             defaulted("heading_deg", angle(), Default::Number(0.0), "Clockwise from north."),
-            defaulted("ground_m", finite("m"), Default::Number(0.0), "Altitude of the ground."),
+            defaulted(
+                "ground_m",
+                finite("m"),
+                Default::Number(0.0),
+                "Altitude of the ground; a nonlinear flight begins above it and ends at it, a failure.",
+            ),
+            defaulted(
+                "validity",
+                Kind::Word(ValidityWord::WORDS),
+                Default::Word("fail"),
+                "What a nonlinear flight comes to that leaves the range in which the aircraft's data are trusted: a failure, or a warning.",
+            ),
         ],
         LOADING,
     ],
