@@ -132,10 +132,17 @@ fn rest_error(scope: &Scope) -> String {
 }
 
 fn remains(scope: &Scope) -> String {
+    let angle = |most: f64| if most < 1e-3 { format!("{most:.1e}") } else { short(most) };
+    let rest = match degrees(scope.rest_error_rad) {
+        0.0 => "rest".to_owned(),
+        most => format!(
+            "rest, which without an integral may be up to {} deg off the set-point",
+            angle(most)
+        ),
+    };
     match degrees(scope.remains_rad) {
-        0.0 => "nothing: every deviation dies out".to_owned(),
-        most if most < 1e-3 => format!("the pitch angle may stay off by up to {most:.1e} deg"),
-        most => format!("the pitch angle may stay off by up to {} deg", short(most)),
+        0.0 => format!("nothing: every deviation dies out towards {rest}"),
+        most => format!("the pitch angle may stay up to {} deg off {rest}", angle(most)),
     }
 }
 
