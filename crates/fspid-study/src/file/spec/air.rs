@@ -7,11 +7,13 @@ use super::{
 
 /// Documents that turbulence is stated by.
 const SPECIFICATIONS: [&str; 2] = ["mil-f-8785c", "mil-hdbk-1797"];
+/// Whose height and airspeed turbulence has.
+const FOLLOWS: [&str; 2] = ["start", "flight"];
 /// Severities of turbulence.
 const INTENSITIES: [&str; 3] = ["light", "moderate", "severe"];
 
 pub(super) static TURBULENCE: Table = plain(
-    "Turbulence of the form of Dryden, at the trimmed speed and height.",
+    "Turbulence of the form of Dryden.",
     &[&[
         defaulted(
             "model",
@@ -23,6 +25,11 @@ pub(super) static TURBULENCE: Table = plain(
             "intensity",
             Kind::Word(&INTENSITIES),
             "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
+        ),
+        optional(
+            "follows",
+            Kind::Word(&FOLLOWS),
+            "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
         ),
         optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's."),
         defaulted(
