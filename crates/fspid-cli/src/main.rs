@@ -3,8 +3,10 @@
 //! One file a command; each calls one function of `fspid-study` and prints what it answers. Standard
 //! output is data, standard error is for people.
 
+mod argument;
 mod commands;
 mod exit;
+mod line;
 
 use std::process::ExitCode;
 
@@ -50,18 +52,21 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are no mistakes; clap knows which stream is right.
-            let code = if error.use_stderr() { Failure::INPUT } else { 0 };
-            return match error.print() {
-                Ok(()) => ExitCode::from(code),
-                Err(_) => ExitCode::from(Failure::OUTPUT),
-            };
-        }
+    let done = match line::parsed::<Arguments>() {
+        Ok(arguments) => run(arguments.command),
+        Err(end) => end.map_or(Ok(()), Err),
     };
-    let done = match arguments.command {
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Init(arguments) => commands::init::run(&arguments),
         Command::Check(arguments) => commands::check::run(&arguments),
@@ -82,12 +87,5 @@ fn main() -> ExitCode {
         Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(failure.code())
-        }
     }
 }

@@ -36,5 +36,6 @@ pub mod rule_text;
 mod term;
 mod tokens;
 mod vocabulary;
+mod work;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

@@ -9,7 +9,7 @@ use crate::matrix::Matrix;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Doubled {
     pub(crate) high: f64,
-    low: f64,
+    pub(crate) low: f64,
 }
 
 /// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
@@ -22,7 +22,7 @@ impl Doubled {
     ///
     /// # Source
     /// D. E. Knuth, The Art of Computer Programming, volume 2, section 4.2.2, theorem B.
-    fn exact_sum(left: f64, right: f64) -> Self {
+    pub(crate) fn exact_sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let part = high - left;
         Self { high, low: (left - (high - part)) + (right - part) }
@@ -76,14 +76,35 @@ impl DoubledMatrix {
 
     /// Product with itself.
     pub(crate) fn squared(&self) -> Self {
+        self.product(self)
+    }
+
+    /// Product with a matrix of the same size.
+    pub(crate) fn product(&self, other: &Self) -> Self {
         let entry = |i: usize| {
             let (row, column) = (i / self.size, i % self.size);
             let terms = (0..self.size).map(|k| (row * self.size + k, k * self.size + column));
             terms.fold(Doubled::ZERO, |sum, (left, right)| {
-                sum.plus(self.data[left].product(self.data[right]))
+                sum.plus(self.data[left].product(other.data[right]))
             })
         };
         Self { size: self.size, data: (0..self.data.len()).map(entry).collect() }
+    }
+
+    /// Sum with a matrix of the same size.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let entries = self.data.iter().zip(&other.data);
+        Self { size: self.size, data: entries.map(|(own, other)| own.plus(*other)).collect() }
+    }
+
+    /// Every entry divided by a plain number.
+    pub(crate) fn divided(&self, by: f64) -> Self {
+        let divided = |value: &Doubled| {
+            let quotient = value.high / by;
+            let rest = value.plus(Doubled::from(by).times(-quotient));
+            Doubled::from(quotient).plus(Doubled::from(rest.high / by))
+        };
+        Self { size: self.size, data: self.data.iter().map(divided).collect() }
     }
 
     /// Nearest plain matrix.
@@ -91,6 +112,14 @@ impl DoubledMatrix {
         Matrix::from_function(self.size, self.size, |row, column| {
             self.data[row * self.size + column].high
         })
+    }
+}
+
+impl From<&Matrix> for DoubledMatrix {
+    /// A square matrix, without rounding.
+    fn from(matrix: &Matrix) -> Self {
+        let data = matrix.data().iter().map(|&value| value.into()).collect();
+        Self { size: matrix.rows(), data }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Exact sampling of a linear system whose input is held constant between samples.
 
 use crate::error::LtiError;
-use crate::exponential::exponential;
+use crate::exponential::{exponential, exponential_change};
 use crate::matrix::Matrix;
 
 /// Binary exponent that the input columns are scaled to, far below the states.
@@ -46,4 +46,30 @@ pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Mat
     });
     LtiError::unless_finite("sampled input matrix", b_sampled.data())?;
     Ok((a_sampled, b_sampled))
+}
+
+/// What a sample changes: $A_d - I$ and $B_d$ of [`zero_order_hold`], every entry with its own digits.
+///
+/// # Errors
+/// As [`zero_order_hold`].
+pub fn held_change(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Matrix), LtiError> {
+    a.require_square_and_finite("state matrix")?;
+    b.require_shape("input matrix", a.rows(), b.columns())?;
+    let (states, inputs) = (a.rows(), b.columns());
+    // Inputs of the size of 1, so that they force no halvings.
+    let shifts: Vec<i32> =
+        (0..inputs).map(|input| -libm::frexp(b.column_norm(input) * dt_s).1).collect();
+    let augmented = Matrix::from_function(states + inputs, states + inputs, |row, column| {
+        match column.checked_sub(states) {
+            _ if row >= states => 0.0,
+            Some(input) => libm::scalbn(b.at(row, input) * dt_s, shifts[input]),
+            None => a.at(row, column) * dt_s,
+        }
+    });
+    let change = exponential_change(&augmented)?;
+    let state = Matrix::from_function(states, states, |row, column| change.at(row, column));
+    let input = Matrix::from_function(states, inputs, |row, input| {
+        libm::scalbn(change.at(row, states + input), -shifts[input])
+    });
+    Ok((state, input))
 }

@@ -10,6 +10,10 @@ use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 use crate::gain_set::NoBound;
+use crate::sizes::WrongSize;
+
+/// A flight whose pitch angle goes beyond this is lost: $10^6$ degrees, as in simulations.
+const LOST_RAD: f64 = 1e6 * core::f64::consts::PI / 180.0;
 
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +51,8 @@ pub enum NotProvable {
     },
     /// Nothing bounds the gains of an accumulating law.
     UnboundedGains(NoBound),
+    /// The loop has more states than a proof may speak of.
+    TooLarge(WrongSize),
     /// The model is refused.
     Model(SimError),
     /// The plant cannot be enclosed.
@@ -68,6 +74,7 @@ impl fmt::Display for NotProvable {
                 "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
             ),
             Self::UnboundedGains(reason) => reason.fmt(f),
+            Self::TooLarge(wrong) => wrong.fmt(f),
             Self::Plant(reason) => reason.fmt(f),
             Self::Model(error) => error.fmt(f),
         }
@@ -158,6 +165,10 @@ impl LoopDescription {
         if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {
             return Err(NotProvable::ChangingAge);
         }
+        // Before anything is enclosed: the size of everything that follows.
+        if let Some(wrong) = self.too_large() {
+            return Err(NotProvable::TooLarge(wrong));
+        }
         Ok(self)
     }
 
@@ -182,6 +193,11 @@ impl LoopDescription {
             pitch: self.pitch,
             rate: self.rate,
         }
+    }
+
+    /// True with a sample guard that a flight can reach before it counts as lost.
+    pub(crate) fn is_guarded(&self) -> bool {
+        !(self.controller.shell().guard.limit_rad() >= LOST_RAD)
     }
 
     /// The loop with every number enclosed.
@@ -212,6 +228,7 @@ impl LoopDescription {
             (actuator.command_limits_rad().is_some(), "limits of the servo's command"),
             (actuator.travel_rad().is_some(), "ends of the actuator's travel"),
             (actuator.rate_limit_rad_s().is_some(), "rate limit of the actuator"),
+            (self.is_guarded(), "sample guard of the controller"),
         ]
         .into_iter()
         .filter_map(|(there, what)| there.then_some(what))

@@ -14,7 +14,7 @@ use crate::gust_response::PlantAir;
 use crate::law::{INPUTS, Law, StateVector};
 use crate::math::dot;
 use crate::plant::LinearPlant;
-use crate::propagator::LinearStep;
+use crate::propagator::{LinearStep, part_of_change};
 
 /// What enters the plant beside the command, held over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -211,6 +211,16 @@ impl Actuated {
             rows: rows.flat_map(entries).collect(),
             rate_row: self.rate_row.iter().take(states).copied().collect(),
         }
+    }
+}
+
+impl Actuated {
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), with all digits.
+    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+        let order = self.actuator.lag().order();
+        let at_once = (order == 0).then_some(self.order);
+        let places = (self.order + order.max(1), self.order + 2);
+        part_of_change(&self.follow.generator_over(self.dt_s)?, places, at_once)
     }
 }
 

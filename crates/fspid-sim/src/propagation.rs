@@ -193,6 +193,15 @@ impl Propagation {
         Ok(SampledPlant { states, rows, rate })
     }
 
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), with all digits; empty for an aircraft.
+    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+        match self {
+            Self::Servo(it) => it.linear_change(),
+            Self::Actuated(it) => it.linear_change(),
+            Self::Aircraft(_) => Ok(Vec::new()),
+        }
+    }
+
     pub(crate) fn linear_step(&self) -> Option<LinearStep> {
         match self {
             Self::Servo(it) => Some(it.linear_step()),

@@ -7,7 +7,7 @@
 //! is one matrix product. Where the rate limit holds the servo, $\dot \delta = \rho$ is constant,
 //! and the sample is cut at the instant the limit lets go; no step size and no error is involved.
 
-use fspid_lti::{Matrix, StateSpace, exponential};
+use fspid_lti::{Matrix, StateSpace, exponential, exponential_change};
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -218,6 +218,14 @@ impl Propagator {
         rate_row.push(self.rate_feedthrough * self.elevator_per_command);
         LinearStep { states: self.order + 1, rows: self.free_step.clone(), rate_row }
     }
+
+    /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over states and command, less 1
+    /// on the diagonal, with all digits.
+    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+        let states = self.order + 1;
+        let at_once = self.servo.is_at_once().then_some(self.order);
+        part_of_change(&self.free.scaled(self.dt_s), (states, states), at_once)
+    }
 }
 
 /// One sample of plant and actuator without limits.
@@ -229,6 +237,25 @@ pub(crate) struct LinearStep {
     pub(crate) rows: Vec<f64>,
     /// Row from states to pitch rate.
     pub(crate) rate_row: Vec<f64>,
+}
+
+/// The part over some states and one input of the exponential of a generator, less 1 on the diagonal; of a state that
+/// only remembers its input nothing is left.
+pub(crate) fn part_of_change(
+    generator: &Matrix,
+    (states, input): (usize, usize),
+    remembers: Option<usize>,
+) -> Result<Vec<f64>, SimError> {
+    let change = exponential_change(generator)?;
+    let rows = change.data().chunks_exact(change.columns()).take(states);
+    let mut part: Vec<f64> =
+        rows.flat_map(|row| [&row[..states], &row[input..=input]].concat()).collect();
+    if let Some(place) = remembers {
+        let row = &mut part[place * (states + 1)..(place + 1) * (states + 1)];
+        row.fill(0.0);
+        (row[place], row[states]) = (-1.0, 1.0);
+    }
+    Ok(part)
 }
 
 enum ServoMotion {

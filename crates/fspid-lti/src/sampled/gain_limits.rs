@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use super::bracket::Proof;
 use super::quick::quick_eigenvalues;
 use super::squares::Squares;
 use super::{SampledLoop, poles};
@@ -33,8 +34,9 @@ impl SampledLoop {
     pub(super) fn gain_limits(
         &self,
         squares: &Squares<'_>,
+        proof: Option<&Proof>,
     ) -> Result<[Option<GainLimit>; 2], LtiError> {
-        let mut candidates = self.gain_candidates(squares)?;
+        let mut candidates = self.gain_candidates(squares, proof)?;
         let above = candidates.iter().copied().filter(|limit| limit.factor > 1.0).collect();
         candidates.retain(|limit| limit.factor < 1.0);
         candidates.reverse();
@@ -45,14 +47,18 @@ impl SampledLoop {
     }
 
     /// Positive factors that bring a pole to the unit circle, $-1/L$ where L is real, rising.
-    fn gain_candidates(&self, squares: &Squares<'_>) -> Result<Vec<GainLimit>, LtiError> {
+    fn gain_candidates(
+        &self,
+        squares: &Squares<'_>,
+        proof: Option<&Proof>,
+    ) -> Result<Vec<GainLimit>, LtiError> {
         let limit = |angle_rad: f64| {
             let response = self.response(angle_rad);
             let factor = -quotient(response.under, response.over).re;
             GainLimit { factor, omega_rad_s: angle_rad / self.dt_s() }
         };
         let mut limits: Vec<GainLimit> =
-            self.real_angles(squares)?.into_iter().map(limit).collect();
+            self.real_angles(squares, proof)?.into_iter().map(limit).collect();
         limits.retain(|limit| limit.factor > 1.0 / FACTOR_MAX && limit.factor < FACTOR_MAX);
         limits.sort_by(|left, right| left.factor.total_cmp(&right.factor));
         Ok(limits)
@@ -130,7 +136,7 @@ mod tests {
     fn a_limit_is_where_the_poles_leave_the_circle() {
         let open = two_poles(0.5);
         let [low, high] = open
-            .gain_limits(&Squares::new(&open.reduced).expect("poles"))
+            .gain_limits(&Squares::new(&open.reduced).expect("poles"), None)
             .expect("eigenvalues converge");
         let high = high.expect("a limit");
         assert_eq!(low, None);

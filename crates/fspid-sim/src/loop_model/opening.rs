@@ -4,7 +4,7 @@ use fspid_core::Gains;
 use fspid_lti::{LoopFamily, Matrix, SampledLoop, SeriesControl};
 
 use super::assembly::Broken;
-use super::{LoopModel, LoopSettings, Memory};
+use super::{LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::error::SimError;
 
 /// Where a loop is broken. At each point the signal there is replaced by another, and what comes back
@@ -75,7 +75,31 @@ impl LoopModel<f64> {
         let Broken { matrix, entry, exit } = self.assembly(gains).broken(point);
         let returned = exit.iter().map(|value| -value).collect();
         let dt_s = self.settings.shell.dt_s;
-        Ok(SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?)
+        let open = SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?;
+        match &self.change {
+            Some(rows) => {
+                let (change, input) = self.change_when_broken(rows, gains, point)?;
+                Ok(open.with_change(change, input)?)
+            }
+            None => Ok(open),
+        }
+    }
+
+    /// The matrix of the loop broken at a point, less 1 on the diagonal, and what enters.
+    fn change_when_broken(
+        &self,
+        rows: &[f64],
+        gains: Gains<f64>,
+        point: BreakPoint,
+    ) -> Result<(Matrix, Vec<f64>), SimError> {
+        let plant = SampledPlant { rows: rows.to_vec(), ..self.plant.clone() };
+        let states = plant.states;
+        let Broken { mut matrix, entry, .. } =
+            Self { plant, ..self.clone() }.assembly(gains).broken(point);
+        for (place, row) in matrix.iter_mut().enumerate().skip(states) {
+            row[place] -= 1.0;
+        }
+        Ok((Matrix::from_rows(&matrix)?, entry))
     }
 }
 

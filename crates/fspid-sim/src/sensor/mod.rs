@@ -33,6 +33,7 @@ pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
 
 use crate::error::{SimError, finite, not_negative, positive};
+use crate::signal::noise::standard_normal;
 
 /// Number of the first random stream of sensors; turbulence and disturbances have others.
 pub const STREAM: u64 = 2 << 32;
@@ -106,6 +107,15 @@ impl Sensor {
     #[must_use]
     pub fn model(&self) -> &SensorModel {
         &self.model
+    }
+
+    /// The bias of this sensor, drawn from its seed, unit.
+    #[must_use]
+    pub fn bias(&self) -> f64 {
+        match self.model.bias {
+            bias if bias > 0.0 => bias * standard_normal(self.seed, self.stream(1), 0),
+            _ => 0.0,
+        }
     }
 
     /// Stream of a source of randomness.

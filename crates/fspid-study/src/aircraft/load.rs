@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_aircraft::data::AircraftData;
 
 use super::failure::AircraftFailure;
-use crate::file::files::read_regular;
+use crate::file::files::{STANDARD_INPUT, read_regular};
 use crate::file::{self, aircraft_names};
 
 /// The aircraft of a name that the program carries, or of a `.toml` file.
@@ -22,7 +22,8 @@ pub(super) fn load_at(name: &str, cg_mac: Option<f64>) -> Result<AircraftData, A
         return Ok(data);
     }
     let path = Path::new(name);
-    let is_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let is_file = name == STANDARD_INPUT
+        || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     if !is_file {
         return Err(AircraftFailure::unknown(name, &aircraft_names()));
     }

@@ -4,6 +4,8 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, modulus};
 use serde_json::{Map, Value, json};
 
+use crate::units::degrees;
+
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop};
 
@@ -61,6 +63,10 @@ fn controller(found: &AnalysedLoop) -> Value {
 fn plant_into(answer: &mut Map<String, Value>, plant: &PlantLoop) {
     let unstable = plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
     answer.insert("stable".into(), json!(plant.margins.is_ok()));
+    // Where gains that move make a constant command part of the loop, at the set-point at which it is worst.
+    if plant.setpoint_rad != 0.0 {
+        answer.insert("setpoint_deg".into(), json!(degrees(plant.setpoint_rad)));
+    }
     let shown = |pole: &Complex| pole_of(*pole, plant.open.dt_s());
     answer.insert(
         "unstable_poles".into(),

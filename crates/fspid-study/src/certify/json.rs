@@ -1,10 +1,10 @@
 //! Certificates for programs.
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{Outcome, Verdict};
+use fspid_proof::{Bearing, Kept, Outcome, Rechecked, Verdict};
 use serde_json::{Value, json};
 
-use super::{Certification, Certified, CheckedFile};
+use super::{Certification, Certified, CheckedFile, Comparison, Difference, Seal};
 use crate::units::degrees;
 
 /// Version of the answer's shape.
@@ -48,6 +48,10 @@ fn outcome_into(answer: &mut Value, certified: &Certified, outcome: &Outcome) {
         answer["decay_per_sample"] = json!(certificate.claim.rate());
         answer["inequalities"] = json!(rechecked.inequalities);
         answer["boxes_of_gains"] = json!(rechecked.cells);
+        answer["law_keeps_to_the_rate"] = kept(rechecked);
+        let bearing = certificate.bearing(rechecked);
+        answer["bearing"] = json!(bearing.name());
+        answer["bearing_in_words"] = json!(bearing.to_string());
     }
     let [kp, ki, kd] = outcome.bounds.map(ends);
     answer["gains"] = json!({ "kp": kp, "ki": ki, "kd": kd });
@@ -70,19 +74,49 @@ impl CheckedFile {
     pub fn json(&self) -> Value {
         let mut answer = json!({
             "schema": SCHEMA,
-            "holds": self.result.is_ok(),
+            "holds": self.holds(),
+            "answer": self.answer().name(),
             "claim": self.certificate.claim.name(),
             "decay_per_sample": self.certificate.claim.rate(),
             "output_factor": self.certificate.output_factor,
+            "bearing": self.bearing().map(Bearing::name),
+            "bearing_in_words": self.bearing().map(|bearing| bearing.to_string()),
             "origin": self.origin,
+            "as_written": self.seal == Seal::Whole,
         });
         match &self.result {
             Ok(rechecked) => {
                 answer["inequalities"] = json!(rechecked.inequalities);
                 answer["boxes_of_gains"] = json!(rechecked.cells);
+                answer["law_keeps_to_the_rate"] = kept(rechecked);
+                let [kp, ki, kd] = rechecked.bounds.map(ends);
+                answer["gains"] = json!({ "kp": kp, "ki": ki, "kd": kd });
             }
             Err(doubt) => answer["reason"] = json!(doubt.to_string()),
         }
+        if let Some(against) = &self.against {
+            answer["against"] = comparison(against);
+        }
         answer
     }
+}
+
+/// Where the law keeps to the rate of a claim about one; `null` where that is not shown, or not asked.
+fn kept(rechecked: &Rechecked) -> Value {
+    match rechecked.kept {
+        Some(Kept::Everywhere) => json!("everywhere"),
+        Some(Kept::WithinLevel) => json!("within the level"),
+        None => Value::Null,
+    }
+}
+
+fn comparison(against: &Comparison) -> Value {
+    let field =
+        |it: &Difference| json!({ "path": it.path, "certified": it.certified, "flown": it.flown });
+    json!({
+        "scenario": against.scenario,
+        "same": against.is_same(),
+        "differences": against.differences.iter().map(field).collect::<Vec<_>>(),
+        "digests": against.other_text,
+    })
 }

@@ -3,25 +3,32 @@
 //! Each controller is certified with each plant that lasts. A certificate is a file that is complete in
 //! itself; [`check_text`] proves its claim anew and trusts nothing in it but its numbers.
 
+mod against;
+mod checked;
+mod checked_text;
 mod controller_file;
+mod digest;
 mod file;
 mod json;
+mod json_text;
 mod loop_file;
+mod shape;
 mod text;
 
-use std::fmt;
-
 use fspid_proof::{
-    Certificate, Doubt, LoopDescription, NotProvable, Outcome, Rechecked, Verdict, certify,
+    Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
 };
-use fspid_sim::SimError;
+use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
 use crate::file::Study;
 
 pub use fspid_proof::Effort;
 
-pub use file::{Origin, from_text, to_text};
+pub use against::{Comparison, Difference};
+pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use file::{Origin, Seal, from_text, to_text};
+pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.
 #[derive(Clone, Debug)]
@@ -87,15 +94,16 @@ impl Certification {
         let scenario = &study.scenario;
         let plants = lasting_plants(scenario)?;
         let mut results = Vec::new();
-        let asked = |name: &str| only.is_none_or(|only| only == name);
-        for named in scenario.controllers.iter().filter(|named| asked(&named.name)) {
+        let wanted = |name: &str| only.is_none_or(|only| only == name);
+        for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 let limits = described.as_ref().map(LoopDescription::limits).unwrap_or_default();
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
-                    outcome: described.and_then(|loop_| certify(&loop_, effort)),
+                    outcome: described
+                        .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     limits,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -117,6 +125,15 @@ impl Certification {
     }
 }
 
+/// What is asked of a loop of a study.
+fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> Asked {
+    let mut asked = Asked::of(&study.scenario, plant, description);
+    if !study.dispersions.is_empty() {
+        asked.left_out.push(LeftOut::Dispersions);
+    }
+    asked
+}
+
 fn left_out(study: &Study, plants: usize) -> Vec<String> {
     let scenario = &study.scenario;
     let mut sentences = Vec::new();
@@ -130,40 +147,4 @@ fn left_out(study: &Study, plants: usize) -> Vec<String> {
     }
     sentences.push("Rounding in the controller's own arithmetic is left out.");
     sentences.into_iter().map(str::to_owned).collect()
-}
-
-/// A certificate that was checked.
-#[derive(Clone, Debug)]
-pub struct CheckedFile {
-    /// The certificate.
-    pub certificate: Certificate,
-    /// Where it says that it comes from.
-    pub origin: Origin,
-    /// What the re-check found.
-    pub result: Result<Rechecked, Doubt>,
-}
-
-/// Why a text is no certificate.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoCertificate {
-    /// The reason.
-    pub reason: String,
-}
-
-impl fmt::Display for NoCertificate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for NoCertificate {}
-
-/// Proves the claim of a certificate anew.
-///
-/// # Errors
-/// [`NoCertificate`] for a text that is none; a claim that does not hold is a result.
-pub fn check_text(text: &str) -> Result<CheckedFile, NoCertificate> {
-    let (certificate, origin) = from_text(text).map_err(|reason| NoCertificate { reason })?;
-    let result = certificate.check();
-    Ok(CheckedFile { certificate, origin, result })
 }

@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{BoundedRate, Certificate, Claim, Kept, Outcome, Rechecked, Verdict};
+use fspid_proof::{
+    Bearing, BoundedRate, Certificate, Claim, Outcome, Range, Rechecked, Scope, Verdict,
+};
 
-use super::{Certification, Certified, CheckedFile};
+use super::{Certification, Certified};
 use crate::metrics::short;
 use crate::units::degrees;
 
@@ -43,15 +45,33 @@ fn push(out: &mut String, certified: &Certified) {
 fn headline(outcome: &Outcome) -> String {
     match &outcome.verdict {
         Verdict::Proved(certificate, _) => format!("PROVED: {}", sentence(&certificate.claim)),
-        Verdict::Refuted(certificate, _) => format!("REFUTED: {}", sentence(&certificate.claim)),
+        Verdict::Refuted(certificate, rechecked) => {
+            let bearing = certificate.bearing(rechecked);
+            format!("{}: {}; {bearing}", refuted(bearing), sentence(&certificate.claim))
+        }
+        Verdict::Open if outcome.instead.is_some() => format!(
+            "OPEN for the set-points and loads of this scenario, {}: neither proved nor refuted; proved for less",
+            range_text(outcome.asked)
+        ),
         Verdict::Open => {
             "OPEN: neither proved nor refuted; do not call this loop proved".to_owned()
         }
     }
 }
 
+/// What is refuted, in capitals.
+pub(super) fn refuted(bearing: Bearing) -> &'static str {
+    match bearing {
+        Bearing::GrowsStandingStill => "REFUTED FOR GAINS THAT STAND STILL",
+        Bearing::GrowsInSomeOrder => "REFUTED FOR GAINS THAT MOVE IN ANY ORDER",
+        Bearing::Grows | Bearing::Stable | Bearing::OtherScale { .. } | Bearing::RateNotKept => {
+            "REFUTED"
+        }
+    }
+}
+
 /// What a claim says.
-fn sentence(claim: &Claim) -> String {
+pub(super) fn sentence(claim: &Claim) -> String {
     match claim {
         Claim::AnySpeed { .. } => {
             "stable for every gain that the controller can have, however fast the gains move".to_owned()
@@ -64,10 +84,10 @@ fn sentence(claim: &Claim) -> String {
                 .to_owned()
         }
         Claim::FrozenGrowth { input: [error, change], .. } => format!(
-            "unstable with gains that the supervisor really produces, standing still: those at error {error:.4}, change {change:.4}"
+            "unstable with gains that the supervisor produces at error {error:.4}, change {change:.4}, if they stand still"
         ),
         Claim::SequenceGrowth { inputs, .. } => format!(
-            "a sequence of {} samples of gains, all of which the supervisor can produce, lets the loop grow. This refutes arbitrary motion of the gains, not the flown loop",
+            "a sequence of {} samples of gains, all of which the supervisor can produce, lets the loop grow",
             inputs.len()
         ),
     }
@@ -84,10 +104,57 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         &outcome.verdict
     {
         push_claim(out, certificate, dt_s);
+        push_scope(out, &certificate.scope(rechecked));
         push_rechecked(out, rechecked);
+    }
+    if let Some((certificate, rechecked)) = &outcome.instead {
+        line(out, format_args!("  proved instead     {}", sentence(&certificate.claim)));
+        push_scope(out, &certificate.scope(rechecked));
     }
     push_largest(out, outcome);
     push_limits(out, certified, outcome);
+}
+
+/// For which set-points and loads, and what remains.
+fn push_scope(out: &mut String, scope: &Scope) {
+    let text = match (scope.any_setpoint, scope.any_load) {
+        (true, true) => "any constant set-point, any constant load".to_owned(),
+        (true, false) => {
+            format!("any constant set-point; loads within ±{} deg", deg(scope.range.load_rad))
+        }
+        (false, true) => format!(
+            "constant set-points within ±{} deg, any constant load",
+            deg(scope.range.setpoint_rad)
+        ),
+        (false, false) => range_text(scope.range),
+    };
+    line(out, format_args!("  set-points         {text}"));
+    if scope.rest_error_rad > 0.0 {
+        let error = deg(scope.rest_error_rad);
+        line(
+            out,
+            format_args!("  error at rest      up to {error} deg stay: there is no integral"),
+        );
+    }
+    if scope.remains_rad > 0.0 {
+        let remains = deg(scope.remains_rad);
+        line(
+            out,
+            format_args!("  remains            the pitch angle ends within {remains} deg of rest"),
+        );
+    }
+}
+
+fn range_text(range: Range) -> String {
+    format!(
+        "constant set-points within ±{} deg, constant loads within ±{} deg of elevator",
+        deg(range.setpoint_rad),
+        deg(range.load_rad)
+    )
+}
+
+fn deg(angle_rad: f64) -> String {
+    short(degrees(angle_rad))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.
@@ -103,7 +170,7 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
     line(out, format_args!("  gains move         at most kp {kp}, ki {ki}, kd {kd}"));
 }
 
-fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
+pub(super) fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
     match &certificate.claim {
         Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => push_rate(out, *rate, dt_s),
         Claim::BoundedRate(claim) => {
@@ -141,7 +208,7 @@ fn push_rate(out: &mut String, rate: f64, dt_s: f64) {
     }
 }
 
-fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
+pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
     line(
         out,
         format_args!(
@@ -184,58 +251,11 @@ fn push_limits(out: &mut String, certified: &Certified, outcome: &Outcome) {
     line(out, format_args!("  limits             {text}"));
 }
 
-fn range(bounds: Interval) -> String {
+pub(super) fn range(bounds: Interval) -> String {
     format!("{:.4} to {:.4}", bounds.lower(), bounds.upper())
 }
 
-impl CheckedFile {
-    /// The answer of `certify --check`.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let origin = &self.origin;
-        let mut out = format!(
-            "{} of \"{}\": {}\n",
-            origin.controller,
-            origin.scenario,
-            sentence(&self.certificate.claim)
-        );
-        let dt_s = self.certificate.description.controller.shell().dt_s;
-        push_claim(&mut out, &self.certificate, dt_s);
-        if (self.certificate.output_factor - 1.0).abs() > 0.0 {
-            let factor = self.certificate.output_factor;
-            line(
-                &mut out,
-                format_args!("  output scale       {factor} times that of the controller"),
-            );
-        }
-        match &self.result {
-            Ok(rechecked) => {
-                push_rechecked(&mut out, rechecked);
-                push_kept(&mut out, &self.certificate, rechecked);
-                let [kp, ki, kd] = rechecked.bounds.map(range);
-                line(&mut out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
-                out.push_str("HOLDS\n");
-            }
-            Err(doubt) => line(&mut out, format_args!("DOES NOT HOLD: {doubt}")),
-        }
-        out
-    }
-}
-
-/// Whether the law of the loop keeps its gains to the rate that is claimed.
-fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked) {
-    if !matches!(certificate.claim, Claim::BoundedRate(_)) {
-        return;
-    }
-    let kept = match rechecked.kept {
-        Some(Kept::Everywhere) => "in every flight",
-        Some(Kept::WithinLevel) => "in flights that begin near enough to rest",
-        None => "not shown: this is no proof of the flown loop",
-    };
-    line(out, format_args!("  law keeps to this  {kept}"));
-}
-
 /// Writing to a string cannot fail.
-fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
+pub(super) fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{text}");
 }

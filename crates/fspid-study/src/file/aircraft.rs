@@ -16,7 +16,7 @@ use crate::file::files::Files;
 use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
-use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
 use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 
@@ -133,12 +133,14 @@ pub(super) fn aircraft_data(
     given: Given,
 ) -> Option<AircraftData> {
     let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
-    let model = match section.kind {
-        "linear" => ModelData::Linear(linear::model(report, section)?),
-        "tables" => {
+    let model = match section.variant()? {
+        AircraftKind::Linear => ModelData::Linear(linear::model(report, section)?),
+        AircraftKind::Tables => {
             ModelData::Forces(Box::new(tables(report, files, (section, place), given.cg_mac)?))
         }
-        _ => ModelData::Derivatives(Box::new(derivatives(report, section, given)?)),
+        AircraftKind::Derivatives => {
+            ModelData::Derivatives(Box::new(derivatives(report, section, given)?))
+        }
     };
     Some(AircraftData {
         name: text("name"),

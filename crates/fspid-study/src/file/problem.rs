@@ -112,6 +112,16 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
+/// What follows "there is no `word`": the word that was probably meant, and those that are known.
+#[must_use]
+pub fn known_words(word: &str, known: &[&str]) -> String {
+    let all = known.join(", ");
+    match nearest(word, known) {
+        Some(meant) => format!("; did you mean `{meant}`? Known are {all}"),
+        None => format!("; known are {all}"),
+    }
+}
+
 /// The known word that was probably meant.
 pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 64 {
@@ -149,5 +159,13 @@ mod tests {
         assert_eq!(nearest("duration", &known), Some("duration_s"));
         assert_eq!(nearest("Kp", &known), Some("kp"));
         assert_eq!(nearest("colour", &known), None);
+    }
+
+    /// What used to follow the question mark began in small letters: "did you mean food? known are …".
+    #[test]
+    fn a_new_sentence_begins_with_a_capital_letter() {
+        let known = ["service", "food"];
+        assert_eq!(known_words("fod", &known), "; did you mean `food`? Known are service, food");
+        assert_eq!(known_words("colour", &known), "; known are service, food");
     }
 }

@@ -9,7 +9,7 @@ use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
 use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};
-use crate::file::files::Files;
+use crate::file::files::{Files, STANDARD_INPUT};
 use crate::file::report::{Place, Report};
 use crate::file::section::Section;
 
@@ -20,6 +20,9 @@ const ALLOWED: &str =
 /// Reads a model as the ending of its file says.
 pub(crate) fn read_model(path: &Path, text: &str) -> Result<Reading, fspid_daveml::Problems> {
     let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    // Standard input has no ending; XML begins with a sign that no TOML begins with.
+    let is_toml =
+        is_toml || (path == Path::new(STANDARD_INPUT) && !text.trim_start().starts_with('<'));
     if is_toml { fspid_daveml::data::read(text) } else { fspid_daveml::read(text) }
 }
 
@@ -134,10 +137,7 @@ fn forces(
 }
 
 fn gearing(engine: &Section) -> Option<Gearing> {
-    Some(match engine.text("gearing")? {
-        "stevens-lewis" => Gearing::StevensLewis,
-        _ => Gearing::Proportional,
-    })
+    engine.word("gearing")
 }
 
 /// A part of the aircraft, or a problem at the file that does not make it.

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
 use serde_json::{Map, Value, json};
 
-use crate::file::problem::nearest;
+use crate::file::problem::known_words;
 use crate::inference::Refused;
 
 /// A question with its answers.
@@ -91,10 +91,8 @@ pub(super) fn named(
                 problems.push(format!("{name} is `{number}`; allowed is a number"));
             }
             (None, _) => {
-                let meant = nearest(name, &known).map(|meant| format!("; did you mean {meant}?"));
-                let known = known.join(", ");
-                let meant = meant.unwrap_or_default();
-                problems.push(format!("there is no input `{name}`{meant} known are {known}"));
+                let known = known_words(name, &known);
+                problems.push(format!("there is no input `{name}`{known}"));
             }
         }
     }

@@ -21,12 +21,14 @@ impl Verification {
     ///     "id": "…", "controller": "…", "measure": "phase_margin_deg", "unit": "deg",
     ///     "value": 31.2, "least": 45.0, "met": false,
     ///     "clause": "…", "source": "…", "confidence": "recalled", "set": "…", "note": "…",
-    ///     "conditions": {"from_hz": 0.06}, "worst_case": {"frequency_rad_s": 2.3}, "replay": "…"
+    ///     "conditions": {"from_hz": 0.06}, "worst_case": {"frequency_rad_s": 2.3}, "replay": "…",
+    ///     "own_flight": {"step_deg": 11.46}
     ///   }]
     /// }
     /// ```
     /// `not_met` counts what could not be evaluated too; such a line has `reason` in place of `value`. A margin without
-    /// an end is the text `"inf"`. Keys without a value are left out.
+    /// an end is the text `"inf"`. `own_flight` stands
+    /// where a ready set was judged on a flight of its own. Keys without a value are left out.
     #[must_use]
     pub fn json(&self, replays: Option<&[String]>) -> Value {
         let unevaluated = self.judgements.iter().filter(|judgement| judgement.found.is_err());
@@ -81,6 +83,7 @@ fn line(judgement: &Judgement, replay: Option<&String>) -> Value {
     put("conditions", conditions(judgement));
     let place = judgement.place();
     put("worst_case", (!place.is_empty()).then(|| place.json()));
+    put("own_flight", judgement.own_step_deg.map(|step_deg| json!({ "step_deg": step_deg })));
     put("replay", replay.map(|replay| json!(replay)));
     Value::Object(whole)
 }

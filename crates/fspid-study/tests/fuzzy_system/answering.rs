@@ -31,7 +31,7 @@ fn every_problem_of_a_question_is_told_at_once() {
     let told =
         ask(&system, &values(&["fod=1", "service=x", "service"])).expect_err("wrong").to_string();
     for part in [
-        "there is no input `fod`; did you mean food? known are service, food",
+        "there is no input `fod`; did you mean `food`? Known are service, food",
         "service is `x`; allowed is a number",
         "`service` is no name=value",
         "food has no value; add --input food=…",

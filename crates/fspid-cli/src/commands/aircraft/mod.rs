@@ -13,8 +13,9 @@ mod trim;
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::Value;
 
-use super::{Format, json_text};
-use crate::exit::{Failure, print};
+use super::Format;
+use crate::argument::Source;
+use crate::exit::Failure;
 use fspid_study::aircraft::{self, AirChoice, DragChoice, LoadingQuestion, Question, ThrustChoice};
 
 /// Trim, linearise and judge aircraft anywhere in their envelope.
@@ -88,10 +89,7 @@ impl Answer {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> Value,
     ) -> Result<(), Failure> {
-        match self.format {
-            Format::Text => print(&text()),
-            Format::Json => print(&json_text(&json())),
-        }
+        self.format.print(text, json)
     }
 }
 
@@ -100,7 +98,7 @@ impl Answer {
 struct Plane {
     /// An aircraft that the program carries (see `fspid aircraft list`), or an aircraft file.
     #[arg(value_name = "NAME or FILE")]
-    name: String,
+    name: Source,
     /// The air: the standard atmosphere, or density and gravity of the aircraft's source everywhere.
     #[arg(long, value_enum, default_value_t = Air::Standard)]
     air: Air,

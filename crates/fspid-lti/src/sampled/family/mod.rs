@@ -5,7 +5,7 @@
 //! and peak. The grid is no proof, as the eigenvalues of [`SampledLoop::margins`] are: for maps of many gains, whose
 //! worst is asked again in full.
 
-mod bowl;
+pub(super) mod bowl;
 mod chain;
 mod control;
 mod grid;
@@ -15,7 +15,7 @@ mod place;
 
 use core::f64::consts::{PI, TAU};
 
-use super::{DiskMargin, GainLimit, Peak, SampledCrossover, SampledLoop, SampledMargins};
+use super::{DiskMargin, GainLimit, Peak, Proved, SampledCrossover, SampledLoop, SampledMargins};
 use crate::complex::{Complex, modulus, quotient};
 use crate::error::LtiError;
 use crate::matrix::Matrix;
@@ -110,6 +110,7 @@ impl LoopFamily {
             complementary_peak: peak(0.0)?,
             modulus_margin: 1.0 / sensitivity_peak.value,
             disk,
+            proved: Proved::nothing(),
             spectral_radius: radius(&poles).max(hidden),
         })
     }

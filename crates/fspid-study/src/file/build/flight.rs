@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_sim::aircraft::Forces;
@@ -14,6 +13,7 @@ use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::spec::flight::{AtmosphereWord, ModelWord};
 use crate::flyer::flyer;
 
 /// A plant and what the air around it depends on.
@@ -53,8 +53,9 @@ pub(super) fn flown(
 fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
     let key = if part.given("file") { "file" } else { "name" };
     let data = read(report, files, part)?;
+    let model = part.word("model").unwrap_or_else(|| default_model(&data));
     if part.text("model").is_none() {
-        files.fill(part.path("model"), default_model(&data));
+        files.fill(part.path("model"), model.name());
     }
     let data = loading::loaded(report, (part, key), data)?;
     let span_m = match &data.model {
@@ -65,12 +66,13 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     fits(report, part, &data)?;
     let target = target(part)?;
     check_ground(report, part, target);
-    let aircraft = flyer(&data, laws(part)?, part.text("atmosphere")? == "reference");
+    let own_air = part.word::<AtmosphereWord>("atmosphere")? == AtmosphereWord::Reference;
+    let aircraft = flyer(&data, laws(part)?, own_air);
     let aircraft = judged(report, (part, key), aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
-    let plant = match part.text("model") {
-        Some("linear") => Plant::Linear(judged(report, (part, key), plant.linear())?),
-        _ => plant.into(),
+    let plant = match model {
+        ModelWord::Linear => Plant::Linear(judged(report, (part, key), plant.linear())?),
+        ModelWord::Nonlinear => plant.into(),
     };
     let way = way(part, target, aircraft.environment())?;
     Some(Flown { plant, way: Some(Way { span_m: Some(span_m), ..way }) })
@@ -89,10 +91,10 @@ pub(super) fn way(part: &Section, target: TrimTarget, environment: &Environment)
 }
 
 /// What flies where the scenario does not choose: the most that the data allow.
-fn default_model(data: &AircraftData) -> &'static str {
+fn default_model(data: &AircraftData) -> ModelWord {
     match data.model {
-        ModelData::Linear(_) => "linear",
-        ModelData::Derivatives(_) | ModelData::Forces(_) => "nonlinear",
+        ModelData::Linear(_) => ModelWord::Linear,
+        ModelData::Derivatives(_) | ModelData::Forces(_) => ModelWord::Nonlinear,
     }
 }
 
@@ -134,15 +136,7 @@ pub(super) fn check_ground(report: &mut Report, part: &Section, target: TrimTarg
 }
 
 fn laws(part: &Section) -> Option<Laws> {
-    let drag = match part.text("drag")? {
-        "polar" => DragLaw::Polar,
-        _ => DragLaw::Linear,
-    };
-    let thrust = match part.text("thrust")? {
-        "with-speed" => ThrustLaw::WithSpeed,
-        _ => ThrustLaw::Constant,
-    };
-    Some(Laws { drag, thrust })
+    Some(Laws { drag: part.word("drag")?, thrust: part.word("thrust")? })
 }
 
 /// Refuses what only derivatives can do, where there are tables.
@@ -168,7 +162,7 @@ pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
 
 /// Refuses the air of a source that has none.
 pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str) {
-    if part.text("atmosphere") == Some("reference") {
+    if part.word("atmosphere") == Some(AtmosphereWord::Reference) {
         let at = (part.at("atmosphere"), part.path("atmosphere"));
         report.value(at.0, &at.1, message, "\"standard\"");
     }

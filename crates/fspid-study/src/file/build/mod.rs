@@ -132,10 +132,7 @@ fn sound(part: Option<&Section>) -> Option<&Section> {
 
 /// Which way the elevator is counted.
 pub(crate) fn elevator_sign(section: &Section) -> Option<ElevatorSign> {
-    match section.text("elevator_sign")? {
-        "nose-up-positive" => Some(ElevatorSign::NoseUpPositive),
-        _ => Some(ElevatorSign::NoseDownPositive),
-    }
+    section.word("elevator_sign")
 }
 
 /// The value, or a problem at `key` in the model's own words.

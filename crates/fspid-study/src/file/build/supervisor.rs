@@ -1,8 +1,6 @@
 //! The supervisor: rules that conclude labels, or numbers.
 
-use fspid_fuzzy::{
-    Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, OutOfRange, Output, Supervisor,
-};
+use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Output, Supervisor};
 
 use super::{data, judged};
 use crate::file::files::Files;
@@ -20,8 +18,7 @@ pub(super) fn supervisor(
     files: &mut Files<'_>,
     part: &Section,
 ) -> Option<Supervisor<f64>> {
-    let word = part.text("out_of_range")?;
-    let policy = OutOfRange::ALL.into_iter().find(|policy| policy.name() == word)?;
+    let policy = part.word("out_of_range")?;
     let range = part.number("range")?;
     if !part.given("table") {
         let before = report.count();

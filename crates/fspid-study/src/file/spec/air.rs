@@ -1,34 +1,44 @@
 //! Winds, gusts and turbulence.
 
+use fspid_sim::air::{Follows, Severity, Specification};
+
+use super::word::{Word, words, words_of};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Variant, Way, defaulted, finite, not_negative,
     optional, plain, positive, required,
 };
 
-/// Documents that turbulence is stated by.
-const SPECIFICATIONS: [&str; 2] = ["mil-f-8785c", "mil-hdbk-1797"];
-/// Whose height and airspeed turbulence has.
-const FOLLOWS: [&str; 2] = ["start", "flight"];
-/// Severities of turbulence.
-const INTENSITIES: [&str; 3] = ["light", "moderate", "severe"];
+words! {
+    /// Winds.
+    WindKind { Steady = "steady", LogShear = "log-shear", Microburst = "microburst" }
+}
+
+words! {
+    /// Gusts.
+    GustKind { RampHold = "ramp-hold", FullCycle = "full-cycle" }
+}
+
+words_of!(Specification { MilF8785c = "mil-f-8785c", MilHdbk1797 = "mil-hdbk-1797" });
+words_of!(Severity { Light = "light", Moderate = "moderate", Severe = "severe" });
+words_of!(Follows { Start = "start", Flight = "flight" });
 
 pub(super) static TURBULENCE: Table = plain(
     "Turbulence of the form of Dryden.",
     &[&[
         defaulted(
             "model",
-            Kind::Word(&SPECIFICATIONS),
+            Kind::Word(Specification::WORDS),
             Default::Word("mil-f-8785c"),
             "Document that scale lengths are stated by.",
         ),
         required(
             "intensity",
-            Kind::Word(&INTENSITIES),
+            Kind::Word(Severity::WORDS),
             "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
         ),
         optional(
             "follows",
-            Kind::Word(&FOLLOWS),
+            Kind::Word(Follows::WORDS),
             "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
         ),
         optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's."),
@@ -54,7 +64,7 @@ pub(super) static WIND: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "steady",
+            name: WindKind::Steady.name(),
             table: Table {
                 doc: "The same everywhere.",
                 groups: &[&[
@@ -68,7 +78,7 @@ pub(super) static WIND: Table = Table {
             },
         },
         Variant {
-            name: "log-shear",
+            name: WindKind::LogShear.name(),
             table: Table {
                 doc: "Growing with the logarithm of the height up to 1000 ft.",
                 groups: &[&[
@@ -87,7 +97,7 @@ pub(super) static WIND: Table = Table {
             },
         },
         Variant {
-            name: "microburst",
+            name: WindKind::Microburst.name(),
             table: plain(
                 "Air that falls and spreads over the ground.",
                 &[&[
@@ -125,14 +135,14 @@ pub(super) static GUST: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "ramp-hold",
+            name: GustKind::RampHold.name(),
             table: plain(
                 "Rises as half a cosine over a length and stays (MIL-F-8785C).",
                 &[&[required("length_m", positive("m"), "Length of the rise.")]],
             ),
         },
         Variant {
-            name: "full-cycle",
+            name: GustKind::FullCycle.name(),
             table: plain(
                 "One minus cosine: rises over the gradient distance and falls again (CS 25.341).",
                 &[&[required("gradient_m", positive("m"), "Gradient distance: half the length.")]],

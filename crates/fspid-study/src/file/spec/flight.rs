@@ -1,18 +1,25 @@
 //! The aircraft of a scenario and where it flies.
 
+use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
+
+use super::word::{Word, words, words_of};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Way, angle, defaulted, finite, optional, positive,
 };
 use crate::file::aircraft::aircraft_names;
 
-/// Words for how an aircraft is flown.
-const MODELS: [&str; 2] = ["nonlinear", "linear"];
-/// Words for drag away from the reference.
-const DRAG_LAWS: [&str; 2] = ["linear", "polar"];
-/// Words for thrust away from the reference.
-const THRUST_LAWS: [&str; 2] = ["constant", "with-speed"];
-/// Words for the air.
-const ATMOSPHERES: [&str; 2] = ["standard", "reference"];
+words! {
+    /// How an aircraft is flown.
+    ModelWord { Nonlinear = "nonlinear", Linear = "linear" }
+}
+
+words! {
+    /// Whose air and gravity.
+    AtmosphereWord { Standard = "standard", Reference = "reference" }
+}
+
+words_of!(DragLaw { Linear = "linear", Polar = "polar" });
+words_of!(ThrustLaw { Constant = "constant", WithSpeed = "with-speed" });
 
 /// The standard atmosphere.
 pub(super) const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
@@ -80,24 +87,24 @@ pub(super) static AIRCRAFT: Table = Table {
             ),
             optional(
                 "model",
-                Kind::Word(&MODELS),
+                Kind::Word(ModelWord::WORDS),
                 "All six degrees of freedom, or the linear pitch model at the trim; if left out \"nonlinear\", for an aircraft of which only a linear model is known \"linear\".",
             ),
             defaulted(
                 "drag",
-                Kind::Word(&DRAG_LAWS),
+                Kind::Word(DragLaw::WORDS),
                 Default::Word("linear"),
                 "Drag by lift: along the tangent at the reference, or the parabola with it.",
             ),
             defaulted(
                 "thrust",
-                Kind::Word(&THRUST_LAWS),
+                Kind::Word(ThrustLaw::WORDS),
                 Default::Word("constant"),
                 "Thrust by speed: none, or by the derivative of the data.",
             ),
             defaulted(
                 "atmosphere",
-                Kind::Word(&ATMOSPHERES),
+                Kind::Word(AtmosphereWord::WORDS),
                 Default::Word("standard"),
                 "Air and gravity: standard, or everywhere those of the data's flight condition.",
             ),

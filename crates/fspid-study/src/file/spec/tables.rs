@@ -1,12 +1,14 @@
 //! Aircraft files of kind `tables`.
 
+use fspid_daveml::flight::Gearing;
+
 use super::aircraft::SURFACE_KEYS;
+use super::word::{Word, words_of};
 use super::{
     Choice, Default, Key, Kind, Table, Way, defaulted, finite, optional, plain, positive, required,
 };
 
-/// Words for what the throttle asks of the engine.
-const GEARINGS: [&str; 2] = ["proportional", "stevens-lewis"];
+words_of!(Gearing { Proportional = "proportional", StevensLewis = "stevens-lewis" });
 
 pub(super) const TABLES: &[Key] = &[
     required("tables", Kind::Table(&TABLE_FILES), "The files."),
@@ -60,7 +62,7 @@ static TABLE_ENGINE: Table = Table {
     groups: &[&[
         defaulted(
             "gearing",
-            Kind::Word(&GEARINGS),
+            Kind::Word(Gearing::WORDS),
             Default::Word("proportional"),
             "Power by throttle: as much, or as in the F-16 model.",
         ),

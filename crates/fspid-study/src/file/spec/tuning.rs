@@ -1,9 +1,9 @@
 //! How a scenario is tuned, and on what tuned controllers are compared.
 
 use super::requirement::{CONDITIONS, LIMITS, MEASURE};
+use super::word::{Word, words};
 use super::{Default, Key, Kind, Range, Table, defaulted, optional, plain, required};
 use crate::file::overrides;
-use crate::tuning::Over;
 
 /// Names of the optimisers.
 const OPTIMISERS: [&str; 7] = ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "nsga-ii"];
@@ -23,6 +23,11 @@ const RUN_SEED: Key = defaulted(
     Default::Integer(1),
     "Seed of these draws.",
 );
+
+words! {
+    /// How the costs of many flights become one.
+    OverWord { Mean = "mean", Worst = "worst", Tail = "tail" }
+}
 
 /// How a scenario is tuned.
 pub(super) static TUNING: Table = plain(
@@ -53,7 +58,7 @@ pub(super) static TUNING: Table = plain(
         ),
         defaulted(
             "over",
-            Kind::Word(&Over::NAMES),
+            Kind::Word(OverWord::WORDS),
             Default::Word("mean"),
             "What of the costs of all flights counts: their mean, the worst, or the mean of the worst `share`.",
         ),
