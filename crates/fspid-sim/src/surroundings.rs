@@ -2,7 +2,7 @@
 
 use crate::actuated::Held;
 use crate::actuator::Actuator;
-use crate::air::{AirMotion, Dryden, DrydenState, GRID_S, Grid, Place, Turbulence, Wind, sum_at};
+use crate::air::{AirMotion, GRID_S, Grid, Place, Shaping, Turbulence, Wind, sum_at};
 use crate::error::{SimError, finite, positive};
 use crate::math::sin_cos;
 use crate::sensor::Sensor;
@@ -24,13 +24,15 @@ pub struct Surroundings {
     pub rate_sensor: Option<Sensor>,
 }
 
-/// The path that a linear plant is taken to fly: straight, level, at constant airspeed.
+/// The path that a linear plant is taken to fly: straight, at constant airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
     /// True airspeed, m/s.
     pub airspeed_m_s: f64,
-    /// Height above the ground, m.
+    /// Height above the ground at the start, m.
     pub height_m: f64,
+    /// Angle of the path over the horizon, climbing positive, rad.
+    pub climb_rad: f64,
     /// Heading, clockwise from north, rad.
     pub heading_rad: f64,
     /// Start, m north and m east of the origin.
@@ -54,27 +56,33 @@ impl Course {
     pub fn place(&self, time_s: f64) -> Place {
         let distance_m = self.airspeed_m_s * time_s;
         let (sine, cosine) = sin_cos(self.heading_rad);
+        let (up, along) = sin_cos(self.climb_rad);
+        let ground_m = distance_m * along;
         let [north_m, east_m] = self.start_m;
         Place {
             time_s,
             distance_m,
-            north_m: north_m + distance_m * cosine,
-            east_m: east_m + distance_m * sine,
-            height_m: self.height_m,
+            north_m: north_m + ground_m * cosine,
+            east_m: east_m + ground_m * sine,
+            height_m: self.height_m + distance_m * up,
         }
     }
 
-    /// When it is at a height above the ground; never, since it is level.
-    pub(crate) fn time_at_height_s(&self, _height_m: f64) -> Option<f64> {
-        None
+    /// When it is at a height above the ground, before or after the start; never on a level course.
+    pub(crate) fn time_at_height_s(&self, height_m: f64) -> Option<f64> {
+        let (up, _) = sin_cos(self.climb_rad);
+        let climb_m_s = self.airspeed_m_s * up;
+        (climb_m_s != 0.0).then(|| (height_m - self.height_m) / climb_m_s)
     }
 
-    /// The air's velocity forward and down and its pitch rate.
+    /// The air's velocity along the path and down across it, and its pitch rate.
     fn longitudinal(&self, motion: &AirMotion) -> [f64; 3] {
         let ([north, east, earth_down], [forward, _, down]) = (motion.earth_m_s, motion.body_m_s);
         let (sine, cosine) = sin_cos(self.heading_rad);
         let [_, q_rad_s, _] = motion.body_rad_s;
-        [north * cosine + east * sine + forward, earth_down + down, q_rad_s]
+        let (up, along) = sin_cos(self.climb_rad);
+        let ahead = north * cosine + east * sine;
+        [ahead * along - earth_down * up + forward, ahead * up + earth_down * along + down, q_rad_s]
     }
 }
 
@@ -89,7 +97,8 @@ impl Weather {
     pub fn gusts(&self, timing: Timing) -> Result<Vec<[f64; 3]>, SimError> {
         positive("airspeed, m/s", self.course.airspeed_m_s)?;
         let [north_m, east_m] = self.course.start_m;
-        for value in [self.course.height_m, self.course.heading_rad, north_m, east_m] {
+        let course = &self.course;
+        for value in [course.height_m, course.climb_rad, course.heading_rad, north_m, east_m] {
             finite("course", value)?;
         }
         let wind = |k: usize| self.wind_change(timing.time_s(k));
@@ -115,8 +124,7 @@ impl Weather {
         let Some(turbulence) = &self.turbulence else {
             return Ok(None);
         };
-        let dryden = Dryden::new(turbulence, GRID_S)?;
-        Ok(Some(TurbulenceWalk { course: self.course, state: dryden.start(), dryden, tick: 0 }))
+        Ok(Some(TurbulenceWalk { course: self.course, shaping: Shaping::start(turbulence)? }))
     }
 
     fn wind(&self, time_s: f64) -> [f64; 3] {
@@ -125,22 +133,21 @@ impl Weather {
 }
 
 /// Turbulence along a course, tick by tick of its grid.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct TurbulenceWalk {
     course: Course,
-    dryden: Dryden,
-    state: DrydenState,
-    tick: usize,
+    shaping: Shaping,
 }
 
 impl TurbulenceWalk {
     /// At a time of the grid that is not before the last one asked for.
     pub(crate) fn at(&mut self, tick: usize) -> [f64; 3] {
-        while self.tick < tick {
-            self.tick += 1;
-            self.dryden.advance(&mut self.state, self.tick);
+        while self.shaping.tick() < tick {
+            let time_s = (self.shaping.tick() + 1) as f64 * GRID_S;
+            let height_m = self.course.place(time_s).height_m;
+            self.shaping.advance(height_m, self.course.airspeed_m_s);
         }
-        self.course.longitudinal(&self.dryden.motion(&self.state))
+        self.course.longitudinal(&self.shaping.motion())
     }
 }
 

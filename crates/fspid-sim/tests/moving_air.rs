@@ -9,7 +9,9 @@ use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::{Gains, Pid, Shell};
-use fspid_sim::air::{GRID_S, Intensity, Severity, Specification, Turbulence, Wind, WindKind};
+use fspid_sim::air::{
+    Follows, GRID_S, Intensity, Severity, Specification, Turbulence, Wind, WindKind,
+};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
@@ -59,7 +61,13 @@ fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -
 }
 
 fn course() -> Course {
-    Course { airspeed_m_s: SPEED_M_S, height_m: ALTITUDE_M, heading_rad: 0.3, start_m: [0.0, 0.0] }
+    Course {
+        airspeed_m_s: SPEED_M_S,
+        height_m: ALTITUDE_M,
+        climb_rad: 0.0,
+        heading_rad: 0.3,
+        start_m: [0.0, 0.0],
+    }
 }
 
 fn winds(winds: Vec<Wind>) -> Weather {
@@ -90,6 +98,7 @@ fn turbulence(seed: u64) -> Weather {
         airspeed_m_s: SPEED_M_S,
         wing_span_m: 196.0 * FOOT_M,
         seed,
+        follows: Follows::Start,
     };
     Weather { turbulence: Some(turbulence), ..winds(Vec::new()) }
 }

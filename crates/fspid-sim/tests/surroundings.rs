@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use fspid_core::{Gains, Pid, Shell};
 use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::air::{Intensity, Severity, Specification, Turbulence, WindKind};
+use fspid_sim::air::{Follows, Intensity, Severity, Specification, Turbulence, WindKind};
 use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel, SensorPreset};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
@@ -58,7 +58,7 @@ fn flown(scenario: &Scenario) -> Trace {
 
 fn course() -> Course {
     let airspeed_m_s = 176.0 * FOOT_M;
-    Course { airspeed_m_s, height_m: 150.0, heading_rad: 0.0, start_m: [0.0; 2] }
+    Course { airspeed_m_s, height_m: 150.0, climb_rad: 0.0, heading_rad: 0.0, start_m: [0.0; 2] }
 }
 
 fn weather(kind: WindKind, params: &[f64]) -> Weather {
@@ -74,6 +74,7 @@ fn turbulence(w20_m_s: f64) -> Weather {
         airspeed_m_s: 176.0 * FOOT_M,
         wing_span_m: 33.4 * FOOT_M,
         seed: 9,
+        follows: Follows::Start,
     };
     Weather { course: course(), winds: Vec::new(), turbulence: Some(turbulence) }
 }

@@ -23,7 +23,8 @@ pub mod dryden;
 mod grid;
 pub mod wind;
 
-pub use dryden::{Dryden, DrydenState, Intensity, Severity, Specification, Turbulence};
+pub(crate) use dryden::Shaping;
+pub use dryden::{Dryden, DrydenState, Follows, Intensity, Severity, Specification, Turbulence};
 pub use grid::GRID_S;
 pub(crate) use grid::{Grid, Piece};
 pub use wind::{

@@ -3,7 +3,7 @@
 use fspid_aircraft::{AirMotion, Vector3};
 
 use super::corner::{Corner, Corners};
-use crate::air::{self, Dryden, DrydenState, GRID_S, Place, Wind};
+use crate::air::{self, Place, Shaping, Wind};
 use crate::error::{SimError, finite};
 use crate::surroundings::Weather;
 
@@ -13,7 +13,7 @@ pub(super) struct Atmosphere {
     winds: Vec<Wind>,
     /// Distances and heights at which winds are not smooth.
     corners: Corners,
-    turbulence: Option<Dryden>,
+    turbulence: Option<Shaping>,
     start_m: [f64; 2],
     heading_rad: f64,
     ground_altitude_m: f64,
@@ -33,11 +33,7 @@ impl Atmosphere {
         Ok(Self {
             winds: weather.winds.clone(),
             corners: Corners::of(&weather.winds),
-            turbulence: weather
-                .turbulence
-                .as_ref()
-                .map(|it| Dryden::new(it, GRID_S))
-                .transpose()?,
+            turbulence: weather.turbulence.as_ref().map(Shaping::start).transpose()?,
             start_m: course.start_m,
             heading_rad: course.heading_rad,
             ground_altitude_m: altitude_m - course.height_m,
@@ -69,23 +65,8 @@ impl Atmosphere {
     }
 
     /// The turbulence at the start.
-    pub(super) fn start_turbulence(&self) -> Option<DrydenState> {
-        self.turbulence.as_ref().map(Dryden::start)
-    }
-
-    /// Turbulence in a state of it.
-    pub(super) fn turbulence(&self, state: &Option<DrydenState>) -> air::AirMotion {
-        match (&self.turbulence, state) {
-            (Some(dryden), Some(state)) => dryden.motion(state),
-            _ => air::AirMotion::default(),
-        }
-    }
-
-    /// From one time of the grid to the next, which is number `tick`.
-    pub(super) fn advance(&self, state: &mut Option<DrydenState>, tick: usize) {
-        if let (Some(dryden), Some(state)) = (&self.turbulence, state) {
-            dryden.advance(state, tick);
-        }
+    pub(super) fn start_turbulence(&self) -> Option<Shaping> {
+        self.turbulence.clone()
     }
 
     /// The first corner of the winds between two places, not counting those at the first.

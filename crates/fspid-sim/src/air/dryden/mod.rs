@@ -31,15 +31,17 @@
 //!
 //! # Not here
 //! Velocities are taken along body axes at all heights; MIL-F-8785C aligns u and v with the mean
-//! wind near the ground. Height and airspeed are those of the reference condition throughout.
+//! wind near the ground. Height and airspeed are those of the start throughout, or follow the flight ([`Follows`]).
 
 mod intensity;
 mod scales;
 mod shaped_noise;
+mod shaping;
 
 pub(crate) use intensity::interpolated;
 pub use intensity::{Intensity, Severity};
 pub use scales::{Scales, Specification};
+pub(crate) use shaping::Shaping;
 
 use super::wind::AirMotion;
 use crate::error::{SimError, finite, positive};
@@ -67,6 +69,18 @@ pub struct Turbulence {
     pub wing_span_m: f64,
     /// Seed; the same seed gives the same turbulence.
     pub seed: u64,
+    /// Whether height and airspeed stay those above.
+    pub follows: Follows,
+}
+
+/// Whose height and airspeed scale lengths and intensities have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Follows {
+    /// Those of the start, all through the flight.
+    #[default]
+    Start,
+    /// Those of the aircraft at each time of the grid.
+    Flight,
 }
 
 /// Turbulence prepared for one sample period.

@@ -1,13 +1,15 @@
 //! Winds, gusts and turbulence around an aircraft.
 
 use fspid_sim::air::{
-    FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence, Wind,
+    Follows, FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence,
+    Wind,
 };
 use fspid_sim::{Plant, Weather};
 
 use super::flight::{Flown, Way};
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
+use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::air::{GustKind, WindKind};
@@ -16,7 +18,11 @@ use crate::file::spec::air::{GustKind, WindKind};
 ///
 /// What gusts and turbulence are along the way depends on the airspeed, so that an assumed one flies in calm air alone.
 /// A nonlinear aircraft always has a course, since its heading is one.
-pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> Option<Weather> {
+pub(super) fn weather(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (section, flown): (&Section, &Flown),
+) -> Option<Weather> {
     let parts = ["wind", "turbulence"].map(|name| section.section(name));
     let parts = parts.into_iter().flatten().chain(section.sections("gust"));
     let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());
@@ -28,7 +34,7 @@ pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> 
     let weather = Weather {
         course: way.course,
         winds: winds(section, way),
-        turbulence: turbulence(report, section.section("turbulence"), way),
+        turbulence: turbulence(report, files, (section.section("turbulence"), way)),
     };
     let linear = matches!(flown.plant, Plant::Linear(_));
     (!(calm && linear)).then_some(weather)
@@ -101,7 +107,11 @@ fn gust(part: &Section, way: Way) -> Option<Wind> {
     })
 }
 
-fn turbulence(report: &mut Report, part: Option<&Section>, way: Way) -> Option<Turbulence> {
+fn turbulence(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (part, way): (Option<&Section>, Way),
+) -> Option<Turbulence> {
     let part = part.filter(|part| part.sound)?;
     let aloft: Severity = part.word("intensity")?;
     let intensity = match part.number("w20_m_s") {
@@ -115,6 +125,18 @@ fn turbulence(report: &mut Report, part: Option<&Section>, way: Way) -> Option<T
         airspeed_m_s: way.course.airspeed_m_s,
         wing_span_m: span_m(report, part, way)?,
         seed: u64::try_from(part.integer("seed")?).ok()?,
+        follows: follows(files, part, way),
+    })
+}
+
+/// Whose height and airspeed: where the file does not say, those of a flight that does not stay at its height.
+fn follows(files: &mut Files<'_>, part: &Section, way: Way) -> Follows {
+    part.word("follows").unwrap_or_else(|| {
+        let level = way.course.climb_rad == 0.0;
+        let (follows, word) =
+            if level { (Follows::Start, "start") } else { (Follows::Flight, "flight") };
+        files.fill(part.path("follows"), word);
+        follows
     })
 }
 

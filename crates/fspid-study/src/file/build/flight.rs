@@ -122,7 +122,7 @@ pub(super) fn target(part: &Section) -> Option<TrimTarget> {
     Some(TrimTarget {
         airspeed_m_s: quantity(part, "airspeed")?,
         altitude_m: quantity(part, "altitude")?,
-        flight_path_rad: 0.0,
+        flight_path_rad: rad(part.number("climb_angle_deg").unwrap_or(0.0)),
     })
 }
 
@@ -215,6 +215,7 @@ fn course(part: &Section, target: TrimTarget) -> Option<Course> {
     Some(Course {
         airspeed_m_s: target.airspeed_m_s,
         height_m: target.altitude_m - part.number("ground_m")?,
+        climb_rad: target.flight_path_rad,
         heading_rad: rad(part.number("heading_deg")?),
         start_m: [0.0; 2],
     })

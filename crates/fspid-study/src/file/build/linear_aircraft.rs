@@ -44,6 +44,11 @@ fn fits(report: &mut Report, part: &Section) -> Option<()> {
             "only a linear model of the aircraft is known; it has no forces to fly nonlinear";
         report.value(part.at("model"), &part.path("model"), message, "\"linear\", or leave it out");
     }
+    if part.number("climb_angle_deg").is_some_and(|angle_deg| angle_deg != 0.0) {
+        let message = "only a linear model of the aircraft is known, which holds in level flight";
+        let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+        report.value(at, &path, message, "0, or leave it out");
+    }
     flight::refuse_laws(
         report,
         part,

@@ -1,6 +1,6 @@
 //! Winds, gusts and turbulence.
 
-use fspid_sim::air::{Severity, Specification};
+use fspid_sim::air::{Follows, Severity, Specification};
 
 use super::word::{Word, words, words_of};
 use super::{
@@ -20,9 +20,10 @@ words! {
 
 words_of!(Specification { MilF8785c = "mil-f-8785c", MilHdbk1797 = "mil-hdbk-1797" });
 words_of!(Severity { Light = "light", Moderate = "moderate", Severe = "severe" });
+words_of!(Follows { Start = "start", Flight = "flight" });
 
 pub(super) static TURBULENCE: Table = plain(
-    "Turbulence of the form of Dryden, at the trimmed speed and height.",
+    "Turbulence of the form of Dryden.",
     &[&[
         defaulted(
             "model",
@@ -34,6 +35,11 @@ pub(super) static TURBULENCE: Table = plain(
             "intensity",
             Kind::Word(Severity::WORDS),
             "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
+        ),
+        optional(
+            "follows",
+            Kind::Word(Follows::WORDS),
+            "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
         ),
         optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's."),
         defaulted(

@@ -72,7 +72,7 @@ const LOADING: &[Key] = &[
 ];
 
 pub(super) static AIRCRAFT: Table = Table {
-    doc: "An aircraft from its data, in trimmed level flight; pitch counts from the trim.",
+    doc: "An aircraft from its data, in trimmed straight flight; pitch counts from the trim.",
     groups: &[
         &[
             optional("name", Kind::Preset(aircraft_names), "An aircraft that the program carries."),
@@ -112,6 +112,11 @@ pub(super) static AIRCRAFT: Table = Table {
                 Kind::Word(AtmosphereWord::WORDS),
                 Default::Word("standard"),
                 "Air and gravity: standard, or everywhere those of the data's flight condition.",
+            ),
+            optional(
+                "climb_angle_deg",
+                Kind::Number { unit: "deg", range: Range::Between(-89.0, 89.0) },
+                "Angle of the flight path over the horizon at which it is trimmed, climbing positive; level if left out, and in its glide an aircraft without an engine.",
             ),
             defaulted("heading_deg", angle(), Default::Number(0.0), "Clockwise from north."),
             defaulted(
