@@ -50,6 +50,12 @@ impl Bracket {
         self.at_most <= self.at_least * (1.0 + SAME)
     }
 
+    /// Whether anything is proved.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        self.at_least > 0.0 || self.at_most < f64::INFINITY
+    }
+
     /// Nothing is proved.
     pub(crate) fn unknown() -> Self {
         Self { at_least: 0.0, at_most: f64::INFINITY }
