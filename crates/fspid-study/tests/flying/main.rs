@@ -5,6 +5,7 @@ mod agreement;
 mod gallery;
 mod limits;
 mod linear_file;
+mod loading;
 mod moving_air;
 
 use fspid_sim::Trace;
