@@ -3,7 +3,7 @@
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::atmosphere::{ALTITUDE_MAX_M, ALTITUDE_MIN_M};
 use fspid_aircraft::data::{AircraftData, Laws, Loading, ModelData, Reference};
-use fspid_aircraft::{Air, Aircraft, Trim, TrimTarget};
+use fspid_aircraft::{Air, Aircraft, ForceModel, Trim, TrimTarget};
 use fspid_sim::aircraft::Forces;
 
 use super::failure::AircraftFailure;
@@ -17,7 +17,7 @@ use crate::inference::Refused;
 /// Which air and gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AirChoice {
-    /// The standard atmosphere at the altitude, standard gravity.
+    /// The standard atmosphere at the altitude, with standard gravity; for tables with the gravity of their file.
     #[default]
     Standard,
     /// Density and gravity of the aircraft's source, at every altitude: the flight of its book.
@@ -177,6 +177,11 @@ pub fn flight(question: &Question<'_>) -> Result<Flight, AircraftFailure> {
     let target = question.target(reference).map_err(AircraftFailure::Refused)?;
     let aircraft = question.aircraft_of(&data)?;
     let (units, air, loading) = (question.units, question.air, question.read_loading()?);
+    if !aircraft.model().has_engine() && question.climb_angle.is_some() {
+        let message =
+            "--climb-angle: the aircraft has no engine; at its speed its path is that of its glide";
+        return Err(AircraftFailure::Refused(Refused::one(message.to_owned())));
+    }
     Ok(Flight { aircraft, target, loading, units, air, data })
 }
 
@@ -202,7 +207,11 @@ impl Flight {
         let gravity = self.aircraft.environment().gravity_m_s2;
         let gravity = super::failure::quantity(self.units, Kind::Acceleration, gravity);
         match self.air {
-            AirChoice::Standard => format!("standard atmosphere, gravity {gravity}"),
+            AirChoice::Standard => {
+                let own = matches!(self.data.model, ModelData::Forces(_));
+                let whose = if own { " of the aircraft's file" } else { "" };
+                format!("standard atmosphere, gravity {gravity}{whose}")
+            }
             AirChoice::Source => format!("density of the source everywhere, gravity {gravity}"),
         }
     }

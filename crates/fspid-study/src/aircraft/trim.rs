@@ -162,6 +162,7 @@ impl Trimmed {
             "aircraft": self.flight.data.name,
             "units": units.name(),
             "air": self.flight.air_name(),
+            "gravity_m_s2": self.flight.aircraft.environment().gravity_m_s2,
             "flight": self.target().json(units),
             "trim": self.point().json(units),
             "residual": self.residual().json(units),

@@ -34,12 +34,22 @@ pub(super) fn tables(
     cg_mac: Option<f64>,
 ) -> Option<ForceData> {
     let part = section.section("tables")?;
-    let [aerodynamics, inertia, propulsion] = ["aerodynamics", "inertia", "propulsion"]
-        .map(|key| model(report, files, (part, key), place));
+    engine_fits(report, section, part)?;
+    let [aerodynamics, inertia] =
+        ["aerodynamics", "inertia"].map(|key| model(report, files, (part, key), place));
+    let propulsion = match part.given("propulsion") {
+        true => Some(model(report, files, (part, "propulsion"), place)),
+        false => None,
+    };
     let body = inertia.and_then(|inertia| body(report, section, (&inertia, cg_mac)));
     // Without a body the forces are looked at all the same, so that all problems are told at once.
     let centre_of_mass_m = body.map_or(Vector3::ZERO, |body| body.centre_of_mass_m);
-    let forces = forces(report, section, [aerodynamics?, propulsion?], centre_of_mass_m)?;
+    let forces = forces(
+        report,
+        section,
+        (aerodynamics?, propulsion.map_or(Some(None), |it| it.map(Some))?),
+        centre_of_mass_m,
+    )?;
     Some(ForceData {
         mass: body?.mass,
         geometry: forces.geometry(),
@@ -114,7 +124,10 @@ fn body(
 ) -> Option<Body> {
     let loaded_pct = cg_mac.map(|share| 100.0 * share);
     let place_pct = loaded_pct.or(section.section("body")?.number("centre_of_mass_pct"));
-    let engine_kg_m2_s = quantity(section.section("engine")?, "angular_momentum")?;
+    let engine_kg_m2_s = match section.section("engine") {
+        Some(engine) => quantity(engine, "angular_momentum")?,
+        None => 0.0,
+    };
     fitting(report, (section, "inertia"), Body::placed(inertia, place_pct, engine_kg_m2_s))
 }
 
@@ -122,18 +135,38 @@ fn body(
 fn forces(
     report: &mut Report,
     section: &Section,
-    [aerodynamics, propulsion]: [Model; 2],
+    (aerodynamics, propulsion): (Model, Option<Model>),
     centre_of_mass_m: Vector3,
 ) -> Option<TableForces> {
     let setting = Setting {
         centre_of_mass_m,
-        gearing: gearing(section.section("engine")?)?,
+        gearing: section.section("engine").map_or(Some(Gearing::default()), gearing)?,
         travel: surfaces(section.section("travel")?)?,
     };
     let alone = TableForces::new(aerodynamics.clone(), None, setting);
-    fitting(report, (section, "aerodynamics"), alone)?;
+    let alone = fitting(report, (section, "aerodynamics"), alone)?;
+    let Some(propulsion) = propulsion else {
+        return Some(alone);
+    };
     let both = TableForces::new(aerodynamics, Some(propulsion), setting);
     fitting(report, (section, "propulsion"), both)
+}
+
+/// Propulsion and what its tables do not say come together, or neither does.
+fn engine_fits(report: &mut Report, section: &Section, part: &Section) -> Option<()> {
+    match (part.given("propulsion"), section.section("engine")) {
+        (true, None) => {
+            let message = "the propulsion needs an [engine], which says what its tables do not";
+            report.value(part.at("propulsion"), &part.path("propulsion"), message, "[engine]");
+            None
+        }
+        (false, Some(engine)) => {
+            let message = "there is no propulsion, so that nothing is left to say of an engine";
+            report.value(engine.place, &engine.path, message, "nothing; leave it out");
+            None
+        }
+        _ => Some(()),
+    }
 }
 
 fn gearing(engine: &Section) -> Option<Gearing> {

@@ -99,7 +99,8 @@ struct Plane {
     /// An aircraft that the program carries (see `fspid aircraft list`), or an aircraft file.
     #[arg(value_name = "NAME or FILE")]
     name: Source,
-    /// The air: the standard atmosphere, or density and gravity of the aircraft's source everywhere.
+    /// The air: the standard atmosphere (gravity is standard, for an aircraft of tables that of its file), or density and
+    /// gravity of the aircraft's source everywhere.
     #[arg(long, value_enum, default_value_t = Air::Standard)]
     air: Air,
     /// How drag depends on lift: along the tangent at the source's condition, or by a parabola.
@@ -123,7 +124,7 @@ struct Plane {
 /// Which air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Air {
-    /// The standard atmosphere and standard gravity.
+    /// The standard atmosphere and standard gravity; for tables the gravity of their file.
     Standard,
     /// Density and gravity of the source, at every altitude.
     Source,

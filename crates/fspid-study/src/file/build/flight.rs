@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
-use fspid_aircraft::{Aircraft, Environment, TrimTarget};
+use fspid_aircraft::{Aircraft, Environment, ForceModel, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
@@ -59,8 +59,9 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     }
     let data = loading::loaded(report, (part, key), data)?;
     let span_m = match &data.model {
-        ModelData::Derivatives(data) => data.geometry.span_m,
-        ModelData::Forces(data) => data.geometry.span_m,
+        ModelData::Derivatives(data) => Some(data.geometry.span_m),
+        // Tables whose moments are 0 need none.
+        ModelData::Forces(data) => Some(data.geometry.span_m).filter(|span_m| *span_m > 0.0),
         ModelData::Linear(model) => return linear_aircraft::flown(report, (part, key), model),
     };
     fits(report, part, &data)?;
@@ -69,13 +70,15 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     let own_air = part.word::<AtmosphereWord>("atmosphere")? == AtmosphereWord::Reference;
     let aircraft = flyer(&data, laws(part)?, own_air);
     let aircraft = judged(report, (part, key), aircraft)?;
+    glides(report, part, &aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
+    let target = plant.trim().target;
     let plant = match model {
         ModelWord::Linear => Plant::Linear(judged(report, (part, key), plant.linear())?),
         ModelWord::Nonlinear => above_ground(report, part, plant)?.into(),
     };
     let way = way(part, target, aircraft.environment())?;
-    Some(Flown { plant, way: Some(Way { span_m: Some(span_m), ..way }) })
+    Some(Flown { plant, way: Some(Way { span_m, ..way }) })
 }
 
 /// Along a target in the air of an environment, by an aircraft without a span.
@@ -173,6 +176,17 @@ fn fits(report: &mut Report, part: &Section, data: &AircraftData) -> Option<()> 
         refuse_own_air(report, part, message);
     }
     (report.count() == before).then_some(())
+}
+
+/// Refuses a path for an aircraft that glides on its own.
+fn glides(report: &mut Report, part: &Section, aircraft: &Aircraft<Forces>) -> Option<()> {
+    if aircraft.model().has_engine() || !part.given("climb_angle_deg") {
+        return Some(());
+    }
+    let message = "the aircraft has no engine; at its speed its path is that of its glide";
+    let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+    report.value(at, &path, message, "nothing; leave it out");
+    None
 }
 
 /// Refuses the laws that are for derivatives.

@@ -111,7 +111,7 @@ pub(super) static AIRCRAFT: Table = Table {
                 "atmosphere",
                 Kind::Word(AtmosphereWord::WORDS),
                 Default::Word("standard"),
-                "Air and gravity: standard, or everywhere those of the data's flight condition.",
+                "Air and gravity: the standard atmosphere with standard gravity (with that of its file for an aircraft of tables), or everywhere those of the data's flight condition.",
             ),
             optional(
                 "climb_angle_deg",
