@@ -23,6 +23,7 @@ mod rest;
 mod scope;
 pub mod solve;
 
+pub use asked::left_out_of;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;

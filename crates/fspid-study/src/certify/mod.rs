@@ -14,7 +14,7 @@ use std::fmt;
 
 use fspid_proof::{
     Asked, Certificate, Doubt, LeftOut, LoopDescription, NotProvable, Outcome, Rechecked, Verdict,
-    certify,
+    certify, left_out_of,
 };
 use fspid_sim::{LinearPlant, SimError};
 
@@ -111,7 +111,7 @@ impl Certification {
                 });
             }
         }
-        let left_out = left_out(study, plants.len());
+        let left_out = left_out(study);
         Ok(Self { scenario: scenario.name.clone(), results, left_out })
     }
 
@@ -131,19 +131,13 @@ fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> A
     asked
 }
 
-fn left_out(study: &Study, plants: usize) -> Vec<String> {
-    let scenario = &study.scenario;
-    let mut sentences = Vec::new();
-    if scenario.plant.aircraft().is_some() {
-        sentences.push(
-            "The aircraft is nonlinear: proved is a statement about its linear model at the trim.",
-        );
+/// What the claims of a study leave out, in sentences.
+fn left_out(study: &Study) -> Vec<String> {
+    let mut left_out = left_out_of(&study.scenario);
+    if !study.dispersions.is_empty() {
+        left_out.push(LeftOut::Dispersions);
     }
-    if plants > 1 {
-        sentences.push("Each plant is proved on its own; the passage from one to the next is not.");
-    }
-    sentences.push("Rounding in the controller's own arithmetic is left out.");
-    sentences.into_iter().map(str::to_owned).collect()
+    left_out.iter().map(ToString::to_string).collect()
 }
 
 /// A certificate that was checked.
