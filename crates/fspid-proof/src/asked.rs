@@ -21,12 +21,13 @@ impl Asked {
             setpoint_rad: steady.largest_setpoint_rad(),
             load_rad: steady.load_with_offsets_rad(plant, description.controller.shell()),
         };
-        Self { range, left_out: left_out(scenario) }
+        Self { range, left_out: left_out_of(scenario) }
     }
 }
 
 /// What of a scenario the claim of its loops does not speak of.
-fn left_out(scenario: &Scenario) -> Vec<LeftOut> {
+#[must_use]
+pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
     let Scenario {
         // A name changes nothing.
         name: _,

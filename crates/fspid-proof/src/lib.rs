@@ -25,6 +25,7 @@ mod scope;
 pub mod sizes;
 pub mod solve;
 
+pub use asked::left_out_of;
 pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};

@@ -21,6 +21,7 @@ mod text;
 
 use fspid_proof::{
     Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
+    left_out_of,
 };
 use fspid_sim::{LinearPlant, SimError};
 
@@ -118,7 +119,7 @@ impl Certification {
                 });
             }
         }
-        let left_out = left_out(&results);
+        let left_out = left_out(study, &results);
         Ok(Self { scenario: scenario.name.clone(), results, left_out })
     }
 
@@ -138,12 +139,16 @@ fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> A
     asked
 }
 
-/// What at least one of the claims does not speak of, in sentences.
-fn left_out(results: &[Certified]) -> Vec<String> {
+/// What the scenario holds, or at least one of the claims leaves out, and no claim speaks of; in sentences.
+fn left_out(study: &Study, results: &[Certified]) -> Vec<String> {
     let outcomes = results.iter().filter_map(|certified| certified.outcome.as_ref().ok());
     let found = outcomes.filter_map(text::found);
     let mut left_out: Vec<LeftOut> =
         found.flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out).collect();
+    left_out.extend(left_out_of(&study.scenario));
+    if !study.dispersions.is_empty() {
+        left_out.push(LeftOut::Dispersions);
+    }
     left_out.sort_unstable();
     left_out.dedup();
     left_out.iter().map(LeftOut::to_string).collect()
