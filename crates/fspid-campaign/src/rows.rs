@@ -14,6 +14,9 @@ use fspid_study::units::degrees;
 use crate::engine::FlightResult;
 use crate::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, TableError};
 
+/// The verdict on a flight that ended at the ground.
+pub const HIT_GROUND: &str = "hit the ground";
+
 /// Version of the rows.
 pub const FORMAT: u32 = 1;
 
@@ -155,7 +158,7 @@ impl Rows {
     /// [`TableError`] for two columns of one name.
     pub fn of(study: &Study) -> Result<Self, TableError> {
         let requirements = &study.requirements;
-        let mut columns = head();
+        let mut columns = head(study.scenario.plant.aircraft().is_some());
         columns.extend(study.dispersions.iter().flat_map(parameters));
         let measures = MEASURES.iter();
         columns.extend(measures.map(|measure| {
@@ -233,21 +236,22 @@ fn judged<'a>(flight: &'a FlightResult, requirement: &Requirement) -> Option<&'a
     flight.judgements.iter().find(|judgement| judgement.requirement.id == requirement.id)
 }
 
-fn head() -> Vec<Column> {
+const FAILED_IS: &str = "true for a flight that diverged, an unstable loop, a requirement that is not met, a run whose numbers make no scenario; where nothing is required of the controller, also for a step that was not settled";
+const FAILED_IN_AIR: &str = "true for a flight that diverged or hit the ground, an unstable loop, a requirement that is not met, a range of the aircraft's data that was left unless the scenario has `validity = \"warn\"`, a run whose numbers make no scenario; where nothing is required of the controller, also for a step that was not settled";
+const VERDICT_IS: &str =
+    "settled, not settled, flown (no step to settle), diverged, unstable, or refused";
+const VERDICT_IN_AIR: &str = "settled, not settled, flown (no step to settle), diverged, hit the ground, unstable, or refused";
+
+/// The columns of every campaign; only a nonlinear aircraft has a ground and a range.
+fn head(has_ground: bool) -> Vec<Column> {
     let column = |name, kind, meaning: &str| Column::new(name, kind).meaning(meaning);
+    let (failed, verdict) =
+        if has_ground { (FAILED_IN_AIR, VERDICT_IN_AIR) } else { (FAILED_IS, VERDICT_IS) };
     vec![
         column(RUN, Kind::Integer, "number of the run, from 0"),
         column(CONTROLLER, Kind::Text, "name of the controller"),
-        column(
-            FAILED,
-            Kind::Boolean,
-            "true for a flight that diverged, an unstable loop, a requirement that is not met, a run whose numbers make no scenario; where nothing is required of the controller, also for a step that was not settled",
-        ),
-        column(
-            VERDICT,
-            Kind::Text,
-            "settled, not settled, flown (no step to settle), diverged, unstable, or refused",
-        ),
+        column(FAILED, Kind::Boolean, failed),
+        column(VERDICT, Kind::Text, verdict),
         column(REASONS, Kind::Text, "why it failed; empty where it did not"),
         column(DIVERGED_AT, Kind::Float, "when the flight diverged").unit("s"),
     ]
@@ -292,6 +296,7 @@ fn word(verdict: Verdict) -> &'static str {
         Verdict::NotSettled { .. } => "not settled",
         Verdict::Flown => "flown",
         Verdict::Diverged { .. } => "diverged",
+        Verdict::HitGround { .. } => HIT_GROUND,
         Verdict::Unstable { .. } => "unstable",
     }
 }

@@ -172,7 +172,7 @@ impl<'a> Target<'a> {
 
     /// Low for bad flights.
     fn cost(&self, flight: &FlightResult) -> f64 {
-        if let Some(at_s) = flight.diverged_at_s() {
+        if let Some(at_s) = flight.diverged_at_s().or_else(|| flight.hit_ground_at_s()) {
             return LOST * (1.0 - at_s / LONGEST_S);
         }
         if flight.metrics.verdict.is_failure() {

@@ -202,3 +202,47 @@ fn a_flight_that_does_not_settle_has_failed_where_nothing_is_required() {
     let flights = alone(&short.expect("a scenario"));
     assert!(flights.iter().all(|flight| !flight.is_failed() && flight.reasons().is_empty()));
 }
+
+/// The Navion at 300 ft with a step of -10 deg flew on to -276 m, and none of 20 such flights failed.
+#[test]
+fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
+    let text = include_str!("../../../scenarios/gallery/navion-step.toml");
+    let text = text.replace("duration_s = 10.0", "duration_s = 30.0");
+    let low = template(&text);
+    let (step, altitude) = (path("setpoint.amplitude_deg"), path("aircraft.altitude_ft"));
+    let study = |step_deg, altitude_ft| {
+        let changes =
+            [(&step, NewValue::Number(step_deg)), (&altitude, NewValue::Number(altitude_ft))];
+        low.with(&changes).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let studies = [study(-10.0, 300.0), study(2.0, 1000.0), study(25.0, 1000.0)];
+    let flown: Vec<_> = engine::fly(&studies).into_iter().map(|it| it.expect("it flies")).collect();
+    let [down, well, far] = [&flown[0][0], &flown[1][0], &flown[2][0]];
+    assert!(down.is_failed() && down.hit_ground_at_s().is_some_and(|at_s| at_s < 13.0));
+    assert!(down.reasons()[0].starts_with("hit the ground at t = 1"), "{:?}", down.reasons());
+    assert!(!well.is_failed(), "{:?}", well.reasons());
+    let left =
+        |reason: &String| reason.contains("left the range") && reason.contains("outside for");
+    assert!(far.is_failed() && far.reasons().iter().any(left), "{:?}", far.reasons());
+    let allowed = template(&text.replace("[actuator]", "validity = \"warn\"\n\n[actuator]"));
+    let allowed = allowed.with(&[(&step, NewValue::Number(25.0))]).expect("a scenario");
+    let flown = engine::fly(&[allowed]);
+    let flight = &flown[0].as_ref().expect("it flies")[0];
+    assert!(flight.exit.is_some() && !flight.reasons().iter().any(left), "{:?}", flight.reasons());
+}
+
+/// It used to be asked of fixed gains alone: a self-tuning loop that grows slowly counted as measured.
+#[test]
+fn a_self_tuning_loop_that_is_unstable_at_rest_fails_without_measures() {
+    let turned = STEP.replace("preset = \"b747-paper\"", TURNED);
+    let studies = [template(&turned).study().clone()];
+    for flight in engine::fly(&studies)[0].as_ref().expect("it flies") {
+        let reasons = flight.reasons();
+        assert!(flight.is_failed() && flight.metrics.effort.is_err(), "{}", flight.controller);
+        assert!(reasons[0].starts_with("unstable at rest (doubles every"), "{reasons:?}");
+        assert_eq!(reasons[1], "moves the wrong way: is elevator_sign right?");
+    }
+}
+
+/// The plant of the step, its elevator counted the wrong way.
+const TURNED: &str = "numerator = [1.15101, 0.17742]\ndenominator = [1.0, 0.739, 0.921468, 0.0]\nelevator_sign = \"nose-down-positive\"";

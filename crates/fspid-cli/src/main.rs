@@ -20,7 +20,7 @@ use exit::Failure;
     name = "fspid",
     version,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
+    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written; 130 interrupted.\nWith --format json standard output holds one JSON object: the answer, or {\"error\": {\"code\", \"message\", …}}.\n`-` is standard input or output wherever a file is named.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
 )]
 struct Arguments {
     #[command(subcommand)]

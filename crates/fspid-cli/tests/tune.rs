@@ -299,7 +299,7 @@ fn a_rule_gives_gains_and_a_start_for_the_search() {
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     assert!(json["gains"]["kp"].as_f64().is_some_and(|kp| kp > 0.0), "{json:#}");
     let told = refused(&["tune", "pitch.toml", "--rule", "cohen-coon"], folder);
-    assert!(told.contains("allowed is ziegler-nichols, tyreus-luyben"), "{told}");
+    assert!(told.contains("known are ziegler-nichols, tyreus-luyben"), "{told}");
     assert!(done(&["tune", "pitch.toml", "--rule", "list"], folder).lines().count() == 9);
 }
 

@@ -1,4 +1,5 @@
-//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`.
+//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`,
+//! IEEE 1855 `.xml`.
 //!
 //! Reading answers the parts of a system and says what it had to assume; nothing is dropped in
 //! silence. Writing refuses what the format cannot say, unless a loss is allowed, and then states
@@ -21,9 +22,12 @@ mod check;
 mod cursor;
 pub mod fcl;
 pub mod fis;
+mod fit;
 pub mod fll;
+pub mod fml;
 #[doc(hidden)]
 pub mod fuzzing;
+mod hedged;
 mod identifiers;
 mod lexer;
 mod loss;

@@ -58,6 +58,15 @@ impl Doubled {
     }
 }
 
+impl Doubled {
+    /// Quotient by a plain number, to about 2^-102 of itself.
+    pub(crate) fn divided(self, by: f64) -> Self {
+        let quotient = self.high / by;
+        let rest = self.plus(Self::from(by).times(-quotient));
+        Self::from(quotient).plus(Self::from(rest.high / by))
+    }
+}
+
 /// Square matrix of [`Doubled`] entries, row after row.
 #[derive(Debug, Clone)]
 pub(crate) struct DoubledMatrix {
@@ -72,6 +81,15 @@ impl DoubledMatrix {
         let one = |i: usize| if i.is_multiple_of(size + 1) { 1.0 } else { 0.0 };
         let data = matrix.data().iter().enumerate();
         Self { size, data: data.map(|(i, &value)| Doubled::exact_sum(one(i), value)).collect() }
+    }
+
+    /// Square matrix by a function.
+    pub(crate) fn from_function(size: usize, entry: impl Fn(usize, usize) -> Doubled) -> Self {
+        Self { size, data: (0..size * size).map(|i| entry(i / size, i % size)).collect() }
+    }
+
+    pub(crate) fn at(&self, row: usize, column: usize) -> Doubled {
+        self.data[row * self.size + column]
     }
 
     /// Product with itself.
@@ -99,12 +117,7 @@ impl DoubledMatrix {
 
     /// Every entry divided by a plain number.
     pub(crate) fn divided(&self, by: f64) -> Self {
-        let divided = |value: &Doubled| {
-            let quotient = value.high / by;
-            let rest = value.plus(Doubled::from(by).times(-quotient));
-            Doubled::from(quotient).plus(Doubled::from(rest.high / by))
-        };
-        Self { size: self.size, data: self.data.iter().map(divided).collect() }
+        Self { size: self.size, data: self.data.iter().map(|value| value.divided(by)).collect() }
     }
 
     /// Nearest plain matrix.
@@ -112,14 +125,6 @@ impl DoubledMatrix {
         Matrix::from_function(self.size, self.size, |row, column| {
             self.data[row * self.size + column].high
         })
-    }
-}
-
-impl From<&Matrix> for DoubledMatrix {
-    /// A square matrix, without rounding.
-    fn from(matrix: &Matrix) -> Self {
-        let data = matrix.data().iter().map(|&value| value.into()).collect();
-        Self { size: matrix.rows(), data }
     }
 }
 

@@ -1,8 +1,9 @@
 //! The exponential of a matrix.
 
 use crate::balance::balance;
-use crate::doubled::DoubledMatrix;
+use crate::doubled::{Doubled, DoubledMatrix};
 use crate::error::LtiError;
+use crate::fine::FineMatrix;
 use crate::matrix::Matrix;
 
 /// Coefficients of the numerator of the diagonal Padé approximant of degree 13, from the constant up.
@@ -62,22 +63,30 @@ pub fn exponential(matrix: &Matrix) -> Result<Matrix, LtiError> {
     Ok(restored)
 }
 
-/// Exponential of a square matrix less the identity, every entry with its own digits.
+/// Exponential of a square matrix times a time, less the identity, with twice the working precision.
 ///
-/// $$ e^A - I = \left( \dots \right) (2 I + X) X, \quad X = e^{A / 2^s} - I $$
+/// $$ e^{A t} - I = (2 I + X_s) X_s, \quad X_k = (2 I + X_{k-1}) X_{k-1}, \quad X_0 = e^{A t / 2^s} - I $$
 ///
-/// By Taylor's series and squarings of the difference alone, all with twice the working precision: what is small beside
-/// 1, as the slow modes of a system that is sampled fast, loses nothing to it.
+/// By Taylor's series and squarings of the difference alone: what is small beside 1, as the slow modes of a system that
+/// is sampled fast, loses nothing to it.
 ///
 /// # Errors
-/// As [`exponential`].
-pub fn exponential_change(matrix: &Matrix) -> Result<Matrix, LtiError> {
-    matrix.require_square_and_finite("matrix of the exponential")?;
-    let mut balanced = matrix.clone();
+/// As [`exponential`]; a time that is not finite.
+pub fn exponential_change(matrix: &FineMatrix, time_s: f64) -> Result<FineMatrix, LtiError> {
+    const WHAT: &str = "matrix of the exponential";
+    matrix.high().require_square_and_finite(WHAT)?;
+    let mut balanced = matrix.high().scaled(time_s);
+    LtiError::unless_finite(WHAT, balanced.data())?;
     let exponents = balance(&mut balanced);
     let squarings = squarings(balanced.norm_one() * (THETA / SERIES))?;
-    let scaled = DoubledMatrix::from(&balanced.map(|value| libm::scalbn(value, -squarings)));
-    let mut change = DoubledMatrix::from(&Matrix::zeros(matrix.rows(), matrix.rows()));
+    let size = exponents.len();
+    let shift = |row: usize, column: usize| exponents[column] - exponents[row] - squarings;
+    let scaled = DoubledMatrix::from_function(size, |row, column| {
+        let [high, low] = matrix.at(row, column);
+        let scale = |value: f64| libm::scalbn(value, shift(row, column));
+        Doubled { high: scale(high), low: scale(low) }.times(time_s)
+    });
+    let mut change = DoubledMatrix::from_function(size, |_, _| Doubled::ZERO);
     // Horner's scheme: A (1 + A/2 (1 + A/3 (…))).
     for order in (1..=TERMS).rev() {
         change = scaled.product(&change).plus(&scaled).divided(f64::from(order));
@@ -85,11 +94,12 @@ pub fn exponential_change(matrix: &Matrix) -> Result<Matrix, LtiError> {
     for _ in 0..squarings {
         change = change.product(&change).plus(&change).plus(&change);
     }
-    let change = change.rounded();
-    let restored = Matrix::from_function(matrix.rows(), matrix.rows(), |row, column| {
-        libm::scalbn(change.at(row, column), exponents[row] - exponents[column])
+    let restored = FineMatrix::from_function((size, size), |row, column| {
+        let entry = change.at(row, column);
+        let back = -shift(row, column) - squarings;
+        [entry.high, entry.low].map(|value| libm::scalbn(value, back))
     });
-    LtiError::unless_finite("matrix exponential", restored.data())?;
+    LtiError::unless_finite("matrix exponential", restored.high().data())?;
     Ok(restored)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::LtiError;
 use crate::exponential::{exponential, exponential_change};
+use crate::fine::FineMatrix;
 use crate::matrix::Matrix;
 
 /// Binary exponent that the input columns are scaled to, far below the states.
@@ -48,28 +49,32 @@ pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Mat
     Ok((a_sampled, b_sampled))
 }
 
-/// What a sample changes: $A_d - I$ and $B_d$ of [`zero_order_hold`], every entry with its own digits.
+/// What a sample changes: $A_d - I$ and $B_d$ of [`zero_order_hold`], with twice the working precision.
 ///
 /// # Errors
 /// As [`zero_order_hold`].
-pub fn held_change(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Matrix), LtiError> {
-    a.require_square_and_finite("state matrix")?;
-    b.require_shape("input matrix", a.rows(), b.columns())?;
-    let (states, inputs) = (a.rows(), b.columns());
+pub fn held_change(
+    a: &FineMatrix,
+    b: &FineMatrix,
+    dt_s: f64,
+) -> Result<(FineMatrix, FineMatrix), LtiError> {
+    a.high().require_square_and_finite("state matrix")?;
+    let (states, inputs) = (a.high().rows(), b.high().columns());
+    b.high().require_shape("input matrix", states, inputs)?;
     // Inputs of the size of 1, so that they force no halvings.
     let shifts: Vec<i32> =
-        (0..inputs).map(|input| -libm::frexp(b.column_norm(input) * dt_s).1).collect();
-    let augmented = Matrix::from_function(states + inputs, states + inputs, |row, column| {
-        match column.checked_sub(states) {
-            _ if row >= states => 0.0,
-            Some(input) => libm::scalbn(b.at(row, input) * dt_s, shifts[input]),
-            None => a.at(row, column) * dt_s,
-        }
-    });
-    let change = exponential_change(&augmented)?;
-    let state = Matrix::from_function(states, states, |row, column| change.at(row, column));
-    let input = Matrix::from_function(states, inputs, |row, input| {
-        libm::scalbn(change.at(row, states + input), -shifts[input])
+        (0..inputs).map(|input| -libm::frexp(b.high().column_norm(input) * dt_s).1).collect();
+    let size = states + inputs;
+    let augmented =
+        FineMatrix::from_function((size, size), |row, column| match column.checked_sub(states) {
+            _ if row >= states => [0.0; 2],
+            Some(input) => b.at(row, input).map(|value| libm::scalbn(value, shifts[input])),
+            None => a.at(row, column),
+        });
+    let change = exponential_change(&augmented, dt_s)?;
+    let state = FineMatrix::from_function((states, states), |row, column| change.at(row, column));
+    let input = FineMatrix::from_function((states, inputs), |row, input| {
+        change.at(row, states + input).map(|value| libm::scalbn(value, -shifts[input]))
     });
     Ok((state, input))
 }

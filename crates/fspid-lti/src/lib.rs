@@ -37,6 +37,7 @@ mod doubled;
 mod eigenvalues;
 mod error;
 mod exponential;
+mod fine;
 mod frequency;
 mod hold;
 mod integral_regulator;
@@ -56,6 +57,7 @@ pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
 pub use exponential::{exponential, exponential_change};
+pub use fine::FineMatrix;
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
 pub use hold::{held_change, zero_order_hold};
 pub use integral_regulator::{

@@ -120,8 +120,8 @@ impl Wide {
     /// The nearest sum of two plain numbers; what is left out is below $2^{e - 106}$.
     fn doubled(&self) -> Doubled {
         let high = power_of_two(self.exponent - 53) * (self.words[0] >> 11) as f64;
-        let rest = (self.words[0] << 42 >> 11) | self.words[1] >> 33;
-        let low = power_of_two(self.exponent - 106) * (rest & ((1 << 53) - 1)) as f64;
+        let rest = (self.words[0] & 0x7ff) << 42 | self.words[1] >> 22;
+        let low = power_of_two(self.exponent - 106) * rest as f64;
         let sign = if self.negative { -1.0 } else { 1.0 };
         Doubled::exact_sum(sign * high, sign * low)
     }
@@ -185,9 +185,9 @@ pub(crate) struct WideBall {
 impl WideBall {
     pub(crate) const ZERO: Self = Self { value: Wide::ZERO, error: 0.0 };
 
-    /// Exact difference of two numbers.
-    pub(crate) fn difference(left: f64, right: f64) -> Self {
-        Self { value: Wide::from(left).plus(&Wide::from(-right)), error: 0.0 }
+    /// Exact sum of two numbers.
+    pub(crate) fn sum([high, low]: [f64; 2]) -> Self {
+        Self { value: Wide::from(high).plus(&Wide::from(low)), error: 0.0 }
     }
 
     pub(crate) fn is_zero(&self) -> bool {

@@ -15,7 +15,8 @@ impl Asked {
     /// or are passed through.
     #[must_use]
     pub fn of(scenario: &Scenario, plant: &LinearPlant, description: &LoopDescription) -> Self {
-        let steady: Steady = scenario.steady();
+        // The bias of the actuator is the description's.
+        let steady = Steady { bias_rad: 0.0, ..scenario.steady() };
         let range = Range {
             setpoint_rad: steady.largest_setpoint_rad(),
             load_rad: steady.load_with_offsets_rad(plant, description.controller.shell()),

@@ -88,7 +88,8 @@ impl<'a> Holding<'a> {
             range,
             per_pitch: has_gain.then_some(per_pitch),
             setpoint: Interval::point(range.setpoint_rad),
-            load: Interval::point(range.load_rad),
+            load: Interval::point(range.load_rad)
+                + Interval::point(description.actuator.bias_rad().abs()),
         }
     }
 
@@ -148,7 +149,7 @@ impl<'a> Holding<'a> {
     }
 
     fn tuned(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
-        let nothing = self.range == Range::REST;
+        let nothing = self.range == Range::REST && self.load == Interval::ZERO;
         if !self.has_integral() {
             return self.without_integral(fspid, nothing);
         }

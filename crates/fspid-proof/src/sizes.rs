@@ -120,7 +120,8 @@ fn most_inequalities(certificate: &Certificate) -> u64 {
             }
         }
     };
-    let corners = cells.saturating_mul(8);
+    // Eight of a box, each with what is held either way.
+    let corners = cells.saturating_mul(16);
     match &certificate.claim {
         Claim::AnySpeed { .. } => corners,
         Claim::Tied { multipliers, .. } => corners.saturating_mul(1 + multipliers.len() as u64),

@@ -8,7 +8,8 @@ use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
 use fspid_proof::{
-    Asked, Certificate, Claim, Effort, LoopDescription, NotProvable, Range, Verdict, certify,
+    Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LoopDescription, NotProvable, Range,
+    Verdict, certify,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
@@ -228,4 +229,50 @@ fn a_tuner_of_another_structure_is_refused_by_name() {
     let sees = Sees::ErrorAndModelError(model);
     assert!(refusal(TunerSettings { sees, ..plain }).contains("reference model"));
     assert!(refusal(TunerSettings { input_sets: uneven, ..plain }).contains("not even"));
+}
+
+#[test]
+fn a_rate_that_the_law_is_not_known_to_keep_says_nothing_of_the_flown_loop() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let rechecked = good.check().expect("it holds");
+    assert_eq!(good.bearing(&rechecked), Bearing::Stable);
+    let Claim::AnySpeed { form, .. } = &good.claim else { panic!("{:?}", good.claim) };
+    // A form that moves with kp by a thousandth of itself falls as long as kp moves slowly.
+    let none = Matrix::zeros(form.rows(), form.columns());
+    let claim = BoundedRate {
+        ends: rechecked.bounds.map(|bounds| [bounds.lower(), bounds.upper()]),
+        changes: [0.01, 2.0, 2.0],
+        forms: [form.clone(), form.scaled(1e-3), none.clone(), none],
+        rate: 1.0,
+        inputs: None,
+    };
+    let slow = Certificate { claim: Claim::BoundedRate(claim), level: None, ..good.clone() };
+    let rechecked = slow.check().expect("the inequalities are proved");
+    assert_eq!((rechecked.kept, slow.bearing(&rechecked)), (None, Bearing::RateNotKept));
+    assert!(!slow.bearing(&rechecked).is_stability());
+    let still = Certificate { output_factor: 0.0, ..good };
+    let rechecked = still.check().expect("gains that stand still hold");
+    assert_eq!(still.bearing(&rechecked), Bearing::OtherScale { factor: 0.0 });
+}
+
+#[test]
+fn what_is_too_large_is_told_at_once_and_before_the_loop_is_enclosed() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let enclosed = good.description.enclosed().expect("a model").size();
+    assert_eq!(good.description.states(), enclosed);
+    let mut large = Certificate { divisions: 1000, ..good };
+    large.description.actuator = large.description.actuator.with_delay(10_000).expect("allowed");
+    let refused = large.check().expect_err("too large").to_string();
+    for part in [
+        "loop: 10008 states",
+        "divisions: 1000 cells",
+        "claim.form: 8 rows",
+        " products of the re-check",
+    ] {
+        assert!(refused.contains(part), "{part}: {refused}");
+    }
+    let refused = large.description.provable().expect_err("too large").to_string();
+    assert!(refused.starts_with("loop: 10008 states"), "{refused}");
 }

@@ -8,6 +8,8 @@
 //!
 //! is solved leg by leg, by the [`law`](crate::law) of the leg. Nothing is allocated.
 
+use fspid_lti::{FineMatrix, Matrix, exponential_change};
+
 use crate::actuator::{Actuator, ActuatorState, Course, Leg};
 use crate::error::SimError;
 use crate::gust_response::PlantAir;
@@ -215,12 +217,21 @@ impl Actuated {
 }
 
 impl Actuated {
-    /// What a sample changes of the states of [`linear_step`](Self::linear_step), with all digits.
-    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), and what 64 bits leave out of it.
+    pub(crate) fn linear_change(&self, plant: &LinearPlant) -> Result<[Vec<f64>; 2], SimError> {
         let order = self.actuator.lag().order();
+        let rest = plant.transfer_function().state_space_rest();
+        let entries = Entries {
+            by_elevator: rest.b().data().iter().map(|b| self.elevator_per_command * b).collect(),
+            by_gust: [0; 3].map(|_| vec![0.0; self.order]),
+        };
+        let mut rows = entries.rows(rest.a().data(), order == 0);
+        let generator = self.follow.generator()?;
+        rows.resize(generator.rows(), vec![0.0; generator.columns()]);
+        let generator = FineMatrix::new(generator, Matrix::from_rows(&rows)?)?;
         let at_once = (order == 0).then_some(self.order);
         let places = (self.order + order.max(1), self.order + 2);
-        part_of_change(&self.follow.generator_over(self.dt_s)?, places, at_once)
+        part_of_change(&exponential_change(&generator, self.dt_s)?, places, at_once)
     }
 }
 

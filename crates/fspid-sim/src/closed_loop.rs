@@ -49,7 +49,7 @@ pub struct Flight {
 ///
 /// # Errors
 /// [`SimError`] where the scenario's plants cannot be discretised; an unstable loop is no error but
-/// a trace that ends with [`Outcome::Diverged`].
+/// a trace that ends with [`Outcome::Diverged`], and the ground one that ends with [`Outcome::HitGround`].
 pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
     let prepared = scenario.prepare()?;
     let traces = scenario.controllers.iter().map(|named| record(&prepared, &named.controller));
@@ -159,6 +159,9 @@ fn watch_answers(
         let theta_rad = plant.theta_rad();
         if plant.is_lost() {
             return Ok(Outcome::Diverged { at_s: prepared.timing.time_s(k) });
+        }
+        if stage.propagation.is_at_ground(&plant) {
+            return Ok(Outcome::HitGround { at_s: prepared.timing.time_s(k) });
         }
         let q_rad_s = stage.propagation.rate_rad_s(&plant, disturbance_rad);
         let aircraft = stage.propagation.sample(&plant, disturbance_rad);

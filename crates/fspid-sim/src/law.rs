@@ -59,12 +59,12 @@ impl Law {
         })
     }
 
-    /// The generator over a time, inputs held.
-    pub(crate) fn generator_over(&self, time_s: f64) -> Result<Matrix, SimError> {
+    /// The generator of states and held inputs.
+    pub(crate) fn generator(&self) -> Result<Matrix, SimError> {
         let mut square: Vec<Vec<f64>> =
             self.generator.chunks_exact(self.width).map(<[f64]>::to_vec).collect();
         square.resize(self.width, vec![0.0; self.width]);
-        Ok(Matrix::from_rows(&square)?.scaled(time_s))
+        Ok(Matrix::from_rows(&square)?)
     }
 
     /// The rows of one sample.

@@ -28,6 +28,7 @@ pub mod flown;
 mod gust_entry;
 mod gust_response;
 mod law;
+pub mod load;
 mod longitudinal;
 pub mod loop_model;
 mod math;

@@ -5,6 +5,7 @@ use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::error::SimError;
 use crate::loop_model::SampledPlant;
+use crate::plant::LinearPlant;
 use crate::propagator::{LinearStep, PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
@@ -57,6 +58,15 @@ impl Propagation {
             Self::Servo(propagator) => Motion::Servo(PlantState::at_rest(propagator.order())),
             Self::Actuated(actuated) => Motion::Actuated(actuated.at_rest()),
             Self::Aircraft(flight) => Motion::Aircraft(Box::new(flight.at_rest())),
+        }
+    }
+
+    /// True for an aircraft at or below the ground; a linear plant has no height.
+    #[inline(always)]
+    pub(crate) fn is_at_ground(&self, motion: &Motion) -> bool {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.is_at_ground(state),
+            _ => false,
         }
     }
 
@@ -193,12 +203,16 @@ impl Propagation {
         Ok(SampledPlant { states, rows, rate })
     }
 
-    /// What a sample changes of the states of [`linear_step`](Self::linear_step), with all digits; empty for an aircraft.
-    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), and what 64 bits leave out of it; `None`
+    /// for an aircraft.
+    pub(crate) fn linear_change(
+        &self,
+        plant: &LinearPlant,
+    ) -> Result<Option<[Vec<f64>; 2]>, SimError> {
         match self {
-            Self::Servo(it) => it.linear_change(),
-            Self::Actuated(it) => it.linear_change(),
-            Self::Aircraft(_) => Ok(Vec::new()),
+            Self::Servo(it) => it.linear_change(plant).map(Some),
+            Self::Actuated(it) => it.linear_change(plant).map(Some),
+            Self::Aircraft(_) => Ok(None),
         }
     }
 

@@ -7,7 +7,7 @@
 //! is one matrix product. Where the rate limit holds the servo, $\dot \delta = \rho$ is constant,
 //! and the sample is cut at the instant the limit lets go; no step size and no error is involved.
 
-use fspid_lti::{Matrix, StateSpace, exponential, exponential_change};
+use fspid_lti::{FineMatrix, Matrix, StateSpace, exponential, exponential_change};
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -220,11 +220,20 @@ impl Propagator {
     }
 
     /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over states and command, less 1
-    /// on the diagonal, with all digits.
-    pub(crate) fn linear_change(&self) -> Result<Vec<f64>, SimError> {
+    /// on the diagonal, and what 64 bits leave out of them.
+    pub(crate) fn linear_change(&self, plant: &LinearPlant) -> Result<[Vec<f64>; 2], SimError> {
         let states = self.order + 1;
+        let mut rest = generator(
+            &plant.transfer_function().state_space_rest(),
+            self.elevator_per_command,
+            &ServoMotion::Free(self.servo),
+        )?;
+        for place in 0..self.free.columns() {
+            rest.set(self.order, place, 0.0)?;
+        }
         let at_once = self.servo.is_at_once().then_some(self.order);
-        part_of_change(&self.free.scaled(self.dt_s), (states, states), at_once)
+        let generator = FineMatrix::new(self.free.clone(), rest)?;
+        part_of_change(&exponential_change(&generator, self.dt_s)?, (states, states), at_once)
     }
 }
 
@@ -239,23 +248,24 @@ pub(crate) struct LinearStep {
     pub(crate) rate_row: Vec<f64>,
 }
 
-/// The part over some states and one input of the exponential of a generator, less 1 on the diagonal; of a state that
-/// only remembers its input nothing is left.
+/// The part over some states and one input; of a state that only remembers its input nothing is left.
 pub(crate) fn part_of_change(
-    generator: &Matrix,
+    change: &FineMatrix,
     (states, input): (usize, usize),
     remembers: Option<usize>,
-) -> Result<Vec<f64>, SimError> {
-    let change = exponential_change(generator)?;
-    let rows = change.data().chunks_exact(change.columns()).take(states);
-    let mut part: Vec<f64> =
-        rows.flat_map(|row| [&row[..states], &row[input..=input]].concat()).collect();
-    if let Some(place) = remembers {
-        let row = &mut part[place * (states + 1)..(place + 1) * (states + 1)];
-        row.fill(0.0);
-        (row[place], row[states]) = (-1.0, 1.0);
-    }
-    Ok(part)
+) -> Result<[Vec<f64>; 2], SimError> {
+    let part = |matrix: &Matrix, [left, kept]: [f64; 2]| {
+        let rows = matrix.data().chunks_exact(matrix.columns()).take(states);
+        let columns = |row: &[f64]| [&row[..states], &row[input..=input]].concat();
+        let mut part: Vec<f64> = rows.flat_map(columns).collect();
+        if let Some(place) = remembers {
+            let row = &mut part[place * (states + 1)..(place + 1) * (states + 1)];
+            row.fill(0.0);
+            (row[place], row[states]) = (left, kept);
+        }
+        part
+    };
+    Ok([part(change.high(), [-1.0, 1.0]), part(change.low(), [0.0, 0.0])])
 }
 
 enum ServoMotion {

@@ -23,6 +23,8 @@ pub struct Unstable {
     pub spectral_radius: f64,
     /// From when the plant is the one that is not held, s.
     pub from_s: f64,
+    /// Time in which what grows becomes twice as large, s; infinite where nothing grows.
+    pub doubling_s: f64,
 }
 
 /// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
@@ -48,16 +50,48 @@ pub fn instability(
     if !pid.shell().is_linear() {
         return Ok(None);
     }
+    // What cannot be told from the edge counts as unstable here.
+    at_gains(scenario, (pid.gains(), pid.shell()), 1.0 - MARGIN)
+}
+
+/// The instability of a loop around rest, whoever's gains they are and whatever limits act elsewhere: the first plant
+/// around which something grows for certain. As [`instability`] in all else.
+///
+/// A pole on the unit circle grows nothing. One within 10⁻⁹ of it cannot be told from such a one after rounding and is
+/// not called unstable: at 100 Hz it would double in 80 days, at 10 kHz in 19 hours.
+///
+/// # Errors
+/// As [`instability`].
+pub fn growth_at_rest(
+    scenario: &Scenario,
+    gains: Gains<f64>,
+    shell: &Shell<f64>,
+) -> Result<Option<Unstable>, SimError> {
+    at_gains(scenario, (gains, shell), 1.0 + MARGIN)
+}
+
+/// The first plant whose loop has a spectral radius that is not below a limit.
+fn at_gains(
+    scenario: &Scenario,
+    (gains, shell): (Gains<f64>, &Shell<f64>),
+    limit: f64,
+) -> Result<Option<Unstable>, SimError> {
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
-        let radius = spectral_radius(&closed_loop(scenario, plant, pid.gains(), pid.shell())?)?;
+        let radius = spectral_radius(&closed_loop(scenario, plant, gains, shell)?)?;
         // Written so that NaN counts as unstable.
-        if !(radius < 1.0 - MARGIN) {
-            return Ok(Some(Unstable { spectral_radius: radius, from_s }));
+        if !(radius < limit) {
+            let doubling_s = doubling_s(radius, scenario.timing.dt_s());
+            return Ok(Some(Unstable { spectral_radius: radius, from_s, doubling_s }));
         }
     }
     Ok(None)
+}
+
+fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {
+    let rate = libm::log(spectral_radius);
+    if rate > 0.0 { dt_s * core::f64::consts::LN_2 / rate } else { f64::INFINITY }
 }
 
 /// Spectral radius of the sampled loop of one plant with fixed gains and no limits.
@@ -87,7 +121,7 @@ pub fn loop_poles(
 }
 
 /// The one-sample matrix of the loop with the set-point at zero.
-fn closed_loop(
+pub(crate) fn closed_loop(
     scenario: &Scenario,
     plant: &LinearPlant,
     gains: Gains<f64>,

@@ -12,9 +12,10 @@ use crate::signal::Entry;
 pub struct Steady {
     /// Least and largest set-point, rad from the trim; the trim itself lies between them.
     pub setpoint_rad: [f64; 2],
-    /// Largest load at servo and elevator, rad of elevator, without a sign: disturbances but for noise, and
-    /// the bias of the actuator.
+    /// Largest load at servo and elevator, rad of elevator, without a sign: disturbances but for noise.
     pub load_rad: f64,
+    /// Bias of the actuator, rad, without a sign.
+    pub bias_rad: f64,
     /// Largest offset of the measured pitch, rad, without a sign: bias, and disturbances but for noise.
     pub offset_rad: f64,
     /// Largest offset of the measured rate, rad/s, without a sign.
@@ -33,7 +34,8 @@ impl Scenario {
         let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
         Steady {
             setpoint_rad: ends,
-            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator]) + bias_rad.abs(),
+            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator]),
+            bias_rad: bias_rad.abs(),
             offset_rad: self.furthest(&[Entry::Measurement])
                 + biased(&self.surroundings.pitch_sensor),
             rate_offset_rad_s: biased(&self.surroundings.rate_sensor),
@@ -71,7 +73,10 @@ impl Steady {
     pub fn load_with_offsets_rad(&self, plant: &LinearPlant, shell: &Shell<f64>) -> f64 {
         let of_offset = self.offset_rad / plant.steady_gain().abs();
         let of_offset = if self.offset_rad == 0.0 { 0.0 } else { of_offset };
-        self.load_rad + of_offset + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
+        self.load_rad
+            + self.bias_rad
+            + of_offset
+            + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
     }
 
     /// The largest set-point in magnitude, rad.

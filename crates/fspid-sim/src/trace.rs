@@ -6,6 +6,7 @@ use fspid_core::{Faults, Gains};
 use crate::aircraft::AIRCRAFT_COLUMNS;
 use crate::closed_loop::Instant;
 use crate::scenario::Prepared;
+use crate::timing::Timing;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +19,11 @@ pub enum Outcome {
         /// Time of the first such sample, s.
         at_s: f64,
     },
+    /// A nonlinear aircraft came down to the ground; the trace ends before.
+    HitGround {
+        /// Time of the first sample at or below the ground, s.
+        at_s: f64,
+    },
 }
 
 /// A flight that left the range in which its model is known to be worth something.
@@ -27,6 +33,27 @@ pub struct Exit {
     pub at_s: f64,
     /// The limit that was left.
     pub departure: Departure,
+    /// Samples outside of any limit, not only of this one and not only in one go.
+    pub samples: usize,
+    /// How long that is, s.
+    pub outside_s: f64,
+}
+
+impl Exit {
+    /// Takes in the next sample of a flight: the limit that is left there, if one is.
+    pub fn take_in(
+        exit: &mut Option<Self>,
+        departure: Option<Departure>,
+        (k, timing): (usize, Timing),
+    ) {
+        let Some(departure) = departure else {
+            return;
+        };
+        let first = Self { at_s: timing.time_s(k), departure, samples: 0, outside_s: 0.0 };
+        let exit = exit.get_or_insert(first);
+        exit.samples += 1;
+        exit.outside_s = exit.samples as f64 * timing.dt_s();
+    }
 }
 
 /// A column that only some flights have.
@@ -101,9 +128,8 @@ impl Trace {
         self.saturated_samples += usize::from(instant.step.saturated);
         self.faults = instant.step.faults;
         self.push_columns(prepared, instant);
-        if let (None, Some(departure)) = (self.exit, instant.aircraft.and_then(|a| a.departure)) {
-            self.exit = Some(Exit { at_s: time_s, departure });
-        }
+        let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
+        Exit::take_in(&mut self.exit, departure, (instant.k, prepared.timing()));
     }
 
     /// The values in the order of [`column_names`].

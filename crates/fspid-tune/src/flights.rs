@@ -1,7 +1,7 @@
 //! Points of a space flown on cases: what tuning and contest have in common.
 
 use fspid_campaign::Draws;
-use fspid_campaign::engine::{self, FlightResult, Memory, Stability};
+use fspid_campaign::engine::{self, FlightResult, Judging, Memory, Stability};
 use fspid_campaign::sample::Sampling;
 use fspid_study::dispersion::Drawn;
 use fspid_study::file::{Study, Template};
@@ -62,19 +62,25 @@ pub(crate) struct Flights {
     cases: Vec<FlownCase>,
     /// Judged with the scenario's own, after them.
     measured: Vec<Requirement>,
-    stability: Stability,
+    judging: Judging,
     at_once: usize,
 }
 
 impl Flights {
     pub(crate) fn new(space: Space, cases: Vec<FlownCase>, measured: Vec<Requirement>) -> Self {
         let at_once = cases.first().map_or(1, |case| engine::at_once(case.template.study()));
-        Self { space, cases, measured, stability: Stability::Analysed, at_once }
+        let judging = Judging { stability: Stability::Analysed, loads: false };
+        Self { space, cases, measured, judging, at_once }
     }
 
-    /// The same with another way to treat unstable loops.
-    pub(crate) fn with(self, stability: Stability) -> Self {
-        Self { stability, ..self }
+    /// The same, judged in another way.
+    pub(crate) fn with(self, judging: Judging) -> Self {
+        Self { judging, ..self }
+    }
+
+    /// True where loops are asked what a constant load does to them.
+    pub(crate) fn judges_loads(&self) -> bool {
+        self.judging.loads
     }
 
     pub(crate) fn space(&self) -> &Space {
@@ -115,7 +121,7 @@ impl Flights {
         let groups = jobs.par_chunks(self.at_once.max(1));
         let fly = |memory: &mut Memory, group: &[(&Vec<f64>, &FlownCase, usize)]| {
             let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
-            fly(memory, (studies.collect(), self.stability), read)
+            fly(memory, (studies.collect(), self.judging), read)
         };
         let flown: Vec<Vec<T>> = groups.map_init(Memory::default, fly).collect();
         let mut of_point = vec![Vec::with_capacity(self.count()); points.len()];
@@ -148,7 +154,7 @@ impl Flights {
 
 fn fly<T>(
     memory: &mut Memory,
-    (studies, stability): (Vec<Result<Study, String>>, Stability),
+    (studies, judging): (Vec<Result<Study, String>>, Judging),
     read: &impl Fn(Result<&FlightResult, String>, f64) -> T,
 ) -> Vec<T> {
     let mut answers = Vec::with_capacity(studies.len());
@@ -163,7 +169,7 @@ fn fly<T>(
         }
     }
     let nobody = || "nobody flies".to_owned();
-    let flown = engine::fly_judging(memory, &sound, stability).into_iter().zip(&sound);
+    let flown = engine::fly_judging(memory, &sound, judging).into_iter().zip(&sound);
     let mut flown = flown.map(|(flights, study)| {
         let duration_s = study.scenario.timing.end_s();
         match &flights {

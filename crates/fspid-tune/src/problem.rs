@@ -1,5 +1,8 @@
 //! What is flown for a candidate, and what it is worth.
 
+use fspid_campaign::engine::{Judging, Stability};
+use fspid_sim::Controller;
+use fspid_study::analysis::AtRest;
 use fspid_study::file::Study;
 use fspid_study::requirement::Requirement;
 use fspid_study::tuning::{Mark, Tuning};
@@ -43,7 +46,9 @@ impl Problem {
         let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
         let digest = digest(&marks, &tuning, &cases);
         let measured = measured(&tuning);
-        let flights = Flights::new(Space::new(marks), cases, measured);
+        let loads = tuning.removes_constant_load && has_integral(study, &controller);
+        let judging = Judging { stability: Stability::Analysed, loads };
+        let flights = Flights::new(Space::new(marks), cases, measured).with(judging);
         Ok(Self { controller, tuning, flights, digest })
     }
 
@@ -63,6 +68,12 @@ impl Problem {
     #[must_use]
     pub fn tuning(&self) -> &Tuning {
         &self.tuning
+    }
+
+    /// True where candidates must remove a constant load.
+    #[must_use]
+    pub fn removes_constant_load(&self) -> bool {
+        self.flights.judges_loads()
     }
 
     /// Digest of everything that decides what a candidate is worth.
@@ -89,6 +100,26 @@ impl Problem {
         let flights = self.flown(points);
         let weights: Vec<f64> = self.flights.jobs().map(|(case, _)| case.weight).collect();
         flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect()
+    }
+
+    /// What is said of a candidate's loop at rest, as often as it differs: its gains there, and a constant load that it
+    /// does not remove.
+    #[must_use]
+    pub fn at_rest(&self, point: &[f64]) -> Vec<String> {
+        let mut told: Vec<String> = Vec::new();
+        for (case, run) in self.flights.jobs() {
+            let Ok(study) = self.flights.study(point, case, run) else { continue };
+            let Some(named) = study.scenario.controllers.first() else { continue };
+            let at_rest = AtRest::of(&study.scenario, &named.controller);
+            let load = at_rest.load_in_words(study.scenario.timing.end_s());
+            let load = load.map(|words| format!("{}: {words}", case.name));
+            for words in at_rest.gains_in_words().into_iter().chain(load) {
+                if !told.contains(&words) {
+                    told.push(words);
+                }
+            }
+        }
+        told
     }
 
     /// Why flights of a candidate have no value, each with its case.
@@ -124,11 +155,21 @@ impl Problem {
         self.flights.flown(points, &|flight, duration_s| match flight {
             Ok(flight) => {
                 let asked = flight.judgements.len().saturating_sub(measured);
-                FlightScore::of(flight, flight.judgements.split_at(asked), duration_s)
+                let score = FlightScore::of(flight, flight.judgements.split_at(asked), duration_s);
+                score.with_load(flight, duration_s)
             }
             Err(reason) => FlightScore::refused(reason),
         })
     }
+}
+
+/// True for a controller that is meant to have an integral: one that tunes itself, or whose own ki is not 0.
+fn has_integral(study: &Study, controller: &str) -> bool {
+    let named = study.scenario.controllers.iter().find(|named| named.name == controller);
+    named.is_some_and(|named| match &named.controller {
+        Controller::SelfTuning(_) => true,
+        Controller::Fixed(pid) => pid.gains().ki != 0.0,
+    })
 }
 
 /// What is measured of each flight beside its requirements: objectives, then what is limited on average.
@@ -185,10 +226,13 @@ pub(crate) fn marks_of(study: &Study, controller: &str) -> Vec<Mark> {
 /// contest judges on, so that these can change and nothing is searched again. Every requirement of the controller is part
 /// of it, also one that is asked in cases of the contest alone.
 fn digest(marks: &[Mark], tuning: &Tuning, cases: &[FlownCase]) -> String {
-    let Tuning { over, objectives, limits, .. } = tuning;
+    let Tuning { over, objectives, limits, removes_constant_load, .. } = tuning;
     // Not where in the text they stand.
     let free: Vec<_> = marks.iter().map(|mark| (mark.path.text(), &mark.free)).collect();
     let mut all = format!("{free:?}\n{over:?}\n{objectives:?}\n{limits:?}\n");
+    if *removes_constant_load {
+        all.push_str("a constant load is removed\n");
+    }
     cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
     let bytes = Sha256::digest(all.as_bytes());
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()

@@ -1,8 +1,10 @@
 //! What a candidate is worth: costs of flights, and how they become one.
 
 use fspid_campaign::engine::FlightResult;
+use fspid_sim::load::{ConstantLoad, KEPT};
 use fspid_study::metrics::Verdict;
 use fspid_study::requirement::{Judgement, Requirement};
+use fspid_study::simulation::{WRONG_WAY, left_validity};
 use fspid_study::tuning::{Over, Tuning};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +15,8 @@ pub const FORBIDDEN: f64 = 1e12;
 const LOST: f64 = 1e3;
 /// Violation of a candidate that is no scenario.
 const REFUSED: f64 = 1e4;
+/// Least violation of a constant load that is not removed.
+const LEFT_FOR_GOOD: f64 = 1e-3;
 /// Violation of a requirement that has no value.
 const UNKNOWN: f64 = 10.0;
 
@@ -41,10 +45,13 @@ impl FlightScore {
     ) -> Self {
         if flight.metrics.verdict.is_failure() {
             let late = match flight.metrics.verdict {
-                Verdict::Diverged { at_s } => (at_s / duration_s).clamp(0.0, 1.0),
+                Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => {
+                    (at_s / duration_s).clamp(0.0, 1.0)
+                }
                 _ => 1.0,
             };
-            let reasons = vec![flight.metrics.verdict.to_string()];
+            let mut reasons = vec![flight.metrics.verdict.to_string()];
+            reasons.extend(flight.metrics.wrong_way.then(|| WRONG_WAY.to_owned()));
             return Self { violation: LOST * (2.0 - late), values: Vec::new(), reasons };
         }
         let values: Option<Vec<f64>> = measured.iter().map(value).collect();
@@ -61,13 +68,32 @@ impl FlightScore {
                 judgement.requirement.limits_in_words()
             )
         });
-        let reasons = missing.chain(broken).collect();
-        let violation: f64 = asked.iter().map(violation).sum();
+        let left = flight.failing_exit();
+        let beside = left.map(|exit| left_validity(&exit));
+        let reasons = beside.into_iter().chain(missing).chain(broken).collect();
+        let violation: f64 = asked.iter().map(violation).sum::<f64>()
+            + left.map_or(0.0, |exit| 1.0 + (exit.outside_s / duration_s).clamp(0.0, 1.0));
         match values {
             Some(values) => Self { violation, values, reasons },
             None => Self { violation: violation + LOST, values: Vec::new(), reasons },
         }
     }
+
+    /// The same where a constant load must not stay.
+    pub(crate) fn with_load(mut self, flight: &FlightResult, duration_s: f64) -> Self {
+        if let Some(load) = flight.at_rest.load.filter(ConstantLoad::is_kept) {
+            self.violation += load_left(&load);
+            self.reasons.extend(flight.at_rest.load_in_words(duration_s));
+        }
+        self
+    }
+}
+
+/// How much more of a constant load is left than is allowed, as a share of its largest effect.
+fn load_left(load: &ConstantLoad) -> f64 {
+    let beyond = load.share_left() - KEPT;
+    // Never nothing, for what is left for good may be little. Written so that NaN is all of it.
+    if beyond <= 1.0 { beyond.max(LEFT_FOR_GOOD) } else { 1.0 }
 }
 
 fn value(judgement: &Judgement) -> Option<f64> {

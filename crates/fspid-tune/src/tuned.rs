@@ -37,6 +37,10 @@ pub struct Tuned {
     pub best: Trial,
     /// What is wrong with flights of the best one; empty where all is well.
     pub reasons: Vec<String>,
+    /// What is said of the best one's loop at rest, each once: its gains, and loads that it does not remove.
+    pub at_rest: Vec<String>,
+    /// Whether candidates had to remove a constant load.
+    pub removes_constant_load: bool,
     /// The trade-offs, where a front was searched.
     pub front: Vec<Trial>,
     /// Volume of the front.
@@ -94,6 +98,8 @@ impl Tuned {
             numbers: numbers(problem, &start, &best),
             front_numbers: front.iter().map(|it| problem.space().numbers(&it.point)).collect(),
             start,
+            at_rest: problem.at_rest(&best.point),
+            removes_constant_load: problem.removes_constant_load(),
             best,
             reasons,
             front,
@@ -165,6 +171,7 @@ impl Tuned {
             let name = short(&number.path, &self.controller);
             out.push_str(&format!("  {name:<width$}{start:>14}{value:>14}  {bounds}\n"));
         }
+        self.tell_at_rest(&mut out);
         self.tell_front(&mut out);
         if !self.reasons.is_empty() {
             out.push_str("\nThe best candidate is not good enough:\n");
@@ -209,6 +216,19 @@ impl Tuned {
             "One tuning of each on the cases that it was tuned on: this names no winner; `fspid contest` judges on others.\n",
         );
         out
+    }
+
+    /// The loop at rest, and what was asked of it by default.
+    fn tell_at_rest(&self, out: &mut String) {
+        if !self.at_rest.is_empty() {
+            out.push_str("\nAt rest:\n");
+            self.at_rest.iter().for_each(|words| out.push_str(&format!("  {words}\n")));
+        }
+        if self.removes_constant_load {
+            out.push_str(
+                "\nEach candidate had to take off a constant load at the servo: at most half of its largest effect left at the end of the flight, nothing for good (tuning.constant_load = \"removed\", the default).\n",
+            );
+        }
     }
 
     fn tell_front(&self, out: &mut String) {
@@ -305,6 +325,8 @@ impl Tuned {
             "parameters": self.numbers,
             "front": self.front_volume.map(|_| front.collect::<Vec<_>>()),
             "hypervolume": self.front_volume,
+            "constant_load": if self.removes_constant_load { "removed" } else { "ignored" },
+            "at_rest": self.at_rest,
             "reasons": self.reasons.iter().map(|reason| reason.trim()).collect::<Vec<_>>(),
         })
     }

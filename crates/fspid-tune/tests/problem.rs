@@ -246,3 +246,35 @@ fn the_digest_of_a_tuning_is_of_what_it_flies_and_not_of_other_controllers_or_wo
         assert_ne!(digest(&[other]), own, "{other:?}");
     }
 }
+
+/// A self-tuning controller whose rules take the integral away at rest met everything that was required.
+#[test]
+fn a_candidate_that_keeps_a_constant_load_is_refused_unless_the_file_ignores_loads() {
+    let fspid = "[[controller]]\nname = \"FSPID\"\nkind = \"fspid\"\n\
+        nominal = { kp = { tune = [0.1, 2.0], start = 1.0 }, ki = { tune = [0.0, 1.0], start = 0.5 }, kd = 0.05 }\n\
+        law = \"memoryless\"\nsupervisor = { table = \"mirrored\", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = { kp = 0.05, ki = 0.05, kd = 0.01 } }\n\
+        gain_limits = { kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }\n\n[[dispersion]]";
+    let tuned = [
+        ("[[dispersion]]", fspid),
+        ("controller = \"PID\"", "controller = \"FSPID\""),
+        ("duration_s = 4.0", "duration_s = 20.0"),
+    ];
+    let problem = |more: &[(&str, &str)]| problem(&[&tuned[..], more].concat());
+    let asked = problem(&[]);
+    let (well, mut lost) = (asked.space().start(), asked.space().start());
+    lost[1] = 0.0;
+    let scores = asked.scores(&[well.clone(), lost.clone()]);
+    assert!(scores[0].is_allowed() && !scores[1].is_allowed(), "{scores:?}");
+    let reasons = asked.reasons(&lost);
+    assert!(reasons[0].contains("no integral at rest (ki = 0): a constant load"), "{reasons:?}");
+    assert!(asked.removes_constant_load());
+    let told = asked.at_rest(&lost);
+    assert!(told[0].starts_with("gains nominal kp 1, ki 0,") && told.len() == 2, "{told:?}");
+    let ignored = problem(&[(
+        "controller = \"FSPID\"\n",
+        "controller = \"FSPID\"\nconstant_load = \"ignored\"\n",
+    )]);
+    assert!(ignored.scores(&[lost])[0].is_allowed() && !ignored.removes_constant_load());
+    assert_ne!(asked.digest(), ignored.digest());
+    assert_eq!(asked.scores(&[well.clone()]), ignored.scores(&[well]));
+}

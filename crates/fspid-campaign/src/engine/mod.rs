@@ -9,12 +9,12 @@ mod recorder;
 mod single;
 
 use fspid_core::Faults;
-use fspid_sim::stability::{Unstable, instability};
 use fspid_sim::{Exit, Prepared, SimError, Trace};
-use fspid_study::file::Study;
+use fspid_study::analysis::AtRest;
+use fspid_study::file::{RangeRule, Study};
 use fspid_study::metrics::{CommandEffort, FlightMetrics, largest_error_rad};
 use fspid_study::requirement::{Judgement, judge};
-use fspid_study::simulation::ControllerResult;
+use fspid_study::simulation::{ControllerResult, WRONG_WAY, failing_exit, left_validity};
 
 pub use memory::Memory;
 
@@ -35,21 +35,32 @@ pub struct FlightResult {
     pub faults: Faults,
     /// When an aircraft first left the range of its model, if it did.
     pub exit: Option<Exit>,
-    /// What the linear analysis says of an unstable loop; none for a stable loop and for one that it cannot tell of.
-    pub unstable: Option<Unstable>,
+    /// What is made of leaving that range.
+    pub range_rule: RangeRule,
+    /// The loop at the gains that it has at rest: whether it is stable there, and, where it was asked, what it makes of
+    /// a constant load.
+    pub at_rest: AtRest,
     /// The requirements that concern it, in the order of the study; those of the aircraft alone concern
     /// every controller.
     pub judgements: Vec<Judgement>,
 }
 
-/// What is done with a loop whose linear analysis says that it is unstable.
+/// What is done with a loop that is unstable at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stability {
     /// It is lost, whatever its flight looks like.
     Analysed,
-    /// It is measured as it flew. Self-tuning gains and limits of a controller are out of reach of the analysis, so that
-    /// a comparison of loops with and without them is fair only like this.
+    /// It is measured as it flew: limits of a controller may bound what the loop at rest does not.
     AsFlown,
+}
+
+/// How flights are judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Judging {
+    /// What is done with a loop that is unstable at rest.
+    pub stability: Stability,
+    /// Whether each loop is asked what a constant load does to it.
+    pub loads: bool,
 }
 
 /// Most memory for traces that are being measured, in numbers: 16 MiB a thread.
@@ -76,15 +87,15 @@ pub fn fly_with(
     memory: &mut Memory,
     studies: &[Study],
 ) -> Vec<Result<Vec<FlightResult>, SimError>> {
-    fly_judging(memory, studies, Stability::Analysed)
+    fly_judging(memory, studies, Judging { stability: Stability::Analysed, loads: false })
 }
 
-/// The same, with a choice of what is done with unstable loops.
+/// The same, with a choice of how they are judged.
 #[must_use]
 pub fn fly_judging(
     memory: &mut Memory,
     studies: &[Study],
-    stability: Stability,
+    judging: Judging,
 ) -> Vec<Result<Vec<FlightResult>, SimError>> {
     let prepared: Vec<_> = studies.iter().map(|study| study.scenario.prepare()).collect();
     let mut traces: Vec<Result<Vec<Trace>, SimError>> = prepared
@@ -100,7 +111,7 @@ pub fn fly_judging(
     }
     let measured = studies.iter().zip(&prepared).zip(traces);
     let judged = |((study, prepared), traces): ((&Study, _), Result<_, _>)| {
-        measure(memory, (study, stability), prepared, traces?)
+        measure(memory, (study, judging), prepared, traces?)
     };
     measured.map(judged).collect()
 }
@@ -117,28 +128,31 @@ fn keep(traces: &mut Result<Vec<Trace>, SimError>, flown: Option<Result<Trace, S
 
 fn measure(
     memory: &mut Memory,
-    (study, stability): (&Study, Stability),
+    (study, Judging { stability, loads }): (&Study, Judging),
     prepared: &Result<Prepared, SimError>,
     traces: Vec<Trace>,
 ) -> Result<Vec<FlightResult>, SimError> {
     let prepared = prepared.as_ref().map_err(Clone::clone)?;
     let scenario = &study.scenario;
-    let mut unstable = Vec::with_capacity(traces.len());
     let results = scenario.controllers.iter().zip(traces).map(|(named, trace)| {
-        let found = instability(scenario, &named.controller)?;
-        unstable.push(found);
-        let unstable = found.filter(|_| stability == Stability::Analysed);
+        let at_rest = match loads {
+            true => AtRest::of(scenario, &named.controller),
+            false => AtRest::stability(scenario, &named.controller),
+        };
+        let unstable = at_rest.unstable.filter(|_| stability == Stability::Analysed);
         let metrics = FlightMetrics::of(&trace, prepared.edges(), scenario.timing, unstable);
-        Ok(ControllerResult { name: named.name.clone(), trace, metrics })
+        let (name, range_rule) = (named.name.clone(), study.range_rule);
+        let duration_s = scenario.timing.end_s();
+        Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
     });
     let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
     let judgements = judge(study, &results);
-    let flights = results.into_iter().zip(unstable).map(|(result, unstable)| {
+    let flights = results.into_iter().map(|result| {
         let concerns = |judgement: &&Judgement| {
             judgement.controller == result.name || judgement.is_of_aircraft()
         };
         let mine = judgements.iter().filter(concerns).cloned().collect();
-        FlightResult { unstable, ..flight(memory, result, mine, scenario.timing.dt_s()) }
+        flight(memory, result, mine, scenario.timing.dt_s())
     });
     Ok(flights.collect())
 }
@@ -149,7 +163,7 @@ fn flight(
     judgements: Vec<Judgement>,
     dt_s: f64,
 ) -> FlightResult {
-    let ControllerResult { name, trace, metrics } = result;
+    let ControllerResult { name, trace, metrics, at_rest, range_rule, .. } = result;
     let flight = FlightResult {
         controller: name,
         metrics,
@@ -158,7 +172,8 @@ fn flight(
         saturated_share: trace.saturated_samples as f64 / trace.rows().max(1) as f64,
         faults: trace.faults,
         exit: trace.exit,
-        unstable: None,
+        range_rule,
+        at_rest,
         judgements,
     };
     memory.take_back(trace);
@@ -175,20 +190,38 @@ impl FlightResult {
         }
     }
 
+    /// When it hit the ground, if it did, s.
+    #[must_use]
+    pub fn hit_ground_at_s(&self) -> Option<f64> {
+        match self.metrics.verdict {
+            fspid_study::metrics::Verdict::HitGround { at_s } => Some(at_s),
+            _ => None,
+        }
+    }
+
     /// True for a flight that has [`reasons`](Self::reasons) to be called failed.
     #[must_use]
     pub fn is_failed(&self) -> bool {
-        self.is_lost() || self.judgements.iter().any(|judgement| !judgement.met)
+        self.is_lost()
+            || self.failing_exit().is_some()
+            || self.judgements.iter().any(|judgement| !judgement.met)
     }
 
-    /// A loop that diverged or is unstable; where nothing is required of it, also one that did not settle.
+    /// The range of the aircraft's data that was left, where the scenario does not allow it.
+    #[must_use]
+    pub fn failing_exit(&self) -> Option<Exit> {
+        failing_exit(self.exit, self.range_rule)
+    }
+
+    /// A flight that diverged, hit the ground or is of a loop that is unstable at rest; where nothing is required of it,
+    /// also one that did not settle.
     fn is_lost(&self) -> bool {
         let verdict = self.metrics.verdict;
         if self.judgements.is_empty() { !verdict.is_good() } else { verdict.is_failure() }
     }
 
-    /// Why the flight counts as failed: a loop that diverged or is unstable, requirements that are not
-    /// met; where nothing is required of the controller, a step that it did not settle. Empty for a flight
+    /// Why the flight counts as failed: it diverged, hit the ground or left the range of the aircraft's data, its loop is
+    /// unstable at rest, requirements are not met; where nothing is required of the controller, a step that it did not settle. Empty for a flight
     /// that is well.
     #[must_use]
     pub fn reasons(&self) -> Vec<String> {
@@ -202,6 +235,12 @@ impl FlightResult {
                 requirement.limits_in_words()
             )
         });
-        lost.into_iter().chain(unmet).collect()
+        let wrong_way = self.metrics.wrong_way && lost.is_some();
+        let left = self.failing_exit().map(|exit| left_validity(&exit));
+        lost.into_iter()
+            .chain(wrong_way.then(|| WRONG_WAY.to_owned()))
+            .chain(left)
+            .chain(unmet)
+            .collect()
     }
 }

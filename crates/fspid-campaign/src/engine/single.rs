@@ -19,11 +19,8 @@ pub(super) fn record(
         trace.elevator_rad.push(instant.elevator_rad);
         trace.saturated_samples += usize::from(instant.step.saturated);
         trace.faults = instant.step.faults;
-        if trace.exit.is_none() {
-            let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
-            let at_s = timing.time_s(instant.k);
-            trace.exit = departure.map(|departure| Exit { at_s, departure });
-        }
+        let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
+        Exit::take_in(&mut trace.exit, departure, (instant.k, timing));
         ControlFlow::Continue(())
     })?;
     trace.outcome = outcome;

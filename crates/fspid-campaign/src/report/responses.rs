@@ -44,7 +44,9 @@ pub(super) fn chapter(source: &Source<'_>) -> Chapter {
 /// Flights that were lost, then those with the worst values of requirements and measures.
 fn worst(controller: &ControllerSummary) -> Vec<u64> {
     let mut runs: Vec<u64> = Vec::new();
-    let is_lost = |it: &&FailedRun| matches!(it.severity, Severity::Diverged | Severity::Unstable);
+    let is_lost = |it: &&FailedRun| {
+        matches!(it.severity, Severity::Diverged | Severity::HitGround | Severity::Unstable)
+    };
     let lost = controller.failed_runs.iter().filter(is_lost).map(|it| it.run);
     let required = controller.requirements.iter().filter_map(|it| it.worst).map(|it| it.run);
     let by_measure = ["overshoot_pct", "iae_deg_s", "largest_error_deg"];

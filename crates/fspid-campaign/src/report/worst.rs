@@ -61,6 +61,7 @@ fn severity(run: &FailedRun) -> String {
             format!("diverged at {} s", super::words::number(at_s))
         }
         (Severity::Diverged, None) => "diverged".to_owned(),
+        (Severity::HitGround, _) => "hit the ground".to_owned(),
         (Severity::Unstable, _) => "unstable loop".to_owned(),
         (Severity::Refused, _) => "no scenario".to_owned(),
         (Severity::RequirementsNotMet, _) => "requirements not met".to_owned(),

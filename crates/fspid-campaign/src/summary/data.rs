@@ -103,7 +103,7 @@ pub struct ControllerSummary {
 /// How many flights came to a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VerdictCount {
-    /// The verdict in a word: settled, flown, not settled, refused, unstable, diverged.
+    /// The verdict in a word: settled, flown, not settled, refused, unstable, hit the ground, diverged.
     pub verdict: String,
     /// How many flights.
     pub flights: u64,
@@ -230,7 +230,9 @@ pub struct FailedRun {
 pub enum Severity {
     /// The flight diverged; the earliest first.
     Diverged,
-    /// The loop is unstable, which did not show in the flight.
+    /// The aircraft hit the ground.
+    HitGround,
+    /// The loop is unstable at rest, which did not show in the flight.
     Unstable,
     /// Its numbers make no scenario.
     Refused,

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
-use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, REASONS, REFUSED, RUN, VERDICT};
+use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT};
 use crate::table::{Kind, Table, TableError, Values};
 
 /// Verdicts from good to bad.
-const VERDICTS: [&str; 6] = ["settled", "flown", "not settled", REFUSED, "unstable", "diverged"];
+const VERDICTS: [&str; 7] =
+    ["settled", "flown", "not settled", REFUSED, "unstable", HIT_GROUND, "diverged"];
 
 /// How one controller's flights ended.
 #[derive(Default)]
@@ -137,6 +138,7 @@ impl Flights {
     fn name(&mut self, ending: &Ending<'_>) {
         let severity = match ending.verdict {
             "diverged" => Severity::Diverged,
+            HIT_GROUND => Severity::HitGround,
             "unstable" => Severity::Unstable,
             REFUSED => Severity::Refused,
             // Alone among the reasons where nothing is required, and never among those of requirements.

@@ -38,7 +38,7 @@ const SCHEMA: u64 = 1;
 ///                          quantiles: [{ share, value, lower, upper }],
 ///                          histogram: { edges, counts, below, above },
 ///                          lowest, highest: [{ run, value }] }]
-///   failed_runs         [{ run, severity: diverged | unstable | refused | requirements not met,
+///   failed_runs         [{ run, severity: diverged | hit the ground | unstable | refused | requirements not met,
 ///                          diverged_at_s, reasons }]
 ///   sensitivities       [{ of: failure | measure, measure, used, runs_used, runs,
 ///                          parameters: [{ parameter,

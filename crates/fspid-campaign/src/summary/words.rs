@@ -108,6 +108,7 @@ impl Severity {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Diverged => "diverged",
+            Self::HitGround => crate::rows::HIT_GROUND,
             Self::Unstable => "unstable",
             Self::Refused => "refused",
             Self::RequirementsNotMet => "requirements not met",

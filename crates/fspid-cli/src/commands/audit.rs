@@ -14,7 +14,7 @@ use fspid_study::{output, report};
 /// the budget is said to be open, never guessed.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: Source,
     #[command(flatten)]
     loading: Loading,

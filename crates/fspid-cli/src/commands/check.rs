@@ -18,7 +18,7 @@ use fspid_study::fuzzy_system;
 /// with what the scenario flies.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The file: a scenario, a fuzzy system (.toml, .fis, .fcl, .fll), or a rule table.
+    /// The file: a scenario, a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml), or a rule table.
     file: InFile,
     /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]

@@ -17,13 +17,13 @@ use fspid_study::output;
 /// and tells the error.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     #[arg(value_name = "IN")]
     system: Source,
     #[command(flatten)]
     loading: Loading,
-    /// The new file: .toml (everything can be said), .fis, .fcl or .fll.
-    #[arg(value_parser = written(&["toml", "fis", "fcl", "fll"]), value_name = "OUT")]
+    /// The new file: .toml (everything can be said), .fis, .t2fis, .fcl, .fll or .xml.
+    #[arg(value_parser = written(&["toml", "fis", "t2fis", "fcl", "fll", "xml"]), value_name = "OUT")]
     out: OutFile,
     /// The tool that shall read an .fcl file; IEC 61131-7 if left out.
     #[arg(long, value_enum, value_name = "TOOL")]

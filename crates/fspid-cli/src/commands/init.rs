@@ -39,7 +39,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let known = file::known_words(name, &STARTERS.map(|starter| starter.name));
         Failure::input(format_args!("there is no template `{name}`{known}"))
     })?;
-    let Some(path) = arguments.file.as_ref().filter(|path| !is_standard(path)) else {
+    if let Some(path) = arguments.file.as_ref().filter(|path| is_standard(path)) {
+        return Ok(output::write(path, starter.text)?);
+    }
+    let Some(path) = &arguments.file else {
         return arguments.format.print(|| starter.text.to_owned(), || row_json(starter, None));
     };
     if path.exists() {

@@ -17,7 +17,7 @@ use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
     system: Source,
     #[command(flatten)]
     loading: Loading,
@@ -33,8 +33,8 @@ pub(crate) struct Arguments {
     /// Give every rule a conclusion of its own in place of those of the file.
     #[arg(long, value_enum, value_name = "WHAT")]
     conclude: Option<Conclude>,
-    /// The new file: .toml (everything can be said), .fis, .fcl or .fll.
-    #[arg(value_parser = written(&["toml", "fis", "fcl", "fll"]), long, value_name = "OUT")]
+    /// The new file: .toml (everything can be said), .fis, .t2fis, .fcl, .fll or .xml.
+    #[arg(value_parser = written(&["toml", "fis", "t2fis", "fcl", "fll", "xml"]), long, value_name = "OUT")]
     out: OutFile,
     /// Most epochs.
     #[arg(long, default_value_t = Plan::default().epochs)]

@@ -57,7 +57,7 @@ pub(crate) struct Loading {
 /// Which fuzzy system is asked, the same for every command that asks one.
 #[derive(Debug, Args)]
 pub(crate) struct Which {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, a rule table, or `printed`, `mirrored` or
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, a rule table, or `printed`, `mirrored` or
     /// `sugeno-grid`; rule tables need --range. The table `printed` if left out.
     pub(crate) system: Option<Source>,
     /// The rule table in place of SYSTEM: `printed`, `mirrored`, or a file.

@@ -46,6 +46,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if simulation.requirements_met() {
         return Ok(());
     }
-    let failed = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
-    Err(Failure::not_met(format_args!("{failed} requirement(s) not met")))
+    let unmet = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
+    match simulation.failed_flights().count() {
+        0 => Err(Failure::not_met(format_args!("{unmet} requirement(s) not met"))),
+        flights => Err(Failure::not_met(format_args!(
+            "{unmet} requirement(s) not met, {flights} flight(s) failed"
+        ))),
+    }
 }

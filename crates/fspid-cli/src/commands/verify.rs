@@ -111,11 +111,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => print(&verification.text(replays))?,
         Format::Json => print(&json_text(&verification.json(replays)))?,
     }
-    match (verification.unmet(), verification.judgements.len()) {
-        (0, _) => Ok(()),
-        (unmet, count) => {
+    match (verification.unmet(), verification.judgements.len(), verification.failed_flights.len()) {
+        (0, _, 0) => Ok(()),
+        (unmet, count, 0) => {
             Err(Failure::not_met(format_args!("{unmet} of {count} requirement(s) not met")))
         }
+        (unmet, count, flights) => Err(Failure::not_met(format_args!(
+            "{unmet} of {count} requirement(s) not met, {flights} flight(s) failed"
+        ))),
     }
 }
 

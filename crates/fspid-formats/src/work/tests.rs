@@ -2,18 +2,19 @@
 
 use super::of;
 use crate::note::{Problems, Reading};
-use crate::{fcl, fis, fll};
+use crate::{fcl, fis, fll, fml};
 
 type Read = fn(&str) -> Result<Reading, Problems>;
 
-const READERS: [(&str, Read); 3] = [("fcl", fcl::read), ("fll", fll::read), ("fis", fis::read)];
+const READERS: [(&str, Read); 4] =
+    [("fcl", fcl::read), ("fll", fll::read), ("fis", fis::read), ("fml", fml::read)];
 
 /// Most characters that are passed, and names that are looked at, for each byte of a text. A reader
 /// looks at a line as a whole, then at its words; a rule is tokens first and then clauses.
 const WORK_A_BYTE: u64 = 12;
 
 /// Pieces of which hostile texts are made.
-const PIECES: [&str; 47] = [
+const PIECES: [&str; 54] = [
     "(",
     ")",
     "NOT ",
@@ -61,6 +62,13 @@ const PIECES: [&str; 47] = [
     "[Input1]\nRange=[",
     "MF1='a':'trimf',[",
     "1, 1 (",
+    "<a>",
+    "<a/>",
+    "<fuzzySystem a='1'>",
+    "&lt;",
+    "<!--",
+    "<![CDATA[",
+    "<fuzzySystem name='a'><knowledgeBase><fuzzyVariable>",
 ];
 
 /// The work and the heap for a text, whatever the answer.
@@ -86,9 +94,45 @@ fn any_piece_repeated_takes_work_in_proportion_to_its_length() {
 }
 
 /// A system of `n` variables, terms and rules in each format.
-fn large(n: usize) -> [(&'static str, Read, String); 3] {
+fn large(n: usize) -> [(&'static str, Read, String); 4] {
     let [fcl, fll] = words(n);
-    [("fcl", fcl::read as Read, fcl), ("fll", fll::read, fll), ("fis", fis::read, numbers(n))]
+    [
+        ("fcl", fcl::read as Read, fcl),
+        ("fll", fll::read, fll),
+        ("fis", fis::read, numbers(n)),
+        ("fml", fml::read, elements(n, "v")),
+    ]
+}
+
+/// The same in elements; rules ask about variables that begin with `asked`.
+fn elements(n: usize, asked: &str) -> String {
+    let variables: String = (0..n)
+        .map(|k| {
+            format!(
+                "<fuzzyVariable name=\"v{k}\" domainleft=\"0\" domainright=\"1\">\n\
+                 <fuzzyTerm name=\"t\"><sShape param1=\"0\" param2=\"1\"/></fuzzyTerm></fuzzyVariable>\n"
+            )
+        })
+        .collect();
+    let terms: String = (0..n)
+        .map(|k| format!("<tskTerm name=\"t{k}\" order=\"0\"><tskValue>{k}</tskValue></tskTerm>\n"))
+        .collect();
+    let clause = |variable: &str, term: &str| {
+        format!("<clause><variable>{variable}</variable><term>{term}</term></clause>")
+    };
+    let rules: String = (0..n)
+        .map(|k| {
+            let (if_, then) = (clause(&format!("{asked}{k}"), "t"), clause("y", &format!("t{k}")));
+            format!(
+                "<rule name=\"r{k}\"><antecedent>{if_}</antecedent>\n\
+                 <consequent><then>{then}</then></consequent></rule>\n"
+            )
+        })
+        .collect();
+    format!(
+        "<fuzzySystem name=\"f\"><knowledgeBase>{variables}<tskVariable name=\"y\">{terms}</tskVariable>\n\
+         </knowledgeBase><tskRuleBase>{rules}</tskRuleBase></fuzzySystem>"
+    )
 }
 
 fn words(n: usize) -> [String; 2] {
@@ -151,7 +195,9 @@ fn unknown_names_among_many_are_told_without_looking_at_all_of_them_each_time() 
         let told = |read: Read, text: &str| read(text).unwrap_err().to_string();
         assert!(told(fcl::read, &fcl).contains("and more problems"));
         assert!(told(fll::read, &fll).contains("and more problems"));
-        [spent(fcl::read, &fcl), spent(fll::read, &fll)]
+        let fml = elements(n, "w");
+        assert!(told(fml::read, &fml).contains("and more problems"));
+        [spent(fcl::read, &fcl), spent(fll::read, &fll), spent(fml::read, &fml)]
     };
     for (small, big) in once(500).into_iter().zip(once(2000)) {
         assert!(big.0 <= 5 * small.0 && big.1 <= 6 * small.1, "{small:?}, then {big:?}");

@@ -41,8 +41,8 @@ impl SampledLoop {
         candidates.retain(|limit| limit.factor < 1.0);
         candidates.reverse();
         Ok([
-            self.limit_towards(1.0 / FACTOR_MAX, candidates)?,
-            self.limit_towards(FACTOR_MAX, above)?,
+            self.limit_towards(1.0 / FACTOR_MAX, candidates, proof)?,
+            self.limit_towards(FACTOR_MAX, above, proof)?,
         ])
     }
 
@@ -53,7 +53,7 @@ impl SampledLoop {
         proof: Option<&Proof>,
     ) -> Result<Vec<GainLimit>, LtiError> {
         let limit = |angle_rad: f64| {
-            let response = self.response(angle_rad);
+            let response = self.proved_response(angle_rad, proof);
             let factor = -quotient(response.under, response.over).re;
             GainLimit { factor, omega_rad_s: angle_rad / self.dt_s() }
         };
@@ -67,11 +67,14 @@ impl SampledLoop {
     /// The first candidate beyond which the loop is unstable; candidates come in the order of their distance from 1.
     ///
     /// Between two candidates the number of unstable poles does not change, so one factor between them tells it. Should
-    /// the poles beside a limit and at the end of the search not agree with the candidates, the poles are believed.
+    /// the poles beside a limit and at the end of the search not agree with the candidates, the poles are believed; but
+    /// a crossing of the real axis that is proved needs no poles, which are known to less than a millionth of the gain
+    /// where they crowd at 1.
     fn limit_towards(
         &self,
         end: f64,
         candidates: Vec<GainLimit>,
+        proof: Option<&Proof>,
     ) -> Result<Option<GainLimit>, LtiError> {
         let (mut stable, mut rest) = (1.0, candidates.as_slice());
         while let Some(&limit) = rest.first() {
@@ -81,6 +84,12 @@ impl SampledLoop {
             let (group, others) = rest.split_at(rest.iter().take_while(one).count());
             let next = others.first().map_or(end, |other| other.factor);
             let beyond = (limit.factor * next).sqrt();
+            let crosses = |proof: &Proof| {
+                proof.crosses_at(limit.omega_rad_s * self.dt_s()) && group.len() == 1
+            };
+            if proof.is_some_and(crosses) {
+                return Ok(Some(limit));
+            }
             if !self.stable_with(beyond)? {
                 let beside = |other: f64| limit.factor + BESIDE * (other - limit.factor);
                 let (before, after) = (beside(stable), beside(beyond));
@@ -148,7 +157,7 @@ mod tests {
     fn candidates_beyond_which_the_loop_is_stable_are_no_limits() {
         // As when poles touch the circle and turn back: once alone, once as two crossings a billionth apart.
         let candidates = [1.5, 2.0, 2.0 * (1.0 + 1e-12), 3.0, 8.0].map(candidate).to_vec();
-        let found = two_poles(0.5).limit_towards(FACTOR_MAX, candidates).expect("converges");
+        let found = two_poles(0.5).limit_towards(FACTOR_MAX, candidates, None).expect("converges");
         assert_eq!(found, Some(candidate(3.0)));
     }
 
@@ -156,15 +165,16 @@ mod tests {
     fn a_limit_that_no_candidate_names_is_found_by_halving() {
         let open = two_poles(0.5);
         for candidates in [vec![], vec![candidate(7.0)], vec![candidate(1.5), candidate(1e3)]] {
-            let found = open.limit_towards(FACTOR_MAX, candidates).expect("converges");
+            let found = open.limit_towards(FACTOR_MAX, candidates, None).expect("converges");
             let found = found.expect("a limit");
             assert!((found.factor - 3.0).abs() < 1e-12, "{found:?}");
             assert!((found.omega_rad_s - core::f64::consts::FRAC_PI_2).abs() < 1e-6, "{found:?}");
         }
         // The negative of the loop is stable down to −1/2 only: nothing below 1 is a limit, 1 − … above is.
         let open = two_poles(-0.25);
-        let found = open.limit_towards(FACTOR_MAX, vec![]).expect("converges").expect("a limit");
+        let found =
+            open.limit_towards(FACTOR_MAX, vec![], None).expect("converges").expect("a limit");
         assert!((found.factor - 2.0).abs() < 1e-12 && found.omega_rad_s.abs() < 1e-6, "{found:?}");
-        assert_eq!(open.limit_towards(1.0 / FACTOR_MAX, vec![]), Ok(None));
+        assert_eq!(open.limit_towards(1.0 / FACTOR_MAX, vec![], None), Ok(None));
     }
 }

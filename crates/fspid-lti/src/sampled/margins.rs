@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use super::bracket::{Bracket, Proof};
 use super::crossings::unit_gain_angles;
 use super::squares::Squares;
-use super::{DiskMargin, GainLimit, Peak, SampledLoop, poles};
+use super::{DiskMargin, GainLimit, Peak, SampledLoop, phase_rad, poles};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
 
@@ -136,7 +136,8 @@ impl SampledLoop {
         proof: Option<&Proof>,
     ) -> Result<Vec<SampledCrossover>, LtiError> {
         let crossover = |omega_rad_s: f64| {
-            let margin = libm::remainder(self.phase_rad(omega_rad_s) + PI, TAU);
+            let value = self.proved_response(omega_rad_s * self.dt_s(), proof).open();
+            let margin = libm::remainder(phase_rad(value) + PI, TAU);
             let lag = if margin < 0.0 { margin + TAU } else { margin };
             SampledCrossover { omega_rad_s, phase_margin_rad: margin, delay_s: lag / omega_rad_s }
         };

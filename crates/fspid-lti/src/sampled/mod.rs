@@ -25,6 +25,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
+use crate::fine::FineMatrix;
 use crate::matrix::Matrix;
 use crate::wide::WideBall;
 use bracket::Proof;
@@ -37,8 +38,8 @@ pub use gain_limits::GainLimit;
 pub use margins::{Proved, SampledCrossover, SampledMargins, Stability};
 pub use peak::Peak;
 
-/// How far an entry of A − I may be from that of A, over the larger of it and 1: its rounding, with room.
-const SAME_ENTRY: f64 = 1e-12;
+/// How far entries of A − I and b may be from those that were given first, over the largest entry: rounding, with room.
+const SAME_ENTRY: f64 = 1e-10;
 /// Halvings of a step between two frequencies while its phase is being followed.
 const HALVINGS_MAX: u32 = 20;
 
@@ -67,7 +68,7 @@ pub struct SampledLoop {
     dt_s: f64,
     reduced: Reduced,
     /// $A - I$ and b with the digits that they have lost, if they are known.
-    change: Option<(Matrix, Vec<f64>)>,
+    change: Option<[FineMatrix; 2]>,
 }
 
 impl SampledLoop {
@@ -89,25 +90,24 @@ impl SampledLoop {
     /// thousandth of Nyquist's frequency by 10⁻⁸ and more. Peaks and crossings are proved for the loop given here.
     ///
     /// # Errors
-    /// A matrix or vector of another shape, an entry that is not finite, or one that is not that of A or b to its
-    /// rounding.
-    pub fn with_change(self, change: Matrix, input: Vec<f64>) -> Result<Self, LtiError> {
-        change.require_square_and_finite("change of the states")?;
-        change.require_shape("change of the states", self.order(), self.order())?;
-        for (index, (&given, &a)) in change.data().iter().zip(self.a.data()).enumerate() {
-            let one = if index.is_multiple_of(self.order() + 1) { 1.0 } else { 0.0 };
-            if !((a - one - given).abs() <= SAME_ENTRY * a.abs().max(one)) {
-                return Err(LtiError::OtherLoop { index, given, expected: a - one });
-            }
-        }
-        Self::require(&self.a, &input, &self.c, self.dt_s)?;
-        let size = self.b.iter().fold(0.0, |size, b| f64::max(size, b.abs()));
-        for (index, (&given, &expected)) in input.iter().zip(&self.b).enumerate() {
+    /// A matrix of another shape, or an entry that is not that of A or b to its rounding.
+    pub fn with_change(self, change: FineMatrix, input: FineMatrix) -> Result<Self, LtiError> {
+        let order = self.order();
+        change.high().require_shape("change of the states", order, order)?;
+        input.high().require_shape("input matrix", order, 1)?;
+        let one = |index: usize| if index.is_multiple_of(order + 1) { 1.0 } else { 0.0 };
+        let size = |values: &[f64]| values.iter().fold(0.0, |size, v| f64::max(size, v.abs()));
+        let (largest, largest_input) = (size(self.a.data()).max(1.0), size(&self.b));
+        let states = change.high().data().iter().zip(self.a.data()).enumerate();
+        let states = states.map(|(index, (&given, &a))| (index, given, a - one(index), largest));
+        let inputs = input.high().data().iter().zip(&self.b).enumerate();
+        let inputs = inputs.map(|(index, (&given, &b))| (index, given, b, largest_input));
+        for (index, given, expected, size) in states.chain(inputs) {
             if !((given - expected).abs() <= SAME_ENTRY * size) {
                 return Err(LtiError::OtherLoop { index, given, expected });
             }
         }
-        Ok(Self { change: Some((change, input)), ..self })
+        Ok(Self { change: Some([change, input]), ..self })
     }
 
     /// What is proved of the loop; `None` if nothing is.
@@ -117,19 +117,22 @@ impl SampledLoop {
 
     /// The same with a factor on its gain.
     fn proof_scaled(&self, factor: f64) -> Option<Proof> {
-        let (change, b): (Vec<WideBall>, _) = match &self.change {
-            Some((change, b)) => (change.data().iter().map(|&entry| entry.into()).collect(), b),
+        let sum = |(&high, &low): (&f64, &f64)| WideBall::sum([high, low]);
+        let [change, b]: [Vec<WideBall>; 2] = match &self.change {
+            Some(parts) => parts
+                .each_ref()
+                .map(|part| part.high().data().iter().zip(part.low().data()).map(sum).collect()),
             None => {
                 let entries = self.a.data().iter().enumerate();
                 let less_one = entries.map(|(index, &entry)| {
                     let one = if index.is_multiple_of(self.order() + 1) { 1.0 } else { 0.0 };
-                    WideBall::difference(entry, one)
+                    WideBall::sum([entry, -one])
                 });
-                (less_one.collect(), &self.b)
+                [less_one.collect(), self.b.iter().map(|&b| b.into()).collect()]
             }
         };
         let c: Vec<f64> = self.c.iter().map(|c| factor * c).collect();
-        Proof::new(&change, b, &c)
+        Proof::new(&change, &b, &c)
     }
 
     /// `Ok` when a loop can be made of these.
@@ -183,6 +186,12 @@ impl SampledLoop {
         self.reduced.at(zeta(angle_rad))
     }
 
+    /// The same, proved where that is possible.
+    fn proved_response(&self, angle_rad: f64, proof: Option<&Proof>) -> Response {
+        let computed = self.response(angle_rad);
+        proof.map_or(computed, |proof| proof.response(angle_rad, computed))
+    }
+
     /// Value at a frequency; infinite or NaN at a pole.
     #[must_use]
     pub fn at(&self, omega_rad_s: f64) -> Complex {
@@ -206,9 +215,7 @@ impl SampledLoop {
     /// For a phase without jumps over many frequencies see [`SampledLoop::bode`].
     #[must_use]
     pub fn phase_rad(&self, omega_rad_s: f64) -> f64 {
-        let value = self.at(omega_rad_s);
-        let phase = libm::atan2(value.im, value.re);
-        if phase > FRAC_PI_2 { phase - TAU } else { phase }
+        phase_rad(self.at(omega_rad_s))
     }
 
     /// Gain and phase at each of some frequencies, the phase without jumps from one to the next.
@@ -243,6 +250,12 @@ impl SampledLoop {
         }
         self.turn_rad((from, middle), halvings - 1) + self.turn_rad((middle, to), halvings - 1)
     }
+}
+
+/// Phase of a value, between −3π/2 and π/2.
+fn phase_rad(value: Complex) -> f64 {
+    let phase = libm::atan2(value.im, value.re);
+    if phase > FRAC_PI_2 { phase - TAU } else { phase }
 }
 
 /// $e^{j \theta} - 1$, with all digits for small angles.

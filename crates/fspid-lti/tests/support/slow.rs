@@ -1,7 +1,9 @@
 //! Sampled PID loops around plants with slow modes, as numbers that an oracle can read.
 
 use crate::support::Random;
-use fspid_lti::{LtiError, Matrix, SampledLoop, TransferFunction, held_change, zero_order_hold};
+use fspid_lti::{
+    FineMatrix, LtiError, Matrix, SampledLoop, TransferFunction, held_change, zero_order_hold,
+};
 
 /// A plant, a PID controller that sums errors and filters their difference, and a dead time of whole samples.
 #[derive(Debug, Clone)]
@@ -15,70 +17,85 @@ pub(crate) struct Slow {
     pub(crate) dt_s: f64,
 }
 
-/// Rows of the states less 1 on the diagonal, by place.
-struct Rows {
-    rows: Vec<Vec<f64>>,
-}
-
-impl Rows {
-    fn at(&mut self, row: usize, column: usize) -> &mut f64 {
-        &mut self.rows[row][column]
-    }
+/// Which part of a loop is put together.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Whole,
+    Change,
+    Rest,
 }
 
 impl Slow {
     /// The loop as a state matrix, with the digits that its ones take away.
     pub(crate) fn open(&self) -> Result<SampledLoop, LtiError> {
-        let (a, b, c) = self.parts(false)?;
-        let (change, input, _) = self.parts(true)?;
-        SampledLoop::new(a, b, c, self.dt_s)?.with_change(change, input)
+        let transfer = TransferFunction::new(&self.numerator, &self.denominator)?;
+        let (model, rest) = (transfer.to_state_space(), transfer.state_space_rest());
+        let a = FineMatrix::new(model.a().clone(), rest.a().clone())?;
+        let b = FineMatrix::new(model.b().clone(), rest.b().clone())?;
+        let (change, input) = held_change(&a, &b, self.dt_s)?;
+        let (high, high_input) = self.assembled([change.high(), input.high()], Part::Change)?;
+        let (low, low_input) = self.assembled([change.low(), input.low()], Part::Rest)?;
+        let column = |values: &[f64]| {
+            let rows: Vec<[f64; 1]> = values.iter().map(|&value| [value]).collect();
+            Matrix::from_rows(&rows)
+        };
+        let input = FineMatrix::new(column(&high_input)?, column(&low_input)?)?;
+        self.open_without_digits()?.with_change(FineMatrix::new(high, low)?, input)
     }
 
     /// The same from the state matrix alone.
     pub(crate) fn open_without_digits(&self) -> Result<SampledLoop, LtiError> {
-        let (a, b, c) = self.parts(false)?;
+        let model = TransferFunction::new(&self.numerator, &self.denominator)?.to_state_space();
+        let (plant, input) = zero_order_hold(model.a(), model.b(), self.dt_s)?;
+        let (a, b) = self.assembled([&plant, &input], Part::Whole)?;
+        let ([kp, ki, kd], time_s, order) = (self.gains, self.filter_s + self.dt_s, b.len());
+        let mut c = vec![0.0; order];
+        c[0] = kp + ki * self.dt_s + kd / time_s;
+        c[order - 3..].copy_from_slice(&[1.0, kd * self.filter_s / time_s, -kd / time_s]);
         SampledLoop::new(a, b, c, self.dt_s)
     }
 
-    /// State matrix (or its change), input, output: plant, dead time, sum, filtered difference, last sample.
-    fn parts(&self, change: bool) -> Result<(Matrix, Vec<f64>, Vec<f64>), LtiError> {
-        let model = TransferFunction::new(&self.numerator, &self.denominator)?.to_state_space();
-        let hold = if change { held_change } else { zero_order_hold };
-        let (plant, input) = hold(model.a(), model.b(), self.dt_s)?;
-        let [kp, ki, kd] = self.gains;
-        let (n, order) = (model.states(), model.states() + self.delay + 3);
-        let (sum, filtered, last) = (order - 3, order - 2, order - 1);
-        let time_s = self.filter_s + self.dt_s;
-        let mut rows = Rows { rows: vec![vec![0.0; order]; order] };
-        let (mut b, mut c) = (vec![0.0; order], vec![0.0; order]);
+    /// State matrix, or what it changes, or the rest of that, and its input: plant, dead time, sum, filtered difference,
+    /// last sample.
+    fn assembled(
+        &self,
+        [plant, input]: [&Matrix; 2],
+        part: Part,
+    ) -> Result<(Matrix, Vec<f64>), LtiError> {
+        let (n, order) = (plant.rows(), plant.rows() + self.delay + 3);
+        let mut rows = vec![vec![0.0; order]; order];
+        let mut b = vec![0.0; order];
         for row in 0..n {
             for column in 0..n {
-                *rows.at(row, column) = plant.get(row, column).unwrap_or(0.0);
+                rows[row][column] = plant.get(row, column).unwrap_or(0.0);
             }
             let entry = input.get(row, 0).unwrap_or(0.0);
-            if self.delay == 0 { b[row] = entry } else { *rows.at(row, n) = entry }
+            if self.delay == 0 { b[row] = entry } else { rows[row][n] = entry }
         }
+        if part != Part::Rest {
+            self.place_controller(&mut rows, &mut b, n);
+        }
+        if part == Part::Change {
+            for (place, row) in rows.iter_mut().enumerate().skip(n) {
+                row[place] -= 1.0;
+            }
+            rows[order - 2][order - 2] = -self.dt_s / (self.filter_s + self.dt_s);
+        }
+        Ok((Matrix::from_rows(&rows)?, b))
+    }
+
+    fn place_controller(&self, rows: &mut [Vec<f64>], b: &mut [f64], n: usize) {
+        let order = b.len();
         for place in n..n + self.delay {
-            if place + 1 < n + self.delay {
-                *rows.at(place, place + 1) = 1.0
-            } else {
-                b[place] = 1.0
-            }
+            if place + 1 < n + self.delay { rows[place][place + 1] = 1.0 } else { b[place] = 1.0 }
         }
-        (*rows.at(sum, 0), *rows.at(sum, sum)) = (ki * self.dt_s, 1.0);
-        *rows.at(filtered, 0) = 1.0 / time_s;
-        *rows.at(filtered, filtered) = self.filter_s / time_s;
-        *rows.at(filtered, last) = -1.0 / time_s;
-        *rows.at(last, 0) = 1.0;
-        if change {
-            for place in n..order {
-                *rows.at(place, place) -= 1.0;
-            }
-            *rows.at(filtered, filtered) = -self.dt_s / time_s;
-        }
-        c[0] = kp + ki * self.dt_s + kd / time_s;
-        (c[sum], c[filtered], c[last]) = (1.0, kd * self.filter_s / time_s, -kd / time_s);
-        Ok((Matrix::from_rows(&rows.rows)?, b, c))
+        let (sum, filtered, last) = (order - 3, order - 2, order - 1);
+        let time_s = self.filter_s + self.dt_s;
+        (rows[sum][0], rows[sum][sum]) = (self.gains[1] * self.dt_s, 1.0);
+        rows[filtered][0] = 1.0 / time_s;
+        rows[filtered][filtered] = self.filter_s / time_s;
+        rows[filtered][last] = -1.0 / time_s;
+        rows[last][0] = 1.0;
     }
 
     /// A random loop: short period, phugoid, perhaps an integrator and a servo, gains around a crossover.

@@ -9,8 +9,10 @@
 //! remainder, with bounds of both factors over each cell: as secants of what the gains are bounded by
 //! there, or by the proved slopes between rest and the cell.
 
+use core::cell::OnceCell;
+
 use fspid_core::fuzzy::OutOfRange;
-use fspid_core::{Change, Fspid, Law};
+use fspid_core::{Change, Fspid, Law, SelfTuner};
 use fspid_fuzzy::scalar::Interval;
 
 use super::slopes::{IncrementSlopes, NoSlopes};
@@ -47,6 +49,25 @@ struct Square {
     slopes: [f64; 2],
 }
 
+/// Proved slopes of a tuner's increments within squares around rest, smallest first. They depend neither on
+/// what is held nor on the output scale, and take longer than all else here: found once, they serve again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KnownSlopes(OnceCell<Result<Vec<(f64, IncrementSlopes)>, NoSlopes>>);
+
+impl KnownSlopes {
+    fn of(&self, tuner: &SelfTuner<f64>) -> Result<&[(f64, IncrementSlopes)], NoSlopes> {
+        let range = tuner.supervisor().range();
+        let found = self.0.get_or_init(|| {
+            let square = |share: f64| {
+                let side = share * range;
+                IncrementSlopes::of(tuner, [side; 2]).map(|slopes| (side, slopes))
+            };
+            SQUARES.into_iter().map(square).collect()
+        });
+        found.as_deref().map_err(|reason| *reason)
+    }
+}
+
 impl GainSet {
     /// The set with what a held command adds: the gain on the error stands with kp, that on the change
     /// beside the gains. With it the most that remains of the held command, rad.
@@ -58,6 +79,7 @@ impl GainSet {
         fspid: &Fspid<f64>,
         factor: f64,
         held: HeldCommand,
+        known: &KnownSlopes,
     ) -> Result<(Self, f64), NoSlopes> {
         if held.is_none() {
             return Ok((self.clone(), 0.0));
@@ -65,7 +87,7 @@ impl GainSet {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(NoSlopes::Remembered);
         }
-        let over = Held::of(self, fspid, factor, held)?;
+        let over = Held::of(self, fspid, (factor, held), known)?;
         let mut set = self.clone();
         let mut remains = 0.0_f64;
         for cell in &mut set.cells {
@@ -97,8 +119,8 @@ impl<'a> Held<'a> {
     fn of(
         set: &GainSet,
         fspid: &'a Fspid<f64>,
-        factor: f64,
-        held: HeldCommand,
+        (factor, held): (f64, HeldCommand),
+        known: &KnownSlopes,
     ) -> Result<Self, NoSlopes> {
         let tuner = fspid.tuner();
         let settings = tuner.settings();
@@ -127,7 +149,7 @@ impl<'a> Held<'a> {
         if !held.at_origin && !clamps {
             return Err(NoSlopes::BeyondRange);
         }
-        over.bound_slopes(factor, range)?;
+        over.bound_slopes(factor, known.of(tuner)?);
         let by_slopes = over.squares.last().map_or([f64::INFINITY; 2], |square| square.slopes);
         let whole = set.cells.iter().map(|cell| over.moved(cell)).fold(0.0, f64::max);
         let secant = up(Interval::point(whole) / Interval::point(ROUNDED * range));
@@ -137,24 +159,22 @@ impl<'a> Held<'a> {
         Ok(over)
     }
 
-    fn bound_slopes(&mut self, factor: f64, range: f64) -> Result<(), NoSlopes> {
+    fn bound_slopes(&mut self, factor: f64, known: &[(f64, IncrementSlopes)]) {
         let scale = self.fspid.tuner().settings().output_scale;
         let by = |constant: f64, scale: f64| {
             Interval::point(constant) * Interval::point(factor) * Interval::point(scale.abs())
         };
         let [by_kp, by_ki] = [by(self.held.by_kp, scale.kp), by(self.held.by_ki, scale.ki)];
-        let shares = if self.held.at_origin { &SQUARES[..] } else { &SQUARES[2..] };
-        for share in shares {
-            let side = share * range;
-            let known = IncrementSlopes::of(self.fspid.tuner(), [side; 2])?;
+        // Where rest is elsewhere, only slopes over the whole range lie between it and any input.
+        let skipped = if self.held.at_origin { 0 } else { known.len().saturating_sub(1) };
+        for (side, known) in known.iter().skip(skipped) {
             let along = |input: usize| {
                 let [kp, ki] = [0, 1].map(|gain: usize| known.slopes[gain][input].magnitude());
                 up(by_kp * Interval::point(kp) + by_ki * Interval::point(ki))
             };
-            self.squares.push(Square { side, slopes: [along(0), along(1)] });
-            self.off_rad = up((by_kp + by_ki) * Interval::point(known.off));
+            self.squares.push(Square { side: *side, slopes: [along(0), along(1)] });
+            self.off_rad = self.off_rad.max(up((by_kp + by_ki) * Interval::point(known.off)));
         }
-        Ok(())
     }
 
     /// How far the held command may be from rest over a cell, rad.

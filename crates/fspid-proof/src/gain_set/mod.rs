@@ -30,7 +30,7 @@ use fspid_core::Gains;
 use fspid_fuzzy::scalar::Interval;
 
 pub use cones::Cone;
-pub(crate) use held::HeldCommand;
+pub(crate) use held::{HeldCommand, KnownSlopes};
 pub use increments::{IncrementCell, IncrementMap};
 pub use produced::{grid, producible};
 pub use slopes::{IncrementSlopes, NoSlopes};

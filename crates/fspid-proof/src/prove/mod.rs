@@ -14,7 +14,7 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
-use crate::gain_set::{GainSet, HeldGains, IncrementMap, NoSlopes};
+use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
 use crate::recheck::{Kept, Recheck, Rechecked};
 use crate::rest::{NoRest, Rest};
@@ -132,6 +132,8 @@ struct Prover<'a> {
     /// The same in ordinary arithmetic.
     model: LoopModel<f64>,
     increments: Option<IncrementMap>,
+    /// Found where they are asked for.
+    slopes: KnownSlopes,
 }
 
 impl<'a> Prover<'a> {
@@ -149,7 +151,16 @@ impl<'a> Prover<'a> {
                 Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
             }
         };
-        Ok(Self { description, asked, effort, range: asked.range, enclosed, model, increments })
+        Ok(Self {
+            description,
+            asked,
+            effort,
+            range: asked.range,
+            enclosed,
+            model,
+            increments,
+            slopes: KnownSlopes::default(),
+        })
     }
 
     fn set(&self, factor: f64) -> GainSet {
@@ -195,6 +206,8 @@ impl<'a> Prover<'a> {
                 Verdict::Refuted(..) | Verdict::Open => None,
             }
         };
+        // Found once, for all parts of the range.
+        let _ = self.rest(set).map(|rest| self.held(set, 1.0, &rest).is_ok());
         let mut best = proved(0.0)?;
         let (mut within, mut beyond) = (0.0, 1.0);
         for _ in 0..self.effort.halvings {
@@ -226,6 +239,7 @@ impl<'a> Prover<'a> {
             enclosed: self.enclosed.clone(),
             model: self.model.clone(),
             increments: self.increments.clone(),
+            slopes: self.slopes.clone(),
             range,
             ..*self
         }
@@ -240,7 +254,9 @@ impl<'a> Prover<'a> {
     fn held(&self, set: &GainSet, factor: f64, rest: &Rest) -> Result<GainSet, NoSlopes> {
         match self.tuned() {
             None => Ok(set.clone()),
-            Some(fspid) => set.holding(fspid, factor, rest.held).map(|(held, _)| held),
+            Some(fspid) => {
+                set.holding(fspid, factor, rest.held, &self.slopes).map(|(held, _)| held)
+            }
         }
     }
 
@@ -277,7 +293,8 @@ impl<'a> Prover<'a> {
             claim,
             level,
         };
-        let recheck = Recheck::with(&certificate, self.enclosed.clone(), self.set(factor)).ok()?;
+        let set = self.set(factor);
+        let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
         let rechecked = recheck.run().ok()?;
         Some((certificate, rechecked))
     }

@@ -15,7 +15,7 @@ use fspid_sim::loop_model::LoopModel;
 use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, NotProved, falls, is_positive, prove_growth};
 use crate::description::NotProvable;
-use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, NoSlopes, producible};
+use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
 use crate::rest::{NoRest, Rest};
 use crate::scope::Range;
@@ -189,7 +189,7 @@ impl<'a> Recheck<'a> {
                 .map_err(NotProvable::from)?
                 .gains(certificate.output_factor),
         };
-        Self::with(certificate, model, set)
+        Self::with(certificate, model, set, &KnownSlopes::default())
     }
 
     /// With enclosures that were made before, of the same description.
@@ -197,6 +197,7 @@ impl<'a> Recheck<'a> {
         certificate: &'a Certificate,
         model: LoopModel<Interval>,
         set: GainSet,
+        known: &KnownSlopes,
     ) -> Result<Self, Doubt> {
         if !certificate.range.is_allowed() {
             return Err(malformed("set-points and loads are not two finite numbers, 0 or more"));
@@ -208,7 +209,7 @@ impl<'a> Recheck<'a> {
         let (held, off_rad) = match &certificate.description.controller {
             Controller::Fixed(_) => (set.clone(), 0.0),
             Controller::SelfTuning(fspid) => {
-                set.holding(fspid, certificate.output_factor, rest.held)?
+                set.holding(fspid, certificate.output_factor, rest.held, known)?
             }
         };
         Ok(Self { certificate, model, set, rest, held, off_rad })

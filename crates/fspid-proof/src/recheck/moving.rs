@@ -170,7 +170,8 @@ impl Fall {
 impl Recheck<'_> {
     /// Proves a claim with all that comes with it.
     pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<Proved, Doubt> {
-        if !self.rest.held.is_none() {
+        // With an error that stays, bounds of the inputs around zero are none around rest.
+        if !self.rest.held.is_none() || self.rest.error_rad > 0.0 {
             return Err(malformed(
                 "a claim about gains of bounded rate covers no command that gains move while it is held",
             ));

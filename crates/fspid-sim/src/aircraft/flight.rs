@@ -125,6 +125,13 @@ impl AircraftFlight {
         })
     }
 
+    /// True at or below the ground, if the plant has one.
+    pub(crate) fn is_at_ground(&self, motion: &AircraftMotion) -> bool {
+        self.plant
+            .ground_altitude_m()
+            .is_some_and(|ground_m| motion.body.state.altitude_m() <= ground_m)
+    }
+
     fn aircraft(&self) -> &Aircraft<Forces> {
         self.plant.aircraft()
     }

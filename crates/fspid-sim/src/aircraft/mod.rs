@@ -14,8 +14,11 @@
 //! those of the place at each stage, and a sub-step ends where one of them is not smooth. Of the way
 //! between samples the error falls with the fourth power of the sub-step.
 //!
+//! # Ground
+//! The flight ends at the first sample at or below the ground: nobody lands here.
+//!
 //! # Not here
-//! Plant changes, ground, engine lag; the throttle does not move.
+//! Plant changes, ground effect, engine lag; the throttle does not move.
 
 mod atmosphere;
 mod column;
@@ -33,7 +36,7 @@ pub use leveller::{LEVELLING_TIME_S, WingLeveller};
 
 use fspid_aircraft::{Aircraft, Trim, TrimTarget};
 
-use crate::error::SimError;
+use crate::error::{SimError, positive};
 
 /// Longest sub-step of the integration, s.
 ///
@@ -45,6 +48,7 @@ pub const MOST_STEP_S: f64 = 0.01;
 pub struct AircraftPlant {
     aircraft: Aircraft<Forces>,
     trim: Trim,
+    ground_altitude_m: Option<f64>,
 }
 
 impl AircraftPlant {
@@ -54,7 +58,22 @@ impl AircraftPlant {
     /// [`SimError::Trim`] where there is no such flight, with what stands in its way.
     pub fn trimmed(aircraft: Aircraft<Forces>, target: TrimTarget) -> Result<Self, SimError> {
         let trim = aircraft.trim(target).map_err(|failure| SimError::Trim(Box::new(failure)))?;
-        Ok(Self { aircraft, trim })
+        Ok(Self { aircraft, trim, ground_altitude_m: None })
+    }
+
+    /// The same above a ground, at which a flight ends.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a ground that is not below the aircraft.
+    pub fn above_ground(self, altitude_m: f64) -> Result<Self, SimError> {
+        positive("height above the ground, m", self.trim.target.altitude_m - altitude_m)?;
+        Ok(Self { ground_altitude_m: Some(altitude_m), ..self })
+    }
+
+    /// Altitude of the ground at which a flight ends, m; without one there is none.
+    #[must_use]
+    pub fn ground_altitude_m(&self) -> Option<f64> {
+        self.ground_altitude_m
     }
 
     /// Body, forces and air.

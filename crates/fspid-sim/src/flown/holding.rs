@@ -14,7 +14,7 @@ use crate::trace::Outcome;
 /// When a flight counts as not held. Looked at is the error (set-point less true pitch angle) in the last
 /// third of the flight and in the third before. A flight is not held if
 ///
-/// - it diverged, or
+/// - it diverged or hit the ground, or
 /// - the swing of the error, $\max e - \min e$, is above a floor and at least `growth` of that before, or
 /// - its oscillation, the swing about its straight line of least squares, is above the floor and at
 ///   least `persistence` of that before.
@@ -69,6 +69,11 @@ pub enum Failure {
         /// When, s.
         at_s: f64,
     },
+    /// The aircraft came down to the ground.
+    HitGround {
+        /// When, s.
+        at_s: f64,
+    },
     /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
@@ -89,6 +94,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Diverged { at_s } => write!(f, "diverged at t = {at_s:.2} s"),
+            Self::HitGround { at_s } => write!(f, "hit the ground at t = {at_s:.2} s"),
             Self::Swings { .. } => {
                 f.write_str("in its last third the error swings as far as in its middle one")
             }
@@ -129,8 +135,10 @@ impl Envelope {
     /// Why the flight does not count as held above this floor, rad; `None` if it does.
     #[must_use]
     pub fn failure(&self, criterion: &Criterion, floor_rad: f64) -> Option<Failure> {
-        if let Outcome::Diverged { at_s } = self.outcome {
-            return Some(Failure::Diverged { at_s });
+        match self.outcome {
+            Outcome::Diverged { at_s } => return Some(Failure::Diverged { at_s }),
+            Outcome::HitGround { at_s } => return Some(Failure::HitGround { at_s }),
+            Outcome::Completed => {}
         }
         // Written so that NaN is not held.
         let holds = |[before, last]: [f64; 2], ratio| last <= floor_rad || last < ratio * before;

@@ -91,8 +91,8 @@ impl From<LinearStep> for SampledPlant<f64> {
 pub struct LoopModel<T> {
     plant: SampledPlant<T>,
     settings: LoopSettings,
-    /// Rows of the plant over states and command, less 1 on the diagonal, with the digits that 1 takes away.
-    change: Option<Vec<T>>,
+    /// Rows of the plant over states and command, less 1 on the diagonal, and what 64 bits leave out of them.
+    change: Option<[Vec<T>; 2]>,
     /// Rad of command per rad by which the error changes in a sample, beside the derivative.
     change_gain: T,
 }
@@ -233,8 +233,8 @@ impl LoopModel<f64> {
     /// # Errors
     /// [`SimError`] where the plant cannot be sampled.
     pub fn sharpened(self, scenario: &Scenario, plant: &LinearPlant) -> Result<Self, SimError> {
-        let change = scenario.propagation(plant, self.settings.shell.dt_s)?.linear_change()?;
-        Ok(Self { change: Some(change), ..self })
+        let propagation = scenario.propagation(plant, self.settings.shell.dt_s)?;
+        Ok(Self { change: propagation.linear_change(plant)?, ..self })
     }
 
     /// The one-sample matrix of the closed loop.

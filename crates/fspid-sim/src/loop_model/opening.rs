@@ -1,7 +1,7 @@
 //! The loop broken at a named point, the others closed.
 
 use fspid_core::Gains;
-use fspid_lti::{LoopFamily, Matrix, SampledLoop, SeriesControl};
+use fspid_lti::{FineMatrix, LoopFamily, Matrix, SampledLoop, SeriesControl};
 
 use super::assembly::Broken;
 use super::{LoopModel, LoopSettings, Memory, SampledPlant};
@@ -88,18 +88,31 @@ impl LoopModel<f64> {
     /// The matrix of the loop broken at a point, less 1 on the diagonal, and what enters.
     fn change_when_broken(
         &self,
-        rows: &[f64],
+        [high, low]: &[Vec<f64>; 2],
         gains: Gains<f64>,
         point: BreakPoint,
-    ) -> Result<(Matrix, Vec<f64>), SimError> {
-        let plant = SampledPlant { rows: rows.to_vec(), ..self.plant.clone() };
-        let states = plant.states;
-        let Broken { mut matrix, entry, .. } =
-            Self { plant, ..self.clone() }.assembly(gains).broken(point);
-        for (place, row) in matrix.iter_mut().enumerate().skip(states) {
+    ) -> Result<(FineMatrix, FineMatrix), SimError> {
+        let states = self.plant.states;
+        let broken = |rows: &Vec<f64>| {
+            let plant = SampledPlant { rows: rows.clone(), ..self.plant.clone() };
+            Self { plant, ..self.clone() }.assembly(gains).broken(point)
+        };
+        let (mut change, mut rest) = (broken(high), broken(low));
+        for (place, row) in change.matrix.iter_mut().enumerate().skip(states) {
             row[place] -= 1.0;
         }
-        Ok((Matrix::from_rows(&matrix)?, entry))
+        // Queues, sensors and controller are what they are.
+        rest.matrix.iter_mut().skip(states).for_each(|row| row.fill(0.0));
+        rest.entry.iter_mut().skip(states).for_each(|entry| *entry = 0.0);
+        let matrix = |rows: &[Vec<f64>]| Matrix::from_rows(rows);
+        let column = |entry: &[f64]| {
+            let rows: Vec<[f64; 1]> = entry.iter().map(|&value| [value]).collect();
+            Matrix::from_rows(&rows)
+        };
+        Ok((
+            FineMatrix::new(matrix(&change.matrix)?, matrix(&rest.matrix)?)?,
+            FineMatrix::new(column(&change.entry)?, column(&rest.entry)?)?,
+        ))
     }
 }
 

@@ -72,7 +72,7 @@ fn accumulated(tuner: &SelfTuner<f64>, leakage_per_s: f64) -> Equilibrium {
 }
 
 /// What the rules add at rest, scaled; nothing inside of a dead zone.
-fn added_at_rest(tuner: &SelfTuner<f64>) -> Gains<f64> {
+pub(super) fn added_at_rest(tuner: &SelfTuner<f64>) -> Gains<f64> {
     let settings = tuner.settings();
     if settings.dead_zone.is_some() {
         return Gains::ZERO;

@@ -122,6 +122,15 @@ fn margins_into(answer: &mut Map<String, Value>, margins: &Margins) {
         ("spectral_radius", json!(margins.spectral_radius)),
     ];
     answer.extend(values.map(|(name, value)| (name.to_owned(), value)));
+    let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+    let open: Map<String, Value> = margins
+        .open_brackets()
+        .into_iter()
+        .map(|(name, it)| (name.to_owned(), json!([finite(it.at_least), finite(it.at_most)])))
+        .collect();
+    if !open.is_empty() {
+        answer.insert("proved_between".into(), Value::Object(open));
+    }
     if !reasons.is_empty() {
         answer.insert("reasons".into(), Value::Object(reasons));
     }

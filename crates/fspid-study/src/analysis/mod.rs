@@ -9,6 +9,7 @@
 //! in these numbers: see the frozen-gain map for every gain it can have while they stand still.
 
 mod answer;
+mod at_rest;
 mod equilibrium;
 pub(crate) mod figures;
 mod flights;
@@ -26,6 +27,7 @@ use crate::file::Study;
 use crate::simulation::too_large;
 
 pub use answer::{Margins, decibels};
+pub use at_rest::{AtRest, RestGains};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use flights::Flights;
 pub(crate) use flown::flown_inputs;

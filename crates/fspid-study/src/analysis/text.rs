@@ -157,6 +157,17 @@ fn push_margins(out: &mut String, margins: &Margins) {
             margins.sensitivity_peak, margins.sensitivity_peak_rad_s, margins.complementary_peak
         ),
     );
+    for (name, bracket) in margins.open_brackets() {
+        line(
+            out,
+            format_args!(
+                "  proved only        {} between {:.4} and {:.4}; the worse end stands above",
+                name.replace('_', " "),
+                bracket.at_least,
+                bracket.at_most
+            ),
+        );
+    }
 }
 
 fn end(db: f64, omega_rad_s: Option<f64>, reason: &str) -> String {

@@ -1,9 +1,10 @@
 //! What is certified beside what a scenario flies, field by field.
 
-use fspid_proof::LoopDescription;
+use fspid_proof::{Asked, LoopDescription};
 use fspid_sim::SimError;
 use serde_json::{Value, json};
 
+use super::asked;
 use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
@@ -57,9 +58,10 @@ impl CheckedFile {
         let certified = fields(&self.certificate.description);
         match flown(study, &origin.controller)? {
             Flown::Loops(loops) => {
-                let compared = loops.iter().map(|flown| {
+                let compared = loops.iter().map(|(flown, asked)| {
                     let mut found = Vec::new();
                     walk(&mut found, "", &certified, flown);
+                    self.beyond(&mut found, asked);
                     found
                 });
                 differences.extend(compared.min_by_key(Vec::len).unwrap_or_default());
@@ -82,10 +84,36 @@ impl CheckedFile {
     }
 }
 
+impl CheckedFile {
+    /// What a scenario has that the claim does not cover and does not say that it leaves out.
+    fn beyond(&self, differences: &mut Vec<Difference>, asked: &Asked) {
+        let Ok(rechecked) = &self.result else { return };
+        if !self.certificate.claim.is_of_stability() {
+            return;
+        }
+        let scope = self.certificate.scope(rechecked);
+        let mut short = |path: &str, any: bool, certified: f64, flown: f64| {
+            if !any && !(certified >= flown) {
+                let path = path.to_owned();
+                let [certified, flown] = [certified, flown].map(|it| format!("{it:?}"));
+                differences.push(Difference { path, certified, flown });
+            }
+        };
+        let (range, flown) = (scope.range, asked.range);
+        short("range.setpoint_rad", scope.any_setpoint, range.setpoint_rad, flown.setpoint_rad);
+        short("range.load_rad", scope.any_load, range.load_rad, flown.load_rad);
+        for one in asked.left_out.iter().filter(|one| !scope.left_out.contains(one)) {
+            let path = "not_in_this_claim".to_owned();
+            let flown = format!("\"{}\"", one.name());
+            differences.push(Difference { path, certified: NOTHING.to_owned(), flown });
+        }
+    }
+}
+
 /// What a scenario flies under a controller's name.
 enum Flown {
-    /// The loop with each lasting plant, as in files.
-    Loops(Vec<Value>),
+    /// The loop with each lasting plant, as in files, and what is asked of a claim about it.
+    Loops(Vec<(Value, Asked)>),
     /// No such loop: what stands at a path instead.
     Without { path: &'static str, flown: String },
 }
@@ -100,7 +128,9 @@ fn flown(study: &Study, controller: &str) -> Result<Flown, SimError> {
     let mut refused = None;
     for (_, plant) in lasting_plants(scenario)? {
         match LoopDescription::of(scenario, &plant, &named.controller) {
-            Ok(description) => loops.push(fields(&description)),
+            Ok(description) => {
+                loops.push((fields(&description), asked(study, &plant, &description)));
+            }
             Err(reason) => refused = Some(reason.to_string()),
         }
     }

@@ -5,6 +5,7 @@ use fspid_proof::{Certificate, Claim, Kept, Rechecked};
 use super::against::Comparison;
 use super::checked::{Answer, CheckedFile};
 use super::file::Seal;
+use super::scope::Told;
 use super::text::{line, push_claim, push_rechecked, range, refuted, sentence};
 
 impl CheckedFile {
@@ -16,7 +17,7 @@ impl CheckedFile {
             "{} of \"{}\": {}\n",
             origin.controller,
             origin.scenario,
-            sentence(&certificate.claim)
+            sentence(certificate)
         );
         let dt_s = certificate.description.controller.shell().dt_s;
         push_claim(&mut out, certificate, dt_s);
@@ -25,6 +26,7 @@ impl CheckedFile {
             push_kept(&mut out, certificate, rechecked);
             let [kp, ki, kd] = rechecked.bounds.map(range);
             line(&mut out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
+            Told::of(certificate, rechecked).push(&mut out);
         }
         push_seal(&mut out, &self.seal);
         if let Some(against) = &self.against {

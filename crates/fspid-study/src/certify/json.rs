@@ -4,6 +4,8 @@ use fspid_fuzzy::scalar::Interval;
 use fspid_proof::{Bearing, Kept, Outcome, Rechecked, Verdict};
 use serde_json::{Value, json};
 
+use super::scope::Told;
+use super::text::found;
 use super::{Certification, Certified, CheckedFile, Comparison, Difference, Seal};
 use crate::units::degrees;
 
@@ -30,20 +32,25 @@ fn result(certified: &Certified) -> Value {
             answer["verdict"] = json!("not provable");
             answer["reason"] = json!(reason.to_string());
         }
-        Ok(outcome) => outcome_into(&mut answer, certified, outcome),
+        Ok(outcome) => outcome_into(&mut answer, outcome),
     }
+    answer["limits"] = json!(certified.limits);
     answer
 }
 
-fn outcome_into(answer: &mut Value, certified: &Certified, outcome: &Outcome) {
+fn outcome_into(answer: &mut Value, outcome: &Outcome) {
     answer["verdict"] = json!(match &outcome.verdict {
         Verdict::Proved(..) => "proved",
         Verdict::Refuted(..) => "refuted",
         Verdict::Open => "open",
     });
-    if let Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) =
-        &outcome.verdict
-    {
+    answer["asked"] = json!({
+        "setpoint_within_deg": degrees(outcome.asked.setpoint_rad),
+        "load_within_deg": degrees(outcome.asked.load_rad),
+    });
+    if let Some((certificate, rechecked)) = found(outcome) {
+        // Of an open answer the claim is one about less than the scenario asks.
+        answer["claim_is_for_less"] = json!(matches!(outcome.verdict, Verdict::Open));
         answer["claim"] = json!(certificate.claim.name());
         answer["decay_per_sample"] = json!(certificate.claim.rate());
         answer["inequalities"] = json!(rechecked.inequalities);
@@ -52,6 +59,7 @@ fn outcome_into(answer: &mut Value, certified: &Certified, outcome: &Outcome) {
         let bearing = certificate.bearing(rechecked);
         answer["bearing"] = json!(bearing.name());
         answer["bearing_in_words"] = json!(bearing.to_string());
+        answer["scope"] = Told::of(certificate, rechecked).json();
     }
     let [kp, ki, kd] = outcome.bounds.map(ends);
     answer["gains"] = json!({ "kp": kp, "ki": ki, "kd": kd });
@@ -59,7 +67,6 @@ fn outcome_into(answer: &mut Value, certified: &Certified, outcome: &Outcome) {
         "proved": outcome.largest.proved,
         "not_proved": outcome.largest.not_proved,
     });
-    answer["limits"] = json!(certified.limits);
     answer["pitch_within_deg"] = json!(outcome.pitch_within_rad.map(degrees));
     answer["limits_left_out"] = json!(outcome.limits_left_out);
 }
@@ -89,6 +96,7 @@ impl CheckedFile {
                 answer["inequalities"] = json!(rechecked.inequalities);
                 answer["boxes_of_gains"] = json!(rechecked.cells);
                 answer["law_keeps_to_the_rate"] = kept(rechecked);
+                answer["scope"] = Told::of(&self.certificate, rechecked).json();
                 let [kp, ki, kd] = rechecked.bounds.map(ends);
                 answer["gains"] = json!({ "kp": kp, "ki": ki, "kd": kd });
             }

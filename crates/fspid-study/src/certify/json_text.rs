@@ -8,6 +8,10 @@ use serde_json::{Map, Number, Value};
 
 /// Most values that a text may hold; each takes some 80 bytes, however short it is written.
 const MOST_VALUES: usize = 500_000;
+/// Most keys that are told to stand twice, and most characters of a key in a path: a long key above many would
+/// else be written out for each.
+const MOST_TWICE: usize = 100;
+const MOST_OF_A_KEY: usize = 60;
 
 /// What was met on the way.
 #[derive(Default)]
@@ -105,12 +109,14 @@ impl<'de> Visitor<'de> for Seed<'_> {
         let mut values = Map::new();
         while let Some(key) = table.next_key::<String>()? {
             let dot = if self.0.borrow().path.is_empty() { "" } else { "." };
-            let value = self.below(&format!("{dot}{key}"), || {
-                if values.contains_key(&key) {
-                    let mut met = self.0.borrow_mut();
+            let step: String = key.chars().take(MOST_OF_A_KEY).collect();
+            let value = self.below(&format!("{dot}{step}"), || {
+                let mut met = self.0.borrow_mut();
+                if values.contains_key(&key) && met.twice.len() < MOST_TWICE {
                     let path = met.path.clone();
                     met.twice.push(path);
                 }
+                drop(met);
                 table.next_value_seed(self)
             })?;
             // The first stands; that there is another is told.
@@ -130,6 +136,17 @@ mod tests {
             read(r#"{"a": {"b": [{"c": 1, "c": 2}], "b": 3}, "d": 1}"#).expect("JSON");
         assert_eq!(twice, ["a.b[0].c", "a.b"]);
         assert_eq!(value["a"]["b"][0]["c"], 1);
+    }
+
+    #[test]
+    fn a_long_key_above_many_that_stand_twice_is_not_written_out_for_each() {
+        let text =
+            format!("{{\"{}\": {{{}\"a\": 0}}}}", "k".repeat(100_000), "\"a\":0,".repeat(100_000));
+        let used = allocation_counter::measure(|| {
+            let (_, twice) = read(&text).expect("JSON");
+            assert_eq!((twice.len(), twice[0].len()), (MOST_TWICE, MOST_OF_A_KEY + 2));
+        });
+        assert!(used.bytes_max < 1 << 20, "{used:?}");
     }
 
     #[test]

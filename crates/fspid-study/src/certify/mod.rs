@@ -7,12 +7,16 @@ mod against;
 mod checked;
 mod checked_text;
 mod controller_file;
+mod coverage;
 mod digest;
 mod file;
 mod json;
 mod json_text;
 mod loop_file;
+mod scope;
 mod shape;
+#[cfg(test)]
+mod tests;
 mod text;
 
 use fspid_proof::{
@@ -27,7 +31,9 @@ pub use fspid_proof::Effort;
 
 pub use against::{Comparison, Difference};
 pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
 pub use file::{Origin, Seal, from_text, to_text};
+pub(crate) use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.
@@ -52,13 +58,11 @@ impl Certified {
         matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)))
     }
 
-    /// The certificate of the verdict: of stability, or of growth.
+    /// The certificate of the verdict: of stability, or of growth; where the answer is neither for what the
+    /// scenario asks, of the smaller range that is proved.
     #[must_use]
     pub fn certificate(&self) -> Option<&Certificate> {
-        match &self.outcome.as_ref().ok()?.verdict {
-            Verdict::Proved(certificate, _) | Verdict::Refuted(certificate, _) => Some(certificate),
-            Verdict::Open => None,
-        }
+        text::found(self.outcome.as_ref().ok()?).map(|(certificate, _)| certificate)
     }
 
     /// A file name for its certificate.
@@ -81,7 +85,7 @@ pub struct Certification {
     pub scenario: String,
     /// One for each controller and lasting plant.
     pub results: Vec<Certified>,
-    /// What the proofs leave out, in sentences.
+    /// What a claim does not speak of, in sentences; each is said beside its claim as well.
     pub left_out: Vec<String>,
 }
 
@@ -114,7 +118,7 @@ impl Certification {
                 });
             }
         }
-        let left_out = left_out(study, plants.len());
+        let left_out = left_out(&results);
         Ok(Self { scenario: scenario.name.clone(), results, left_out })
     }
 
@@ -134,17 +138,13 @@ fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> A
     asked
 }
 
-fn left_out(study: &Study, plants: usize) -> Vec<String> {
-    let scenario = &study.scenario;
-    let mut sentences = Vec::new();
-    if scenario.plant.aircraft().is_some() {
-        sentences.push(
-            "The aircraft is nonlinear: proved is a statement about its linear model at the trim.",
-        );
-    }
-    if plants > 1 {
-        sentences.push("Each plant is proved on its own; the passage from one to the next is not.");
-    }
-    sentences.push("Rounding in the controller's own arithmetic is left out.");
-    sentences.into_iter().map(str::to_owned).collect()
+/// What at least one of the claims does not speak of, in sentences.
+fn left_out(results: &[Certified]) -> Vec<String> {
+    let outcomes = results.iter().filter_map(|certified| certified.outcome.as_ref().ok());
+    let found = outcomes.filter_map(text::found);
+    let mut left_out: Vec<LeftOut> =
+        found.flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out).collect();
+    left_out.sort_unstable();
+    left_out.dedup();
+    left_out.iter().map(LeftOut::to_string).collect()
 }

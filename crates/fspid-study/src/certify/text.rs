@@ -3,13 +3,12 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{
-    Bearing, BoundedRate, Certificate, Claim, Outcome, Range, Rechecked, Scope, Verdict,
-};
+use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
+use fspid_sim::Controller;
 
+use super::scope::{Told, asked_in_words};
 use super::{Certification, Certified};
 use crate::metrics::short;
-use crate::units::degrees;
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -18,10 +17,6 @@ impl Certification {
         let mut out = format!("{}: stability while the gains move\n", self.scenario);
         for certified in &self.results {
             push(&mut out, certified);
-        }
-        out.push_str("\nNot in these proofs:\n");
-        for sentence in &self.left_out {
-            line(&mut out, format_args!("  {sentence}"));
         }
         out
     }
@@ -43,18 +38,31 @@ fn push(out: &mut String, certified: &Certified) {
 }
 
 fn headline(outcome: &Outcome) -> String {
-    match &outcome.verdict {
-        Verdict::Proved(certificate, _) => format!("PROVED: {}", sentence(&certificate.claim)),
-        Verdict::Refuted(certificate, rechecked) => {
+    match (&outcome.verdict, &outcome.instead) {
+        (Verdict::Proved(certificate, _), _) => format!("PROVED: {}", sentence(certificate)),
+        (Verdict::Refuted(certificate, rechecked), _) => {
             let bearing = certificate.bearing(rechecked);
-            format!("{}: {}; {bearing}", refuted(bearing), sentence(&certificate.claim))
+            format!("{}: {}; {bearing}", refuted(bearing), sentence(certificate))
         }
-        Verdict::Open if outcome.instead.is_some() => format!(
-            "OPEN for the set-points and loads of this scenario, {}: neither proved nor refuted; proved for less",
-            range_text(outcome.asked)
+        (Verdict::Open, Some((certificate, _))) => format!(
+            "OPEN for what the scenario asks ({}): neither proved nor refuted; proved is less: {}",
+            asked_in_words(outcome.asked),
+            sentence(certificate)
         ),
-        Verdict::Open => {
+        (Verdict::Open, None) => {
             "OPEN: neither proved nor refuted; do not call this loop proved".to_owned()
+        }
+    }
+}
+
+/// What an outcome has a certificate of.
+pub(super) fn found(outcome: &Outcome) -> Option<(&Certificate, &Rechecked)> {
+    match &outcome.verdict {
+        Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) => {
+            Some((certificate, rechecked))
+        }
+        Verdict::Open => {
+            outcome.instead.as_ref().map(|(certificate, rechecked)| (certificate, rechecked))
         }
     }
 }
@@ -71,8 +79,8 @@ pub(super) fn refuted(bearing: Bearing) -> &'static str {
 }
 
 /// What a claim says.
-pub(super) fn sentence(claim: &Claim) -> String {
-    match claim {
+pub(super) fn sentence(certificate: &Certificate) -> String {
+    match &certificate.claim {
         Claim::AnySpeed { .. } => {
             "stable for every gain that the controller can have, however fast the gains move".to_owned()
         }
@@ -82,6 +90,11 @@ pub(super) fn sentence(claim: &Claim) -> String {
         Claim::BoundedRate(_) => {
             "stable for every gain that the controller can have, as long as gains move no faster than stated"
                 .to_owned()
+        }
+        Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }
+            if matches!(certificate.description.controller, Controller::Fixed(_)) =>
+        {
+            "unstable with its gains".to_owned()
         }
         Claim::FrozenGrowth { input: [error, change], .. } => format!(
             "unstable with gains that the supervisor produces at error {error:.4}, change {change:.4}, if they stand still"
@@ -100,61 +113,14 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         Some(certificate) => certificate.description.controller.shell().dt_s,
         None => f64::NAN,
     };
-    if let Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) =
-        &outcome.verdict
-    {
+    if let Some((certificate, rechecked)) = found(outcome) {
         push_claim(out, certificate, dt_s);
-        push_scope(out, &certificate.scope(rechecked));
         push_rechecked(out, rechecked);
     }
-    if let Some((certificate, rechecked)) = &outcome.instead {
-        line(out, format_args!("  proved instead     {}", sentence(&certificate.claim)));
-        push_scope(out, &certificate.scope(rechecked));
-    }
     push_largest(out, outcome);
-    push_limits(out, certified, outcome);
-}
-
-/// For which set-points and loads, and what remains.
-fn push_scope(out: &mut String, scope: &Scope) {
-    let text = match (scope.any_setpoint, scope.any_load) {
-        (true, true) => "any constant set-point, any constant load".to_owned(),
-        (true, false) => {
-            format!("any constant set-point; loads within ±{} deg", deg(scope.range.load_rad))
-        }
-        (false, true) => format!(
-            "constant set-points within ±{} deg, any constant load",
-            deg(scope.range.setpoint_rad)
-        ),
-        (false, false) => range_text(scope.range),
-    };
-    line(out, format_args!("  set-points         {text}"));
-    if scope.rest_error_rad > 0.0 {
-        let error = deg(scope.rest_error_rad);
-        line(
-            out,
-            format_args!("  error at rest      up to {error} deg stay: there is no integral"),
-        );
+    if let Some((certificate, rechecked)) = found(outcome) {
+        Told::of(certificate, rechecked).push(out);
     }
-    if scope.remains_rad > 0.0 {
-        let remains = deg(scope.remains_rad);
-        line(
-            out,
-            format_args!("  remains            the pitch angle ends within {remains} deg of rest"),
-        );
-    }
-}
-
-fn range_text(range: Range) -> String {
-    format!(
-        "constant set-points within ±{} deg, constant loads within ±{} deg of elevator",
-        deg(range.setpoint_rad),
-        deg(range.load_rad)
-    )
-}
-
-fn deg(angle_rad: f64) -> String {
-    short(degrees(angle_rad))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.
@@ -233,22 +199,6 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
         _ => return,
     };
     line(out, format_args!("  output scale       {text}"));
-}
-
-fn push_limits(out: &mut String, certified: &Certified, outcome: &Outcome) {
-    if certified.limits.is_empty() {
-        return;
-    }
-    let limits = certified.limits.join(", ");
-    let text = match (outcome.pitch_within_rad, outcome.limits_left_out) {
-        (Some(pitch_rad), _) => format!(
-            "with a pitch angle off by up to {:.3} deg, all else at rest, none acts: {limits}",
-            degrees(pitch_rad)
-        ),
-        (None, Some(reason)) => format!("SATURATION IS NOT COVERED: {limits}; {reason}"),
-        (None, None) => format!("SATURATION IS NOT COVERED: {limits}"),
-    };
-    line(out, format_args!("  limits             {text}"));
 }
 
 pub(super) fn range(bounds: Interval) -> String {

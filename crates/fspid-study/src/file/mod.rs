@@ -53,7 +53,7 @@ use crate::tuning::{Contest, Mark, Tuning};
 pub use crate::requirement::Requirement;
 pub(crate) use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
-pub use build::{Airframe, DerivedGains, GainSource};
+pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
 pub use extra::Extra;
 pub use files::unread_in_words;
 pub use paths::{PathRow, paths, paths_json, paths_text};
@@ -91,6 +91,8 @@ pub struct Study {
     pub tuning: Option<Tuning>,
     /// Where tuned controllers are compared.
     pub contest: Option<Contest>,
+    /// What is made of flights that leave the range in which the aircraft's data are trusted.
+    pub range_rule: RangeRule,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -117,6 +119,7 @@ impl Study {
             derived_gains,
             tuning,
             contest,
+            range_rule,
         } = built;
         let as_written = |it: &&Requirement| it.cases.as_written();
         Self {
@@ -129,6 +132,7 @@ impl Study {
             marks: Vec::new(),
             tuning,
             contest,
+            range_rule,
             settings: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),

@@ -10,7 +10,7 @@ use super::mark::FIXED;
 use super::report::Report;
 use super::section::{Checked, Entry, Section};
 use super::setting::{join, number, step, written};
-use super::spec::{Key, Kind, Presence, SCENARIO, Table};
+use super::spec::{Key, Kind, Presence, SCENARIO, Table, Way};
 use super::{LoadError, build, changed_document, extra::Extra, read_text};
 
 /// Top-level keys whose numbers cannot differ from run to run.
@@ -112,6 +112,16 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
+/// True for a key of another way of saying what the table says already: an aircraft beside a plant.
+fn is_excluded(spec: &Table, section: &Section, name: &str) -> bool {
+    spec.choices.iter().any(|choice| {
+        let has = |way: &&Way| way.required.contains(&name) || way.optional.contains(&name);
+        let is_used = |way: &&Way| way.required.iter().any(|key| section.given(key));
+        let mut ways = choice.ways.iter();
+        choice.ways.iter().any(|way| has(&way)) && ways.any(|way| is_used(&way) && !has(&way))
+    })
+}
+
 struct Walk<'a> {
     files: &'a Files<'a>,
     /// The top-level key that the walk is in.
@@ -130,6 +140,7 @@ impl Walk<'_> {
             }
             match section.entry(key.name) {
                 Some(entry) => self.entry(key, entry, inner, &section.path(key.name)),
+                None if is_excluded(spec, section, key.name) => {}
                 None => self.absent(key, inner),
             }
         }
@@ -178,6 +189,10 @@ impl Walk<'_> {
                     self.row(join(&path, "kind"), (None, ""), allowed, (false, false));
                 }
                 spec.keys().for_each(|key| self.absent(key, join(&path, key.name)));
+            }
+            // A list that is left out is given as a whole.
+            (_, kind @ (Kind::Numbers { .. } | Kind::Interval { .. })) => {
+                self.row(path, (None, kind.unit()), allowed(kind), (false, false));
             }
             (_, kind) => self.push(kind, path, None, false),
         }

@@ -112,6 +112,9 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
+/// Shortest name whose mistyped form is recognised without its unit.
+const LEAST_BARE: usize = 6;
+
 /// What follows "there is no `word`": the word that was probably meant, and those that are known.
 #[must_use]
 pub fn known_words(word: &str, known: &[&str]) -> String {
@@ -133,9 +136,12 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
         // The beginning is meant as the whole: `duration` for `duration_s`, `b747` for `b747-paper`.
         let beginning = b.strip_prefix(a.as_str()).is_some_and(|rest| rest.starts_with(['_', '-']));
+        // A measure without its unit, mistyped: `overshot` for `overshoot_pct`.
+        let bare = b.rsplit_once('_').map_or("", |(bare, _)| bare);
+        let without_unit = bare.len() >= LEAST_BARE && strsim::osa_distance(&a, bare) <= 1;
         if beginning {
             2.0
-        } else if typing {
+        } else if typing || without_unit {
             1.0 + whole
         } else {
             whole
@@ -159,6 +165,7 @@ mod tests {
         assert_eq!(nearest("duration", &known), Some("duration_s"));
         assert_eq!(nearest("Kp", &known), Some("kp"));
         assert_eq!(nearest("colour", &known), None);
+        assert_eq!(nearest("overshot", &["overshoot_pct", "peak_deg"]), Some("overshoot_pct"));
     }
 
     /// What used to follow the question mark began in small letters: "did you mean food? known are …".

@@ -6,7 +6,7 @@ use crate::file::report::Report;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
-use crate::file::spec::tuning::OverWord;
+use crate::file::spec::tuning::{ConstantLoadWord, OverWord};
 use crate::metrics::Measure;
 use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
@@ -54,6 +54,8 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
         cases: cases(report, section.sections("case")),
         objectives,
         limits: limits(report, section),
+        removes_constant_load: section.word::<ConstantLoadWord>("constant_load")?
+            == ConstantLoadWord::Removed,
     })
 }
 

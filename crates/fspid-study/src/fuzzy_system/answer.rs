@@ -200,6 +200,9 @@ impl<'a> Asked<'a> {
         let names = self.system.parts().outputs.iter().map(|output| output.name.chars().count());
         let width = names.max().unwrap_or(0);
         let mut out = String::new();
+        if self.system.parts().outputs.is_empty() {
+            out.push_str("the system has no output: nothing is concluded\n");
+        }
         for (index, (output, answer)) in self.answers().enumerate() {
             let interval = self.workspace.interval(index);
             let between = interval.map(|[from, to]| format!(", middle of {from:.6} to {to:.6}"));

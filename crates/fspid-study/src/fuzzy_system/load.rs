@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_formats::fcl::{Dialect, ReadOptions};
-use fspid_formats::{fcl, fis, fll};
+use fspid_formats::{fcl, fis, fll, fml};
 use fspid_fuzzy::system::{Parts, Sampling, System};
 use fspid_fuzzy::{LABEL_COUNT, NumberTable, Supervisor};
 
@@ -68,7 +68,7 @@ impl fmt::Display for LoadError {
                 let tables = rule_table_names().join(", ");
                 write!(
                     f,
-                    "{name}: no fuzzy system; known are files that end in .toml, .fis, .fcl or .fll, the rule tables {tables}, and {NUMBER_GRID}"
+                    "{name}: no fuzzy system; known are files that end in {ENDINGS}, the rule tables {tables}, and {NUMBER_GRID}"
                 )
             }
             Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
@@ -91,7 +91,14 @@ pub enum Format {
     Fcl,
     /// fuzzylite.
     Fll,
+    /// IEEE 1855, the Fuzzy Markup Language.
+    Fml,
+    /// Taskin's interval type-2 toolbox: MATLAB's format with pairs of membership functions.
+    T2fis,
 }
+
+/// The endings of files with systems, as a sentence lists them.
+pub const ENDINGS: &str = ".toml, .fis, .t2fis, .fcl, .fll or .xml";
 
 impl Format {
     /// The format of a file, by its ending; that of standard input by what it begins with.
@@ -106,6 +113,8 @@ impl Format {
             "fis" => Some(Self::Fis),
             "fcl" => Some(Self::Fcl),
             "fll" => Some(Self::Fll),
+            "xml" => Some(Self::Fml),
+            "t2fis" => Some(Self::T2fis),
             _ => None,
         }
     }
@@ -223,7 +232,8 @@ pub fn read(
             let system = toml_file::parse(text, name).map_err(LoadError::Problems)?;
             Ok(Loaded { system, notes: Vec::new() })
         }
-        Format::Fis => of_tool(name, fis::read(text)),
+        Format::Fis | Format::T2fis => of_tool(name, fis::read(text)),
+        Format::Fml => of_tool(name, fml::read(text)),
         Format::Fll => of_tool(name, fll::read(text)),
         Format::Fcl => {
             let options = ReadOptions { dialect: options.dialect, block: options.block };

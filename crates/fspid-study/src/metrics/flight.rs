@@ -25,10 +25,17 @@ pub enum Verdict {
         /// When, s.
         at_s: f64,
     },
-    /// The loop is unstable although the flight did not diverge in its window.
+    /// The aircraft came down to the ground.
+    HitGround {
+        /// When, s.
+        at_s: f64,
+    },
+    /// The loop is unstable at the gains that it has at rest, although the flight did not diverge in its window.
     Unstable {
         /// Spectral radius of the sampled closed loop.
         spectral_radius: f64,
+        /// Time in which what grows becomes twice as large, s.
+        doubling_s: f64,
     },
 }
 
@@ -39,7 +46,7 @@ impl Verdict {
         matches!(self, Self::Settled | Self::Flown)
     }
 
-    /// True for a loop that is lost: it diverged or is unstable.
+    /// True for a flight that is lost: it diverged, hit the ground, or its loop is unstable at rest.
     #[must_use]
     pub fn is_failure(self) -> bool {
         self.absence().is_some()
@@ -49,7 +56,8 @@ impl Verdict {
     fn absence(self) -> Option<Absent> {
         match self {
             Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
-            Self::Unstable { spectral_radius } => Some(Absent::Unstable { spectral_radius }),
+            Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
+            Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
             Self::Settled | Self::NotSettled { .. } | Self::Flown => None,
         }
     }
@@ -62,8 +70,13 @@ impl fmt::Display for Verdict {
             Self::NotSettled { window_s } => write!(f, "not settled within {} s", short(*window_s)),
             Self::Flown => f.write_str("flown"),
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
-            Self::Unstable { spectral_radius } => {
-                write!(f, "unstable: spectral radius {spectral_radius:.6}")
+            Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
+            Self::Unstable { spectral_radius, doubling_s } => {
+                write!(f, "unstable at rest (")?;
+                if doubling_s.is_finite() {
+                    write!(f, "doubles every {} s, ", to_three_digits(*doubling_s))?;
+                }
+                write!(f, "spectral radius {spectral_radius:.6})")
             }
         }
     }
@@ -95,6 +108,9 @@ pub struct FlightMetrics {
     pub rms_error_rad: Measured,
     /// Effort of the command over the whole flight.
     pub effort: Result<CommandEffort, Absent>,
+    /// True for a flight that is not good and whose first movement after its first step is steadily away from the
+    /// new set-point: see [`moves_away`].
+    pub wrong_way: bool,
 }
 
 impl FlightMetrics {
@@ -103,12 +119,15 @@ impl FlightMetrics {
     pub fn of(trace: &Trace, edges: &[Edge], timing: Timing, unstable: Option<Unstable>) -> Self {
         let failed = match (trace.outcome, unstable) {
             (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
-            (Outcome::Completed, Some(Unstable { spectral_radius, .. })) => {
-                Some(Verdict::Unstable { spectral_radius })
-            }
+            (Outcome::HitGround { at_s }, _) => Some(Verdict::HitGround { at_s }),
+            (Outcome::Completed, Some(unstable)) => Some(Verdict::Unstable {
+                spectral_radius: unstable.spectral_radius,
+                doubling_s: unstable.doubling_s,
+            }),
             (Outcome::Completed, None) => None,
         };
         let absence = failed.and_then(Verdict::absence);
+        let away = edges.first().is_some_and(|edge| moves_away(trace, edge, failed.is_some()));
         let edges = edge_metrics(trace, edges, timing, absence);
         let restarts: Vec<usize> =
             edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
@@ -116,8 +135,10 @@ impl FlightMetrics {
         let (integrals, squares) =
             ErrorIntegrals::with_sum_of_squares(errors, timing.dt_s(), &restarts);
         let measured = absence.map_or(Ok(()), Err);
+        let verdict = failed.unwrap_or_else(|| verdict(&edges));
         Self {
-            verdict: failed.unwrap_or_else(|| verdict(&edges)),
+            verdict,
+            wrong_way: away && !verdict.is_good(),
             integrals: measured.map(|()| integrals),
             rms_error_rad: measured.map(|()| (squares / trace.rows() as f64).sqrt()),
             effort: match absence {
@@ -142,6 +163,33 @@ impl FlightMetrics {
     pub fn of_step(&self, index: usize, measure: impl Fn(&StepMetrics) -> Measured) -> Measured {
         self.edges.get(index).map_or(Err(Absent::NoStep), |edge| measure(&edge.step))
     }
+}
+
+/// Share of a step that counts as having moved towards the new set-point.
+const TOWARDS: f64 = 0.02;
+/// How far away a response counts as lost on the wrong side, as a share of the step.
+const AWAY: f64 = 1.0;
+
+/// True where a response is a whole step on the wrong side before it was a fiftieth of the step on the right one, or
+/// leaves every range on that side. A loop whose aircraft dips before it rises turns back long before; one that is as
+/// far away as the step was high does not. A flight that was not lost must end there too, so that a gust or a load just
+/// after the step is not taken for it.
+fn moves_away(trace: &Trace, edge: &Edge, lost: bool) -> bool {
+    let step_rad = edge.to_rad - edge.from_rad;
+    let response = trace.theta_rad.get(edge.sample..).unwrap_or_default();
+    let Some(start_rad) = response.first() else {
+        return false;
+    };
+    let mut way = response.iter().map(|theta_rad| (theta_rad - start_rad) / step_rad);
+    let ends_away = way.clone().last().is_some_and(|way| way <= -AWAY);
+    let first = way.find(|way| *way >= TOWARDS || *way <= -AWAY);
+    first.is_some_and(|way| way < 0.0) && (lost || ends_away)
+}
+
+/// A time for people, to three digits, which says enough of a rate of growth.
+fn to_three_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    short(rounded)
 }
 
 fn edge_metrics(

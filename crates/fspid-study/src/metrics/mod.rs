@@ -22,6 +22,11 @@ pub enum Absent {
         /// When, s.
         at_s: f64,
     },
+    /// The aircraft came down to the ground.
+    HitGround {
+        /// When, s.
+        at_s: f64,
+    },
     /// The loop is unstable, whatever the window shows.
     Unstable {
         /// Spectral radius of the sampled closed loop.
@@ -56,6 +61,7 @@ impl fmt::Display for Absent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
+            Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
             Self::Unstable { spectral_radius } => {
                 write!(f, "unstable: spectral radius {spectral_radius:.6} of the sampled loop")
             }

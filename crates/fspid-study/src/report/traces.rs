@@ -3,7 +3,6 @@
 use fspid_sim::{Controller, Outcome, Scenario, Trace};
 
 use crate::figure::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
-use crate::metrics::Verdict;
 use crate::simulation::{ControllerResult, Simulation};
 use crate::units::degrees;
 
@@ -264,6 +263,5 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
 
 /// True for a flight without measures.
 pub(super) fn fails(result: &ControllerResult) -> bool {
-    matches!(result.metrics.verdict, Verdict::Diverged { .. } | Verdict::Unstable { .. })
-        || result.trace.outcome != Outcome::Completed
+    result.metrics.verdict.is_failure() || result.trace.outcome != Outcome::Completed
 }

@@ -13,7 +13,7 @@ use super::{measures, settings};
 use crate::figure::SurfaceKind;
 use crate::file::Study;
 use crate::metrics::Verdict;
-use crate::simulation::{ControllerResult, Simulation, left_validity};
+use crate::simulation::{ControllerResult, Simulation, WRONG_WAY, failing_exit, left_validity};
 
 #[derive(Clone, Copy)]
 struct User<'a> {
@@ -55,7 +55,8 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::Flown => ("good", "\u{2713} Flown"),
         Verdict::NotSettled { .. } => ("fair", "\u{2248} Not settled"),
         Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
-        Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE"),
+        Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
+        Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
     };
     let first = result.metrics.first_step();
     let detail = match verdict {
@@ -63,9 +64,14 @@ fn outcome(result: &ControllerResult) -> Outcome {
             "The pitch angle left every reasonable range at t = {} s. Nothing can be measured in this flight.",
             fixed(at_s, 3)
         ),
-        Verdict::Unstable { spectral_radius } => format!(
-            "The loop is unstable, whatever the window shows: spectral radius {} (below 1 would be stable). Nothing \
+        Verdict::HitGround { at_s } => format!(
+            "The aircraft came down to the ground at t = {} s, where the flight ends. Nothing can be measured in it.",
+            fixed(at_s, 3)
+        ),
+        Verdict::Unstable { spectral_radius, .. } => format!(
+            "{}, whatever the window shows; a spectral radius below 1 would be stable, and this one is {}. Nothing \
              can be measured in this flight.",
+            capital(&verdict.to_string()),
             fixed(spectral_radius, 6)
         ),
         Verdict::Flown => "There was no step in the command to measure against.".to_owned(),
@@ -84,6 +90,18 @@ fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> St
     if value.is_ok() { format!("{text} {unit}") } else { format!("absent ({text})") }
 }
 
+/// A sign that may be wrong, a range that was left, the gains at rest, a load that stays.
+fn beside(result: &ControllerResult) -> Vec<String> {
+    let name = &result.name;
+    let fails = failing_exit(result.trace.exit, result.range_rule).is_some();
+    let word = if fails { "FAILED, " } else { "" };
+    let left =
+        result.trace.exit.as_ref().map(|exit| format!("{name}: {word}{}", left_validity(exit)));
+    let sign = result.metrics.wrong_way.then(|| format!("{name} {WRONG_WAY}"));
+    let at_rest = result.at_rest.words(result.duration_s).map(|words| format!("{name}: {words}"));
+    sign.into_iter().chain(left).chain(at_rest).collect()
+}
+
 impl User<'_> {
     fn verdicts(self) -> Section {
         let outcomes: Vec<Outcome> = self.simulation.results.iter().map(outcome).collect();
@@ -98,13 +116,11 @@ impl User<'_> {
         Section::of("verdict", "Verdict", "user", context)
     }
 
-    /// Those of the file, and flights beyond what their model is known to be worth.
+    /// Those of the file, and what is said of flights beside their measures.
     fn warnings(self) -> Vec<String> {
-        let left = self.simulation.results.iter().filter_map(|result| {
-            let exit = result.trace.exit.as_ref()?;
-            Some(format!("{} {}", result.name, left_validity(exit)))
-        });
-        self.study.warnings.iter().cloned().chain(left).collect()
+        let beside = self.simulation.results.iter().flat_map(beside);
+        let note = self.simulation.range_rule.note().map(|note| format!("{}.", capital(note)));
+        self.study.warnings.iter().cloned().chain(beside).chain(note).collect()
     }
 
     fn requirements(self) -> Table {

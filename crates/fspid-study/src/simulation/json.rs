@@ -1,8 +1,10 @@
 //! The answer as JSON: angles in degrees, every absent measure with its reason.
 
+use fspid_core::Gains;
 use serde_json::{Map, Value, json};
 
-use super::{ControllerResult, Judgement, Simulation};
+use super::{ControllerResult, Judgement, Simulation, failing_exit};
+use crate::analysis::AtRest;
 use crate::metrics::{EdgeMetrics, Measured, StepMetrics};
 use crate::units::degrees;
 
@@ -47,11 +49,40 @@ fn controller(result: &ControllerResult) -> Value {
         "saturated_samples": result.trace.saturated_samples,
         "faults": result.trace.faults.to_string(),
     });
+    answer["gains"] = gains(&result.at_rest);
+    if let Some(load) = result.at_rest.load {
+        answer["constant_load"] = json!({
+            "largest_deg_per_deg": finite(load.largest),
+            "at_end_deg_per_deg": finite(load.at_end),
+            "for_good_deg_per_deg": finite(load.for_good),
+            "removed": load.is_removed(),
+        });
+    }
+    if result.metrics.wrong_way {
+        answer["moves_the_wrong_way"] = json!(true);
+    }
     if let Some(exit) = result.trace.exit {
-        answer["left_validity"] =
-            json!({ "at_s": exit.at_s, "limit": exit.departure.quantity.name() });
+        answer["left_validity"] = json!({
+            "at_s": exit.at_s,
+            "outside_s": exit.outside_s,
+            "limit": exit.departure.quantity.name(),
+            "fails": failing_exit(result.trace.exit, result.range_rule).is_some(),
+        });
+    }
+    let failures = result.failures();
+    if !failures.is_empty() {
+        answer["failures"] = json!(failures);
     }
     answer
+}
+
+/// The gains of the file and those at rest, `null` where these are not one set.
+fn gains(at_rest: &AtRest) -> Value {
+    let triple = |Gains { kp, ki, kd }| json!({ "kp": kp, "ki": ki, "kd": kd });
+    json!({
+        "nominal": triple(at_rest.nominal),
+        "at_rest": at_rest.gains.gains().map(triple),
+    })
 }
 
 fn edge(edge: &EdgeMetrics) -> Value {

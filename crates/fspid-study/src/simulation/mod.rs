@@ -3,15 +3,18 @@
 mod csv;
 mod json;
 mod text;
+mod words;
 
 pub(crate) use json::finite;
-pub(crate) use text::left_validity;
+pub use words::WRONG_WAY;
+pub use words::left_validity;
 
 use fspid_lti::LtiError;
 use fspid_sim::stability::instability;
-use fspid_sim::{Controller, NamedController, SimError, Trace, simulate};
+use fspid_sim::{Controller, Exit, NamedController, SimError, Trace, simulate};
 
-use crate::file::Study;
+use crate::analysis::AtRest;
+use crate::file::{RangeRule, Study};
 use crate::metrics::FlightMetrics;
 pub use crate::requirement::Judgement;
 use crate::requirement::{flown_on_their_own, judge};
@@ -25,6 +28,38 @@ pub struct ControllerResult {
     pub trace: Trace,
     /// What it amounts to.
     pub metrics: FlightMetrics,
+    /// The loop at the gains that it has at rest.
+    pub at_rest: AtRest,
+    /// What is made of leaving the range of the aircraft's data.
+    pub range_rule: RangeRule,
+    /// How long the flight should have been, s.
+    pub duration_s: f64,
+}
+
+impl ControllerResult {
+    /// Why the flight fails whatever is required of it: a verdict without measures, a range that was left. Empty for
+    /// one that does not.
+    #[must_use]
+    pub fn failures(&self) -> Vec<String> {
+        let verdict = self.metrics.verdict;
+        let mut failures: Vec<String> = Vec::new();
+        if verdict.is_failure() {
+            failures.push(verdict.to_string());
+        }
+        failures.extend(self.metrics.wrong_way.then(|| WRONG_WAY.to_owned()));
+        failures
+            .extend(failing_exit(self.trace.exit, self.range_rule).map(|it| left_validity(&it)));
+        failures
+    }
+}
+
+/// The range that was left, where that is a failure.
+#[must_use]
+pub fn failing_exit(exit: Option<Exit>, range_rule: RangeRule) -> Option<Exit> {
+    match range_rule {
+        RangeRule::Fails => exit,
+        RangeRule::Warns | RangeRule::Linear | RangeRule::NoRange => None,
+    }
 }
 
 /// A study that has been flown.
@@ -36,6 +71,8 @@ pub struct Simulation {
     pub results: Vec<ControllerResult>,
     /// One judgement for each requirement and controller it concerns.
     pub judgements: Vec<Judgement>,
+    /// What is made of leaving the range of the aircraft's data.
+    pub range_rule: RangeRule,
 }
 
 impl Simulation {
@@ -58,20 +95,37 @@ impl Simulation {
             .iter()
             .zip(flight.traces)
             .map(|(named, trace)| {
-                let unstable = instability(scenario, &named.controller)
+                // Numbers so large that the loop cannot be judged are refused by their keys.
+                instability(scenario, &named.controller)
                     .map_err(|error| too_large(error, named))?;
+                let at_rest = AtRest::of(scenario, &named.controller);
+                let unstable = at_rest.unstable;
                 let metrics = FlightMetrics::of(&trace, &flight.edges, scenario.timing, unstable);
-                Ok(ControllerResult { name: named.name.clone(), trace, metrics })
+                let (name, range_rule) = (named.name.clone(), study.range_rule);
+                let duration_s = scenario.timing.end_s();
+                Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
             })
             .collect::<Result<Vec<_>, SimError>>()?;
         let judgements = judge(study, &results);
-        Ok(Self { scenario: scenario.name.clone(), results, judgements })
+        let (scenario, range_rule) = (scenario.name.clone(), study.range_rule);
+        Ok(Self { scenario, results, judgements, range_rule })
     }
 
-    /// True if every requirement is met.
+    /// True if every requirement is met and no flight failed of which something is required.
     #[must_use]
     pub fn requirements_met(&self) -> bool {
         self.judgements.iter().all(|judgement| judgement.met)
+            && self.failed_flights().next().is_none()
+    }
+
+    /// Flights that failed whatever is required of them, of controllers of which something is required.
+    pub fn failed_flights(&self) -> impl Iterator<Item = &ControllerResult> {
+        let asked = |result: &&ControllerResult| {
+            self.judgements.iter().any(|judgement| {
+                judgement.requirement.controller.as_ref().is_none_or(|name| *name == result.name)
+            })
+        };
+        self.results.iter().filter(asked).filter(|result| !result.failures().is_empty())
     }
 
     /// The result of the controller with this name.

@@ -2,10 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fspid_aircraft::Departure;
-use fspid_sim::Exit;
-
-use super::{ControllerResult, Judgement, Simulation};
+use super::{ControllerResult, Judgement, Simulation, WRONG_WAY, failing_exit, left_validity};
 use crate::metrics::{Absent, Measured, StepMetrics};
 use crate::requirement::shortest;
 use crate::units::degrees;
@@ -21,11 +18,18 @@ impl Simulation {
             line(&mut out, format_args!("\n{:width$}  {}", result.name, result.metrics.verdict));
             push_measures(&mut out, result);
         }
+        if let Some(note) = self.range_rule.note() {
+            line(&mut out, format_args!("\nnote: {note}"));
+        }
         if !self.judgements.is_empty() {
             out.push('\n');
         }
         for judgement in &self.judgements {
             push_judgement(&mut out, judgement);
+        }
+        for result in self.failed_flights() {
+            let failures = result.failures().join("; ");
+            line(&mut out, format_args!("FAILED FLIGHT: {} {failures}", result.name));
         }
         out
     }
@@ -58,30 +62,31 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
             ),
         );
     }
+    push_beside(out, result);
+}
+
+/// What is said beside the measures: the gains at rest, loads that stay, ranges that were left, faults.
+fn push_beside(out: &mut String, result: &ControllerResult) {
+    if result.metrics.wrong_way {
+        line(out, format_args!("  {WRONG_WAY}"));
+    }
+    if let Some(words) = result.at_rest.gains_in_words() {
+        line(out, format_args!("  {words}"));
+    }
+    if let Some(words) = result.at_rest.load_in_words(result.duration_s) {
+        line(out, format_args!("  note: {words}"));
+    }
+    if let Some(words) = result.at_rest.not_asked_in_words() {
+        line(out, format_args!("  note: {words}"));
+    }
     if let Some(exit) = result.trace.exit {
-        line(out, format_args!("  warning: {}", left_validity(&exit)));
+        let fails = failing_exit(result.trace.exit, result.range_rule).is_some();
+        let word = if fails { "FAILED" } else { "warning" };
+        line(out, format_args!("  {word}: {}", left_validity(&exit)));
     }
     if !result.trace.faults.is_empty() {
         line(out, format_args!("  faults: {}", result.trace.faults));
     }
-}
-
-/// When and by which limit a flight left the range of its model, in words.
-pub(crate) fn left_validity(exit: &Exit) -> String {
-    let Departure { quantity, value, allowed } = exit.departure;
-    let (factor, unit) = match quantity.unit() {
-        "rad" => (degrees(1.0), "deg"),
-        unit => (1.0, unit),
-    };
-    let text = format!(
-        "left the range of its model at t = {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
-        exit.at_s,
-        quantity.name(),
-        factor * value,
-        factor * allowed.min,
-        factor * allowed.max,
-    );
-    text.trim_end().replace("  ", " ")
 }
 
 fn push_judgement(out: &mut String, judgement: &Judgement) {
@@ -105,8 +110,12 @@ fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
 }
 
 fn step(step: &StepMetrics) -> String {
-    if let Err(reason @ (Absent::Diverged { .. } | Absent::Unstable { .. } | Absent::NotFinite)) =
-        step.overshoot_pct
+    if let Err(
+        reason @ (Absent::Diverged { .. }
+        | Absent::HitGround { .. }
+        | Absent::Unstable { .. }
+        | Absent::NotFinite),
+    ) = step.overshoot_pct
     {
         return format!("no measures ({reason})");
     }

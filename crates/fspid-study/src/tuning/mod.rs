@@ -75,6 +75,8 @@ pub struct Tuning {
     pub objectives: Vec<Objective>,
     /// Limits of means over all flights, weighted by case.
     pub limits: Vec<Requirement>,
+    /// Whether a candidate must take off a constant load, if its controller has an integral.
+    pub removes_constant_load: bool,
 }
 
 /// On what tuned controllers are compared.

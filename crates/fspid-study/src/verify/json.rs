@@ -28,7 +28,10 @@ impl Verification {
     /// ```
     /// `not_met` counts what could not be evaluated too; such a line has `reason` in place of `value`. A margin without
     /// an end is the text `"inf"`. `own_flight` stands
-    /// where a ready set was judged on a flight of its own. Keys without a value are left out.
+    /// where a ready set was judged on a flight of its own. Keys without a value are left out. `failed_flights` are
+    /// flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`; with one `all_met` is
+    /// false. `at_rest` says of each self-tuning controller its gains at rest, and of each controller a constant load
+    /// that it does not remove.
     #[must_use]
     pub fn json(&self, replays: Option<&[String]>) -> Value {
         let unevaluated = self.judgements.iter().filter(|judgement| judgement.found.is_err());
@@ -40,7 +43,7 @@ impl Verification {
                 line(judgement, replays.and_then(|replays| replays.get(index)))
             })
             .collect();
-        json!({
+        let mut answer = json!({
             "schema": SCHEMA,
             "scenario": self.study.scenario.name,
             "file": self.path,
@@ -50,7 +53,18 @@ impl Verification {
             "not_met": self.unmet(),
             "not_evaluated": unevaluated.count(),
             "requirements": requirements,
-        })
+        });
+        let failed = self.failed_flights.iter();
+        let failed: Vec<Value> = failed
+            .map(|it| json!({ "controller": it.controller, "failures": it.failures }))
+            .collect();
+        if !failed.is_empty() {
+            answer["failed_flights"] = json!(failed);
+        }
+        if !self.at_rest.is_empty() {
+            answer["at_rest"] = json!(self.at_rest);
+        }
+        answer
     }
 }
 

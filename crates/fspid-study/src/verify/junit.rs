@@ -1,14 +1,17 @@
 //! The answer as JUnit XML, which continuous integration reads: a suite for the scenario, a case for each line.
 
-use super::Verification;
+use super::{FailedFlight, Verification};
 use crate::requirement::Judgement;
 
 impl Verification {
-    /// JUnit XML. Every line has properties: the number, its limits, and its margin to the nearer of them. A line that is not met is a failure of type `not met`, one that could not be evaluated a failure of
-    /// type `not evaluated`; there are no errors, because input that cannot be used ends the program before.
+    /// JUnit XML. Every line has properties: the number, its limits, and its margin to the nearer of them. A line that is
+    /// not met is a failure of type `not met`, one that could not be evaluated a failure of type `not evaluated`, a flight
+    /// that fails by itself one of type `failed flight`; there are no errors, because input that cannot be used ends the
+    /// program before.
     #[must_use]
     pub fn junit(&self, replays: Option<&[String]>) -> String {
-        let (tests, failures) = (self.judgements.len(), self.unmet());
+        let flights = self.failed_flights.len();
+        let (tests, failures) = (self.judgements.len() + flights, self.unmet() + flights);
         let name = escaped(&self.study.scenario.name);
         // No clock is read: times are 0, so that two runs write the same bytes.
         let counts = format!(
@@ -28,8 +31,21 @@ impl Verification {
             let replay = replays.and_then(|replays| replays.get(index));
             out.push_str(&self.case(judgement, replay.map(String::as_str)));
         }
+        for failed in &self.failed_flights {
+            out.push_str(&self.flight(failed));
+        }
         out.push_str("  </testsuite>\n</testsuites>\n");
         out
+    }
+
+    /// A flight that fails whatever is required of it.
+    fn flight(&self, failed: &FailedFlight) -> String {
+        let class = format!("{}.{}", self.study.scenario.name, failed.controller);
+        let message = escaped(&failed.failures.join("; "));
+        format!(
+            "    <testcase name=\"flight\" classname=\"{}\" time=\"0\">\n      <failure type=\"failed flight\" message=\"{message}\">{message}</failure>\n    </testcase>\n",
+            escaped(&class)
+        )
     }
 
     fn case(&self, judgement: &Judgement, replay: Option<&str>) -> String {

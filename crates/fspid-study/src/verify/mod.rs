@@ -14,7 +14,7 @@ use fspid_sim::SimError;
 
 use crate::file::{self, Extra, LoadError, Problems, Study};
 use crate::requirement::Judgement;
-use crate::simulation::Simulation;
+use crate::simulation::{ControllerResult, Simulation};
 
 pub use replay::ReplayFile;
 
@@ -42,6 +42,19 @@ pub struct Verification {
     study: Study,
     /// Every requirement for every controller that it concerns.
     pub judgements: Vec<Judgement>,
+    /// Flights that fail whatever is required of them, of controllers of which something is required.
+    pub failed_flights: Vec<FailedFlight>,
+    /// What is said of each loop at rest: its gains, and loads that it does not remove.
+    at_rest: Vec<String>,
+}
+
+/// A flight that fails whatever is required of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FailedFlight {
+    /// Name of the controller.
+    pub controller: String,
+    /// Why: the verdict, the range that was left.
+    pub failures: Vec<String>,
 }
 
 /// Why nothing was verified.
@@ -107,8 +120,21 @@ pub fn verify(question: &Question<'_>) -> Result<Verification, VerifyError> {
         let in_cases = study.case_requirements.len();
         return Err(VerifyError::NothingRequired { path, in_cases });
     }
-    let judgements = Simulation::of(&study)?.judgements;
-    Ok(Verification { path, scenario_text, overrides, study, judgements })
+    let simulation = Simulation::of(&study)?;
+    let failed = simulation.failed_flights().map(|result| FailedFlight {
+        controller: result.name.clone(),
+        failures: result.failures(),
+    });
+    let failed_flights = failed.collect();
+    let at_rest = simulation.results.iter().flat_map(at_rest).collect();
+    let judgements = simulation.judgements;
+    Ok(Verification { path, scenario_text, overrides, study, judgements, failed_flights, at_rest })
+}
+
+/// The gains of a controller at rest beside the nominal ones, and a load that it does not remove.
+fn at_rest(result: &ControllerResult) -> Vec<String> {
+    let words = result.at_rest.words(result.duration_s);
+    words.map(|words| format!("{}: {words}.", result.name)).collect()
 }
 
 /// True for `NAME` and `NAME:key=value`, false for `path=value`; names in quotes do not count.
@@ -126,10 +152,10 @@ fn names_a_set(text: &str) -> bool {
 }
 
 impl Verification {
-    /// True if every requirement is met.
+    /// True if every requirement is met and no flight failed by itself.
     #[must_use]
     pub fn all_met(&self) -> bool {
-        self.unmet() == 0
+        self.unmet() == 0 && self.failed_flights.is_empty()
     }
 
     /// How many requirements are not met, those that could not be evaluated among them.

@@ -7,6 +7,7 @@ use fspid_sim::{Controller, Scenario};
 use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
 use crate::metrics::{Family, Measure};
+use crate::report::number::capital;
 use crate::requirement::{Judgement, Origin, set, shortest};
 use crate::shell;
 
@@ -24,6 +25,9 @@ impl Verification {
         let mut out =
             format!("{} ({})\n\n", visible(&self.study.scenario.name), visible(&self.path));
         out.push_str(&self.table(replays));
+        let failed = self.failed_flights.iter();
+        let failed = failed.map(|it| format!("{}: {}.", it.controller, it.failures.join("; ")));
+        section(&mut out, "Flights that failed, whatever is required", &failed.collect::<Vec<_>>());
         section(&mut out, "What is asked", &self.asked());
         section(&mut out, "Notes", &self.notes());
         if replays.is_none() {
@@ -88,9 +92,14 @@ impl Verification {
             0 => String::new(),
             some => format!(", {some} could not be evaluated"),
         };
+        let flights = match self.failed_flights.len() {
+            0 => String::new(),
+            1 => "; 1 flight failed".to_owned(),
+            many => format!("; {many} flights failed"),
+        };
         let word = if self.all_met() { "PASS" } else { "FAIL" };
         let noun = if count == 1 { "requirement" } else { "requirements" };
-        format!("{} of {count} {noun} met{some}; {word}", count - self.unmet())
+        format!("{} of {count} {noun} met{some}{flights}; {word}", count - self.unmet())
     }
 
     /// Which lines were judged on a flight of their own, and what that flight is.
@@ -121,6 +130,8 @@ impl Verification {
     /// What should be known about the numbers above.
     fn notes(&self) -> Vec<String> {
         let mut notes = self.own_flights();
+        notes.extend(self.at_rest.iter().cloned());
+        notes.extend(self.study.range_rule.note().map(|note| format!("{}.", capital(note))));
         let asks = |family: Family| {
             self.judgements.iter().any(|judgement| judgement.requirement.measure.family() == family)
         };

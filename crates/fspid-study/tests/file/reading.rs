@@ -48,10 +48,19 @@ fn every_commented_line_of_the_starter_may_be_uncommented() {
         let (block, after) = block.split_at(end);
         format!("{before}{}{}{after}", &from[2..], block.replace("\n# ", "\n"))
     };
-    for block in ["# [[disturbance]]", "# [[requirement]]"] {
-        let study = parse(&uncommented(block));
-        let study = study.unwrap_or_else(|problems| panic!("{problems}"));
-        assert_eq!(study.scenario.disturbances.len() + study.requirements.len(), 1);
+    let study = parse(&uncommented("# [[requirement]]"));
+    let study = study.unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!((study.scenario.disturbances.len(), study.requirements.len()), (1, 1));
+}
+
+/// A tuned starter had never met a load: its rules could take the integral away and nothing showed it.
+#[test]
+fn the_starter_has_a_load_that_stays_and_both_of_its_controllers_take_it_over() {
+    let study = parse(file::starter()).expect("no problems");
+    let simulation = fspid_study::simulation::Simulation::of(&study).expect("it flies");
+    for result in &simulation.results {
+        assert_eq!(result.metrics.verdict, fspid_study::metrics::Verdict::Settled);
+        assert!(result.at_rest.load.is_some_and(|load| load.is_removed()), "{}", result.name);
     }
 }
 

@@ -2,7 +2,9 @@
 #![allow(clippy::float_cmp, reason = "the same bits are asked for")]
 
 mod agreement;
+mod at_rest;
 mod gallery;
+mod ground;
 mod limits;
 mod linear_file;
 mod loading;

@@ -62,7 +62,10 @@ fn an_option_overrides_the_rule_of_the_file() {
 #[test]
 fn a_name_that_is_no_system_lists_what_is() {
     let told = load("nowhere", Options::default()).expect_err("wrong").to_string();
-    assert!(told.contains(".fis, .fcl or .fll") && told.contains("printed, mirrored"), "{told}");
+    assert!(
+        told.contains(".fis, .t2fis, .fcl, .fll or .xml") && told.contains("printed, mirrored"),
+        "{told}"
+    );
     let needs = load("printed", Options::default()).expect_err("wrong").to_string();
     assert!(needs.contains("--range"), "{needs}");
     let missing = load("nowhere.toml", Options::default());

@@ -1,6 +1,6 @@
 //! Whether a contest can be held, and fairly: everything that is wrong is told at once.
 
-use fspid_campaign::engine::Stability;
+use fspid_campaign::engine::{Judging, Stability};
 use fspid_study::file::{Study, Template};
 use fspid_study::tuning::{Contest as Rules, Tuning};
 
@@ -57,6 +57,9 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
 fn refused(source: &Source, problems: Vec<String>) -> TuneError {
     TuneError::Contest { path: source.path.display().to_string(), problems }
 }
+
+/// Everybody is measured as it flew, and asked what a constant load does.
+const JUDGING: Judging = Judging { stability: Stability::AsFlown, loads: true };
 
 /// Lines of a problem below one another.
 fn in_lines(text: &str) -> String {
@@ -151,6 +154,6 @@ fn entrant(
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.as_ref().map_or(&[][..], |tuning| &tuning.objectives);
     let measured = flight::measured(objectives);
-    let flights = Flights::new(Space::new(marks), flown, measured).with(Stability::AsFlown);
+    let flights = Flights::new(Space::new(marks), flown, measured).with(JUDGING);
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -2,7 +2,7 @@
 
 use fspid_campaign::engine::FlightResult;
 use fspid_campaign::rows;
-use fspid_study::metrics::{Absent, Measure};
+use fspid_study::metrics::{Absent, Measure, Verdict};
 use fspid_study::requirement::{AskedIn, Conditions, Judgement, NotEvaluated, Origin, Requirement};
 use fspid_study::tuning::Objective;
 use fspid_study::units::degrees;
@@ -51,6 +51,11 @@ pub struct Flight {
     pub unstable: bool,
     /// True for a flight that is lost, breaks a requirement, or is of a loop that is unstable at rest.
     pub failed: bool,
+    /// True for a loop that does not remove a constant load at the servo within the flight, with the gains that it has at
+    /// rest. It is told, and fails nothing: a controller may have no integral by design.
+    pub load_left: bool,
+    /// The gains at rest beside the nominal ones, in words; none for fixed gains.
+    pub gains: Option<String>,
     /// Why it is lost, and which requirements are broken.
     pub reasons: Vec<String>,
 }
@@ -64,6 +69,8 @@ impl Flight {
             verdict: rows::REFUSED.to_owned(),
             lost: true,
             unstable: false,
+            load_left: false,
+            gains: None,
             failed: true,
             reasons: vec![reason],
         }
@@ -77,10 +84,14 @@ impl Flight {
         let measures = MEASURES.map(|(name, _)| rows::measured(flight, name));
         let is_far = !(degrees(flight.largest_error_rad) <= LOST_DEG);
         let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none() || is_far;
-        let measures = if is_lost { [None; MEASURES.len()] } else { measures };
+        let mut measures = if is_lost { [None; MEASURES.len()] } else { measures };
         let mut counted = measures;
         for (index, value) in counted.iter_mut().enumerate() {
             *value = value.or_else(|| stand_in(flight, index, is_lost));
+        }
+        if is_unstable(flight) {
+            // A loop that is unstable at rest settles nothing; in means these count as they flew.
+            (measures[OVERSHOOT], measures[SETTLING]) = (None, None);
         }
         let unmet = asked.iter().any(|judgement| !judgement.met);
         let costs = score.values.iter().zip(objectives);
@@ -90,13 +101,12 @@ impl Flight {
             measures,
             counted,
             cost: has_cost.then_some(cost).filter(|cost| cost.is_finite()),
-            verdict: match is_far && !flight.metrics.verdict.is_failure() {
-                true => format!("lost: an error beyond {LOST_DEG} deg"),
-                false => flight.metrics.verdict.to_string(),
-            },
+            verdict: verdict_of(flight, is_far),
             lost: is_lost,
             unstable: is_unstable(flight),
-            failed: is_lost || unmet || is_unstable(flight),
+            gains: flight.at_rest.gains_in_words(),
+            load_left: flight.at_rest.load.is_some_and(|load| !load.is_removed()),
+            failed: is_lost || unmet || is_unstable(flight) || flight.failing_exit().is_some(),
             reasons: is_far
                 .then(|| format!("an error beyond {LOST_DEG} deg"))
                 .into_iter()
@@ -104,6 +114,20 @@ impl Flight {
                 .chain(score.reasons)
                 .collect(),
         }
+    }
+}
+
+/// The verdict of a flight as the contest has it.
+fn verdict_of(flight: &FlightResult, is_far: bool) -> String {
+    let verdict = flight.metrics.verdict;
+    match (verdict.is_failure(), flight.at_rest.unstable) {
+        (false, _) if is_far => format!("lost: an error beyond {LOST_DEG} deg"),
+        (false, Some(unstable)) => Verdict::Unstable {
+            spectral_radius: unstable.spectral_radius,
+            doubling_s: unstable.doubling_s,
+        }
+        .to_string(),
+        _ => verdict.to_string(),
     }
 }
 
@@ -131,7 +155,7 @@ fn is_unstable(flight: &FlightResult) -> bool {
         Ok(case) => judgement.requirement.measure == Measure::Stable && !(case.value >= 1.0),
         Err(_) => false,
     };
-    flight.unstable.is_some() || flight.judgements.iter().any(of_loop)
+    flight.at_rest.unstable.is_some() || flight.judgements.iter().any(of_loop)
 }
 
 /// What stands for a measure that a flight does not have.

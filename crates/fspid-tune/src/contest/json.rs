@@ -202,7 +202,7 @@ fn spread(found: Option<Spread>) -> Value {
 }
 
 fn count(count: Count) -> Value {
-    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "of": count.of })
+    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "constant_load_left": count.load_left, "of": count.of })
 }
 
 /// JSON has no infinity: a mean with lost flights is null, and the flights are counted beside it.

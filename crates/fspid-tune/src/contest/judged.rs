@@ -101,6 +101,8 @@ pub struct Count {
     pub failed: u64,
     /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
+    /// Flights of a loop that does not remove a constant load within the flight.
+    pub load_left: u64,
     /// All flights.
     pub of: u64,
 }
@@ -186,6 +188,7 @@ impl Judged {
                 count.lost += u64::from(flight.lost);
                 count.failed += u64::from(flight.failed);
                 count.unstable += u64::from(flight.unstable);
+                count.load_left += u64::from(flight.load_left);
                 count.of += 1;
             }
         }

@@ -1,7 +1,7 @@
 //! The outcome for people.
 
 use super::compare::Comparison;
-use super::judged::Quantity;
+use super::judged::{Judged, Quantity};
 use super::outcome::Outcome;
 use super::words::{
     by_group, cautions, counted, cut, headline, name, number, over_kept, p_value, sentence, signed,
@@ -20,6 +20,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
     out.push('\n');
     table(outcome, &mut out);
     mirrors(outcome, &mut out);
+    gains(outcome, &mut out);
     out.push_str(&format!("\n{}\n", held(outcome)));
     cautions(outcome).iter().for_each(|line| out.push_str(&format!("{line}\n")));
     out
@@ -112,6 +113,20 @@ fn stands(outcome: &Outcome, place: usize) -> String {
             format!("{}, {}", standing(found), p_value(found.lost.p_adjusted))
         }
         Some(found) => format!("{}, {}", standing(found), p_value(found.p_adjusted)),
+    }
+}
+
+/// The gains at rest of self-tuning controllers beside the nominal ones: of the design that cost least, in the first case.
+fn gains(outcome: &Outcome, out: &mut String) {
+    let lines = outcome.judged.contestants.iter().filter_map(|it| {
+        let design = it.designs.get(Judged::best(it))?;
+        let words = design.flights.first()?.gains.as_ref()?;
+        Some(format!("  {}: {words}\n", cut(&it.name, 40)))
+    });
+    let lines: String = lines.collect();
+    if !lines.is_empty() {
+        out.push_str("\nGains of the designs that cost least, in the first case:\n");
+        out.push_str(&lines);
     }
 }
 

@@ -414,7 +414,20 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
             ));
         }
     }
+    notes.extend((0..judged.contestants.len()).filter_map(|place| loads_left(outcome, place)));
     notes
+}
+
+/// How many flights of a controller are of loops that do not remove a constant load, if any.
+fn loads_left(outcome: &Outcome, place: usize) -> Option<String> {
+    let count = outcome.summaries.get(place)?.whole.count;
+    let words = format!(
+        "{}: {} of its {} flights are of loops that, with the gains that they have at rest, do not remove a constant load at the servo within the flight to a tenth of its largest effect; without an integral it stays for good.",
+        cut(name(outcome, place), 60),
+        count.load_left,
+        count.of
+    );
+    (count.load_left > 0).then_some(words)
 }
 
 /// At most so many characters, with an ellipsis where some are left out.

@@ -130,6 +130,14 @@ pub enum RuleError {
         /// When, s.
         at_s: f64,
     },
+    /// The aircraft came down to the ground.
+    #[error(
+        "the aircraft under the relay hit the ground at {at_s:.2} s; choose a higher altitude or a shorter experiment"
+    )]
+    RelayHitGround {
+        /// When, s.
+        at_s: f64,
+    },
     /// No oscillation that repeats.
     #[error(
         "the relay's oscillation did not settle within {longest_s} s ({cycles} cycles); choose a longer experiment, another amplitude or hysteresis"

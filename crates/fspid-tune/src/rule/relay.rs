@@ -173,8 +173,10 @@ pub(super) fn experiment(
             None => ControlFlow::Continue(()),
         },
     )?;
-    if let Outcome::Diverged { at_s } = outcome {
-        return Err(RuleError::RelayDiverged { at_s });
+    match outcome {
+        Outcome::Diverged { at_s } => return Err(RuleError::RelayDiverged { at_s }),
+        Outcome::HitGround { at_s } => return Err(RuleError::RelayHitGround { at_s }),
+        Outcome::Completed => {}
     }
     let cycles = relay.borrow().cycles.len();
     let Some((settled, k)) = found else {

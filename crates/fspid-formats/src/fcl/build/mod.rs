@@ -1,6 +1,7 @@
 //! From what a text says to the system that it means.
 
 mod output;
+mod partial;
 mod rules;
 
 use std::collections::BTreeSet;
@@ -20,11 +21,14 @@ use crate::{check, rule, term};
 
 /// The system that a draft means in a dialect.
 pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading, Problems> {
-    let Draft { name, variables, blocks, mut evidence, mut report, .. } = draft;
+    let Draft { name, mut variables, blocks, mut evidence, mut report, .. } = draft;
+    let without = partial::without_a_section(&mut variables, &blocks, &mut report);
     let names = rule_names(&variables, &mut report);
     let mut missing_sign = None;
     let read = |block| rules::block(block, &names, &mut missing_sign, &mut report);
-    let rules: Vec<RuleBlock> = blocks.iter().map(read).collect();
+    let mut rules: Vec<RuleBlock> = blocks.iter().map(read).collect();
+    variables.truncate(variables.len() - without);
+    partial::leave_out(&mut rules, &variables, &mut report);
     if let Some(place) = missing_sign {
         evidence.fuzzylite(place, "a rule without `;`");
     }
@@ -35,6 +39,9 @@ pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading,
     let mut builder = Builder { dialect, formula_names: names, inputs, report, accus };
     builder.tell(dialect == found, &how);
     let parts = builder.parts(name, &variables, rules);
+    if parts.outputs.is_empty() && !parts.inputs.is_empty() {
+        builder.report.note_whole("without an output nothing can be concluded; the sets are read");
+    }
     if parts.formulas_name_outputs() {
         builder.report.note_whole(term::OUTPUTS_IN_FORMULAS);
     }

@@ -21,9 +21,6 @@ impl<'a> Builder<'a> {
                 format!("the local variable `{}` is an output here", name.text),
             );
         }
-        if variable.section.is_none() {
-            wrong(&mut self.report, name, "has no DEFUZZIFY section", "`DEFUZZIFY` with its terms");
-        }
         let defuzzifier = self.defuzzifier(variable);
         let integrates = defuzzifier.sampling().is_some();
         let mut terms = Vec::new();

@@ -11,7 +11,9 @@ mod sign;
 use core::f64::consts::PI;
 
 use super::family::bowl;
+use super::reduced::Response;
 use crate::ball::Ball;
+use crate::complex::modulus;
 use crate::wide::WideBall;
 use parts::Parts;
 use real::{Real, difference};
@@ -46,6 +48,12 @@ impl Bracket {
     #[must_use]
     pub fn is_tight(&self) -> bool {
         self.at_most <= self.at_least * (1.0 + SAME)
+    }
+
+    /// Whether anything is proved.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        self.at_least > 0.0 || self.at_most < f64::INFINITY
     }
 
     /// Nothing is proved.
@@ -84,7 +92,7 @@ pub(super) struct Proof {
 
 impl Proof {
     /// From $A - I$, b and c; `None` where nothing can be proved.
-    pub(super) fn new(change: &[WideBall], b: &[f64], c: &[f64]) -> Option<Self> {
+    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
         let parts = Parts::new(change, b, c)?;
         let closed = parts.closed().squared();
         Some(Self { parts, closed })
@@ -140,6 +148,24 @@ impl Proof {
         over.plus(&self.parts.under, Ball::from(-centre)).squared()
     }
 
+    /// L at an angle: the response that was computed, if it is proved to 10⁻⁹, or else the proved one.
+    pub(super) fn response(&self, angle_rad: f64, computed: Response) -> Response {
+        let [over, under] = [&self.parts.over, &self.parts.under].map(|part| part.at(angle_rad));
+        let (cross, other) = (computed.over * under, over * computed.under);
+        if modulus(cross - other) <= ABOVE * modulus(other) {
+            return computed;
+        }
+        Response { over, under }
+    }
+
+    /// Whether L is proved to cross the real axis at an angle, to 10⁻⁹ of it.
+    ///
+    /// A pole then crosses the unit circle there as the gain passes the factor that makes L −1: the number of turns around
+    /// −1 changes.
+    pub(super) fn crosses_at(&self, angle_rad: f64) -> bool {
+        changes_around(&self.parts.over.across(&self.parts.under), angle_rad)
+    }
+
     /// Angles within two ends at which $|L| = 1$: those given, and those that are proved and not among them.
     pub(super) fn unit_gain_angles(&self, given: Vec<f64>, ends: (f64, f64)) -> Vec<f64> {
         let [over, under] = [&self.parts.over, &self.parts.under].map(Real::squared);
@@ -187,15 +213,7 @@ struct Height {
 
 impl Heights<'_> {
     fn square(&self, place: f64) -> Option<Ball> {
-        // Of a place beyond 1 the inverse, and the coefficients from the other end.
-        let value = |polynomial: &[Ball]| {
-            if place <= 1.0 {
-                real::value(polynomial.iter().rev(), place)
-            } else {
-                real::value(polynomial.iter(), 1.0 / place)
-            }
-        };
-        value(self.over).over(value(self.under))
+        value_at(self.over, place).over(value_at(self.under, place))
     }
 
     fn at(&self, place: f64) -> Height {
@@ -239,15 +257,26 @@ impl Heights<'_> {
     }
 }
 
-/// Angles of zeros of a polynomial: those given, and those that are proved and not among them.
+/// Angles of zeros of a polynomial: those given, those that are proved and not among them, and in place of given ones
+/// that are off by more than 10⁻⁹ those that are proved.
 fn completed(mut given: Vec<f64>, ends: (f64, f64), polynomial: &[Ball]) -> Vec<f64> {
     let near = |angle_rad: f64, other: f64| (angle_rad - other).abs() <= SAME_PLACE * other;
     for between in sign::zeros(polynomial) {
         let [low, high] = [between.low, between.high].map(angle_of);
-        let known = given.iter().filter(|&&known| {
-            low * (1.0 - SAME_PLACE) <= known && known <= high * (1.0 + SAME_PLACE)
+        let mut known = given.iter_mut().filter(|known| {
+            low * (1.0 - SAME_PLACE) <= **known && **known <= high * (1.0 + SAME_PLACE)
         });
-        if known.count() == 1 {
+        let (first, second) = (known.next(), known.next());
+        if let (Some(known), None) = (first, second) {
+            if !changes_around(polynomial, *known) {
+                let angle_rad = angle_of(zero(polynomial, between));
+                // Another zero that lies beside is not this one.
+                if near(*known, angle_rad) {
+                    *known = angle_rad;
+                } else if ends.0 <= angle_rad && angle_rad <= ends.1 {
+                    given.push(angle_rad);
+                }
+            }
             continue;
         }
         let angle_rad = angle_of(zero(polynomial, between));
@@ -260,22 +289,31 @@ fn completed(mut given: Vec<f64>, ends: (f64, f64), polynomial: &[Ball]) -> Vec<
     given
 }
 
+/// Value at a place, over a power of it where it is beyond 1.
+fn value_at(polynomial: &[Ball], place: f64) -> Ball {
+    if place <= 1.0 {
+        real::value(polynomial.iter().rev(), place)
+    } else {
+        real::value(polynomial.iter(), 1.0 / place)
+    }
+}
+
+/// Whether a polynomial is proved to change its sign within 10⁻⁹ of an angle.
+fn changes_around(polynomial: &[Ball], angle_rad: f64) -> bool {
+    let [before, after] = [1.0 - ABOVE, 1.0 + ABOVE]
+        .map(|share| value_at(polynomial, place_of((angle_rad * share).min(PI))));
+    before.is_positive() && after.is_negative() || before.is_negative() && after.is_positive()
+}
+
 /// The zero between two places, by halving; the middle where no sign is told.
 fn zero(polynomial: &[Ball], Between { mut low, mut high }: Between) -> f64 {
-    let value = |place: f64| {
-        if place <= 1.0 {
-            real::value(polynomial.iter().rev(), place)
-        } else {
-            real::value(polynomial.iter(), 1.0 / place)
-        }
-    };
-    let rises = value(low).is_negative();
+    let rises = value_at(polynomial, low).is_negative();
     for _ in 0..HALVINGS {
         let middle = super::scan::middle(low, high);
         if !(low < middle && middle < high) {
             break;
         }
-        let there = value(middle);
+        let there = value_at(polynomial, middle);
         if !(there.is_positive() || there.is_negative()) {
             return middle;
         }

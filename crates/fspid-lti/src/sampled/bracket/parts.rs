@@ -36,7 +36,7 @@ impl Parts {
     /// # Source
     /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
     /// (1965), chapter 7.
-    pub(super) fn new(change: &[WideBall], b: &[f64], c: &[f64]) -> Option<Self> {
+    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
         let system = Square::bordered(change, b, c).reduced()?;
         let order = b.len();
         let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
@@ -114,13 +114,13 @@ impl Square {
     }
 
     /// The loop with b as its first row and c as its first column, transposed about the other diagonal, balanced.
-    fn bordered(change: &[WideBall], b: &[f64], c: &[f64]) -> Self {
+    fn bordered(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Self {
         let order = b.len();
         let size = order + 1;
         let entry = |row: usize, column: usize| match (row.checked_sub(1), column.checked_sub(1)) {
             (Some(row), Some(column)) => change[(order - 1 - column) * order + order - 1 - row],
             (Some(row), None) => c[order - 1 - row].into(),
-            (None, Some(column)) => b[order - 1 - column].into(),
+            (None, Some(column)) => b[order - 1 - column],
             (None, None) => WideBall::ZERO,
         };
         let data: Vec<WideBall> =

@@ -1,6 +1,7 @@
 //! Real polynomials in $w = \tan^2(\omega T / 2)$ that are proved.
 
 use crate::ball::Ball;
+use crate::complex::Complex;
 use crate::wide::WideBall;
 
 /// $R(w) + j t\, I(w)$, $w = t^2$: a polynomial in $s = j t$.
@@ -22,6 +23,21 @@ impl Real {
             signed.collect()
         };
         Self { even: every_second(0), odd: every_second(1) }
+    }
+
+    /// Value at an angle, up to a factor that all of one degree have in common.
+    pub(super) fn at(&self, angle_rad: f64) -> Complex {
+        let (sin, cos) = libm::sincos(0.5 * angle_rad);
+        let tangent = sin / cos;
+        let place = tangent * tangent;
+        if place <= 1.0 {
+            let part = |part: &[Ball]| value(part.iter().rev(), place).rounded();
+            return Complex::new(part(&self.even), tangent * part(&self.odd));
+        }
+        let part = |part: &[Ball]| value(part.iter(), 1.0 / place).rounded();
+        // An even degree is that of the even part alone.
+        let factor = if self.even.len() > self.odd.len() { 1.0 / tangent } else { tangent };
+        Complex::new(part(&self.even), factor * part(&self.odd))
     }
 
     /// The sum with a multiple of another.

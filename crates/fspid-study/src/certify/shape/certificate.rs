@@ -91,8 +91,12 @@ const LAG: Shape = Kinds(
     ],
 );
 
-const SENSING: Shape =
-    Object(&[key("scale", REAL), key("samples", Whole(0, SAMPLES)), key("part", Number(0.0, 1.0))]);
+const SENSING: Shape = Object(&[
+    key("scale", REAL),
+    key("samples", Whole(0, SAMPLES)),
+    key("part", Number(0.0, 1.0)),
+    key("resolution", Number(0.0, ANGLE)),
+]);
 
 const CONTROLLER: Shape = Object(&[
     key("gains", GAINS),

@@ -75,7 +75,7 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     let target = plant.trim().target;
     let plant = match model {
         ModelWord::Linear => Plant::Linear(judged(report, (part, key), plant.linear())?),
-        ModelWord::Nonlinear => plant.into(),
+        ModelWord::Nonlinear => above_ground(report, part, plant)?.into(),
     };
     let way = way(part, target, aircraft.environment())?;
     Some(Flown { plant, way: Some(Way { span_m, ..way }) })
@@ -136,6 +136,28 @@ pub(super) fn check_ground(report: &mut Report, part: &Section, target: TrimTarg
         let (place, path) = (part.at("ground_m"), part.path("ground_m"));
         report.value(place, &path, "the ground is above the aircraft", allowed);
     }
+}
+
+/// The aircraft over its ground, or a problem where it begins there: a flight ends at the ground.
+fn above_ground(
+    report: &mut Report,
+    part: &Section,
+    plant: AircraftPlant,
+) -> Option<AircraftPlant> {
+    let (ground_m, altitude_m) = (part.number("ground_m")?, plant.trim().target.altitude_m);
+    let above = plant.above_ground(ground_m);
+    // A ground above the aircraft that the file gives is told by itself.
+    let told = part.given("ground_m") && ground_m > altitude_m;
+    if above.is_err() && !told {
+        let key = altitude_key(part);
+        let allowed = format!("above the ground, {ground_m:?} m; or a lower `ground_m`");
+        report.value(part.at(key), &part.path(key), "the flight begins at the ground", allowed);
+    }
+    above.ok()
+}
+
+fn altitude_key(part: &Section) -> &'static str {
+    if part.given("altitude_ft") { "altitude_ft" } else { "altitude_m" }
 }
 
 fn laws(part: &Section) -> Option<Laws> {

@@ -10,6 +10,7 @@ mod flight;
 mod linear_aircraft;
 mod loading;
 mod lqi;
+mod range_rule;
 mod schedule;
 mod sensor;
 mod signal;
@@ -21,6 +22,7 @@ pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
 use flight::Flown;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
+pub use range_rule::RangeRule;
 use schedule::Pressure;
 
 use crate::dispersion::Dispersion;
@@ -44,6 +46,7 @@ pub(crate) struct Built {
     pub(crate) derived_gains: Vec<DerivedGains>,
     pub(crate) tuning: Option<Tuning>,
     pub(crate) contest: Option<Contest>,
+    pub(crate) range_rule: RangeRule,
 }
 
 /// The scenario with its requirements; every part that the check left sound is built even where
@@ -106,7 +109,17 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    Some(Built { scenario, requirements, airframes, dispersions, derived_gains, tuning, contest })
+    let range_rule = RangeRule::of(section, &scenario);
+    Some(Built {
+        scenario,
+        requirements,
+        airframes,
+        dispersions,
+        derived_gains,
+        tuning,
+        contest,
+        range_rule,
+    })
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.

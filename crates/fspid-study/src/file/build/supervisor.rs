@@ -94,8 +94,7 @@ fn of_system(
     part: &Section,
     range: f64,
 ) -> Option<NumberTable<f64>> {
-    const ALLOWED: &str =
-        "a readable .toml, .fis, .fcl or .fll file, its path relative to the scenario's folder";
+    const ALLOWED: &str = "a readable .toml, .fis, .t2fis, .fcl, .fll or .xml file, its path relative to the scenario's folder";
     let name = part.text("system")?;
     let (place, path) = (part.at("system"), part.path("system"));
     let text = match (Format::of(name.as_ref()), files.read(name)) {

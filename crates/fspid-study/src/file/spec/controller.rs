@@ -306,7 +306,7 @@ const SUPERVISOR_KEYS: &[Key] = &[
     optional(
         "system",
         Kind::Path,
-        "A file with such rules (.toml, .fis, .fcl, .fll), as `fspid learn` writes it.",
+        "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
     ),
     required(
         "range",

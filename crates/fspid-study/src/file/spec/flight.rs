@@ -21,6 +21,11 @@ words! {
 words_of!(DragLaw { Linear = "linear", Polar = "polar" });
 words_of!(ThrustLaw { Constant = "constant", WithSpeed = "with-speed" });
 
+words! {
+    /// What leaving the range of the data comes to.
+    ValidityWord { Fail = "fail", Warn = "warn" }
+}
+
 /// The standard atmosphere.
 pub(super) const ALTITUDE: Range = Range::Between(-5_000.0, 84_852.0);
 /// The same in feet.
@@ -114,7 +119,18 @@ pub(super) static AIRCRAFT: Table = Table {
                 "Angle of the flight path over the horizon at which it is trimmed, climbing positive; level if left out, and in its glide an aircraft without an engine.",
             ),
             defaulted("heading_deg", angle(), Default::Number(0.0), "Clockwise from north."),
-            defaulted("ground_m", finite("m"), Default::Number(0.0), "Altitude of the ground."),
+            defaulted(
+                "ground_m",
+                finite("m"),
+                Default::Number(0.0),
+                "Altitude of the ground; a nonlinear flight begins above it and ends at it, a failure.",
+            ),
+            defaulted(
+                "validity",
+                Kind::Word(ValidityWord::WORDS),
+                Default::Word("fail"),
+                "What a nonlinear flight comes to that leaves the range in which the aircraft's data are trusted: a failure, or a warning.",
+            ),
         ],
         LOADING,
     ],

@@ -29,6 +29,11 @@ words! {
     OverWord { Mean = "mean", Worst = "worst", Tail = "tail" }
 }
 
+words! {
+    /// What is asked of a constant load.
+    ConstantLoadWord { Removed = "removed", Ignored = "ignored" }
+}
+
 /// How a scenario is tuned.
 pub(super) static TUNING: Table = plain(
     "How `fspid tune` chooses the numbers that are marked `{ tune = [lower, upper] }`.",
@@ -69,6 +74,12 @@ pub(super) static TUNING: Table = plain(
         ),
         RUNS,
         RUN_SEED,
+        defaulted(
+            "constant_load",
+            Kind::Word(ConstantLoadWord::WORDS),
+            Default::Word("removed"),
+            "Whether a candidate must take off a constant load at the servo with the gains that it has at rest: at most half of its largest effect may be left at the end of the flight, and nothing for good. Asked of controllers with an integral.",
+        ),
         optional(
             "case",
             Kind::Tables { table: &CASE, least: 0, most: 1000 },

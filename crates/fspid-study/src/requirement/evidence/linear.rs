@@ -95,7 +95,8 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
         fspid_sim::Outcome::Diverged { at_s } => {
             Some(Case { value: 0.0, place: Place { at_s: Some(at_s), ..Place::default() } })
         }
-        fspid_sim::Outcome::Completed => None,
+        // What hits the ground may be stable: the flight fails by itself.
+        fspid_sim::Outcome::Completed | fspid_sim::Outcome::HitGround { .. } => None,
     }
 }
 

@@ -7,11 +7,11 @@ mod linear;
 
 use std::cell::OnceCell;
 
-use fspid_sim::NamedController;
+use fspid_sim::{Controller, NamedController};
 
 use super::{Case, NotEvaluated, Requirement};
 use crate::file::Study;
-use crate::metrics::Family;
+use crate::metrics::{Family, Verdict};
 use crate::simulation::ControllerResult;
 use linear::PlantEvidence;
 
@@ -60,6 +60,10 @@ impl<'a> Evidence<'a> {
     pub fn cases(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
         match requirement.measure.family() {
             Family::Step | Family::Flight => {
+                // Where the loop says it of each plant, it says of which.
+                if self.is_unstable_beyond_fixed_gains() {
+                    self.require_stability()?;
+                }
                 flown::require_measures(self.result)?;
                 self.require_stability()?;
                 flown::cases(self.study, self.result, requirement)
@@ -71,6 +75,15 @@ impl<'a> Evidence<'a> {
             }
             Family::Airframe => airframe::cases(self.study, requirement),
         }
+    }
+
+    /// True for the verdict of a loop at rest whose gains move or whose command is limited.
+    fn is_unstable_beyond_fixed_gains(&self) -> bool {
+        let is_simple = match &self.named.controller {
+            Controller::Fixed(pid) => pid.shell().is_linear(),
+            Controller::SelfTuning(_) => false,
+        };
+        !is_simple && matches!(self.result.metrics.verdict, Verdict::Unstable { .. })
     }
 
     /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.

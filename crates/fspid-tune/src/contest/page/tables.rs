@@ -281,7 +281,7 @@ pub(super) fn by_group(outcome: &Outcome) -> DataTable {
             };
             row.push(match first.ranking.first() == Some(&place) {
                 true => Datum::Met(words),
-                false => Datum::Number(words),
+                false => Datum::Text(words),
             });
         }
         row

@@ -1,0 +1,231 @@
+//! What a constant load does to a loop around rest, and whether the controller takes it off again.
+//!
+//! A trim that is off, a shifted centre of gravity, a biased servo: each is a constant at the servo. An integral takes
+//! its effect away in time; a controller without one, or whose integral is slow beside the flight, does not.
+
+use fspid_core::{Gains, Shell};
+use fspid_lti::{LtiError, Matrix};
+
+use crate::aircraft::AircraftPlant;
+use crate::error::SimError;
+use crate::loop_model::{LoopModel, Memory};
+use crate::plant::LinearPlant;
+use crate::scenario::Scenario;
+
+/// Points at which the error of a flight is looked at. Its largest value between them is missed by little where the
+/// slow part of the answer counts, and what is missed makes the share that is left look larger, on the safe side.
+const POINTS: usize = 64;
+/// How often the time is doubled to see where the error ends: beyond a thousand flights.
+const DOUBLINGS: usize = 10;
+/// Share of its largest effect that may be left of a load which counts as removed.
+pub const REMOVED: f64 = 0.1;
+/// Share of its largest effect above which a load counts as kept: a flight may be short beside an integral that works.
+pub const KEPT: f64 = 0.5;
+/// Share of its largest effect that may be left for good of a load which counts as removed, where there is no integral.
+const FOR_GOOD: f64 = 1e-3;
+
+/// The pitch error that a constant load of one degree at the servo makes from the start of the flight on, around rest,
+/// no limit at work; deg for a degree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantLoad {
+    /// Largest size during the flight.
+    pub largest: f64,
+    /// Size at the end of the flight.
+    pub at_end: f64,
+    /// Size a thousand flights later.
+    pub for_good: f64,
+    /// True for a loop with an integral.
+    pub has_integral: bool,
+}
+
+impl ConstantLoad {
+    /// What is left at the end of the flight, as a share of the largest effect; 0 for a load without effect.
+    #[must_use]
+    pub fn share_left(&self) -> f64 {
+        if self.largest > 0.0 { self.at_end / self.largest } else { 0.0 }
+    }
+
+    /// True where at most [`REMOVED`] is left at the end and, without an integral, next to nothing for good.
+    #[must_use]
+    pub fn is_removed(&self) -> bool {
+        // Written so that NaN is not removed.
+        self.share_left() <= REMOVED
+            && (self.has_integral || self.for_good <= FOR_GOOD * self.largest)
+    }
+
+    /// True where more than [`KEPT`] is left at the end or, without an integral, anything for good: what a tuning refuses.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        // Written so that NaN is kept.
+        !(self.share_left() <= KEPT
+            && (self.has_integral || self.for_good <= FOR_GOOD * self.largest))
+    }
+
+    /// True where what is left at the end goes on shrinking to nothing.
+    #[must_use]
+    pub fn is_slow(&self) -> bool {
+        !self.is_removed() && self.for_good <= FOR_GOOD * self.largest
+    }
+}
+
+/// The effect of a constant load with the plant of the scenario on which most of it is left. The loop must be stable.
+///
+/// # Errors
+/// [`SimError`] where a plant cannot be discretised, an aircraft has no linear model, or a number overflows.
+pub fn constant_load(
+    scenario: &Scenario,
+    gains: Gains<f64>,
+    shell: &Shell<f64>,
+) -> Result<Option<ConstantLoad>, SimError> {
+    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
+    let lasting = scenario.lasting_plants().into_iter().map(|(_, plant)| plant);
+    let mut worst: Option<ConstantLoad> = None;
+    for plant in trimmed.iter().chain(lasting) {
+        let load = with_plant(scenario, plant, (gains, shell))?;
+        // Written so that NaN is the worst.
+        if worst.is_none_or(|worst| !(load.share_left() <= worst.share_left())) {
+            worst = Some(load);
+        }
+    }
+    Ok(worst)
+}
+
+fn with_plant(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    (gains, shell): (Gains<f64>, &Shell<f64>),
+) -> Result<ConstantLoad, SimError> {
+    let memory = Memory::of_gains(gains, shell);
+    let model = LoopModel::of(scenario, plant, shell, memory)?.without_changing_ages();
+    let one = loaded(&model, gains)?;
+    let samples = scenario.timing.rows().saturating_sub(1).max(1);
+    let points = samples.min(POINTS);
+    let several = power(&one, samples / points)?;
+    let size = model.size();
+    let mut state = vec![0.0; size + 1];
+    let mut next = state.clone();
+    if let Some(load) = state.last_mut() {
+        *load = 1.0;
+    }
+    let (mut largest, mut at_end): (f64, f64) = (0.0, 0.0);
+    // What is left over of whole stretches comes first, so that the last point is the end of the flight.
+    power(&one, samples % points)?.apply(&state.clone(), &mut state)?;
+    for _ in 0..points {
+        several.apply(&state, &mut next)?;
+        std::mem::swap(&mut state, &mut next);
+        // The pitch angle is the plant's first state; the set-point stays at zero.
+        at_end = state.first().copied().unwrap_or(0.0).abs();
+        largest = if at_end <= largest { largest } else { at_end };
+    }
+    let mut flight = power(&several, points)?;
+    for _ in 0..DOUBLINGS {
+        flight = flight.product(&flight)?;
+    }
+    let for_good = flight.get(0, size).unwrap_or(f64::NAN).abs();
+    Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral })
+}
+
+/// The one-sample matrix of the closed loop with one more state: a load that stays, added to the arriving command.
+fn loaded(model: &LoopModel<f64>, gains: Gains<f64>) -> Result<Matrix, LtiError> {
+    let plant = model.plant();
+    let width = plant.states + 1;
+    let entry = |row: usize| match row < plant.states {
+        true => plant.rows.get(row * width + plant.states).copied().unwrap_or(0.0),
+        false => 0.0,
+    };
+    let mut rows = model.closed(gains);
+    for (index, row) in rows.iter_mut().enumerate() {
+        row.push(entry(index));
+    }
+    let mut load = vec![0.0; rows.len()];
+    load.push(1.0);
+    rows.push(load);
+    Matrix::from_rows(&rows)
+}
+
+/// A matrix to a whole power.
+fn power(matrix: &Matrix, mut exponent: usize) -> Result<Matrix, LtiError> {
+    let mut result = Matrix::identity(matrix.rows());
+    let mut factor = matrix.clone();
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            result = result.product(&factor)?;
+        }
+        exponent /= 2;
+        if exponent > 0 {
+            factor = factor.product(&factor)?;
+        }
+    }
+    Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::{Gains, Shell};
+
+    use super::*;
+    use crate::plant::{ElevatorSign, Plant};
+    use crate::servo::Servo;
+    use crate::signal::Profile;
+    use crate::stability::growth_at_rest;
+    use crate::timing::Timing;
+
+    const DT_S: f64 = 0.01;
+
+    /// θ = 1/s of the elevator, without a servo.
+    fn integrator(duration_s: f64) -> Scenario {
+        let plant = LinearPlant::new(&[1.0], &[1.0, 0.0], ElevatorSign::NoseUpPositive);
+        Scenario {
+            name: String::new(),
+            plant: Plant::Linear(plant.expect("a plant")),
+            plant_changes: Vec::new(),
+            servo: Servo::ideal(),
+            timing: Timing::new(DT_S, duration_s).expect("a timing"),
+            setpoint: Profile::new(0.0, crate::signal::Shape::Step { at_s: 0.0 }).expect("a step"),
+            disturbances: Vec::new(),
+            controllers: Vec::new(),
+            surroundings: crate::Surroundings::default(),
+        }
+    }
+
+    fn asked(duration_s: f64, gains: Gains<f64>) -> ConstantLoad {
+        let load = constant_load(&integrator(duration_s), gains, &Shell::sampled_every(DT_S));
+        load.expect("no overflow").expect("a plant")
+    }
+
+    /// The pole of the loop is 1 - kp T: what a load leaves is (1 - (1 - kp T)^n) / kp.
+    #[test]
+    fn without_an_integral_a_load_leaves_its_size_over_the_gain() {
+        let gains = Gains { kp: 2.0, ki: 0.0, kd: 0.0 };
+        let load = asked(5.0, gains);
+        let exact = (1.0 - (1.0 - 2.0 * DT_S).powi(500)) / 2.0;
+        assert!((load.at_end - exact).abs() < 1e-12, "{load:?} {exact}");
+        assert!((load.for_good - 0.5).abs() < 1e-12 && !load.has_integral);
+        assert!(!load.is_removed() && load.is_kept() && !load.is_slow());
+    }
+
+    #[test]
+    fn an_integral_removes_a_load_in_time_and_not_before() {
+        let gains = Gains { kp: 2.0, ki: 0.2, kd: 0.0 };
+        let (short, long) = (asked(5.0, gains), asked(60.0, gains));
+        assert!(!short.is_removed() && short.is_slow(), "{short:?}");
+        assert!(long.is_removed() && !long.is_kept(), "{long:?}");
+        assert!(short.for_good < 1e-6 && long.for_good < 1e-6);
+    }
+
+    #[test]
+    fn a_pole_on_the_circle_grows_nothing_and_one_outside_does() {
+        let asked = |kp| {
+            let gains = Gains { kp, ki: 0.0, kd: 0.0 };
+            growth_at_rest(&integrator(5.0), gains, &Shell::sampled_every(DT_S))
+                .expect("eigenvalues")
+        };
+        assert_eq!(asked(0.0), None);
+        assert_eq!(asked(-1e-9), None);
+        let grows = asked(-0.1).expect("the pole is 1.001");
+        assert!(
+            (grows.doubling_s - DT_S * 2.0_f64.ln() / 1.001_f64.ln()).abs() < 1e-9,
+            "{grows:?}"
+        );
+    }
+}

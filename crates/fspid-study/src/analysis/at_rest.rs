@@ -1,0 +1,109 @@
+//! What a controller's loop is at rest: its gains there, whether it is stable with them, and whether it takes a
+//! constant load off.
+
+use fspid_core::{Gains, Law};
+use fspid_sim::load::{ConstantLoad, constant_load};
+use fspid_sim::stability::{Unstable, growth_at_rest};
+use fspid_sim::{Controller, Scenario, SimError};
+
+use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
+
+/// Where the gains are when error and change are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RestGains {
+    /// Fixed ones.
+    Fixed(Gains<f64>),
+    /// What the rules make of the nominal ones.
+    Tuned(Gains<f64>),
+    /// Wherever they have come to: an accumulating law without leakage keeps them.
+    Kept,
+    /// Nowhere: an accumulating law without leakage and without limits moves them for ever.
+    Drifting,
+}
+
+impl RestGains {
+    /// Of a controller.
+    #[must_use]
+    pub fn of(controller: &Controller) -> Self {
+        if keeps_its_gains(controller) {
+            return Self::Kept;
+        }
+        match equilibrium(controller) {
+            Equilibrium::Fixed(gains) => Self::Fixed(gains),
+            Equilibrium::AtRest(gains) => Self::Tuned(gains),
+            Equilibrium::Drifts { .. } => Self::Drifting,
+        }
+    }
+
+    /// The gains, where one set of them is the controller's at rest.
+    #[must_use]
+    pub fn gains(&self) -> Option<Gains<f64>> {
+        match self {
+            Self::Fixed(gains) | Self::Tuned(gains) => Some(*gains),
+            Self::Kept | Self::Drifting => None,
+        }
+    }
+}
+
+/// True for an accumulating law without leakage that moves a gain in flight and does not move it at rest.
+fn keeps_its_gains(controller: &Controller) -> bool {
+    let Controller::SelfTuning(fspid) = controller else {
+        return false;
+    };
+    let settings = fspid.tuner().settings();
+    let Law::Accumulating { leakage_per_s } = settings.law else {
+        return false;
+    };
+    let (scale, per_s) = (settings.output_scale, added_at_rest(fspid.tuner()));
+    let moves = [(scale.kp, per_s.kp), (scale.ki, per_s.ki), (scale.kd, per_s.kd)];
+    !(leakage_per_s > 0.0) && moves.iter().any(|(scale, per_s)| scale.abs() > 0.0 && *per_s == 0.0)
+}
+
+/// A controller's loop at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtRest {
+    /// The gains that the file says: fixed or nominal.
+    pub nominal: Gains<f64>,
+    /// The gains at rest.
+    pub gains: RestGains,
+    /// The first plant around which the loop grows; none for a stable loop and where there are no gains to ask with.
+    pub unstable: Option<Unstable>,
+    /// What a constant load at the servo does; none for a loop that is unstable or has no gains at rest, and where it
+    /// was not asked.
+    pub load: Option<ConstantLoad>,
+    /// Why stability or load could not be asked, although there are gains at rest.
+    pub not_asked: Option<SimError>,
+}
+
+impl AtRest {
+    /// Gains and stability, which every flight is asked. What cannot be asked says why, and the flight is flown.
+    #[must_use]
+    pub fn stability(scenario: &Scenario, controller: &Controller) -> Self {
+        let (nominal, gains) = (controller.nominal(), RestGains::of(controller));
+        let found = gains
+            .gains()
+            .map(|gains| growth_at_rest(scenario, gains, &controller.shell_at(gains)))
+            .transpose();
+        let (unstable, not_asked) = match found {
+            Ok(found) => (found.flatten(), None),
+            Err(reason) => (None, Some(reason)),
+        };
+        Self { nominal, gains, unstable, load: None, not_asked }
+    }
+
+    /// The same, and what a constant load does.
+    #[must_use]
+    pub fn of(scenario: &Scenario, controller: &Controller) -> Self {
+        let at_rest = Self::stability(scenario, controller);
+        let asked = at_rest.gains.gains();
+        let Some(gains) =
+            asked.filter(|_| at_rest.unstable.is_none() && at_rest.not_asked.is_none())
+        else {
+            return at_rest;
+        };
+        match constant_load(scenario, gains, &controller.shell_at(gains)) {
+            Ok(load) => Self { load, ..at_rest },
+            Err(reason) => Self { not_asked: Some(reason), ..at_rest },
+        }
+    }
+}

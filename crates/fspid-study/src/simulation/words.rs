@@ -1,0 +1,121 @@
+//! What is said of a flight beside its measures.
+
+use fspid_aircraft::Departure;
+use fspid_core::Gains;
+use fspid_sim::Exit;
+use fspid_sim::load::ConstantLoad;
+
+use crate::analysis::{AtRest, RestGains};
+use crate::file::RangeRule;
+use crate::metrics::short;
+use crate::units::degrees;
+
+/// What is asked where the first movement is steadily away from the set-point.
+pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
+
+/// What is said of an aircraft that a linear model flies.
+pub(crate) const LINEAR_AIRCRAFT: &str = "flown by a linear model, which has no height and no range: neither the ground nor the limits of the aircraft's data are asked";
+
+/// When, for how long and by which limit a flight left the range of its model, in words.
+#[must_use]
+pub fn left_validity(exit: &Exit) -> String {
+    let Departure { quantity, value, allowed } = exit.departure;
+    let (factor, unit) = match quantity.unit() {
+        "rad" => (degrees(1.0), "deg"),
+        unit => (1.0, unit),
+    };
+    let text = format!(
+        "left the range of its model at t = {:.2} s, outside for {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
+        exit.at_s,
+        exit.outside_s,
+        quantity.name(),
+        factor * value,
+        factor * allowed.min,
+        factor * allowed.max,
+    );
+    text.trim_end().replace("  ", " ")
+}
+
+/// Gains to five digits.
+fn gains(gains: Gains<f64>) -> String {
+    let [kp, ki, kd] = [gains.kp, gains.ki, gains.kd].map(digits);
+    format!("kp {kp}, ki {ki}, kd {kd}")
+}
+
+/// A number to five significant digits, at most.
+fn digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    format!("{}", rounded + 0.0)
+}
+
+impl AtRest {
+    /// The gains at rest beside the nominal ones; none for fixed gains.
+    #[must_use]
+    pub fn gains_in_words(&self) -> Option<String> {
+        let nominal = gains(self.nominal);
+        Some(match self.gains {
+            RestGains::Fixed(_) => return None,
+            RestGains::Tuned(tuned) => format!("gains nominal {nominal}; at rest {}", gains(tuned)),
+            RestGains::Kept => format!(
+                "gains nominal {nominal}; at rest those that they have come to (accumulating law without leakage), so that stability at rest is not asked"
+            ),
+            RestGains::Drifting => format!(
+                "gains nominal {nominal}; at rest they drift without end, so that stability at rest is not asked"
+            ),
+        })
+    }
+
+    /// Why stability or load at rest could not be asked; none where they were, or there are no gains at rest.
+    #[must_use]
+    pub fn not_asked_in_words(&self) -> Option<String> {
+        self.not_asked
+            .as_ref()
+            .map(|reason| format!("the loop at rest could not be asked: {reason}"))
+    }
+
+    /// All that is said of the loop at rest beside a verdict.
+    pub(crate) fn words(&self, duration_s: f64) -> impl Iterator<Item = String> {
+        let load = self.load_in_words(duration_s);
+        self.gains_in_words().into_iter().chain(load).chain(self.not_asked_in_words())
+    }
+
+    /// What is said of a constant load that is not removed within the flight; none where it is, or nobody can tell.
+    #[must_use]
+    pub fn load_in_words(&self, duration_s: f64) -> Option<String> {
+        let load = self.load.filter(|load| !load.is_removed())?;
+        Some(of_load(&load, duration_s))
+    }
+}
+
+/// What a constant load does that is not removed within the flight.
+fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
+    let why = match load.has_integral {
+        false => "no integral at rest (ki = 0)",
+        true => "little integral at rest",
+    };
+    let (at_end, duration) = (digits3(load.at_end), short(duration_s));
+    let then = match load.is_slow() {
+        true => ", and goes on shrinking".to_owned(),
+        false => format!(", and {} deg for good", digits3(load.for_good)),
+    };
+    format!(
+        "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect{then}",
+        100.0 * load.share_left()
+    )
+}
+
+/// Three significant digits.
+fn digits3(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}
+
+impl RangeRule {
+    /// What is said once of all flights.
+    pub(crate) fn note(self) -> Option<&'static str> {
+        match self {
+            Self::Linear => Some(LINEAR_AIRCRAFT),
+            Self::NoRange | Self::Fails | Self::Warns => None,
+        }
+    }
+}
