@@ -317,6 +317,16 @@ fn what_has_no_words_is_refused_by_name() {
         |parts| parts.blocks[0].rules[0].consequents[0].hedges = vec![Hedge::Very],
         "a hedge of a conclusion's strength",
     );
+    // Points have no place of a grade; what was written once could not be read.
+    let mut scaled = read(PLANES);
+    let Conclusion::Set { membership: Membership::Shape { height, .. }, .. } =
+        &mut scaled.outputs[1].terms[0].conclusion
+    else {
+        panic!("a set")
+    };
+    *height = 0.5;
+    let told = fml::write(&scaled, LOSSY).expect_err("no words").to_string();
+    assert!(told.contains("points cannot stand for it"), "{told}");
     let mut renamed = base;
     renamed.inputs[0].name = " e\n".into();
     assert!(fml::write(&renamed, EXACT).is_err());

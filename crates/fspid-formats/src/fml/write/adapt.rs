@@ -131,6 +131,14 @@ fn terms(output: &mut Output, loss: &mut Loss) {
     for term in &mut output.terms {
         let what = format!("{}.{}", output.name, term.name);
         match &mut term.conclusion {
+            // Points are not asked for the place of a grade.
+            Conclusion::Set { membership, .. }
+                if kind == Kind::Tsukamoto && shape::written(membership).is_none() =>
+            {
+                let message =
+                    "this monotone set has no words in FML, and points cannot stand for it";
+                loss.cannot(&what, message, "sides that are straight or smooth, of full height");
+            }
             Conclusion::Set { membership, lower } => {
                 set(&what, membership, lower.as_ref(), output.universe, loss);
             }
