@@ -208,12 +208,12 @@ fn a_flight_that_does_not_settle_has_failed_where_nothing_is_required() {
 fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
     let text = include_str!("../../../scenarios/gallery/navion-step.toml");
     let text = text.replace("duration_s = 10.0", "duration_s = 30.0");
-    let template = template(&text);
+    let low = template(&text);
     let (step, altitude) = (path("setpoint.amplitude_deg"), path("aircraft.altitude_ft"));
     let study = |step_deg, altitude_ft| {
         let changes =
             [(&step, NewValue::Number(step_deg)), (&altitude, NewValue::Number(altitude_ft))];
-        template.with(&changes).unwrap_or_else(|error| panic!("{error}"))
+        low.with(&changes).unwrap_or_else(|error| panic!("{error}"))
     };
     let studies = [study(-10.0, 300.0), study(2.0, 1000.0), study(25.0, 1000.0)];
     let flown: Vec<_> = engine::fly(&studies).into_iter().map(|it| it.expect("it flies")).collect();
@@ -226,7 +226,8 @@ fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
     assert!(far.is_failed() && far.reasons().iter().any(left), "{:?}", far.reasons());
     let allowed = template(&text.replace("[actuator]", "validity = \"warn\"\n\n[actuator]"));
     let allowed = allowed.with(&[(&step, NewValue::Number(25.0))]).expect("a scenario");
-    let flight = &engine::fly(&[allowed])[0].as_ref().expect("it flies")[0];
+    let flown = engine::fly(&[allowed]);
+    let flight = &flown[0].as_ref().expect("it flies")[0];
     assert!(flight.exit.is_some() && !flight.reasons().iter().any(left), "{:?}", flight.reasons());
 }
 
@@ -235,7 +236,8 @@ fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
 fn a_self_tuning_loop_that_is_unstable_at_rest_fails_without_measures() {
     let turned = STEP.replace("preset = \"b747-paper\"", TURNED);
     let studies = [template(&turned).study().clone()];
-    for flight in engine::fly(&studies)[0].as_ref().expect("it flies") {
+    let flown = engine::fly(&studies);
+    for flight in flown[0].as_ref().expect("it flies") {
         let reasons = flight.reasons();
         assert!(flight.is_failed() && flight.metrics.effort.is_err(), "{}", flight.controller);
         assert!(reasons[0].starts_with("unstable at rest (doubles every"), "{reasons:?}");
