@@ -47,7 +47,7 @@ class Autopilot:
     def close(self):
         """Ends it and returns its exit code: 0 unless something was wrong."""
         self.process.stdin.close()
-        return self.process.wait(timeout=10)
+        return self.process.wait()
 
 
 class Aircraft:

@@ -1,6 +1,7 @@
 //! An aircraft as its source describes it, in SI units, before anything is made of it.
 
 mod linear;
+mod loading;
 
 use std::fmt;
 use std::sync::Arc;
@@ -15,6 +16,7 @@ use crate::error::AircraftError;
 use crate::mass::MassProperties;
 use crate::validity::{Travel, Validity};
 pub use linear::{LinearCondition, LinearData, LinearElevator, LinearState};
+pub use loading::{Loading, Moment};
 
 /// What is known about an aircraft, and from where.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +94,9 @@ pub struct Reference {
     pub gravity_m_s2: f64,
     /// Angle of attack of the fuselage there: between the axes of the inertia and those of the derivatives.
     pub alpha_rad: f64,
+    /// Centre of gravity to which the moments belong, behind the leading edge of the mean chord as a share of it, if it is
+    /// known.
+    pub cg_mac: Option<f64>,
 }
 
 /// An aircraft described by derivatives.
@@ -101,10 +106,12 @@ pub struct DerivativeData {
     pub reference: Reference,
     /// Lengths.
     pub geometry: Geometry,
-    /// Weight.
+    /// Weight of the flight condition: what the lift of the reference carries, whatever flies.
     pub weight_n: f64,
-    /// Moments of inertia in fuselage axes; the mass among them is not read, the weight is.
+    /// Moments of inertia of the flight condition, in fuselage axes.
     pub inertia: Inertia,
+    /// How it is loaded where it flies otherwise than there.
+    pub loading: Loading,
     /// Lift, drag, pitching moment; $C_{L_1}$ as the source prints it.
     pub longitudinal: Longitudinal,
     /// Side force, roll, yaw, if the source has them.
@@ -148,6 +155,31 @@ impl AircraftData {
             ModelData::Linear(_) => Err(AircraftError::LinearOnly { name: self.name.clone() }),
             ModelData::Forces(_) => Err(AircraftError::NoDerivatives { name: self.name.clone() }),
         }
+    }
+
+    /// The aircraft with another loading. The centre of gravity of forces that are no derivatives is not moved here: it
+    /// is where the forces were made for.
+    ///
+    /// # Errors
+    /// [`AircraftError::FixedLoading`] for an aircraft of which only a linear model is known; as
+    /// [`DerivativeData::loaded`]; mass properties that no body has.
+    pub fn loaded(mut self, loading: Loading) -> Result<Self, AircraftError> {
+        if loading.is_none() {
+            return Ok(self);
+        }
+        let mass = match &mut self.model {
+            ModelData::Linear(_) => return Err(AircraftError::FixedLoading { name: self.name }),
+            ModelData::Derivatives(data) => {
+                **data = data.loaded(loading)?;
+                data.mass_properties()
+            }
+            ModelData::Forces(data) => {
+                data.mass = loading.applied(data.mass);
+                data.mass
+            }
+        };
+        mass.validate()?;
+        Ok(self)
     }
 
     /// Whether its motion to the side is known.
@@ -200,27 +232,27 @@ impl AircraftData {
 }
 
 impl DerivativeData {
-    /// Mass by the source's gravity.
+    /// Mass that flies: that of its loading, or that of the weight by the source's gravity.
     ///
     /// $$ m = W / g $$
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
-        self.weight_n / self.reference.gravity_m_s2
+        self.loading.mass_kg.unwrap_or(self.weight_n / self.reference.gravity_m_s2)
     }
 
-    /// Mass properties in the stability axes of the reference.
+    /// Mass properties as loaded, in the stability axes of the reference.
     #[must_use]
     pub fn mass_properties(&self) -> MassProperties {
         let Inertia { ix_kg_m2, iy_kg_m2, iz_kg_m2, ixz_kg_m2 } = self.inertia;
-        MassProperties {
+        let mass = MassProperties {
             mass_kg: self.mass_kg(),
             ix_kg_m2,
             iy_kg_m2,
             iz_kg_m2,
             ixz_kg_m2,
             engine_kg_m2_s: 0.0,
-        }
-        .turned_nose_up(-self.reference.alpha_rad)
+        };
+        self.loading.applied(mass).turned_nose_up(-self.reference.alpha_rad)
     }
 
     /// The reference as an environment: its gravity, and its density everywhere.
@@ -239,18 +271,26 @@ impl DerivativeData {
         0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s
     }
 
-    /// Forces, with the lift of the reference made equal to the weight so that the reference is an equilibrium.
+    /// Forces, with the lift of the reference made equal to the weight of the reference so that this is an equilibrium.
     ///
     /// $$ C_{L_1} = \frac{W}{\bar q S}, \quad T_1 = \bar q S\, C_{D_1} $$
+    ///
+    /// A loading changes none of it, but for the moments about another centre of gravity ([`Longitudinal::moved`]).
     #[must_use]
     pub fn force_model(&self, laws: Laws) -> DerivativeModel {
         let scale_n = self.dynamic_pressure_pa() * self.geometry.area_m2;
         let mut longitudinal = self.longitudinal;
         longitudinal.lift.reference = self.weight_n / scale_n;
+        let mut lateral = self.lateral.unwrap_or_default();
+        let aft_chords = self.cg_aft_chords();
+        if aft_chords != 0.0 {
+            longitudinal = longitudinal.moved(aft_chords);
+            lateral = lateral.moved(aft_chords, &self.geometry);
+        }
         DerivativeModel {
             geometry: self.geometry,
             longitudinal,
-            lateral: self.lateral.unwrap_or_default(),
+            lateral,
             reference_airspeed_m_s: self.reference.airspeed_m_s,
             reference_thrust_n: scale_n * longitudinal.drag.reference,
             drag_law: laws.drag,

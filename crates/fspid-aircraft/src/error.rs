@@ -79,6 +79,19 @@ pub enum AircraftError {
         /// Which aircraft.
         name: String,
     },
+    /// A loading for an aircraft of which only a linear model is known.
+    #[error(
+        "{name} is known only by its linear model, which holds at the loading of its source; mass, centre of gravity and inertia cannot be changed"
+    )]
+    FixedLoading {
+        /// Which aircraft.
+        name: String,
+    },
+    /// A centre of gravity for derivatives that do not say about which one they are.
+    #[error(
+        "the aircraft's file does not say to which centre of gravity its derivatives belong; its [reference] needs cg_mac"
+    )]
+    NoReferenceCg,
     /// A linear model in which nothing is the pitch angle.
     #[error("none of the states of the linear model is the pitch angle")]
     NoPitch,

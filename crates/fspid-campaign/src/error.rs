@@ -58,6 +58,16 @@ pub enum CampaignError {
         /// Why.
         reason: String,
     },
+    /// A word that is not known.
+    #[error("there is no {what} `{found}`{known}")]
+    Unknown {
+        /// What it should be.
+        what: &'static str,
+        /// The word.
+        found: String,
+        /// The word that was probably meant, and those that are known.
+        known: String,
+    },
     /// Another campaign is in the folder.
     #[error(
         "{}: another campaign is there ({difference}); name another folder, or remove that one",

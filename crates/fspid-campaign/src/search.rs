@@ -5,6 +5,7 @@
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
 use fspid_study::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
+use fspid_study::file::known_words;
 use fspid_study::tune::optimiser::{LShade, NelderMead, Optimiser, Start, minimise};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -113,20 +114,20 @@ impl<'a> Target<'a> {
             None => Some(0),
             Some(name) => names.iter().position(|known| known == name),
         };
-        let unknown = |what, found: &str, allowed: Vec<&str>| CampaignError::Number {
+        let unknown = |what, found: &str, known: Vec<&str>| CampaignError::Unknown {
             what,
-            found: format!("\"{found}\""),
-            allowed: allowed.join(", "),
+            found: found.to_owned(),
+            known: known_words(found, &known),
         };
         let Some((place, name)) = place.and_then(|place| Some((place, *names.get(place)?))) else {
             let found = question.controller.as_deref().unwrap_or_default();
-            return Err(unknown("the controller", found, names));
+            return Err(unknown("controller", found, names));
         };
         let ids: Vec<&str> = study.requirements.iter().map(|it| it.id.as_str()).collect();
         let is_requirement = ids.contains(&question.measure.as_str());
         if !is_requirement && !measure_names().any(|(name, _)| name == question.measure) {
             let known = measure_names().map(|(name, _)| name).chain(ids).collect();
-            return Err(unknown("the measure", &question.measure, known));
+            return Err(unknown("measure", &question.measure, known));
         }
         if question.budget == 0 {
             return Err(CampaignError::Number {

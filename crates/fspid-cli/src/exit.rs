@@ -1,15 +1,52 @@
 //! How a command ends: exit codes, messages, and writing to standard output.
+//!
+//! With `--format json` standard output holds exactly one JSON object: the answer, or, where there is none, what went
+//! wrong. Standard error holds words for people in any case.
 
 use std::fmt::Display;
 use std::io::{self, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use fspid_study::file::LoadError;
 use fspid_study::output::OutputError;
+use serde_json::{Value, json};
+
+/// Version of the shape of an error as JSON.
+const SCHEMA: u32 = 1;
+
+/// Whether answers and errors are JSON.
+static AS_JSON: AtomicBool = AtomicBool::new(false);
+/// Whether standard output is a file that an option names `-`; answers go to standard error then.
+static IS_FILE: AtomicBool = AtomicBool::new(false);
+/// Whether an answer was printed.
+static ANSWERED: AtomicBool = AtomicBool::new(false);
+
+/// What standard output is used for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Output {
+    /// Answers and errors are JSON.
+    pub(crate) as_json: bool,
+    /// It is a file that an option names `-`.
+    pub(crate) is_file: bool,
+}
+
+impl Output {
+    /// Holds for all that is printed from here on.
+    pub(crate) fn set(self) {
+        AS_JSON.store(self.as_json, Ordering::Relaxed);
+        IS_FILE.store(self.is_file, Ordering::Relaxed);
+    }
+}
 
 /// Why a command did not end well.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
     message: String,
+    /// What stands before the message.
+    name: &'static str,
+    /// Every problem of a file with its place.
+    problems: Option<Value>,
 }
 
 impl Failure {
@@ -19,20 +56,53 @@ impl Failure {
     pub(crate) const INPUT: u8 = 2;
     /// The output could not be written.
     pub(crate) const OUTPUT: u8 = 4;
+    /// Interrupted by the user, as shells say it.
+    pub(crate) const INTERRUPTED: u8 = 130;
+
+    fn new(code: u8, message: impl Display) -> Self {
+        let message = message.to_string();
+        // A list of located problems begins with its first place, so that editors can jump there.
+        let name = if message.trim_end().contains('\n') { "" } else { "fspid: " };
+        Self { code, message, name, problems: None }
+    }
 
     /// A requirement or claim check that was not met.
     pub(crate) fn not_met(message: impl Display) -> Self {
-        Self { code: Self::NOT_MET, message: message.to_string() }
+        Self::new(Self::NOT_MET, message)
     }
 
     /// Input that cannot be used.
     pub(crate) fn input(message: impl Display) -> Self {
-        Self { code: Self::INPUT, message: message.to_string() }
+        Self::new(Self::INPUT, message)
+    }
+
+    /// A command line that cannot be used.
+    pub(crate) fn usage(message: impl Display) -> Self {
+        Self { name: "fspid: ", ..Self::new(Self::INPUT, message) }
+    }
+
+    /// The help of the program in place of an answer.
+    pub(crate) fn plain(message: impl Display) -> Self {
+        Self { name: "", ..Self::new(Self::INPUT, message) }
+    }
+
+    /// A scenario that cannot be used, with every problem in it.
+    pub(crate) fn load(error: LoadError) -> Self {
+        let problems = match &error {
+            LoadError::Problems(problems) => Some(problems.to_json()),
+            LoadError::Unreadable { .. } => None,
+        };
+        Self { problems, ..Self::input(error) }
     }
 
     /// Output that cannot be written.
     pub(crate) fn output(message: impl Display) -> Self {
-        Self { code: Self::OUTPUT, message: message.to_string() }
+        Self::new(Self::OUTPUT, message)
+    }
+
+    /// Work that the user has interrupted, and how it goes on.
+    pub(crate) fn interrupted(message: impl Display) -> Self {
+        Self::new(Self::INTERRUPTED, message)
     }
 
     /// Standard output that cannot be written; a reader that has gone away is no failure.
@@ -40,31 +110,58 @@ impl Failure {
         if error.kind() == io::ErrorKind::BrokenPipe {
             return Ok(());
         }
-        let message = format!("cannot write to standard output: {error}");
-        Err(Self { code: Self::OUTPUT, message })
+        Err(Self::output(format_args!("cannot write to standard output: {error}")))
     }
 
     pub(crate) fn code(&self) -> u8 {
         self.code
     }
 
-    /// Tells people; a closed standard error is no reason to fail differently.
+    /// Tells people, and programs where there is no answer; a closed stream is no reason to fail differently.
     pub(crate) fn tell(&self) {
         let message = self.message.trim_end();
-        // A list of located problems begins with its first place, so that editors can jump there.
-        let name = if message.contains('\n') { "" } else { "fspid: " };
-        let _ = writeln!(io::stderr(), "{name}{message}");
+        if AS_JSON.load(Ordering::Relaxed) && !ANSWERED.load(Ordering::Relaxed) {
+            let _ = print(&format!("{:#}\n", self.json()));
+        }
+        if !message.is_empty() {
+            let _ = writeln!(io::stderr(), "{}{message}", self.name);
+        }
+    }
+
+    /// `{"schema": 1, "error": {"code": 2, "kind": "input", "message": "…", "problems": {…}}}`
+    fn json(&self) -> Value {
+        let kind = match self.code {
+            Self::NOT_MET => "not met",
+            Self::OUTPUT => "output",
+            Self::INTERRUPTED => "interrupted",
+            _ => "input",
+        };
+        let message = self.message.trim_end();
+        let mut error = json!({ "code": self.code, "kind": kind, "message": message });
+        if let Some(problems) = &self.problems {
+            error["problems"] = problems.clone();
+        }
+        json!({ "schema": SCHEMA, "error": error })
     }
 }
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        Self { code: Self::OUTPUT, message: error.to_string() }
+        match error.reason.kind() {
+            // The reader of a file that is `-` has gone away, as with `| head`.
+            io::ErrorKind::BrokenPipe => Self::new(0, ""),
+            _ => Self::output(error),
+        }
     }
 }
 
 /// Writes data to standard output. A reader that has gone away (`| head`) is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    ANSWERED.store(true, Ordering::Relaxed);
+    if IS_FILE.load(Ordering::Relaxed) {
+        let _ = io::stderr().write_all(text.as_bytes());
+        return Ok(());
+    }
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
@@ -72,7 +169,19 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Says that standard output holds a stream of lines, which no error may stand in.
+pub(crate) fn stream() {
+    ANSWERED.store(true, Ordering::Relaxed);
+}
+
 /// Tells people something that is no result.
 pub(crate) fn note(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Tells people where a file was written; standard output needs no telling.
+pub(crate) fn wrote(path: &std::path::Path) {
+    if !crate::argument::is_standard(path) {
+        note(format_args!("wrote {}", path.display()));
+    }
 }

@@ -3,8 +3,10 @@
 //! One file a command; each calls one function of `fspid-study` and prints what it answers. Standard
 //! output is data, standard error is for people.
 
+mod argument;
 mod commands;
 mod exit;
+mod line;
 
 use std::process::ExitCode;
 
@@ -18,7 +20,7 @@ use exit::Failure;
     name = "fspid",
     version,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
+    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written; 130 interrupted.\nWith --format json standard output holds one JSON object: the answer, or {\"error\": {\"code\", \"message\", …}}.\n`-` is standard input or output wherever a file is named.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -50,18 +52,21 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are no mistakes; clap knows which stream is right.
-            let code = if error.use_stderr() { Failure::INPUT } else { 0 };
-            return match error.print() {
-                Ok(()) => ExitCode::from(code),
-                Err(_) => ExitCode::from(Failure::OUTPUT),
-            };
-        }
+    let done = match line::parsed::<Arguments>() {
+        Ok(arguments) => run(arguments.command),
+        Err(end) => end.map_or(Ok(()), Err),
     };
-    let done = match arguments.command {
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Init(arguments) => commands::init::run(&arguments),
         Command::Check(arguments) => commands::check::run(&arguments),
@@ -82,12 +87,5 @@ fn main() -> ExitCode {
         Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(failure.code())
-        }
     }
 }

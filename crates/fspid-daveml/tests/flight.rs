@@ -3,7 +3,8 @@
 #![allow(clippy::disallowed_methods, reason = "references may come from the platform's functions")]
 
 use fspid_aircraft::{
-    Air, Aircraft, Controls, Environment, Flow, ForceModel, Travel, TrimTarget, Vector3,
+    Air, AirMotion, Aircraft, Controls, Environment, Flow, ForceModel, MassProperties, RigidState,
+    Travel, TrimTarget, Vector3,
 };
 use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
 use fspid_daveml::{Model, read};
@@ -138,4 +139,107 @@ fn a_body_is_placed_by_percent_of_the_chord_or_stays_where_its_file_has_it() {
     assert!(matches!(placed(&open, None).unwrap_err(), FlightError::Input { .. }));
     let fixed = BODY.replace("vrsPositionOfCM", "fuel");
     assert!(matches!(placed(&fixed, Some(30.0)).unwrap_err(), FlightError::NoInput { .. }));
+}
+
+/// The same aircraft with drag and lift in place of X and Z.
+fn in_wind_axes() -> String {
+    let named = AERO.replace("aeroBodyForceCoefficient_X", "totalCoefficientOfDrag");
+    let named = named.replace("aeroBodyForceCoefficient_Z", "totalCoefficientOfLift");
+    // Drag 0.03 and lift from -0.6 to 1.4, with the signs of their axes.
+    named.replace("<cn>-0.03</cn>", "<cn>0.03</cn>").replace("0.6, -1.4", "-0.6, 1.4")
+}
+
+fn engineless(text: &str, centre_of_mass_m: Vector3) -> Result<TableForces, FlightError> {
+    let setting =
+        Setting { centre_of_mass_m, gearing: Gearing::Proportional, travel: Travel::UNLIMITED };
+    TableForces::new(model(text), None, setting)
+}
+
+/// Models with lift and drag used to be refused: "the output aeroBodyForceCoefficient_X is missing".
+#[test]
+fn lift_and_drag_are_forces_across_and_against_the_flow() {
+    let forces = engineless(&in_wind_axes(), Vector3::ZERO).unwrap();
+    let loads = forces.loads(&flow(), &Controls::default());
+    let (alpha, beta) = (4.0_f64.to_radians(), 2.0_f64.to_radians());
+    let ((sin_a, cos_a), (sin_b, cos_b)) = (alpha.sin_cos(), beta.sin_cos());
+    let (drag, side, lift) = (0.03, -0.02, 0.52);
+    let expected = [
+        -drag * cos_a * cos_b + lift * sin_a,
+        -drag * sin_b + side,
+        -drag * sin_a * cos_b - lift * cos_a,
+    ];
+    near(loads.force_n, expected.map(|part| 18_000.0 * part), POUND_N);
+    assert!(!forces.has_engine());
+}
+
+/// Without an engine straight flight is a glide: the path is down by the angle between drag and lift.
+#[test]
+fn a_glider_is_trimmed_in_its_glide() {
+    let forces = engineless(&in_wind_axes(), body(25.0).centre_of_mass_m).unwrap();
+    let environment = Environment::uniform(9.8, 1.0, 330.0);
+    let aircraft = Aircraft::new(body(25.0).mass, forces, environment).unwrap();
+    let target = TrimTarget { airspeed_m_s: 80.0, altitude_m: 0.0, flight_path_rad: 0.0 };
+    let trim = aircraft.trim(target).unwrap();
+    let lift = 0.2 + 0.08 * trim.point.alpha_rad.to_degrees();
+    let path_rad = trim.target.flight_path_rad;
+    assert!((path_rad.tan() + 0.03 / lift).abs() < 1e-9, "{path_rad}");
+    assert!(path_rad < -0.02 && trim.point.throttle == 0.0 && trim.thrust_n == 0.0);
+    let theta_rad = trim.state.euler().theta_rad;
+    assert!((theta_rad - trim.point.alpha_rad - path_rad).abs() < 1e-12);
+}
+
+/// A ball has no span and no chord, and needs none: it used to be refused for them.
+const BALL: &str = r#"<DAVEfunc xmlns="http://daveml.org/2010/DAVEML">
+  <fileHeader name="Ball"><creationDate date="2026-11-21"/></fileHeader>
+  <variableDef name="referenceWingArea" varID="S" units="m2" initialValue="0.02"><isOutput/></variableDef>
+  <variableDef name="totalCoefficientOfLift" varID="CL" units="nd" initialValue="0.0"><isOutput/></variableDef>
+  <variableDef name="totalCoefficientOfDrag" varID="CD" units="nd" initialValue="0.1"><isOutput/></variableDef>
+  <variableDef name="aeroBodyForceCoefficient_Y" varID="CY" units="nd" initialValue="0.0"><isOutput/></variableDef>
+  <variableDef name="aeroBodyMomentCoefficient_Roll" varID="Cl" units="nd" initialValue="0.0"><isOutput/></variableDef>
+  <variableDef name="aeroBodyMomentCoefficient_Pitch" varID="Cm" units="nd" initialValue="0.0"><isOutput/></variableDef>
+  <variableDef name="aeroBodyMomentCoefficient_Yaw" varID="Cn" units="nd" initialValue="0.0"><isOutput/></variableDef>
+</DAVEfunc>"#;
+
+/// Falling with v² drag: v = v_t tanh(g t / v_t), v_t² = 2 m g / (ρ S CD).
+#[test]
+fn a_ball_falls_as_drag_and_weight_say() {
+    let forces = engineless(BALL, Vector3::ZERO).unwrap();
+    let mass = MassProperties {
+        mass_kg: 14.6,
+        ix_kg_m2: (2.0 / 5.0) * 0.1,
+        iy_kg_m2: 0.04,
+        iz_kg_m2: 0.04,
+        ixz_kg_m2: 0.0,
+        engine_kg_m2_s: 0.0,
+    };
+    let ball = Aircraft::new(mass, forces, Environment::uniform(9.8, 1.2, 340.0)).unwrap();
+    let start = RigidState::AT_REST;
+    let end = (0..2000)
+        .fold(start, |state, _| ball.step(&state, &Controls::default(), &AirMotion::STILL, 0.01));
+    let terminal = f64::sqrt(2.0 * 14.6 * 9.8 / (1.2 * 0.02 * 0.1));
+    let expected = terminal * f64::tanh(9.8 * 20.0 / terminal);
+    let found = end.velocity_body_m_s.z;
+    assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+}
+
+#[test]
+fn a_length_is_missed_where_a_moment_needs_it() {
+    let turning = BALL.replace(
+        r#"varID="Cm" units="nd" initialValue="0.0">"#,
+        r#"varID="Cm" units="nd" initialValue="0.1">"#,
+    );
+    assert_ne!(turning, BALL);
+    let refused = engineless(&turning, Vector3::ZERO).unwrap_err();
+    assert_eq!(refused, FlightError::Output { name: "referenceWingChord" });
+}
+
+/// NASA's orbital sphere writes its inertia as (2/5)π; this used to be "not a number that can be used".
+#[test]
+fn a_number_that_is_written_out_is_worked_out_and_told() {
+    let text = BALL.replace(r#"initialValue="0.1""#, r#"initialValue="(2/5)&#960;""#);
+    let reading = read(&text).unwrap();
+    assert_eq!(reading.model.constant("totalCoefficientOfDrag"), Some(0.4 * std::f64::consts::PI));
+    let told: Vec<String> = reading.notes.iter().map(|note| format!("{note:?}")).collect();
+    assert!(told.iter().any(|note| note.contains("(2/5)π")), "{told:?}");
+    assert!(read(&BALL.replace(r#"initialValue="0.1""#, r#"initialValue="(2/5)x""#)).is_err());
 }

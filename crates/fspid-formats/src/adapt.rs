@@ -59,9 +59,10 @@ pub(crate) fn sampled(
     output.defuzzifier = output.defuzzifier.with_sampling(instead);
 }
 
-/// Names of the inputs, for formulas.
-pub(crate) fn input_names(parts: &Parts) -> Vec<&str> {
-    parts.inputs.iter().map(|input| input.name.as_str()).collect()
+/// Names of the inputs, then of the outputs, for formulas.
+pub(crate) fn formula_names(parts: &Parts) -> Vec<&str> {
+    let inputs = parts.inputs.iter().map(|input| input.name.as_str());
+    inputs.chain(parts.outputs.iter().map(|output| output.name.as_str())).collect()
 }
 
 /// A formula is written as it was given: its names must still mean the same variables.
@@ -71,6 +72,6 @@ pub(crate) fn check_formula(name: &str, formula: &Formula, names: &[&str], loss:
         loss.cannot(name, "the formula has no words here", "one line without `#` and `;`");
     } else if Formula::parse(formula.text(), names).as_ref() != Ok(formula) {
         let expected = format!("one in {}", names.join(", "));
-        loss.cannot(name, "the formula does not name the inputs as they are written", expected);
+        loss.cannot(name, "the formula does not name the variables as they are written", expected);
     }
 }

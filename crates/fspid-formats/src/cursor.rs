@@ -2,6 +2,7 @@
 //! text is read in linear time however many places are told.
 
 use crate::note::{MAX_INPUT_BYTES, Place, Problem};
+use crate::work;
 
 /// The rest of a text, and where it begins.
 ///
@@ -53,6 +54,7 @@ impl<'a> Cursor<'a> {
     /// Passes the next character and tells it; a line end of any kind is one `\n`.
     pub(crate) fn bump(&mut self) -> Option<char> {
         let found = self.rest.chars().next()?;
+        work::add(1);
         let length = if self.rest.starts_with("\r\n") { 2 } else { found.len_utf8() };
         self.rest = self.rest.get(length..).unwrap_or_default();
         if matches!(found, '\r' | '\n') {
@@ -104,6 +106,7 @@ impl<'a> Cursor<'a> {
         }
         let place = self.place;
         let end = self.rest.find(['\r', '\n']).unwrap_or(self.rest.len());
+        work::add(end + 1);
         let (rest, behind) = self.rest.split_at(end);
         self.rest = behind.strip_prefix("\r\n").or_else(|| behind.get(1..)).unwrap_or_default();
         self.place = Place { line: place.line + 1, column: 1 };
@@ -113,6 +116,7 @@ impl<'a> Cursor<'a> {
     /// Only what stands before the first `sign`, if there is one.
     pub(crate) fn before(mut self, sign: char) -> Self {
         self.rest = self.rest.split(sign).next().unwrap_or_default();
+        work::add(self.rest.len());
         self
     }
 

@@ -4,7 +4,7 @@
 
 use crate::fcl::{self, Dialect, ReadOptions};
 use crate::note::{Problems, Reading, WriteOptions, Writing};
-use crate::{Note, fll};
+use crate::{Note, fll, fml};
 use fspid_fuzzy::system::Parts;
 
 /// Any bytes as FCL.
@@ -35,6 +35,16 @@ pub fn fll(data: &[u8]) {
     let write = |parts: &Parts| fll::write(parts, WriteOptions::default());
     let written = comes_back(&reading.parts, write, fll::read);
     assert!(written.is_some(), "{:#?}", reading.parts);
+}
+
+/// Any bytes as FML.
+///
+/// # Panics
+/// If something that is written does not come back as itself.
+pub fn fml(data: &[u8]) {
+    let Ok(text) = str::from_utf8(data) else { return };
+    let Ok(reading) = fml::read(text) else { return };
+    comes_back(&reading.parts, |parts| fml::write(parts, WriteOptions::default()), fml::read);
 }
 
 /// What is written reads back, and is then the same for ever. Nothing if it cannot be written.

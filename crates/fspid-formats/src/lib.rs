@@ -1,4 +1,5 @@
-//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`.
+//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`,
+//! IEEE 1855 `.xml`.
 //!
 //! Reading answers the parts of a system and says what it had to assume; nothing is dropped in
 //! silence. Writing refuses what the format cannot say, unless a loss is allowed, and then states
@@ -21,9 +22,12 @@ mod check;
 mod cursor;
 pub mod fcl;
 pub mod fis;
+mod fit;
 pub mod fll;
+pub mod fml;
 #[doc(hidden)]
 pub mod fuzzing;
+mod hedged;
 mod identifiers;
 mod lexer;
 mod loss;
@@ -36,5 +40,6 @@ pub mod rule_text;
 mod term;
 mod tokens;
 mod vocabulary;
+mod work;
 
 pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};

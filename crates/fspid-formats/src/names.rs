@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use fspid_fuzzy::system::Variable;
 
+use crate::work;
+
 /// Names of one kind in the order of their positions.
 #[derive(Debug, Default)]
 pub(crate) struct Index {
@@ -40,6 +42,7 @@ impl Index {
 
     /// The position of a name.
     pub(crate) fn find(&self, name: &str) -> Found {
+        work::add(1);
         if let Some(&position) = self.exact.get(name) {
             return Found::Exact(position);
         }
@@ -56,7 +59,7 @@ impl Index {
 
     /// Every name.
     pub(crate) fn all(&self) -> impl Iterator<Item = &str> + Clone {
-        self.names.iter().map(String::as_str)
+        self.names.iter().map(String::as_str).inspect(|_| work::add(1))
     }
 }
 

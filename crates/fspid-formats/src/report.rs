@@ -54,6 +54,11 @@ impl Report {
         self.full
     }
 
+    /// True as long as notes are told one by one.
+    pub(crate) fn takes_notes(&self) -> bool {
+        self.notes.len() < MOST
+    }
+
     /// Something worth knowing about a place.
     pub(crate) fn note(&mut self, place: Place, message: impl Into<String>) {
         if self.notes.len() < MOST {

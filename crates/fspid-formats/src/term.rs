@@ -103,13 +103,17 @@ fn refuse(row: &Row, word: Token, numbers: &[Number], error: &FuzzyError, report
     }
 }
 
+/// What a reader is told of a system with such formulas.
+pub(crate) const OUTPUTS_IN_FORMULAS: &str = "formulas that name an output find its new answer where it \
+     stands before their own, else the answer before; without one they have no value";
+
 /// Most variables of a formula: each of its names is looked for among them.
 const MOST_NAMES: usize = 1000;
 
 /// A formula in variables of these names; what is wrong is reported where it stands.
 pub(crate) fn formula(text: Token, names: &[&str], report: &mut Report) -> Option<Formula> {
     if names.len() > MOST_NAMES {
-        let message = format!("a formula in a system of {} inputs", names.len());
+        let message = format!("a formula in a system of {} variables", names.len());
         report.problem(text.place(), "", message, format!("at most {MOST_NAMES}"));
         return None;
     }

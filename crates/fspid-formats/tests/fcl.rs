@@ -489,3 +489,73 @@ fn fuzzylite_s_cosine_is_not_jfuzzylogic_s() {
     };
     assert_eq!([width("Cosine"), width("COSINE"), width("cosine")], [2.0, 4.0, 4.0]);
 }
+
+/// jFuzzyLogic reads functions in upper case; they were refused as unknown names.
+#[test]
+fn functions_in_upper_case_are_the_same_functions() {
+    let text = |formula: &str| {
+        format!(
+            "FUNCTION_BLOCK f VAR_INPUT x : REAL; END_VAR VAR_OUTPUT y : REAL; END_VAR
+             FUZZIFY x TERM t := (0, 1) (9, 1); END_FUZZIFY
+             DEFUZZIFY y TERM c := FUNCTION {formula}; METHOD : COGS; DEFAULT := 0; END_DEFUZZIFY
+             RULEBLOCK r AND : MIN; RULE 1 : IF x IS t THEN y IS c; END_RULEBLOCK END_FUNCTION_BLOCK"
+        )
+    };
+    for (upper, lower) in [
+        ("SIN(x) + ABS(-x) * EXP(0)", "sin(x) + abs(-x) * exp(0)"),
+        ("LN(x)", "log(x)"),
+        ("COS(PI * x)", "cos(pi * x)"),
+    ] {
+        let answer = |formula| answers(&fcl::read(&text(formula)).expect(formula).parts, &[2.0]);
+        assert_eq!(answer(upper), answer(lower), "{upper}");
+    }
+}
+
+/// jFuzzyLogic takes `=` for `:=`; such files were refused.
+#[test]
+fn an_equals_sign_assigns_as_well() {
+    let tipper = include_str!("data/fcl/tipper-jfuzzylogic.fcl");
+    let equals = tipper.replace(":=", "=");
+    assert_ne!(equals, tipper);
+    assert_eq!(fcl::read(&equals).expect("a system").parts, fcl::read(tipper).expect("one").parts);
+}
+
+/// Such files were refused: \"has no DEFUZZIFY section\".
+#[test]
+fn an_output_without_a_section_is_left_out_and_the_rest_is_read() {
+    let text = "FUNCTION_BLOCK f
+        VAR_INPUT x : REAL; END_VAR VAR_OUTPUT lost : REAL; y : REAL; END_VAR
+        FUZZIFY x TERM low := (0, 1) (1, 0); TERM high := (0, 0) (1, 1); END_FUZZIFY
+        DEFUZZIFY y TERM a := 1; TERM b := 2; METHOD : COGS; DEFAULT := 0; END_DEFUZZIFY
+        RULEBLOCK r AND : MIN;
+          RULE 1 : IF x IS low THEN y IS a, lost IS very good;
+          RULE 2 : IF x IS high THEN lost IS bad;
+          RULE 3 : IF x IS high THEN y IS b;
+          RULE 4 : IF lost IS bad THEN y IS b;
+        END_RULEBLOCK END_FUNCTION_BLOCK";
+    let reading = fcl::read(text).expect("a system");
+    let names: Vec<_> = reading.parts.outputs.iter().map(|output| output.name.as_str()).collect();
+    assert_eq!((names, reading.parts.blocks[0].rules.len()), (vec!["y"], 2));
+    assert_eq!(answers(&reading.parts, &[0.25]), [Some(1.25)]);
+    let told = notes(&reading).join("\n");
+    assert!(told.contains("`lost` has no DEFUZZIFY section: it is left out"), "{told}");
+    assert!(told.contains("2 rules about outputs that are left out"), "{told}");
+}
+
+/// Such files were refused; their sets can be looked at all the same.
+#[test]
+fn a_system_without_any_output_is_read_as_far_as_it_goes() {
+    let head = "FUNCTION_BLOCK f VAR_INPUT x : REAL; END_VAR";
+    let sets = "FUZZIFY x TERM low := (0, 1) (1, 0); END_FUZZIFY";
+    let rules = "RULEBLOCK r AND : MIN; RULE 1 : IF x IS low THEN y IS a; END_RULEBLOCK";
+    for text in [
+        format!("{head} {sets} END_FUNCTION_BLOCK"),
+        format!("{head} VAR_OUTPUT y : REAL; END_VAR {sets} {rules} END_FUNCTION_BLOCK"),
+    ] {
+        let reading = fcl::read(&text).expect("a system");
+        assert!(reading.parts.outputs.is_empty() && reading.parts.inputs[0].terms.len() == 1);
+        assert!(answers(&reading.parts, &[0.5]).is_empty());
+        let told = notes(&reading).join("\n");
+        assert!(told.contains("without an output nothing can be concluded"), "{told}");
+    }
+}

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::EXACT;
+use common::{EXACT, LOSSY};
 use fspid_formats::fcl::{self, Dialect};
-use fspid_formats::fll;
+use fspid_formats::{fll, fml};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Defuzzifier, Fallback,
@@ -416,6 +416,68 @@ fn comes_back(numbers: Vec<u64>, target: Target) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// The part of a system that FML has words for, as far as single statements go.
+fn tamed(mut parts: Parts) -> Parts {
+    for input in &mut parts.inputs {
+        (input.enabled, input.out_of_range) = (true, OutOfRange::Evaluate);
+    }
+    for output in &mut parts.outputs {
+        (output.enabled, output.clamp, output.fallback.previous) = (true, false, false);
+        output.defuzzifier = output.defuzzifier.with_sampling(Sampling::Exact);
+    }
+    for block in &mut parts.blocks {
+        block.activation = Activation::General;
+        for rule in &mut block.rules {
+            rule.consequents.iter_mut().for_each(|consequent| consequent.hedges.clear());
+            rule.antecedent = flattened(&rule.antecedent);
+        }
+    }
+    parts
+}
+
+/// The first statements of a condition, each with one hedge at most.
+fn flattened(antecedent: &Antecedent) -> Antecedent {
+    match antecedent {
+        Antecedent::Is(statement) => {
+            let mut statement = statement.clone();
+            statement.hedges.truncate(usize::from(statement.term.is_some()));
+            statement.term = Some(statement.term.unwrap_or(0));
+            Antecedent::Is(statement)
+        }
+        Antecedent::All(parts) | Antecedent::Any(parts) => {
+            let first = |part: &Antecedent| match flattened(part) {
+                Antecedent::All(parts) | Antecedent::Any(parts) => parts[0].clone(),
+                other => other,
+            };
+            let statements = parts.iter().map(first).collect();
+            match antecedent {
+                Antecedent::All(_) => Antecedent::All(statements),
+                _ => Antecedent::Any(statements),
+            }
+        }
+        Antecedent::Not(part) => match flattened(part) {
+            Antecedent::All(parts) | Antecedent::Any(parts) => parts[0].clone(),
+            other => other,
+        },
+        Antecedent::Always => Antecedent::Always,
+    }
+}
+
+/// What FML can say, or a loss, is read back, and is then the same for ever.
+fn comes_back_from_fml(parts: &Parts) -> Result<bool, TestCaseError> {
+    let exact = fml::write(parts, EXACT);
+    let said = exact.is_ok();
+    let Ok(writing) = exact.or_else(|_| fml::write(parts, LOSSY)) else { return Ok(false) };
+    let read = |text: &str| {
+        fml::read(text).map_err(|problems| TestCaseError::fail(format!("{problems}\n{text}")))
+    };
+    let first = read(&writing.text)?.parts;
+    let again = fml::write(&first, EXACT).map_err(|p| TestCaseError::fail(p.to_string()))?;
+    let second = read(&again.text)?.parts;
+    prop_assert_eq!(format!("{first:#?}"), format!("{second:#?}"), "{}", again.text);
+    Ok(said)
+}
+
 fn numbers() -> impl Strategy<Value = Vec<u64>> {
     proptest::collection::vec(any::<u64>(), 0..300)
 }
@@ -441,6 +503,15 @@ proptest! {
     #[test]
     fn systems_come_back_from_jfuzzylogic_s_fcl(numbers in numbers()) {
         comes_back(numbers, JFUZZYLOGIC)?;
+    }
+
+    #[test]
+    fn systems_come_back_from_fml(numbers in numbers()) {
+        for target in [Target::Fll, IEC] {
+            let parts = system(&mut Choices { numbers: numbers.clone(), at: 0, target });
+            comes_back_from_fml(&parts)?;
+            comes_back_from_fml(&tamed(parts))?;
+        }
     }
 
     /// Whatever is read is written and read again as the same, however it was put together.

@@ -1,21 +1,15 @@
-//! Texts that nobody means well: they end with an answer, without a panic, in linear time and
-//! without memory for what they only announce.
+//! Texts that nobody means well: they end with an answer, without a panic and without memory for
+//! what they only announce. That the work is linear is counted in `src/work/tests.rs`.
 
 use std::fmt::Write;
-use std::time::{Duration, Instant};
 
 use fspid_formats::{MAX_INPUT_BYTES, fis};
 
 const PAPER: &str = include_str!("data/fis/paper.fis");
 
-/// Much more than any of the texts takes, even in a build without optimisation on a busy machine.
-const LIMIT: Duration = Duration::from_secs(30);
-
-/// The first problem of a text that is refused, in time.
+/// The first problem of a text that is refused.
 fn refused(text: &str) -> String {
-    let begin = Instant::now();
     let problems = fis::read(text).expect_err("no system").0;
-    assert!(begin.elapsed() < LIMIT, "{:?}", begin.elapsed());
     assert!(problems.len() <= 51, "{} problems", problems.len());
     problems.iter().for_each(|problem| assert!(problem.to_string().len() < 1000, "{problem}"));
     problems[0].to_string()
@@ -26,7 +20,7 @@ fn filled(with: &str) -> String {
 }
 
 #[test]
-fn ten_mebibytes_of_anything_are_refused_in_time() {
+fn ten_mebibytes_of_anything_are_refused() {
     for with in [
         "x",
         "\0",
@@ -59,7 +53,7 @@ fn a_text_beyond_the_limit_is_refused_at_once() {
 }
 
 #[test]
-fn one_line_of_ten_mebibytes_is_refused_in_time() {
+fn one_line_of_ten_mebibytes_is_refused() {
     for (begin, with) in [
         ("[Input1]\nRange=[", "1 "),
         ("[Input1]\nMF1='a':'trimf',[", "1,"),
@@ -75,13 +69,11 @@ fn one_line_of_ten_mebibytes_is_refused_in_time() {
 }
 
 #[test]
-fn a_million_rules_are_read_in_time() {
+fn a_million_rules_are_read() {
     let (head, _) = PAPER.split_once("[Rules]\n").expect("rules");
     let head = head.replacen("dkp", "d", 1);
     let rules: String = (0..600_000).map(|n| format!("{} 1,1 1 1(1):1\n", n % 7 + 1)).collect();
-    let begin = Instant::now();
     let reading = fis::read(&format!("{head}[Rules]\n{rules}")).expect("a large system");
-    assert!(begin.elapsed() < LIMIT, "{:?}", begin.elapsed());
     assert_eq!(reading.parts.blocks[0].rules.len(), 600_000);
 }
 
@@ -102,7 +94,7 @@ fn announced_counts_take_no_memory() {
 }
 
 #[test]
-fn membership_functions_without_end_are_read_in_time() {
+fn membership_functions_without_end_are_read() {
     let mut text = String::from("[Input1]\nRange=[0 1]\n");
     for n in 1..=150_000 {
         writeln!(text, "MF{n}='a':'trimf',[0 1 2]").expect("a string");
@@ -111,7 +103,7 @@ fn membership_functions_without_end_are_read_in_time() {
 }
 
 #[test]
-fn variables_without_end_are_refused_in_time() {
+fn variables_without_end_are_refused() {
     let sections = (1..=200_000).map(|n| format!("[Input{n}]\nRange=[0 1]\n"));
     refused(&sections.collect::<String>());
 }
@@ -132,24 +124,6 @@ fn numbers_out_of_this_world_are_refused_or_read_and_nothing_else() {
 fn control_characters_never_reach_a_message() {
     let message = refused(&PAPER.replacen("OrMethod='max'", "OrMethod='m\0\u{1b}[31max'", 1));
     assert!(!message.contains(['\0', '\u{1b}']), "{message:?}");
-}
-
-/// Twice the text takes at most about twice the time; a factor of 4 would be quadratic. The least of
-/// several runs is taken, because the machine may be busy.
-#[test]
-fn reading_takes_linear_time() {
-    let (head, rules) = PAPER.split_once("[Rules]\n").expect("rules");
-    let time = |copies: usize| {
-        let text = format!("{head}[Rules]\n{}", rules.repeat(copies));
-        let run = || {
-            let begin = Instant::now();
-            assert!(fis::read(&text).is_ok());
-            begin.elapsed()
-        };
-        (0..5).map(|_| run()).min().expect("five runs")
-    };
-    let (once, four) = (time(250), time(1000));
-    assert!(four < once * 10, "{once:?} for 250 copies, {four:?} for 1000");
 }
 
 #[test]

@@ -294,3 +294,50 @@ fn a_switched_off_variable_stays_off() {
     let reading = read(&FUZZYLITE.replace("Enabled=1\nName='level'", "Enabled=0\nName='level'"));
     assert!(!reading.parts.inputs[0].enabled && reading.parts.inputs[1].enabled);
 }
+
+/// Octave lets a hedge in a conclusion act on the set; such files were refused.
+#[test]
+fn a_hedge_in_a_conclusion_makes_a_set_of_its_own_as_in_octave() {
+    let text = OCTAVE
+        .replace("2 1, 2 (1) : 1", "2 1, 2.20 (1) : 1")
+        .replace("1.15 -2.05, 1 (0.5) : 1", "1.15 -2.05, -1.05 (0.5) : 1")
+        .replace("1 2.40, 1 (1) : 2", "1 2.40, 2.20 (1) : 2");
+    let reading = read(&text);
+    let output = &reading.parts.outputs[0];
+    let names: Vec<_> = output.terms.iter().map(|term| term.name.as_str()).collect();
+    assert_eq!(names, ["slow", "fast", "fast^2", "not slow^0.5"]);
+    let concluded: Vec<_> =
+        reading.parts.blocks[0].rules.iter().map(|rule| rule.consequents[0].term).collect();
+    assert_eq!(concluded, [2, 3, 2]);
+    let grade = |term: usize, x: f64| match &output.terms[term].conclusion {
+        Conclusion::Set { membership, .. } => membership.grade(x, &[], &mut [0.0; 8]),
+        other => panic!("{other:?}"),
+    };
+    for x in [-3.0, 0.0, 10.0, 20.0, 35.0, 50.0, 60.0, 82.0, 100.0, 120.0] {
+        assert!((grade(2, x) - grade(1, x).powi(2)).abs() < 1e-14, "{x}");
+        assert!((grade(3, x) - (1.0 - grade(0, x).sqrt())).abs() < 1e-14, "{x}");
+    }
+    assert!(noted(&reading, "a hedge in a conclusion changes the set, as in Octave: `fast^2`"));
+    // The integral over the set that was made, against the same system with the power written out.
+    let answer = |parts: &fspid_fuzzy::system::Parts, at: &[f64]| {
+        let system = fspid_fuzzy::system::System::new(parts.clone()).expect("a system");
+        let mut room = system.workspace();
+        system.evaluate(at, &mut room).expect("finite")[0].value
+    };
+    let found = answer(&reading.parts, &[45.0, 0.1]).expect("an answer");
+    let (mut moment, mut area) = (0.0, 0.0);
+    for sample in 0..=100_u32 {
+        let (x, end) = (f64::from(sample), matches!(sample, 0 | 100));
+        let weight = if end { 0.5 } else { 1.0 } * grade(1, x).powi(2);
+        (moment, area) = (moment + x * weight, area + weight);
+    }
+    assert!((found - moment / area).abs() < 1e-9, "{found} for {}", moment / area);
+}
+
+#[test]
+fn a_hedge_of_a_number_is_refused_for_a_number_has_no_grades() {
+    let text = SUGENO.replace("1 1, 1 (1) : 1", "1 1, 1.20 (1) : 1");
+    assert_ne!(text, SUGENO);
+    let told = fis::read(&text).expect_err("refused").to_string();
+    assert!(told.contains("`1.20`: a hedge or `not` in a conclusion about such a term"), "{told}");
+}

@@ -9,7 +9,7 @@ use fspid_fuzzy::Hedge;
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
     Activation, Antecedent, Comparison, Conclusion, Defuzzifier, FallbackValue, Membership, Parts,
-    Sampling, SetReading, Variable,
+    Sampling, SetReading, System, Variable,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
@@ -358,4 +358,78 @@ fn what_changes_no_answer_is_left_out_with_a_note() {
         ]
     );
     assert_eq!(read(&written.text).blocks[0].rules.len(), 2);
+}
+
+/// A formula that counts on, one that looks at the output before its own, and one that looks ahead.
+const REMEMBERS: &str = "Engine: memory
+InputVariable: x
+  range: -5 5
+  term: any Rectangle -5 5
+OutputVariable: sum
+  range: -100 100
+  defuzzifier: WeightedAverage TakagiSugeno
+  default: 0
+  term: more Function sum + x
+  term: ahead Function 10 * twice
+OutputVariable: twice
+  range: -100 100
+  defuzzifier: WeightedAverage TakagiSugeno
+  default: nan
+  term: double Function 2 * sum
+RuleBlock: all
+  implication: none
+  activation: General
+  rule: if x is any then sum is more and twice is double
+";
+
+/// Such systems were refused: \"not a name that is known here\".
+#[test]
+fn a_formula_may_name_an_output_and_finds_its_last_answer() {
+    let reading = fll::read(REMEMBERS).expect("a system");
+    let told = notes(&reading).join("\n");
+    assert!(told.contains("find its new answer where it stands before their own"), "{told}");
+    let system = System::new(reading.parts).expect("a system");
+    let mut room = system.workspace();
+    let mut previous = Vec::new();
+    let mut found = Vec::new();
+    for x in [1.0, 1.0, 2.0] {
+        let answers = system.evaluate_after(&[x], &previous, &mut room).expect("answers");
+        previous = answers.iter().map(|answer| answer.value).collect();
+        found.push(previous.clone());
+    }
+    // There is no sum before the first: it falls back on its default, and `twice` sees that.
+    let expected = [[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]].map(|pair| pair.map(Some).to_vec());
+    assert_eq!(found, expected);
+    // Without a memory each question is the first.
+    let alone = system.evaluate(&[2.0], &mut room).expect("answers");
+    assert_eq!(alone.iter().map(|answer| answer.value).collect::<Vec<_>>(), [Some(0.0); 2]);
+}
+
+#[test]
+fn a_formula_that_names_an_output_behind_its_own_finds_the_answer_before() {
+    let text = REMEMBERS.replace("then sum is more", "then sum is ahead");
+    let system = System::new(fll::read(&text).expect("a system").parts).expect("a system");
+    let mut room = system.workspace();
+    let answers = system.evaluate_after(&[0.0], &[None, Some(3.0)], &mut room).expect("answers");
+    let found: Vec<_> = answers.iter().map(|answer| answer.value).collect();
+    assert_eq!(found, [Some(30.0), Some(60.0)]);
+}
+
+#[test]
+fn a_formula_that_names_an_output_is_written_and_comes_back() {
+    let parts = read(REMEMBERS);
+    let text = fll::write(&parts, EXACT).expect("written").text;
+    assert!(text.contains("term: more Function sum + x\n"), "{text}");
+    assert_eq!(read(&text), parts);
+}
+
+#[test]
+fn sets_of_inputs_may_ask_for_an_output_and_get_the_answer_before() {
+    let text = REMEMBERS.replace("term: any Rectangle -5 5", "term: any Function sum / 10");
+    let system = System::new(fll::read(&text).expect("a system").parts).expect("a system");
+    let mut room = system.workspace();
+    let answers = system.evaluate_after(&[4.0], &[Some(5.0)], &mut room).expect("answers");
+    // The rule fires with 0.5, which a weighted average does not show, but it fires.
+    assert_eq!(answers[0].value, Some(9.0));
+    assert_eq!(system.firings(&room).next().map(|fired| fired.strength), Some(0.5));
 }

@@ -9,7 +9,7 @@ use crate::matrix::Matrix;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Doubled {
     pub(crate) high: f64,
-    low: f64,
+    pub(crate) low: f64,
 }
 
 /// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
@@ -22,7 +22,7 @@ impl Doubled {
     ///
     /// # Source
     /// D. E. Knuth, The Art of Computer Programming, volume 2, section 4.2.2, theorem B.
-    fn exact_sum(left: f64, right: f64) -> Self {
+    pub(crate) fn exact_sum(left: f64, right: f64) -> Self {
         let high = left + right;
         let part = high - left;
         Self { high, low: (left - (high - part)) + (right - part) }
@@ -58,6 +58,15 @@ impl Doubled {
     }
 }
 
+impl Doubled {
+    /// Quotient by a plain number, to about 2^-102 of itself.
+    pub(crate) fn divided(self, by: f64) -> Self {
+        let quotient = self.high / by;
+        let rest = self.plus(Self::from(by).times(-quotient));
+        Self::from(quotient).plus(Self::from(rest.high / by))
+    }
+}
+
 /// Square matrix of [`Doubled`] entries, row after row.
 #[derive(Debug, Clone)]
 pub(crate) struct DoubledMatrix {
@@ -74,16 +83,41 @@ impl DoubledMatrix {
         Self { size, data: data.map(|(i, &value)| Doubled::exact_sum(one(i), value)).collect() }
     }
 
+    /// Square matrix by a function.
+    pub(crate) fn from_function(size: usize, entry: impl Fn(usize, usize) -> Doubled) -> Self {
+        Self { size, data: (0..size * size).map(|i| entry(i / size, i % size)).collect() }
+    }
+
+    pub(crate) fn at(&self, row: usize, column: usize) -> Doubled {
+        self.data[row * self.size + column]
+    }
+
     /// Product with itself.
     pub(crate) fn squared(&self) -> Self {
+        self.product(self)
+    }
+
+    /// Product with a matrix of the same size.
+    pub(crate) fn product(&self, other: &Self) -> Self {
         let entry = |i: usize| {
             let (row, column) = (i / self.size, i % self.size);
             let terms = (0..self.size).map(|k| (row * self.size + k, k * self.size + column));
             terms.fold(Doubled::ZERO, |sum, (left, right)| {
-                sum.plus(self.data[left].product(self.data[right]))
+                sum.plus(self.data[left].product(other.data[right]))
             })
         };
         Self { size: self.size, data: (0..self.data.len()).map(entry).collect() }
+    }
+
+    /// Sum with a matrix of the same size.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let entries = self.data.iter().zip(&other.data);
+        Self { size: self.size, data: entries.map(|(own, other)| own.plus(*other)).collect() }
+    }
+
+    /// Every entry divided by a plain number.
+    pub(crate) fn divided(&self, by: f64) -> Self {
+        Self { size: self.size, data: self.data.iter().map(|value| value.divided(by)).collect() }
     }
 
     /// Nearest plain matrix.

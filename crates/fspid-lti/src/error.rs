@@ -120,6 +120,18 @@ pub enum LtiError {
         /// Size of the largest pivot left there.
         pivot: f64,
     },
+    /// Two forms of a state matrix that belong to different loops.
+    #[error(
+        "entry {index} of the change of the states is {given}; that of the state matrix is {expected}, and they must agree to rounding"
+    )]
+    OtherLoop {
+        /// Position, row after row, counted from 0.
+        index: usize,
+        /// What was given.
+        given: f64,
+        /// What the state matrix has.
+        expected: f64,
+    },
     /// A quantity that must be positive and finite.
     #[error("the {what} is {value}; it must be a finite number above zero")]
     NotPositive {

@@ -1,7 +1,8 @@
 //! Exact sampling of a linear system whose input is held constant between samples.
 
 use crate::error::LtiError;
-use crate::exponential::exponential;
+use crate::exponential::{exponential, exponential_change};
+use crate::fine::FineMatrix;
 use crate::matrix::Matrix;
 
 /// Binary exponent that the input columns are scaled to, far below the states.
@@ -46,4 +47,34 @@ pub fn zero_order_hold(a: &Matrix, b: &Matrix, dt_s: f64) -> Result<(Matrix, Mat
     });
     LtiError::unless_finite("sampled input matrix", b_sampled.data())?;
     Ok((a_sampled, b_sampled))
+}
+
+/// What a sample changes: $A_d - I$ and $B_d$ of [`zero_order_hold`], with twice the working precision.
+///
+/// # Errors
+/// As [`zero_order_hold`].
+pub fn held_change(
+    a: &FineMatrix,
+    b: &FineMatrix,
+    dt_s: f64,
+) -> Result<(FineMatrix, FineMatrix), LtiError> {
+    a.high().require_square_and_finite("state matrix")?;
+    let (states, inputs) = (a.high().rows(), b.high().columns());
+    b.high().require_shape("input matrix", states, inputs)?;
+    // Inputs of the size of 1, so that they force no halvings.
+    let shifts: Vec<i32> =
+        (0..inputs).map(|input| -libm::frexp(b.high().column_norm(input) * dt_s).1).collect();
+    let size = states + inputs;
+    let augmented =
+        FineMatrix::from_function((size, size), |row, column| match column.checked_sub(states) {
+            _ if row >= states => [0.0; 2],
+            Some(input) => b.at(row, input).map(|value| libm::scalbn(value, shifts[input])),
+            None => a.at(row, column),
+        });
+    let change = exponential_change(&augmented, dt_s)?;
+    let state = FineMatrix::from_function((states, states), |row, column| change.at(row, column));
+    let input = FineMatrix::from_function((states, inputs), |row, input| {
+        change.at(row, states + input).map(|value| libm::scalbn(value, -shifts[input]))
+    });
+    Ok((state, input))
 }

@@ -31,11 +31,13 @@
 //! ```
 
 mod balance;
+mod ball;
 mod complex;
 mod doubled;
 mod eigenvalues;
 mod error;
 mod exponential;
+mod fine;
 mod frequency;
 mod hold;
 mod integral_regulator;
@@ -49,13 +51,15 @@ mod sampled;
 mod solve;
 mod state_space;
 mod transfer_function;
+mod wide;
 
 pub use complex::{Complex, modulus, quotient};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
-pub use exponential::exponential;
+pub use exponential::{exponential, exponential_change};
+pub use fine::FineMatrix;
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
-pub use hold::zero_order_hold;
+pub use hold::{held_change, zero_order_hold};
 pub use integral_regulator::{
     DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator,
 };
@@ -65,8 +69,8 @@ pub use polynomial::{DEGREE_LIMIT, Polynomial};
 pub use regulator::{Regulator, regulator};
 pub use response::step_response;
 pub use sampled::{
-    DiskMargin, GainLimit, LoopFamily, Peak, SampledCrossover, SampledLoop, SampledMargins,
-    SeriesControl, Stability,
+    Bracket, DiskMargin, GainLimit, LoopFamily, Peak, Proved, SampledCrossover, SampledLoop,
+    SampledMargins, SeriesControl, Stability,
 };
 pub use state_space::StateSpace;
 pub use transfer_function::TransferFunction;

@@ -48,6 +48,17 @@ impl StateSpace {
         Self { a, b, c, d }
     }
 
+    /// The same form for numbers that are small parts of others: without its ones.
+    pub(crate) fn observability_rest(denominator: &[f64], markov: &[f64]) -> Self {
+        let mut rest = Self::observability_form(denominator, markov);
+        let states = denominator.len();
+        rest.a = Matrix::from_function(states, states, |row, column| {
+            if row + 1 == states { -denominator[states - 1 - column] } else { 0.0 }
+        });
+        rest.c = Matrix::zeros(1, states);
+        rest
+    }
+
     /// State matrix: states by states.
     #[must_use]
     pub fn a(&self) -> &Matrix {

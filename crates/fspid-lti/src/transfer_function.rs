@@ -1,7 +1,9 @@
 //! Transfer functions: a numerator over a denominator, as plants are printed in books.
 
 use crate::complex::{Complex, modulus, quotient, reciprocal};
+use crate::doubled::Doubled;
 use crate::error::LtiError;
+use crate::matrix::Matrix;
 use crate::polynomial::Polynomial;
 use crate::state_space::StateSpace;
 
@@ -178,6 +180,36 @@ impl TransferFunction {
             &self.monic_denominator(),
             &self.markov_parameters(states + 1),
         )
+    }
+
+    /// What the rounding of [`to_state_space`](Self::to_state_space) left out of its A and B.
+    ///
+    /// The Markov parameters are large where modes are fast, and what they make at rest is a small difference: for
+    /// slow modes their last digits count.
+    #[must_use]
+    pub fn state_space_rest(&self) -> StateSpace {
+        let (model, leading) = (self.to_state_space(), self.denominator.leading());
+        let alpha: Vec<Doubled> = self.denominator.coefficients()[1..]
+            .iter()
+            .map(|&value| Doubled::from(value).divided(leading))
+            .collect();
+        let (states, offset) = (alpha.len(), self.relative_degree());
+        let mut markov: Vec<Doubled> = Vec::with_capacity(states + 1);
+        for k in 0..=states {
+            let given = k.checked_sub(offset).and_then(|i| self.numerator.coefficients().get(i));
+            let beta = given.map_or(Doubled::ZERO, |&value| Doubled::from(value).divided(leading));
+            let terms = alpha.iter().zip(markov.iter().rev());
+            let value = terms.fold(beta, |sum, (alpha, h)| sum.plus(alpha.product(h.times(-1.0))));
+            markov.push(value);
+        }
+        let rest = |fine: Doubled, plain: f64| fine.plus(Doubled::from(-plain)).high;
+        let plain = self.monic_denominator();
+        let alpha: Vec<f64> =
+            alpha.iter().zip(plain).map(|(&fine, plain)| rest(fine, plain)).collect();
+        let plain = core::iter::once(model.d()).chain([model.b()]).flat_map(Matrix::data);
+        let markov: Vec<f64> =
+            markov.iter().zip(plain).map(|(&fine, &plain)| rest(fine, plain)).collect();
+        StateSpace::observability_rest(&alpha, &markov)
     }
 
     /// Denominator over its leading coefficient, without the leading 1.

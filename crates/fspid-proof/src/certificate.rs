@@ -3,6 +3,8 @@
 use fspid_lti::Matrix;
 
 use crate::description::LoopDescription;
+use crate::recheck::Rechecked;
+use crate::scope::{LeftOut, Range, Scope};
 
 /// A claim about a loop and the matrices that carry it.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +15,10 @@ pub struct Certificate {
     pub output_factor: f64,
     /// Cells along each of the supervisor's inputs over which its gains are enclosed.
     pub divisions: usize,
+    /// Constant set-points and loads that the claim is made for.
+    pub range: Range,
+    /// What the scenario has of which the claim does not speak.
+    pub left_out: Vec<LeftOut>,
     /// What is claimed.
     pub claim: Claim,
     /// Level c of the ellipsoid $z^T P z \le c$, where one is claimed. In it no limit acts; of a claim about
@@ -92,6 +98,27 @@ pub struct BoundedRate {
     /// Bounds of error and change in magnitude, supervisor units, within the level of the certificate, for a
     /// law that ties the gains to them: there it keeps to the rate.
     pub inputs: Option<[f64; 2]>,
+}
+
+impl Certificate {
+    /// What is to be said beside the claim, with what its re-check found.
+    #[must_use]
+    pub fn scope(&self, rechecked: &Rechecked) -> Scope {
+        let mut left_out = self.left_out.clone();
+        left_out.extend(LeftOut::ALL.into_iter().filter(|one| one.always()));
+        left_out.sort_unstable();
+        left_out.dedup();
+        Scope {
+            range: self.range,
+            any_setpoint: rechecked.any_setpoint,
+            any_load: rechecked.any_load,
+            rest_error_rad: rechecked.rest_error_rad,
+            remains_rad: rechecked.remains_rad,
+            limits: self.description.limits(),
+            pitch_within_rad: rechecked.pitch_within_rad,
+            left_out,
+        }
+    }
 }
 
 impl Claim {

@@ -2,14 +2,20 @@
 
 use core::fmt;
 
-use fspid_core::{AntiWindup, Sees, SelfTuner};
+use fspid_core::{AntiWindup, Followers, Sees, SelfTuner, Shell, TunerSettings};
 use fspid_fuzzy::scalar::Interval;
-use fspid_sim::actuator::Actuator;
+use fspid_sim::actuator::{Actuator, ActuatorParts};
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
+use fspid_sim::sensor::Sensor;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 use crate::gain_set::NoBound;
+use crate::limits;
+use crate::sizes::WrongSize;
+
+/// A flight whose pitch angle goes beyond this is lost: $10^6$ degrees, as in simulations.
+const LOST_RAD: f64 = 1e6 * core::f64::consts::PI / 180.0;
 
 /// A loop from plant to controller, with everything that its proof rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +46,8 @@ pub enum NotProvable {
     },
     /// A sensor with a clock of its own: there is no single matrix from one sample to the next.
     ChangingAge,
+    /// A vertical gyro that erects, in an aircraft.
+    Erection,
     /// A self-tuner of another structure than the paper's.
     Structure {
         /// What is in the way.
@@ -47,6 +55,8 @@ pub enum NotProvable {
     },
     /// Nothing bounds the gains of an accumulating law.
     UnboundedGains(NoBound),
+    /// The loop has more states than a proof may speak of.
+    TooLarge(WrongSize),
     /// The model is refused.
     Model(SimError),
     /// The plant cannot be enclosed.
@@ -63,11 +73,15 @@ impl fmt::Display for NotProvable {
             Self::ChangingAge => f.write_str(
                 "a sensor samples with a clock of its own, so that the age of its values changes and no single matrix leads from one sample to the next; a proof needs period_s to be that of the loop, or 0",
             ),
+            Self::Erection => f.write_str(
+                "the vertical gyro erects to the apparent vertical at a bounded rate, so that around rest the loop is not linear and may keep an oscillation; a proof needs erection_deg_min to be 0",
+            ),
             Self::Structure { what } => write!(
                 f,
                 "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
             ),
             Self::UnboundedGains(reason) => reason.fmt(f),
+            Self::TooLarge(wrong) => wrong.fmt(f),
             Self::Plant(reason) => reason.fmt(f),
             Self::Model(error) => error.fmt(f),
         }
@@ -96,21 +110,58 @@ impl From<SimError> for NotProvable {
 
 /// What keeps a self-tuner from being proved; nothing for one that is plain.
 fn beyond_proof(tuner: &SelfTuner<f64>) -> Option<&'static str> {
-    let settings = tuner.settings();
-    if tuner.is_plain() {
-        return None;
-    }
+    let TunerSettings {
+        // Covered: an error turned round is another cell of the same surface.
+        error_sign: _,
+        sees,
+        // Covered by the rows of the supervisor's inputs.
+        change: _,
+        input_scale: _,
+        input_sets,
+        // Covered by the set of gains.
+        output_scale: _,
+        followers,
+        law: _,
+        gain_limits: _,
+        dead_zone: _,
+    } = tuner.settings();
     if tuner.supervisor().numbers().is_some() {
         return Some("the supervisor's rules conclude numbers (Takagi and Sugeno)");
     }
-    Some(match settings.sees {
-        Sees::ErrorAndRate => "the supervisor sees the measured pitch rate",
-        Sees::ErrorAndModelError(_) => "the supervisor sees the error of a reference model",
-        Sees::ErrorAndChange if !settings.input_sets.are_even() => {
-            "the sets of the supervisor's inputs are not even"
+    match sees {
+        Sees::ErrorAndChange => {}
+        Sees::ErrorAndRate => return Some("the supervisor sees the measured pitch rate"),
+        Sees::ErrorAndModelError(_) => {
+            return Some("the supervisor sees the error of a reference model");
         }
-        Sees::ErrorAndChange => "set-point weight or rate gain follow the gains",
-    })
+    }
+    if !input_sets.are_even() {
+        return Some("the sets of the supervisor's inputs are not even");
+    }
+    let nothing = *followers == Followers::NONE;
+    (!nothing).then_some("set-point weight or rate gain follow the gains")
+}
+
+/// What keeps an actuator from being proved.
+fn not_linear_around_rest(actuator: &Actuator) -> Option<&'static str> {
+    let ActuatorParts {
+        // Covered by the model of the plant and its queue.
+        lag: _,
+        delay_samples: _,
+        // Bounded: an ellipsoid in which none acts, or said to be left out.
+        command_limits_rad: _,
+        rate_limit_rad_s: _,
+        travel_rad: _,
+        deadband_rad,
+        play_rad,
+        // Bounded: a load.
+        bias_rad: _,
+    } = actuator.parts();
+    // Written so that NaN is refused.
+    if !(deadband_rad <= 0.0) {
+        return Some("a deadband");
+    }
+    (!(play_rad <= 0.0)).then_some("play")
 }
 
 impl LoopDescription {
@@ -126,6 +177,11 @@ impl LoopDescription {
         let transfer_function = plant.transfer_function();
         let surroundings = &scenario.surroundings;
         let dt_s = controller.shell().dt_s;
+        let erects = |sensor: &Sensor| sensor.model().erection_rad_s > 0.0;
+        // A linear plant has no speed, and its apparent vertical is the true one.
+        if scenario.plant.aircraft().is_some() && surroundings.pitch_sensor.iter().any(erects) {
+            return Err(NotProvable::Erection);
+        }
         let description = Self {
             numerator: transfer_function.numerator().coefficients().to_vec(),
             denominator: transfer_function.denominator().coefficients().to_vec(),
@@ -143,11 +199,8 @@ impl LoopDescription {
     /// # Errors
     /// [`NotProvable`].
     pub fn provable(self) -> Result<Self, NotProvable> {
-        if self.actuator.deadband_rad() > 0.0 {
-            return Err(NotProvable::NotLinearAroundRest { what: "a deadband" });
-        }
-        if self.actuator.play_rad() > 0.0 {
-            return Err(NotProvable::NotLinearAroundRest { what: "play" });
+        if let Some(what) = not_linear_around_rest(&self.actuator) {
+            return Err(NotProvable::NotLinearAroundRest { what });
         }
         if let Controller::SelfTuning(fspid) = &self.controller
             && let Some(what) = beyond_proof(fspid.tuner())
@@ -157,6 +210,10 @@ impl LoopDescription {
         let uses_rate = self.controller.shell().rate_gain_s != 0.0;
         if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {
             return Err(NotProvable::ChangingAge);
+        }
+        // Before anything is enclosed: the size of everything that follows.
+        if let Some(wrong) = self.too_large() {
+            return Err(NotProvable::TooLarge(wrong));
         }
         Ok(self)
     }
@@ -184,6 +241,11 @@ impl LoopDescription {
         }
     }
 
+    /// True with a sample guard that a flight can reach before it counts as lost.
+    pub(crate) fn is_guarded(&self) -> bool {
+        !(self.controller.shell().guard.limit_rad() >= LOST_RAD)
+    }
+
     /// The loop with every number enclosed.
     ///
     /// # Errors
@@ -199,19 +261,46 @@ impl LoopDescription {
         Ok(LoopModel::new(plant.sampled()?, self.settings()))
     }
 
+    /// Why no claim about this loop covers its limits, where the reason is the actuator.
+    #[must_use]
+    pub fn limits_left_out(&self) -> Option<&'static str> {
+        limits::not_covered(self).filter(|_| !self.limits().is_empty())
+    }
+
     /// What limits motions that are not small, in words; a proof of the loop around rest leaves
     /// these out.
     #[must_use]
     pub fn limits(&self) -> Vec<&'static str> {
-        let shell = self.controller.shell();
+        let Shell {
+            // Covered by the model of the loop.
+            dt_s: _,
+            rate_gain_s: _,
+            derivative: _,
+            // Covered with fixed gains; with gains that move bounded, by the range of set-points and loads.
+            setpoint_weights: _,
+            integral: _,
+            anti_windup,
+            limits,
+            slew_rad_s,
+            // Bounded, see `is_guarded`.
+            guard: _,
+        } = self.controller.shell();
         let actuator = &self.actuator;
+        let clamps = match anti_windup {
+            AntiWindup::Clamping(_) => true,
+            // These act at limits alone.
+            AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => {
+                false
+            }
+        };
         [
-            (shell.limits.is_some(), "output limits of the controller"),
-            (shell.slew_rad_s.is_some(), "slew limit of the controller"),
-            (matches!(shell.anti_windup, AntiWindup::Clamping(_)), "limits of the integral"),
+            (limits.is_some(), "output limits of the controller"),
+            (slew_rad_s.is_some(), "slew limit of the controller"),
+            (clamps, "limits of the integral"),
             (actuator.command_limits_rad().is_some(), "limits of the servo's command"),
             (actuator.travel_rad().is_some(), "ends of the actuator's travel"),
             (actuator.rate_limit_rad_s().is_some(), "rate limit of the actuator"),
+            (self.is_guarded(), "sample guard of the controller"),
         ]
         .into_iter()
         .filter_map(|(there, what)| there.then_some(what))

@@ -11,6 +11,8 @@
 //!
 //! Not here: files, texts, scenarios.
 
+mod asked;
+mod bearing;
 mod certificate;
 pub mod check;
 mod description;
@@ -18,10 +20,17 @@ pub mod gain_set;
 mod limits;
 mod prove;
 mod recheck;
+mod rest;
+mod scope;
+pub mod sizes;
 pub mod solve;
 
+pub use asked::left_out_of;
+pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::pitch_within;
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};
 pub use recheck::{Doubt, Kept, Rechecked};
+pub use rest::NoRest;
+pub use scope::{Asked, LeftOut, Range, Scope};

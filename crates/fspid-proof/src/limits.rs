@@ -14,6 +14,8 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::check::{ActuatorLag, IntervalMatrix, NotProved, inside_limit};
 use crate::description::LoopDescription;
+use crate::gain_set::HeldGains;
+use crate::rest::Rest;
 
 /// Of the largest level that ordinary arithmetic finds, so much is claimed.
 const CLAIMED: f64 = 1.0 - 1e-6;
@@ -37,27 +39,37 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
 }
 
 /// Rows from the state to everything that is limited, each with its limit, at some gains.
-pub(crate) fn rows<T: Scalar>(
+///
+/// Of each limit so much is left for motions as rest itself does not take, with the resolution of the sensors
+/// that may show in the command at once.
+pub(crate) fn rows<T: Scalar + Magnitude>(
     description: &LoopDescription,
     model: &LoopModel<T>,
     gains: Gains<T>,
+    rest: &Rest,
 ) -> Vec<(Vec<T>, f64)> {
     let shell = description.controller.shell();
     let actuator = &description.actuator;
     let mut rows = Vec::new();
     let command = || model.command_row(gains);
+    let blur_rad = description.blur_of_command(model, gains);
+    let around_rest = |limit: f64| less(limit, rest.command_rad, blur_rad);
     if let Some(limits) = &shell.limits {
-        rows.push((command(), around_zero(limits)));
+        rows.push((command(), around_rest(around_zero(limits))));
     }
     if let Some(slew_rad_s) = shell.slew_rad_s {
         // Two commands that are both within half of it differ by no more.
-        rows.push((command(), 0.5 * slew_rad_s * shell.dt_s));
+        rows.push((command(), less(0.5 * slew_rad_s * shell.dt_s, 0.0, blur_rad)));
     }
     if let AntiWindup::Clamping(limits) = &shell.anti_windup {
-        rows.push((model.integral_row(gains), around_zero(limits)));
+        let [blur_of_pitch, _] = description.blurs();
+        let by_pitch = Interval::point(gains.ki.largest()) * Interval::point(shell.dt_s);
+        let blur_rad = (by_pitch * Interval::point(blur_of_pitch)).upper();
+        let limit = less(around_zero(limits), rest.integral_rad, blur_rad);
+        rows.push((model.integral_row(gains), limit));
     }
     if let Some((least, most)) = actuator.command_limits_rad() {
-        rows.push((command(), (-least).min(most)));
+        rows.push((command(), around_rest((-least).min(most))));
     }
     let deflection = || -> Vec<T> {
         let place = model.plant().states - 1;
@@ -66,7 +78,7 @@ pub(crate) fn rows<T: Scalar>(
     };
     if let Some((least, most)) = actuator.travel_rad() {
         // A lag of first order stays between where it is and where it is told to go.
-        let limit = (-least).min(most);
+        let limit = around_rest((-least).min(most));
         rows.push((deflection(), limit));
         rows.push((command(), limit));
     }
@@ -75,9 +87,59 @@ pub(crate) fn rows<T: Scalar>(
     {
         // The rate is largest right after a new command: gap over time constant.
         let arriving = model.arriving_row(gains).into_iter().zip(deflection());
-        rows.push((arriving.map(|(v, x)| v - x).collect(), rate_rad_s * time_s));
+        let limit = less(rate_rad_s * time_s, 0.0, blur_rad);
+        rows.push((arriving.map(|(v, x)| v - x).collect(), limit));
+    }
+    if description.is_guarded() {
+        let limit_rad = shell.guard.limit_rad();
+        let [pitch, rate] = model.seen_rows();
+        let [blur_of_pitch, blur_of_rate] = description.blurs();
+        rows.push((pitch, less(limit_rad, rest.seen_rad, blur_of_pitch)));
+        if shell.rate_gain_s != 0.0 {
+            rows.push((rate, less(limit_rad, 0.0, blur_of_rate)));
+        }
     }
     rows
+}
+
+/// What is left of a limit, rounded down; not positive where nothing is.
+fn less(limit: f64, rest: f64, blur: f64) -> f64 {
+    (Interval::point(limit) - Interval::point(rest) - Interval::point(blur)).lower()
+}
+
+/// A number whose size is known.
+pub(crate) trait Magnitude {
+    /// The largest magnitude that it may have.
+    fn largest(&self) -> f64;
+}
+
+impl Magnitude for f64 {
+    fn largest(&self) -> f64 {
+        self.abs()
+    }
+}
+
+impl Magnitude for Interval {
+    fn largest(&self) -> f64 {
+        self.magnitude()
+    }
+}
+
+impl LoopDescription {
+    /// How far the resolution of the sensors may take seen pitch and seen rate off, rad and rad/s.
+    pub(crate) fn blurs(&self) -> [f64; 2] {
+        let uses_rate = self.controller.shell().rate_gain_s != 0.0;
+        let rate = if uses_rate { 0.5 * self.rate.resolution } else { 0.0 };
+        [0.5 * self.pitch.resolution, rate]
+    }
+
+    /// How far it may take the command off at once, rad.
+    fn blur_of_command<T: Scalar + Magnitude>(&self, model: &LoopModel<T>, gains: Gains<T>) -> f64 {
+        let sizes = model.command_by_seen(gains).map(|entry| Interval::point(entry.largest()));
+        let [by_pitch, by_rate] = sizes;
+        let [pitch, rate] = self.blurs().map(Interval::point);
+        (by_pitch * pitch + by_rate * rate).upper()
+    }
 }
 
 fn around_zero(limits: &Limits<f64>) -> f64 {
@@ -89,12 +151,16 @@ fn around_zero(limits: &Limits<f64>) -> f64 {
 pub(crate) fn level(
     description: &LoopDescription,
     model: &LoopModel<f64>,
-    corners: &[Gains<f64>],
-    form: &Matrix,
+    corners: &[HeldGains],
+    (form, rest): (&Matrix, &Rest),
 ) -> Option<f64> {
     let mut level = f64::INFINITY;
-    for gains in corners {
-        for (row, limit) in rows(description, model, *gains) {
+    for HeldGains { gains, change_gain } in corners {
+        let model = model.with_change_gain(*change_gain);
+        for (row, limit) in rows(description, &model, *gains, rest) {
+            if !(limit > 0.0) {
+                return None;
+            }
             let column = Matrix::from_rows(&row.iter().map(|value| [*value]).collect::<Vec<_>>());
             let solved = form.solve(&column.ok()?).ok()?;
             let size: f64 = row.iter().zip(solved.data()).map(|(r, x)| r * x).sum();
@@ -111,9 +177,9 @@ pub(crate) fn prove(
     description: &LoopDescription,
     model: &LoopModel<Interval>,
     gains: Gains<Interval>,
-    (form, level): (&Matrix, f64),
+    (form, level, rest): (&Matrix, f64, &Rest),
 ) -> Result<usize, NotProved> {
-    let rows = rows(description, model, gains);
+    let rows = rows(description, model, gains, rest);
     for (row, limit) in &rows {
         inside_limit(form, level, row, *limit)?;
     }

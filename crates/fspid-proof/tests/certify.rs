@@ -7,7 +7,10 @@ use fspid_core::{
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
-use fspid_proof::{Certificate, Claim, Effort, LoopDescription, NotProvable, Verdict, certify};
+use fspid_proof::{
+    Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LoopDescription, NotProvable, Range,
+    Verdict, certify,
+};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, ElevatorSign};
@@ -63,7 +66,7 @@ fn quick() -> Effort {
 
 /// The certificate of a loop that is proved.
 fn proved(description: &LoopDescription) -> Certificate {
-    match certify(description, &quick()).expect("provable").verdict {
+    match certify(description, &Asked::rest(), &quick()).expect("provable").verdict {
         Verdict::Proved(certificate, _) => certificate,
         other => panic!("{other:?}"),
     }
@@ -73,7 +76,7 @@ fn proved(description: &LoopDescription) -> Certificate {
 fn a_stable_loop_with_fixed_gains_is_proved_and_an_unstable_one_refuted() {
     assert!(proved(&loop_of(fixed(NOMINAL))).check().is_ok());
     let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
-    let outcome = certify(&unstable, &quick()).expect("provable");
+    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
     let Verdict::Refuted(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
     assert!(matches!(certificate.claim, Claim::FrozenGrowth { .. }));
     assert!(certificate.check().is_ok());
@@ -93,7 +96,7 @@ fn gains_that_move_by_a_fifth_are_proved_at_any_speed() {
 fn gains_that_do_not_hold_where_the_supervisor_puts_them_are_refuted() {
     let scale = Gains { kp: 0.0, ki: 0.0, kd: 0.5 };
     let description = loop_of(tuned(scale, Law::Memoryless));
-    let outcome = certify(&description, &quick()).expect("provable");
+    let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
     let Verdict::Refuted(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
     assert!(matches!(certificate.claim, Claim::FrozenGrowth { .. }), "{:?}", certificate.claim);
     assert!(outcome.largest.proved > 0.0 && outcome.largest.proved < 1.0);
@@ -103,7 +106,7 @@ fn gains_that_do_not_hold_where_the_supervisor_puts_them_are_refuted() {
 fn gains_without_bounds_and_actuators_with_play_are_refused_with_words() {
     let law = Law::Accumulating { leakage_per_s: 0.0 };
     let drifting = loop_of(tuned(Gains { kp: 0.1, ki: 0.0, kd: 0.0 }, law));
-    let refused = certify(&drifting, &quick()).expect_err("without bounds");
+    let refused = certify(&drifting, &Asked::rest(), &quick()).expect_err("without bounds");
     assert!(matches!(refused, NotProvable::UnboundedGains(_)), "{refused}");
     let mut loose = loop_of(fixed(NOMINAL));
     loose.actuator = loose.actuator.with_play(0.01).expect("allowed");
@@ -116,7 +119,7 @@ fn limits_that_do_not_act_near_rest_are_in_the_proof() {
     let mut description = loop_of(fixed(NOMINAL));
     let actuator = description.actuator.with_command_limits(-0.35, 0.35);
     description.actuator = actuator.and_then(|a| a.with_rate_limit(0.65)).expect("allowed");
-    let outcome = certify(&description, &quick()).expect("provable");
+    let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
     let pitch_rad = outcome.pitch_within_rad.expect("an ellipsoid");
     assert!(pitch_rad > 1e-4 && pitch_rad < 0.35, "{pitch_rad}");
     let mut certificate = proved(&description);
@@ -154,6 +157,8 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
         description: description.clone(),
         output_factor: 1.0,
         divisions: 4,
+        range: Range::REST,
+        left_out: Vec::new(),
         claim: Claim::Tied { form: Matrix::identity(size), rate: 1.0, multipliers },
         level: None,
     };
@@ -174,12 +179,12 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
 fn an_input_that_the_supervisor_never_sees_refutes_nothing() {
     let scale = Gains { kp: 0.0, ki: 0.0, kd: 0.5 };
     let seeing = loop_of(tuned(scale, Law::Memoryless));
-    let outcome = certify(&seeing, &quick()).expect("provable");
+    let outcome = certify(&seeing, &Asked::rest(), &quick()).expect("provable");
     let Verdict::Refuted(mut certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
     // The table answers to the error alone: without it the gains stay as they are.
     let blind = InputScale { error_per_rad: 0.0, change_per_rad: 12.0 };
     let description = loop_of(with_inputs(blind, scale, Law::Memoryless));
-    let outcome = certify(&description, &quick()).expect("provable");
+    let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
     assert!(!matches!(outcome.verdict, Verdict::Refuted(..)), "{outcome:?}");
     certificate.description = description;
     assert!(certificate.check().is_err());
@@ -191,7 +196,7 @@ fn rules_that_conclude_numbers_are_refused_and_bounded_by_the_range_alone() {
     let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
     let tuner = SelfTuner::new(NOMINAL, supervisor, TunerSettings::literal()).expect("allowed");
     let fspid = Fspid::new(tuner, shell()).expect("allowed");
-    let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &quick());
+    let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
     let refused = refused.expect_err("another structure").to_string();
     assert!(refused.contains("conclude numbers"), "{refused}");
     let map = IncrementMap::of(&tuner, 3).expect("bounded");
@@ -212,7 +217,7 @@ fn a_tuner_of_another_structure_is_refused_by_name() {
         let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
         let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings);
         let fspid = Fspid::new(tuner.expect("allowed"), shell()).expect("allowed");
-        let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &quick());
+        let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
         let refused = refused.expect_err("another structure");
         assert!(matches!(refused, NotProvable::Structure { .. }), "{refused}");
         refused.to_string()
@@ -224,4 +229,50 @@ fn a_tuner_of_another_structure_is_refused_by_name() {
     let sees = Sees::ErrorAndModelError(model);
     assert!(refusal(TunerSettings { sees, ..plain }).contains("reference model"));
     assert!(refusal(TunerSettings { input_sets: uneven, ..plain }).contains("not even"));
+}
+
+#[test]
+fn a_rate_that_the_law_is_not_known_to_keep_says_nothing_of_the_flown_loop() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let rechecked = good.check().expect("it holds");
+    assert_eq!(good.bearing(&rechecked), Bearing::Stable);
+    let Claim::AnySpeed { form, .. } = &good.claim else { panic!("{:?}", good.claim) };
+    // A form that moves with kp by a thousandth of itself falls as long as kp moves slowly.
+    let none = Matrix::zeros(form.rows(), form.columns());
+    let claim = BoundedRate {
+        ends: rechecked.bounds.map(|bounds| [bounds.lower(), bounds.upper()]),
+        changes: [0.01, 2.0, 2.0],
+        forms: [form.clone(), form.scaled(1e-3), none.clone(), none],
+        rate: 1.0,
+        inputs: None,
+    };
+    let slow = Certificate { claim: Claim::BoundedRate(claim), level: None, ..good.clone() };
+    let rechecked = slow.check().expect("the inequalities are proved");
+    assert_eq!((rechecked.kept, slow.bearing(&rechecked)), (None, Bearing::RateNotKept));
+    assert!(!slow.bearing(&rechecked).is_stability());
+    let still = Certificate { output_factor: 0.0, ..good };
+    let rechecked = still.check().expect("gains that stand still hold");
+    assert_eq!(still.bearing(&rechecked), Bearing::OtherScale { factor: 0.0 });
+}
+
+#[test]
+fn what_is_too_large_is_told_at_once_and_before_the_loop_is_enclosed() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let enclosed = good.description.enclosed().expect("a model").size();
+    assert_eq!(good.description.states(), enclosed);
+    let mut large = Certificate { divisions: 1000, ..good };
+    large.description.actuator = large.description.actuator.with_delay(10_000).expect("allowed");
+    let refused = large.check().expect_err("too large").to_string();
+    for part in [
+        "loop: 10008 states",
+        "divisions: 1000 cells",
+        "claim.form: 8 rows",
+        " products of the re-check",
+    ] {
+        assert!(refused.contains(part), "{part}: {refused}");
+    }
+    let refused = large.description.provable().expect_err("too large").to_string();
+    assert!(refused.starts_with("loop: 10008 states"), "{refused}");
 }

@@ -1,26 +1,32 @@
 //! A plant with an [`Actuator`] and gusts from one sample to the next.
 //!
-//! Between samples the elevator disturbance $d$ and the gusts $g = (u_g, w_g, q_g)$ are held, and
+//! Between samples the elevator disturbance $d$ and the gusts $g = (u_g, w_g, q_g)$ are held (what the air's change within
+//! the sample adds comes from [`gust_response`](crate::gust_response)), and
 //! the actuator passes through legs of one linear law each, so that
 //!
 //! $$ \dot x = A x + s B (\delta + d) + E g $$
 //!
 //! is solved leg by leg, by the [`law`](crate::law) of the leg. Nothing is allocated.
 
+use fspid_lti::{FineMatrix, Matrix, exponential_change};
+
 use crate::actuator::{Actuator, ActuatorState, Course, Leg};
 use crate::error::SimError;
+use crate::gust_response::PlantAir;
 use crate::law::{INPUTS, Law, StateVector};
 use crate::math::dot;
 use crate::plant::LinearPlant;
-use crate::propagator::LinearStep;
+use crate::propagator::{LinearStep, part_of_change};
 
 /// What enters the plant beside the command, held over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Held {
+pub(crate) struct Held<'a> {
     /// Disturbance at the elevator, nose up positive, rad.
     pub(crate) elevator_rad: f64,
     /// The air's velocity forward and down, m/s, and its pitch rate, rad/s.
     pub(crate) gust: [f64; 3],
+    /// What the air's change within the sample adds to the states of a linear plant at its end.
+    pub(crate) added: &'a [f64],
 }
 
 /// Plant, actuator and gusts, discretised for one sample period.
@@ -31,6 +37,7 @@ pub(crate) struct Actuated {
     order: usize,
     follow: Law,
     ramp: Law,
+    air: PlantAir,
     rate_row: Vec<f64>,
     elevator_per_command: f64,
 }
@@ -109,6 +116,7 @@ impl Actuated {
             dt_s,
             order,
             follow,
+            air: PlantAir::new(model.a().data(), &entries.by_gust),
             ramp: law(false)?,
             rate_row,
             elevator_per_command,
@@ -140,15 +148,22 @@ impl Actuated {
     }
 
     /// One sample period with everything held.
-    pub(crate) fn advance(&self, state: &mut ActuatedState, command_rad: f64, held: &Held) {
+    pub(crate) fn advance(&self, state: &mut ActuatedState, command_rad: f64, held: &Held<'_>) {
         let mut actuator = state.actuator;
         self.actuator
             .legs(&mut actuator, command_rad, self.dt_s, |leg| self.pass(state, &leg, held));
         state.actuator = actuator;
+        let values = state.vector.values.iter_mut().take(self.order);
+        values.zip(held.added).for_each(|(value, more)| *value += more);
+    }
+
+    /// How the plant answers to the air.
+    pub(crate) fn air(&self) -> &PlantAir {
+        &self.air
     }
 
     /// One leg.
-    fn pass(&self, state: &mut ActuatedState, leg: &Leg, held: &Held) {
+    fn pass(&self, state: &mut ActuatedState, leg: &Leg, held: &Held<'_>) {
         let (law, input) = match leg.course {
             Course::Follow { target_rad } => (&self.follow, target_rad),
             Course::Ramp { rate_rad_s } => (&self.ramp, rate_rad_s),
@@ -198,6 +213,25 @@ impl Actuated {
             rows: rows.flat_map(entries).collect(),
             rate_row: self.rate_row.iter().take(states).copied().collect(),
         }
+    }
+}
+
+impl Actuated {
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), and what 64 bits leave out of it.
+    pub(crate) fn linear_change(&self, plant: &LinearPlant) -> Result<[Vec<f64>; 2], SimError> {
+        let order = self.actuator.lag().order();
+        let rest = plant.transfer_function().state_space_rest();
+        let entries = Entries {
+            by_elevator: rest.b().data().iter().map(|b| self.elevator_per_command * b).collect(),
+            by_gust: [0; 3].map(|_| vec![0.0; self.order]),
+        };
+        let mut rows = entries.rows(rest.a().data(), order == 0);
+        let generator = self.follow.generator()?;
+        rows.resize(generator.rows(), vec![0.0; generator.columns()]);
+        let generator = FineMatrix::new(generator, Matrix::from_rows(&rows)?)?;
+        let at_once = (order == 0).then_some(self.order);
+        let places = (self.order + order.max(1), self.order + 2);
+        part_of_change(&exponential_change(&generator, self.dt_s)?, places, at_once)
     }
 }
 

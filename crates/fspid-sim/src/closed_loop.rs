@@ -117,7 +117,7 @@ pub(crate) struct Coming<'a> {
     pub(crate) motion: &'a Motion,
     /// The command that has arrived.
     pub(crate) command_rad: f64,
-    pub(crate) held: &'a Held,
+    pub(crate) held: &'a Held<'a>,
 }
 
 /// The flight itself; the observer sees each sample and what is about to happen.
@@ -177,7 +177,7 @@ fn watch_answers(
         let measured = [measurement_rad, rate_rad_s];
         let instant =
             Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
-        let held = held(disturbance_rad, prepared.gusts(), k);
+        let held = held(disturbance_rad, (prepared.gusts(), prepared.gust_responses.as_deref()), k);
         let propagation = &stage.propagation;
         let coming = Coming { propagation, motion: &plant, command_rad, held: &held };
         if observer(instant, &coming).is_break() {

@@ -69,6 +69,13 @@ pub enum SimError {
     NotLinear,
     /// A self-tuner of another structure than small signals along a flight are written for.
     Structure,
+    /// A gain with which the sampled loop leaves the range of numbers.
+    TooLarge {
+        /// Its key in the scenario.
+        key: String,
+        /// The gain.
+        found: f64,
+    },
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -114,6 +121,10 @@ impl fmt::Display for SimError {
             }
             Self::Structure => f.write_str(
                 "gains along a flight are derived for supervisors whose rules conclude labels and that see the error and its change through even sets, and for controllers of which only the gains move",
+            ),
+            Self::TooLarge { key, found } => write!(
+                f,
+                "{key} is {found:e}; with it the sampled loop leaves the range of 64-bit numbers, allowed is a smaller one"
             ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),

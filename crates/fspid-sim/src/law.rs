@@ -59,6 +59,14 @@ impl Law {
         })
     }
 
+    /// The generator of states and held inputs.
+    pub(crate) fn generator(&self) -> Result<Matrix, SimError> {
+        let mut square: Vec<Vec<f64>> =
+            self.generator.chunks_exact(self.width).map(<[f64]>::to_vec).collect();
+        square.resize(self.width, vec![0.0; self.width]);
+        Ok(Matrix::from_rows(&square)?)
+    }
+
     /// The rows of one sample.
     pub(crate) fn step_rows(&self) -> std::slice::ChunksExact<'_, f64> {
         self.step.chunks_exact(self.width)

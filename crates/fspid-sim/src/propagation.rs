@@ -5,6 +5,7 @@ use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::error::SimError;
 use crate::loop_model::SampledPlant;
+use crate::plant::LinearPlant;
 use crate::propagator::{LinearStep, PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
@@ -122,7 +123,7 @@ impl Propagation {
         &self,
         motion: &mut Motion,
         command_rad: f64,
-        held: &Held,
+        held: &Held<'_>,
     ) -> Result<(), SimError> {
         match (self, motion) {
             (Self::Servo(it), Motion::Servo(state)) => {
@@ -173,7 +174,7 @@ impl Propagation {
         &self,
         motion: &Motion,
         command_rad: f64,
-        held: &Held,
+        held: &Held<'_>,
     ) -> Result<SampledPlant<f64>, SimError> {
         let from = self.values(motion);
         let states = from.len();
@@ -200,6 +201,19 @@ impl Propagation {
             None => (0..states).map(|place| if place == 3 { 1.0 } else { 0.0 }).collect(),
         };
         Ok(SampledPlant { states, rows, rate })
+    }
+
+    /// What a sample changes of the states of [`linear_step`](Self::linear_step), and what 64 bits leave out of it; `None`
+    /// for an aircraft.
+    pub(crate) fn linear_change(
+        &self,
+        plant: &LinearPlant,
+    ) -> Result<Option<[Vec<f64>; 2]>, SimError> {
+        match self {
+            Self::Servo(it) => it.linear_change(plant).map(Some),
+            Self::Actuated(it) => it.linear_change(plant).map(Some),
+            Self::Aircraft(_) => Ok(None),
+        }
     }
 
     pub(crate) fn linear_step(&self) -> Option<LinearStep> {

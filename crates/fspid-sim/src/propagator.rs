@@ -7,7 +7,7 @@
 //! is one matrix product. Where the rate limit holds the servo, $\dot \delta = \rho$ is constant,
 //! and the sample is cut at the instant the limit lets go; no step size and no error is involved.
 
-use fspid_lti::{Matrix, StateSpace, exponential};
+use fspid_lti::{FineMatrix, Matrix, StateSpace, exponential, exponential_change};
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -218,6 +218,23 @@ impl Propagator {
         rate_row.push(self.rate_feedthrough * self.elevator_per_command);
         LinearStep { states: self.order + 1, rows: self.free_step.clone(), rate_row }
     }
+
+    /// What a sample changes of its states: rows of [`linear_step`](Self::linear_step) over states and command, less 1
+    /// on the diagonal, and what 64 bits leave out of them.
+    pub(crate) fn linear_change(&self, plant: &LinearPlant) -> Result<[Vec<f64>; 2], SimError> {
+        let states = self.order + 1;
+        let mut rest = generator(
+            &plant.transfer_function().state_space_rest(),
+            self.elevator_per_command,
+            &ServoMotion::Free(self.servo),
+        )?;
+        for place in 0..self.free.columns() {
+            rest.set(self.order, place, 0.0)?;
+        }
+        let at_once = self.servo.is_at_once().then_some(self.order);
+        let generator = FineMatrix::new(self.free.clone(), rest)?;
+        part_of_change(&exponential_change(&generator, self.dt_s)?, (states, states), at_once)
+    }
 }
 
 /// One sample of plant and actuator without limits.
@@ -229,6 +246,26 @@ pub(crate) struct LinearStep {
     pub(crate) rows: Vec<f64>,
     /// Row from states to pitch rate.
     pub(crate) rate_row: Vec<f64>,
+}
+
+/// The part over some states and one input; of a state that only remembers its input nothing is left.
+pub(crate) fn part_of_change(
+    change: &FineMatrix,
+    (states, input): (usize, usize),
+    remembers: Option<usize>,
+) -> Result<[Vec<f64>; 2], SimError> {
+    let part = |matrix: &Matrix, [left, kept]: [f64; 2]| {
+        let rows = matrix.data().chunks_exact(matrix.columns()).take(states);
+        let columns = |row: &[f64]| [&row[..states], &row[input..=input]].concat();
+        let mut part: Vec<f64> = rows.flat_map(columns).collect();
+        if let Some(place) = remembers {
+            let row = &mut part[place * (states + 1)..(place + 1) * (states + 1)];
+            row.fill(0.0);
+            (row[place], row[states]) = (left, kept);
+        }
+        part
+    };
+    Ok([part(change.high(), [-1.0, 1.0]), part(change.low(), [0.0, 0.0])])
 }
 
 enum ServoMotion {

@@ -5,6 +5,7 @@ use crate::actuator::Actuator;
 use crate::aircraft::{AircraftFlight, AircraftPlant};
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
 use crate::propagator::Propagator;
@@ -64,6 +65,13 @@ impl Scenario {
             }
             sum
         };
+        let (stages, gusts) = (self.stages()?, self.gusts()?);
+        let gust_responses = match (&self.surroundings.weather, &gusts) {
+            (Some(weather), Some(gusts)) => {
+                gust_response::responses(weather, (self.timing, gusts), &stages)?
+            }
+            _ => None,
+        };
         Ok(Prepared {
             timing: self.timing,
             delay_samples: self.delay_samples(),
@@ -72,8 +80,9 @@ impl Scenario {
             at_servo: column(Entry::Servo),
             at_elevator: column(Entry::Elevator),
             at_measurement: column(Entry::Measurement),
-            stages: self.stages()?,
-            gusts: self.gusts()?,
+            stages,
+            gusts,
+            gust_responses,
             pitch_sensor: self.surroundings.pitch_sensor,
             rate_sensor: self.surroundings.rate_sensor,
         })
@@ -200,6 +209,8 @@ pub struct Prepared {
     pub(crate) at_measurement: Option<Vec<f64>>,
     pub(crate) stages: Vec<Stage>,
     pub(crate) gusts: Option<Vec<[f64; 3]>>,
+    /// What the air's change within each sample adds to a linear plant; none where it does not change.
+    pub(crate) gust_responses: Option<Vec<Vec<f64>>>,
     pub(crate) pitch_sensor: Option<Sensor>,
     pub(crate) rate_sensor: Option<Sensor>,
 }

@@ -2,7 +2,7 @@
 
 use crate::actuated::Held;
 use crate::actuator::Actuator;
-use crate::air::{AirMotion, Dryden, Place, Turbulence, Wind, sum_at};
+use crate::air::{AirMotion, GRID_S, Grid, Place, Shaping, Turbulence, Wind, sum_at};
 use crate::error::{SimError, finite, positive};
 use crate::math::sin_cos;
 use crate::sensor::Sensor;
@@ -24,13 +24,15 @@ pub struct Surroundings {
     pub rate_sensor: Option<Sensor>,
 }
 
-/// The path that a linear plant is taken to fly: straight, level, at constant airspeed.
+/// The path that a linear plant is taken to fly: straight, at constant airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
     /// True airspeed, m/s.
     pub airspeed_m_s: f64,
-    /// Height above the ground, m.
+    /// Height above the ground at the start, m.
     pub height_m: f64,
+    /// Angle of the path over the horizon, climbing positive, rad.
+    pub climb_rad: f64,
     /// Heading, clockwise from north, rad.
     pub heading_rad: f64,
     /// Start, m north and m east of the origin.
@@ -54,22 +56,33 @@ impl Course {
     pub fn place(&self, time_s: f64) -> Place {
         let distance_m = self.airspeed_m_s * time_s;
         let (sine, cosine) = sin_cos(self.heading_rad);
+        let (up, along) = sin_cos(self.climb_rad);
+        let ground_m = distance_m * along;
         let [north_m, east_m] = self.start_m;
         Place {
             time_s,
             distance_m,
-            north_m: north_m + distance_m * cosine,
-            east_m: east_m + distance_m * sine,
-            height_m: self.height_m,
+            north_m: north_m + ground_m * cosine,
+            east_m: east_m + ground_m * sine,
+            height_m: self.height_m + distance_m * up,
         }
     }
 
-    /// The air's velocity forward and down and its pitch rate.
+    /// When it is at a height above the ground, before or after the start; never on a level course.
+    pub(crate) fn time_at_height_s(&self, height_m: f64) -> Option<f64> {
+        let (up, _) = sin_cos(self.climb_rad);
+        let climb_m_s = self.airspeed_m_s * up;
+        (climb_m_s != 0.0).then(|| (height_m - self.height_m) / climb_m_s)
+    }
+
+    /// The air's velocity along the path and down across it, and its pitch rate.
     fn longitudinal(&self, motion: &AirMotion) -> [f64; 3] {
         let ([north, east, earth_down], [forward, _, down]) = (motion.earth_m_s, motion.body_m_s);
         let (sine, cosine) = sin_cos(self.heading_rad);
         let [_, q_rad_s, _] = motion.body_rad_s;
-        [north * cosine + east * sine + forward, earth_down + down, q_rad_s]
+        let (up, along) = sin_cos(self.climb_rad);
+        let ahead = north * cosine + east * sine;
+        [ahead * along - earth_down * up + forward, ahead * up + earth_down * along + down, q_rad_s]
     }
 }
 
@@ -84,42 +97,67 @@ impl Weather {
     pub fn gusts(&self, timing: Timing) -> Result<Vec<[f64; 3]>, SimError> {
         positive("airspeed, m/s", self.course.airspeed_m_s)?;
         let [north_m, east_m] = self.course.start_m;
-        for value in [self.course.height_m, self.course.heading_rad, north_m, east_m] {
+        let course = &self.course;
+        for value in [course.height_m, course.climb_rad, course.heading_rad, north_m, east_m] {
             finite("course", value)?;
         }
-        let at_start = self.wind(0.0);
-        let wind = |k: usize| {
-            let here = self.wind(timing.time_s(k));
-            let change: [f64; 3] = std::array::from_fn(|part| here[part] - at_start[part]);
-            change
-        };
+        let wind = |k: usize| self.wind_change(timing.time_s(k));
         let mut gusts: Vec<[f64; 3]> = (0..timing.rows()).map(wind).collect();
-        if let Some(turbulence) = &self.turbulence {
-            self.add_turbulence(&Dryden::new(turbulence, timing.dt_s())?, &mut gusts);
+        if let Some(mut walk) = self.walk()? {
+            let grid = Grid::new(timing.dt_s());
+            for (k, gust) in gusts.iter_mut().enumerate() {
+                let turbulent = walk.at(grid.tick(k));
+                gust.iter_mut().zip(turbulent).for_each(|(part, more)| *part += more);
+            }
         }
         Ok(gusts)
+    }
+
+    /// What the winds have changed since the start.
+    pub(crate) fn wind_change(&self, time_s: f64) -> [f64; 3] {
+        let (here, at_start) = (self.wind(time_s), self.wind(0.0));
+        std::array::from_fn(|part| here[part] - at_start[part])
+    }
+
+    /// The turbulence from the start on.
+    pub(crate) fn walk(&self) -> Result<Option<TurbulenceWalk>, SimError> {
+        let Some(turbulence) = &self.turbulence else {
+            return Ok(None);
+        };
+        Ok(Some(TurbulenceWalk { course: self.course, shaping: Shaping::start(turbulence)? }))
     }
 
     fn wind(&self, time_s: f64) -> [f64; 3] {
         self.course.longitudinal(&sum_at(&self.winds, &self.course.place(time_s)))
     }
+}
 
-    fn add_turbulence(&self, dryden: &Dryden, gusts: &mut [[f64; 3]]) {
-        let mut state = dryden.start();
-        for (k, gust) in gusts.iter_mut().enumerate() {
-            if k > 0 {
-                dryden.advance(&mut state, k);
-            }
-            let turbulent = self.course.longitudinal(&dryden.motion(&state));
-            for (part, more) in gust.iter_mut().zip(turbulent) {
-                *part += more;
-            }
+/// Turbulence along a course, tick by tick of its grid.
+#[derive(Clone, Debug)]
+pub(crate) struct TurbulenceWalk {
+    course: Course,
+    shaping: Shaping,
+}
+
+impl TurbulenceWalk {
+    /// At a time of the grid that is not before the last one asked for.
+    pub(crate) fn at(&mut self, tick: usize) -> [f64; 3] {
+        while self.shaping.tick() < tick {
+            let time_s = (self.shaping.tick() + 1) as f64 * GRID_S;
+            let height_m = self.course.place(time_s).height_m;
+            self.shaping.advance(height_m, self.course.airspeed_m_s);
         }
+        self.course.longitudinal(&self.shaping.motion())
     }
 }
 
 /// What enters the plant at a sample.
-pub(crate) fn held(elevator_rad: f64, gusts: Option<&[[f64; 3]]>, k: usize) -> Held {
+pub(crate) fn held<'a>(
+    elevator_rad: f64,
+    (gusts, responses): (Option<&[[f64; 3]]>, Option<&'a [Vec<f64>]>),
+    k: usize,
+) -> Held<'a> {
     let gust = gusts.and_then(|gusts| gusts.get(k)).copied().unwrap_or_default();
-    Held { elevator_rad, gust }
+    let added = responses.and_then(|responses| responses.get(k)).map(Vec::as_slice);
+    Held { elevator_rad, gust, added: added.unwrap_or_default() }
 }

@@ -38,7 +38,8 @@ pub fn in_words(reason: &io::Error) -> String {
 
 impl std::error::Error for OutputError {}
 
-/// Writes `contents` to `path`: into a new file beside it first, flushed to the disk, then renamed.
+/// Writes `contents` to `path`: into a new file beside it first, flushed to the disk, then renamed. `-` is standard
+/// output.
 ///
 /// # Errors
 /// [`OutputError`] with the path; an existing file is then as it was.
@@ -58,6 +59,9 @@ pub fn write_by<T, E: From<OutputError>>(
     contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, E>,
 ) -> Result<T, E> {
     let failed = |reason| OutputError { path: path.to_owned(), reason };
+    if path == Path::new("-") {
+        return filled(&standard_output().map_err(failed)?, contents, failed);
+    }
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -88,6 +92,26 @@ fn filled<T, E: From<OutputError>>(
     let answer = contents(&mut buffered)?;
     buffered.flush().map_err(failed)?;
     Ok(answer)
+}
+
+/// Standard output as a file; what is written there stands after what was printed before.
+fn standard_output() -> io::Result<File> {
+    let stdout = io::stdout();
+    stdout.lock().flush()?;
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd as _;
+        Ok(File::from(stdout.as_fd().try_clone_to_owned()?))
+    }
+    #[cfg(windows)]
+    {
+        use std::os::windows::io::AsHandle as _;
+        Ok(File::from(stdout.as_handle().try_clone_to_owned()?))
+    }
+    #[cfg(not(any(unix, windows)))]
+    {
+        Err(io::Error::new(io::ErrorKind::Unsupported, "standard output is no file here"))
+    }
 }
 
 /// What the names of files begin with until they are whole.

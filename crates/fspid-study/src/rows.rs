@@ -5,6 +5,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 
+use crate::file::unread_in_words;
+
 /// Most problems that are told of one table.
 const MOST_PROBLEMS: usize = 20;
 /// Longest line, bytes.
@@ -96,11 +98,11 @@ pub fn named(name: &str, error: RowsError) -> RowsError {
             RowsError::Problems { problems: problems.into_iter().map(place).collect(), answered }
         }
         RowsError::Reading(error) => {
-            let reason = match error.kind() {
-                io::ErrorKind::NotFound => "there is no such file".to_owned(),
-                _ => error.to_string(),
-            };
-            RowsError::Reading(io::Error::new(error.kind(), format!("{name}: {reason}")))
+            let reason = unread_in_words(&error);
+            RowsError::Reading(io::Error::new(
+                error.kind(),
+                format!("{name}: cannot be read: {reason}"),
+            ))
         }
         writing @ RowsError::Writing(_) => writing,
     }

@@ -6,6 +6,7 @@ use fspid_core::Shell;
 use fspid_sim::Controller;
 use fspid_study::file::{Extra, SettingPath, Template};
 use fspid_study::tuning::Free;
+use serde_json::{Value, json};
 
 use crate::design::{check_room, text_of, with_changes};
 use crate::error::TuneError;
@@ -20,6 +21,10 @@ pub struct Baseline {
     pub controller: String,
     /// What the rule gave.
     pub design: Design,
+    /// The other controllers of the scenario, which stay as they are.
+    pub others: Vec<String>,
+    /// Whether a supervisor tunes it, which no rule knows of.
+    pub is_self_tuning: bool,
 }
 
 impl Baseline {
@@ -45,7 +50,67 @@ impl Baseline {
         let found = study.scenario.controllers.iter().find(|named| named.name == controller);
         let shell = found.map(|named| *shell_of(&named.controller));
         let options = Options { shell, ..*options };
-        Ok(Self { controller, design: rule::design(study, rule, &options)? })
+        let is_self_tuning =
+            found.is_some_and(|named| matches!(named.controller, Controller::SelfTuning(_)));
+        let names = study.scenario.controllers.iter().map(|named| named.name.clone());
+        let others = names.filter(|name| *name != controller).collect();
+        let design = rule::design(study, rule, &options)?;
+        Ok(Self { controller, design, others, is_self_tuning })
+    }
+
+    /// Whose gains these are, and what of that controller the rule does not use.
+    fn whose(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if !self.others.is_empty() {
+            lines.push(format!(
+                "for \"{}\": its filters, limits and rate loop; {} as before (--controller names another)",
+                self.controller,
+                match self.others.as_slice() {
+                    [one] => format!("\"{one}\" stays"),
+                    many => format!("{} others stay", many.len()),
+                }
+            ));
+        }
+        if self.is_self_tuning {
+            lines.push(format!(
+                "\"{}\" is self-tuning: these are its nominal gains, standing still; its supervisor is not used, and what it adds is in none of these numbers",
+                self.controller
+            ));
+        }
+        lines
+    }
+
+    /// The answer for people: whose gains, then what the rule gave.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let whose = self.whose();
+        let (head, rest) = self.design.text().split_once('\n').map_or_else(
+            || (self.design.text(), String::new()),
+            |(head, rest)| (head.to_owned(), rest.to_owned()),
+        );
+        let lines = whose.iter().map(|line| format!("  {line}\n")).collect::<String>();
+        let text = format!("{head}\n{lines}{rest}");
+        match self.is_self_tuning {
+            true => text.replacen(
+                "\nFor the scenario's controller:\n",
+                "\nFor the scenario's controller, under `nominal`:\n",
+                1,
+            ),
+            false => text,
+        }
+    }
+
+    /// The answer for programs: that of the rule, with the controller.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut answer = self.design.json();
+        answer["controller"] = json!(self.controller);
+        answer["other_controllers"] = json!(self.others);
+        answer["supervisor"] = match self.is_self_tuning {
+            true => json!("not used: the gains are the nominal ones, standing still"),
+            false => Value::Null,
+        };
+        answer
     }
 
     /// The scenario with the rule's numbers for its controller. A number that is marked free stays free, and

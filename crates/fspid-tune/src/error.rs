@@ -106,6 +106,11 @@ pub enum TuneError {
     /// A contest that was asked to stop; it goes on from there.
     #[error("stopped; the same command goes on from there")]
     Stopped,
+    /// A search that was asked to stop, and has no place to keep its state.
+    #[error(
+        "interrupted; the search begins anew, because a scenario from standard input has no place beside it: add --out design.toml, and it goes on"
+    )]
+    NotKept,
     /// Nothing that the search tried can be flown.
     #[error("none of {tried} candidates could be flown in every case; the best one: {reason}")]
     NothingFlies {

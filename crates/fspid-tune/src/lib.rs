@@ -28,7 +28,7 @@ mod space;
 mod tuned;
 
 pub use error::TuneError;
-pub use problem::Problem;
+pub use problem::{Problem, controllers_with_marks};
 pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};
 pub use source::Source;

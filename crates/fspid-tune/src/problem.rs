@@ -178,6 +178,19 @@ fn measured(tuning: &Tuning) -> Vec<Requirement> {
     objectives.chain(&tuning.limits).cloned().collect()
 }
 
+/// Every controller that has free numbers of its own, in the order of the scenario; all of them where only numbers
+/// are free that belong to none.
+///
+/// # Errors
+/// Everything that is wrong with the scenario.
+pub fn controllers_with_marks(source: &Source) -> Result<Vec<String>, TuneError> {
+    let template = source.template()?;
+    let study = template.study();
+    let names = study.scenario.controllers.iter().map(|named| named.name.clone());
+    let own = |name: &String| study.marks.iter().any(|mark| mark.controller() == Some(name));
+    Ok(names.filter(own).collect())
+}
+
 /// The controller of that name, or the one that has marks.
 pub(crate) fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneError> {
     let names: Vec<&str> =

@@ -13,6 +13,8 @@ use crate::search::{Search, Trial, stop_in_words};
 const AT_BOUND: f64 = 1e-3;
 /// Least width of the first column of the answer.
 const LEAST_WIDTH: usize = 40;
+/// Most characters of a controller's name in a table.
+const MOST_OF_NAME: usize = 24;
 /// Most entries of a front that are told to people.
 const MOST_OF_FRONT: usize = 20;
 
@@ -178,6 +180,44 @@ impl Tuned {
         out
     }
 
+    /// Several controllers that were tuned alike, side by side.
+    #[must_use]
+    pub fn side_by_side(all: &[Self]) -> String {
+        let Some(first) = all.first() else {
+            return String::new();
+        };
+        let names: Vec<String> = all.iter().map(|it| cut(&it.controller, MOST_OF_NAME)).collect();
+        let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(12) + 2;
+        let row = |name: &str, cells: Vec<String>| {
+            let cells: String = cells.iter().map(|cell| format!("{cell:>width$}")).collect();
+            format!("  {name:<LEAST_WIDTH$}{cells}\n")
+        };
+        let mut out = String::from("\nSide by side, tuned alike\n");
+        out.push_str(&row(&first.over_in_words(), names));
+        for (index, (name, unit)) in first.objectives.iter().enumerate() {
+            let name = if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") };
+            let value = |it: &Self| shown(it.best.score.values.get(index).copied());
+            out.push_str(&row(&name, all.iter().map(value).collect()));
+        }
+        for (index, limit) in first.limits.iter().enumerate() {
+            let name = format!("mean {}, {}", limit.measure.name(), limit.limits_in_words());
+            let value = |it: &Self| shown(it.best.score.limited.get(index).copied());
+            out.push_str(&row(&name, all.iter().map(value).collect()));
+        }
+        let cost = |it: &Self| match it.is_allowed() {
+            true => shown(Some(it.best.score.cost)),
+            false => "not allowed".to_owned(),
+        };
+        out.push_str(&row("cost", all.iter().map(cost).collect()));
+        let numbers = |it: &Self| it.numbers.len().to_string();
+        out.push_str(&row("free numbers", all.iter().map(numbers).collect()));
+        out.push_str(&row("candidates", all.iter().map(|it| it.spent.to_string()).collect()));
+        out.push_str(
+            "One tuning of each on the cases that it was tuned on: this names no winner; `fspid contest` judges on others.\n",
+        );
+        out
+    }
+
     /// The loop at rest, and what was asked of it by default.
     fn tell_at_rest(&self, out: &mut String) {
         if !self.at_rest.is_empty() {
@@ -306,6 +346,13 @@ fn numbers(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Number> {
         Number { path, start, value, bounds, at_bound: bounds.is_some() && is_at_end }
     })
     .collect()
+}
+
+fn cut(text: &str, most: usize) -> String {
+    match text.chars().count() > most {
+        true => text.chars().take(most - 1).chain(['\u{2026}']).collect(),
+        false => text.to_owned(),
+    }
 }
 
 /// A path without the step to its controller.

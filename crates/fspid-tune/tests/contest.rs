@@ -252,7 +252,40 @@ fn a_controller_that_is_better_everywhere_wins_significantly() {
     assert_eq!(found.typical.expect("ranks").p, 2.0 / 256.0);
     let [_, upper] = found.ratio.interval.expect("an interval");
     assert!(found.p_adjusted < 0.05 && upper < 1.0, "{found:?}");
-    assert!(outcome.text().starts_with("good wins:"), "{}", outcome.text());
+    assert!(
+        outcome.text().starts_with("good wins, as these designs are written:"),
+        "{}",
+        outcome.text()
+    );
+}
+
+/// Used to end with "wins, p = 0.0004" after one tuning each, where three seeds name nobody.
+#[test]
+fn one_tuning_each_names_no_winner_in_text_json_and_page() {
+    let once = marked().replace("seeds = 2", "seeds = 1");
+    assert_ne!(once, marked());
+    // Judged against a loop as slack as can be, so that the cases alone are as clear as they can be.
+    let slack = format!("{LOOP}{}", pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"));
+    let place = place(&once.replacen(LOOP, &slack, 1));
+    let outcome = place.held();
+    let found = (0..3).filter_map(|it| outcome.comparison(it)).find(|it| it.p_adjusted < 0.05);
+    let found = found.expect("somebody is far better over the cases");
+    assert!(!found.is_sure && found.standing == Standing::Better, "{found:?}");
+    let head = "one tuning each: no winner can be named";
+    let told = outcome.text();
+    assert!(told.starts_with(head), "{told}");
+    assert!(
+        told.contains("contest.seeds = 3") && told.contains("ahead in this one tuning"),
+        "{told}"
+    );
+    assert!(!told.contains(" wins"), "{told}");
+    let json = outcome.json();
+    assert_eq!(
+        (&json["verdict"]["words"], &json["verdict"]["winner"]),
+        (&head.into(), &serde_json::Value::Null)
+    );
+    let page = fs::read_to_string(place.out().join("contest.html")).expect("a page");
+    assert!(page.contains(head));
 }
 
 /// A case whose dead time a brisk loop does not survive, and whose elevator is large and fast enough to show it.
@@ -317,7 +350,9 @@ fn flights_that_are_lost_in_many_cases_are_significantly_worse() {
     // Six cases of one sign: 2 in 64.
     assert_eq!((found.lost.p, found.is_sure), (0.03125, true));
     assert!(
-        outcome.text().starts_with("calm wins: it loses 0 of 14 flights"),
+        outcome
+            .text()
+            .starts_with("calm wins, as these designs are written: it loses 0 of 14 flights"),
         "{}",
         outcome.text()
     );

@@ -102,6 +102,11 @@ pub trait ForceModel {
     /// Thrust in N that is part of the loads, for reports.
     fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64;
 
+    /// Whether a throttle does anything: without an engine straight flight is a glide, whose path follows from it.
+    fn has_engine(&self) -> bool {
+        true
+    }
+
     /// Flow in which the model is worth something.
     fn validity(&self) -> &Validity;
 
@@ -120,6 +125,10 @@ impl<M: ForceModel + ?Sized> ForceModel for &M {
 
     fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
         (**self).thrust_n(flow, controls)
+    }
+
+    fn has_engine(&self) -> bool {
+        (**self).has_engine()
     }
 
     fn validity(&self) -> &Validity {
@@ -142,6 +151,10 @@ impl<M: ForceModel + ?Sized> ForceModel for Box<M> {
 
     fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
         (**self).thrust_n(flow, controls)
+    }
+
+    fn has_engine(&self) -> bool {
+        (**self).has_engine()
     }
 
     fn validity(&self) -> &Validity {

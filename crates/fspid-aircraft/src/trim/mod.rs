@@ -21,6 +21,9 @@ use search::Search;
 /// Largest acceleration left in a trim: 10⁻⁹ ft/s².
 pub const ACCELERATION_LEFT_M_S2: f64 = 3.048e-10;
 
+/// Steepest glide that is looked for, rad.
+const STEEPEST: Range = Range { min: -1.5, max: 1.5 };
+
 /// Largest angular acceleration left in a trim.
 pub const ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-9;
 
@@ -183,7 +186,8 @@ impl TrimResidual {
 }
 
 impl<M: ForceModel> Aircraft<M> {
-    /// Trim for straight flight.
+    /// Trim for straight flight; without an engine a steady glide at the target's speed, whose path is found and stands in
+    /// [`Trim::target`].
     ///
     /// Newton's method with central differences on $\dot u, \dot w, \dot q$ as functions of angle of attack, elevator
     /// and throttle; steps are shortened until they help. It is tried within all limits first. If that fails, it is
@@ -193,17 +197,18 @@ impl<M: ForceModel> Aircraft<M> {
     /// A flight that cannot be held, with the limits in its way and the nearest point found.
     pub fn trim(&self, target: TrimTarget) -> Result<Trim, TrimFailure> {
         let within = self.search(target, self.trim_limits());
-        if within.residual.accepted() && self.trim_departures(target, &within.point).is_empty() {
-            return Ok(self.trim_at(target, within));
+        let departures = |found: &Search| self.trim_departures(found.target, &found.point);
+        if within.residual.accepted() && departures(&within).is_empty() {
+            return Ok(self.trim_at(within));
         }
         let beyond = self.search(target, [Range::ALL; 3]);
-        let limits = self.trim_departures(target, &beyond.point);
+        let limits = departures(&beyond);
         match (beyond.residual.accepted(), limits.is_empty()) {
-            (true, true) => Ok(self.trim_at(target, beyond)),
-            (true, false) => Err(failure(target, TrimObstacle::BeyondLimits, limits, beyond)),
+            (true, true) => Ok(self.trim_at(beyond)),
+            (true, false) => Err(failure(TrimObstacle::BeyondLimits, limits, beyond)),
             (false, _) => {
-                let limits = self.trim_stops(target, &within.point);
-                Err(failure(target, TrimObstacle::NoEquilibrium, limits, within))
+                let limits = self.trim_stops(within.target, &within.point);
+                Err(failure(TrimObstacle::NoEquilibrium, limits, within))
             }
         }
     }
@@ -222,7 +227,8 @@ impl<M: ForceModel> Aircraft<M> {
 
     fn trim_limits(&self) -> [Range; 3] {
         let Travel { elevator_rad, throttle, .. } = *self.model().travel();
-        [self.model().validity().alpha_rad, elevator_rad, throttle]
+        let third = if self.model().has_engine() { throttle } else { STEEPEST };
+        [self.model().validity().alpha_rad, elevator_rad, third]
     }
 
     /// Limits of flow and controls that a point is beyond.
@@ -237,7 +243,8 @@ impl<M: ForceModel> Aircraft<M> {
         use crate::validity::Quantity::{Alpha, Elevator, Throttle};
         let mut limits = self.trim_departures(target, point);
         let values = [Alpha, Elevator, Throttle].into_iter().zip(point.to_array());
-        for ((quantity, value), allowed) in values.zip(self.trim_limits()) {
+        let unknowns = if self.model().has_engine() { 3 } else { 2 };
+        for ((quantity, value), allowed) in values.zip(self.trim_limits()).take(unknowns) {
             let stopped = value <= allowed.min || value >= allowed.max;
             if stopped && limits.iter().all(|limit| limit.quantity != quantity) {
                 limits.push(Departure { quantity, value, allowed });
@@ -246,7 +253,8 @@ impl<M: ForceModel> Aircraft<M> {
         limits
     }
 
-    fn trim_at(&self, target: TrimTarget, found: Search) -> Trim {
+    fn trim_at(&self, found: Search) -> Trim {
+        let target = found.target;
         let state = target.state(found.point.alpha_rad);
         let controls = found.point.controls();
         let flow = self.flow(&state, &AirMotion::STILL);
@@ -262,12 +270,7 @@ impl<M: ForceModel> Aircraft<M> {
     }
 }
 
-fn failure(
-    target: TrimTarget,
-    reason: TrimObstacle,
-    limits: Vec<Departure>,
-    found: Search,
-) -> TrimFailure {
-    let Search { point, residual, iterations } = found;
+fn failure(reason: TrimObstacle, limits: Vec<Departure>, found: Search) -> TrimFailure {
+    let Search { target, point, residual, iterations } = found;
     TrimFailure { target, reason, limits, point, residual, iterations }
 }

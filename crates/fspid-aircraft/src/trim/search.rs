@@ -16,6 +16,8 @@ const DAMPING_MIN: f64 = 1e-6;
 /// Where a search is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
+    /// What was asked; of a glide with the path that was found.
+    pub(super) target: TrimTarget,
     pub(super) point: TrimPoint,
     pub(super) residual: TrimResidual,
     pub(super) iterations: usize,
@@ -25,7 +27,12 @@ impl<M: ForceModel> Aircraft<M> {
     /// Newton's method within ranges of the unknowns, from the middle of them.
     pub(super) fn search(&self, target: TrimTarget, limits: [Range; 3]) -> Search {
         let throttle = Range { min: limits[2].min.max(0.0), max: limits[2].max.min(2.0) };
-        let start = [0.0, 0.0, 0.5 * (throttle.min + throttle.max)];
+        let third = if self.model().has_engine() {
+            0.5 * (throttle.min + throttle.max)
+        } else {
+            target.flight_path_rad
+        };
+        let start = [0.0, 0.0, third];
         let mut found = self.found(target, clamped(start, &limits), 0);
         while !found.residual.accepted() && found.iterations < ITERATIONS_MAX {
             let Some(next) = self.newton_step(target, &found, &limits) else { break };
@@ -34,9 +41,26 @@ impl<M: ForceModel> Aircraft<M> {
         found
     }
 
-    fn found(&self, target: TrimTarget, point: [f64; 3], iterations: usize) -> Search {
-        let point = TrimPoint::from_array(point);
-        Search { point, residual: self.trim_residual(target, point), iterations }
+    fn found(&self, target: TrimTarget, unknowns: [f64; 3], iterations: usize) -> Search {
+        let (target, point) = self.meant(target, unknowns);
+        Search { target, point, residual: self.trim_residual(target, point), iterations }
+    }
+
+    /// What the unknowns mean: the third is the throttle, without an engine the flight path.
+    fn meant(&self, target: TrimTarget, unknowns: [f64; 3]) -> (TrimTarget, TrimPoint) {
+        if self.model().has_engine() {
+            return (target, TrimPoint::from_array(unknowns));
+        }
+        let [alpha_rad, elevator_rad, flight_path_rad] = unknowns;
+        let point = TrimPoint { alpha_rad, elevator_rad, throttle: 0.0 };
+        (TrimTarget { flight_path_rad, ..target }, point)
+    }
+
+    /// The unknowns of a search.
+    fn unknowns(&self, search: &Search) -> [f64; 3] {
+        let [alpha, elevator, throttle] = search.point.to_array();
+        let path = search.target.flight_path_rad;
+        [alpha, elevator, if self.model().has_engine() { throttle } else { path }]
     }
 
     /// The next point, if there is a step that helps.
@@ -49,7 +73,7 @@ impl<M: ForceModel> Aircraft<M> {
         let step = self.newton_direction(target, from)?;
         let mut part = 1.0;
         while part >= DAMPING_MIN {
-            let mut point = from.point.to_array();
+            let mut point = self.unknowns(from);
             for (value, step) in point.iter_mut().zip(&step) {
                 *value += part * step;
             }
@@ -67,7 +91,7 @@ impl<M: ForceModel> Aircraft<M> {
         for column in 0..3 {
             let (ahead, behind) =
                 (self.beside(target, from, column, 1.0), self.beside(target, from, column, -1.0));
-            let span = 2.0 * step_size(from.point.to_array()[column]);
+            let span = 2.0 * step_size(self.unknowns(from)[column]);
             for row in 0..3 {
                 jacobian.set(row, column, (ahead[row] - behind[row]) / span).ok()?;
             }
@@ -79,9 +103,10 @@ impl<M: ForceModel> Aircraft<M> {
 
     /// Residual a small step beside a point in one unknown.
     fn beside(&self, target: TrimTarget, from: &Search, column: usize, sign: f64) -> [f64; 3] {
-        let mut point = from.point.to_array();
-        point[column] += sign * step_size(point[column]);
-        self.trim_residual(target, TrimPoint::from_array(point)).to_array()
+        let mut unknowns = self.unknowns(from);
+        unknowns[column] += sign * step_size(unknowns[column]);
+        let (target, point) = self.meant(target, unknowns);
+        self.trim_residual(target, point).to_array()
     }
 }
 

@@ -6,8 +6,8 @@ use fspid_aircraft::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
 use fspid_aircraft::data::{
-    AircraftData, DerivativeData, Inertia, LinearData, LinearElevator, LinearState, ModelData,
-    Reference,
+    AircraftData, DerivativeData, Inertia, LinearData, LinearElevator, LinearState, Loading,
+    ModelData, Reference,
 };
 use fspid_aircraft::{Range, Travel, Validity};
 use fspid_lti::Matrix;
@@ -74,6 +74,7 @@ fn derivatives(file: &Table) -> DerivativeData {
             mach: number(reference, "mach"),
             gravity_m_s2: number(reference, "gravity"),
             alpha_rad: number(reference, "alpha"),
+            cg_mac: reference.get("cg_mac").and_then(Value::as_float),
         },
         geometry: Geometry {
             area_m2: number(geometry, "area"),
@@ -87,6 +88,7 @@ fn derivatives(file: &Table) -> DerivativeData {
             iz_kg_m2: number(mass, "iz"),
             ixz_kg_m2: number(mass, "ixz"),
         },
+        loading: Loading::default(),
         longitudinal: longitudinal(table(file, "longitudinal")),
         lateral: Some(lateral(table(file, "lateral"))),
         validity: Validity {

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use fspid_study::file::unread_in_words;
 use parquet::errors::ParquetError;
 use thiserror::Error;
 
@@ -112,7 +113,7 @@ pub enum TableError {
     #[error("the table cannot be written on: an earlier write failed")]
     Failed,
     /// A file that cannot be opened.
-    #[error("cannot open {}: {source}", path.display())]
+    #[error("{}: cannot be read: {}", path.display(), unread_in_words(source))]
     Open {
         /// Which file.
         path: PathBuf,

@@ -1,11 +1,10 @@
 //! `fspid analyse`: margins of the sampled loop.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 
 use super::{Format, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{InFile, OutFile, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_study::analysis::BreakPoint;
 use fspid_study::analysis::{Analysis, Question};
 use fspid_study::{file, output, report};
@@ -18,7 +17,7 @@ use fspid_study::{file, output, report};
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    file: PathBuf,
+    file: InFile,
     /// Set a value first, e.g. `--set controller.PID.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -33,8 +32,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     fly: bool,
     /// Write a report that opens offline in a browser.
-    #[arg(long, value_name = "OUT.html")]
-    report: Option<PathBuf>,
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    report: Option<OutFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -62,7 +61,7 @@ impl From<Point> for BreakPoint {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
@@ -75,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_analysis(&study, &analysis).map_err(Failure::input)?)?;
-        note(format_args!("wrote {}", path.display()));
+        wrote(path);
     }
     match arguments.format {
         Format::Text => print(&analysis.text())?,

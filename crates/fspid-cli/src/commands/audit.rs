@@ -1,11 +1,10 @@
 //! `fspid audit`: what is true of a fuzzy system.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::{Format, Loading, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{OutFile, Source, written};
+use crate::exit::{Failure, print, wrote};
 use fspid_study::fuzzy_system::{AuditQuestion, audit};
 use fspid_study::{output, report};
 
@@ -15,8 +14,8 @@ use fspid_study::{output, report};
 /// the budget is said to be open, never guessed.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: String,
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    system: Source,
     #[command(flatten)]
     loading: Loading,
     /// The range over which an input is looked at; that of the file if left out.
@@ -29,8 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N")]
     boxes: Option<u64>,
     /// Write a report that opens offline in a browser.
-    #[arg(long, value_name = "OUT.html")]
-    report: Option<PathBuf>,
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    report: Option<OutFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -43,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audit = audit(&system, &question).map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_audit(&audit))?;
-        note(format_args!("wrote {}", path.display()));
+        wrote(path);
     }
     match arguments.format {
         Format::Text => print(&audit.text()),

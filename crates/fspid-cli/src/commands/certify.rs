@@ -1,30 +1,35 @@
 //! `fspid certify`: stability while the gains move.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 
 use super::{Format, json_text};
+use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
-use fspid_study::certify::{self, Certification, Effort};
+use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
 use fspid_study::{file, output};
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
 ///
 /// Three answers: proved (for every gain that the supervisor can produce, however fast gains move), refuted (gains that it
-/// really produces let the loop grow), or open. What is proved is re-checked in interval arithmetic and written as a
-/// certificate, which `--check` verifies alone. Exit code 0 if every loop is proved, or the certificate holds; 1 if not.
+/// produces let the loop grow if they stand still, or in some order), or open. What is proved is re-checked in interval
+/// arithmetic and written as a certificate, which `--check` verifies alone, and `--against` compares with what a scenario
+/// flies. Exit code 0 if every loop is proved, or the certificate proves the flown loop stable; 1 if not.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json"
+    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json\n  fspid certify --check certificates/fspid.certificate.json --against pitch.toml"
 )]
 pub(crate) struct Arguments {
     /// The scenario file.
     #[arg(required_unless_present = "check")]
-    file: Option<PathBuf>,
+    file: Option<InFile>,
     /// Verify a certificate instead; nothing but this file is read.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "overrides", "controller", "out"])]
-    check: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "controller", "out"])]
+    check: Option<InFile>,
+    /// Compare the certificate with what this scenario flies, field by field.
+    #[arg(long, value_name = "SCENARIO", requires = "check")]
+    against: Option<InFile>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -33,7 +38,7 @@ pub(crate) struct Arguments {
     controller: Option<String>,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    out: Option<Folder>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -41,7 +46,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (&arguments.check, &arguments.file) {
-        (Some(path), _) => check(path, arguments.format),
+        (Some(path), _) => check(path, arguments),
         (None, Some(path)) => prove(path, arguments),
         (None, None) => Err(Failure::input("no scenario and no certificate")),
     }
@@ -56,10 +61,8 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     if let Some(name) = only.filter(|name| !names.contains(name)) {
-        let known = names.join(", ");
-        return Err(Failure::input(format_args!(
-            "no controller is called \"{name}\"; there are {known}"
-        )));
+        let known = file::known_words(name, &names);
+        return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let certification =
         Certification::of(&study, only, &Effort::default()).map_err(Failure::input)?;
@@ -81,22 +84,58 @@ fn write(certification: &Certification, folder: &Path) -> Result<(), Failure> {
     for certified in &certification.results {
         let Some(certificate) = certified.certificate() else { continue };
         let path = folder.join(certified.file_name());
-        output::write(&path, certify::to_text(certificate, &certified.origin))?;
+        let text = certify::to_text(certificate, &certified.origin);
+        // What cannot be read again is not written: a number of the scenario is beyond all ranges.
+        certify::from_text(&text).map_err(|refused| {
+            let name = &certified.controller;
+            Failure::input(format_args!("no certificate can be written of {name}:\n{refused}"))
+        })?;
+        output::write(&path, text)?;
         note(format_args!("wrote {0}; verify it with `fspid certify --check {0}`", path.display()));
     }
     Ok(())
 }
 
-fn check(path: &Path, format: Format) -> Result<(), Failure> {
-    let text = file::read_text(path).map_err(Failure::input)?;
-    let checked = certify::check_text(&text)
-        .map_err(|reason| Failure::input(format_args!("{}: {reason}", path.display())))?;
-    match format {
+fn check(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    let scenario = arguments.against.as_deref();
+    if scenario.is_none() && !arguments.overrides.is_empty() {
+        return Err(Failure::input(
+            "--set changes a scenario: with --check it needs --against SCENARIO",
+        ));
+    }
+    let mut checked = read(path)?;
+    if let Some(scenario) = scenario {
+        let study = file::load(scenario, &arguments.overrides).map_err(Failure::input)?;
+        checked.compare(&study).map_err(Failure::input)?;
+    }
+    match arguments.format {
         Format::Text => print(&checked.text())?,
         Format::Json => print(&json_text(&checked.json()))?,
     }
-    if checked.result.is_ok() {
+    if checked.holds() {
         return Ok(());
     }
-    Err(Failure::not_met("the certificate does not hold"))
+    Err(Failure::not_met(format_args!("{}: {}", path.display(), unmet(checked.answer()))))
+}
+
+/// A certificate, checked; each problem of a text that is none stands behind the name of its file.
+pub(super) fn read(path: &Path) -> Result<CheckedFile, Failure> {
+    let text = file::read_text(path).map_err(Failure::input)?;
+    certify::check_text(&text).map_err(|refused| {
+        let located = |it: &certify::Wrong| format!("{}: {it}", path.display());
+        let lines: Vec<String> = refused.problems.iter().map(located).collect();
+        Failure::input(lines.join("\n"))
+    })
+}
+
+/// Why a certificate does not do.
+pub(super) fn unmet(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Holds => "the certificate holds",
+        Answer::Refutes(_) => "the certificate refutes, it proves no stability",
+        Answer::SaysNothing(_) => "the certificate says nothing of the flown loop",
+        Answer::NotProved => "the certificate does not hold",
+        Answer::Edited => "the certificate was changed after it was written",
+        Answer::AnotherLoop => "the certificate is about another loop than the scenario flies",
+    }
 }

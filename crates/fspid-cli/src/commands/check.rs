@@ -3,32 +3,52 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::json;
 
-use crate::exit::{Failure, note, print};
-use fspid_study::file::{self, Template};
+use super::Format;
+use crate::argument::InFile;
+use crate::exit::{Failure, note};
+use fspid_study::certify::CheckedFile;
+use fspid_study::file::{self, Study, Template};
 use fspid_study::fuzzy_system;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
+///
+/// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
+/// with what the scenario flies.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The file: a scenario, or a fuzzy system (.toml, .fis, .fcl, .fll).
-    file: PathBuf,
+    /// The file: a scenario, a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml), or a rule table.
+    file: InFile,
     /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    /// List every path of a scenario that --set, dispersions and marks may take, with its value, unit and range.
+    #[arg(long)]
+    paths: bool,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
-        return system(&arguments.file);
+    if arguments.paths {
+        let rows = file::paths(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+        return arguments.format.print(|| file::paths_text(&rows), || file::paths_json(&rows));
     }
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    if arguments.overrides.is_empty() && fuzzy_system::is_rule_table_file(&arguments.file) {
+        return rule_table(&arguments.file, arguments.format);
+    }
+    if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
+        return system(&arguments.file, arguments.format);
+    }
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
     if !study.dispersions.is_empty() {
         Template::load(&arguments.file, &arguments.overrides)
-            .map_err(Failure::input)?
+            .map_err(Failure::load)?
             .check_dispersions()
             .map_err(Failure::input)?;
     }
@@ -36,18 +56,69 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         note(format_args!("gains of {gains}"));
     }
     let scenario = &study.scenario;
-    print(&format!(
-        "{}: good; {} with {} controller(s), {} samples of {} s, digest {}\n",
-        arguments.file.display(),
-        scenario.name,
-        scenario.controllers.len(),
-        scenario.timing.rows(),
-        scenario.timing.dt_s(),
-        study.digest,
-    ))
+    let (file, timing) = (arguments.file.display(), scenario.timing);
+    let certificate = beside(&arguments.file, &study)?;
+    let text = || {
+        let mut text = format!(
+            "{file}: good; {} with {} controller(s), {} samples of {} s, digest {}\n",
+            scenario.name,
+            scenario.controllers.len(),
+            timing.rows(),
+            timing.dt_s(),
+            study.digest,
+        );
+        if let Some((path, checked)) = &certificate {
+            text.push_str(&format!("{}\n{}", path.display(), checked.text()));
+        }
+        text
+    };
+    let names = scenario.controllers.iter().map(|named| named.name.as_str());
+    let json = || {
+        json!({
+            "schema": 1, "file": file.to_string(), "kind": "scenario", "good": true,
+            "name": scenario.name, "controllers": names.collect::<Vec<_>>(), "samples": timing.rows(),
+            "sample_period_s": timing.dt_s(), "digest": study.digest, "warnings": study.warnings,
+            "certificate": certificate.as_ref().map(|(_, checked)| checked.json()),
+        })
+    };
+    arguments.format.print(text, json)?;
+    certificate.map_or(Ok(()), |(path, checked)| judge(&path, &checked, arguments))
 }
 
-fn system(path: &Path) -> Result<(), Failure> {
+/// The certificate beside a scenario, verified and compared with what flies, if there is one.
+fn beside(scenario: &Path, study: &Study) -> Result<Option<(PathBuf, CheckedFile)>, Failure> {
+    let path = scenario.with_extension("certificate.json");
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let mut checked = super::certify::read(&path)?;
+    checked.compare(study).map_err(Failure::input)?;
+    Ok(Some((path, checked)))
+}
+
+fn judge(path: &Path, checked: &CheckedFile, arguments: &Arguments) -> Result<(), Failure> {
+    if checked.holds() {
+        return Ok(());
+    }
+    let unmet = super::certify::unmet(checked.answer());
+    // With --set something else flies than what stands in the file, as was asked for.
+    if !arguments.overrides.is_empty() {
+        note(format_args!("warning: {}: {unmet}", path.display()));
+        return Ok(());
+    }
+    Err(Failure::not_met(format_args!("{}: {unmet}", path.display())))
+}
+
+fn rule_table(path: &Path, format: Format) -> Result<(), Failure> {
+    let name = path.display().to_string();
+    file::load_rule_table(&name, None).map_err(Failure::input)?;
+    format.print(
+        || format!("{name}: good; a rule table of three grids of 49 rules\n"),
+        || json!({ "schema": 1, "file": name, "kind": "rule-table", "good": true, "rules": 3 * 49 }),
+    )
+}
+
+fn system(path: &Path, format: Format) -> Result<(), Failure> {
     let name = path.display().to_string();
     let loaded = fuzzy_system::load(&name, fuzzy_system::Options::default());
     let loaded = loaded.map_err(Failure::input)?;
@@ -55,11 +126,21 @@ fn system(path: &Path) -> Result<(), Failure> {
         note(format_args!("warning: {found}"));
     }
     let parts = loaded.system.parts();
-    print(&format!(
-        "{name}: good; {} with {} input(s), {} output(s), {} rule(s)\n",
-        if parts.name.is_empty() { "a fuzzy system" } else { &parts.name },
-        parts.inputs.len(),
-        parts.outputs.len(),
-        parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
-    ))
+    let rules = parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>();
+    let (inputs, outputs) = (parts.inputs.len(), parts.outputs.len());
+    let text = || {
+        let called = if parts.name.is_empty() { "a fuzzy system" } else { &parts.name };
+        format!(
+            "{name}: good; {called} with {inputs} input(s), {outputs} output(s), {rules} rule(s)\n"
+        )
+    };
+    let json = || {
+        json!({
+            "schema": 1, "file": name, "kind": "fuzzy-system", "good": true, "name": parts.name,
+            "inputs": parts.inputs.iter().map(|it| it.name.as_str()).collect::<Vec<_>>(),
+            "outputs": parts.outputs.iter().map(|it| it.name.as_str()).collect::<Vec<_>>(),
+            "rules": rules, "warnings": loaded.notes,
+        })
+    };
+    format.print(text, json)
 }

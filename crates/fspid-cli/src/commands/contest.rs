@@ -1,12 +1,12 @@
 //! `fspid contest`: controllers tuned alike, judged on what none of them was tuned on.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::progress::{Telling, answer_after, grouped, tell};
-use super::{Format, json_text};
+use super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::{Format, interrupt, json_text};
+use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
@@ -14,6 +14,9 @@ use fspid_tune::{Source, TuneError};
 
 /// How often the state of a search is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(2);
+
+/// Candidates that are flown to know how long one takes.
+const REHEARSED: usize = 8;
 
 /// Tune every controller of a scenario alike, and judge all on what none of them was tuned on.
 ///
@@ -25,10 +28,10 @@ const SAVED_EVERY: Duration = Duration::from_secs(2);
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     /// The folder in which everything is kept.
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    out: Folder,
     /// How many seeds each controller is tuned with; by default as the scenario says.
     #[arg(long, value_name = "K")]
     seeds: Option<u64>,
@@ -51,17 +54,23 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source =
-        Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+        Source { path: arguments.scenario.to_path_buf(), overrides: arguments.overrides.clone() };
     let options = Options { seeds: arguments.seeds, budget: arguments.budget };
     let contest = Contest::new(&source, &options).map_err(failure)?;
     contest.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
-    let mut watch = Watch { telling, told: Instant::now(), kept: Instant::now(), last: None };
+    interrupt::watch();
     let held = local::in_threads(arguments.threads, || {
-        contest.hold(&arguments.out, &mut |progress| watch.then(progress))
+        let expected = match telling {
+            Telling::Nothing => Vec::new(),
+            Telling::Line | Telling::Lines => expected(&contest),
+        };
+        let mut watch = Watch::new(telling, expected);
+        let held = contest.hold(&arguments.out, &mut |progress| watch.then(progress));
+        watch.end();
+        held
     });
     let outcome = held.map_err(Failure::input)?.map_err(failure)?;
-    watch.end();
     let answer = match arguments.format {
         Format::Text => outcome.text(),
         Format::Json => json_text(&outcome.json()),
@@ -77,8 +86,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn failure(error: TuneError) -> Failure {
     match error {
         TuneError::Output(_) | TuneError::History(_) => Failure::output(error),
+        TuneError::Stopped => Failure::interrupted(format_args!(
+            "interrupted; the same command goes on from there: {}",
+            interrupt::command()
+        )),
         _ => Failure::input(error),
     }
+}
+
+/// How long a candidate of each controller takes, s, by flying some; tells how long all of them will.
+fn expected(contest: &Contest) -> Vec<(String, f64)> {
+    let each = |(name, _): (&str, usize)| {
+        let begun = Instant::now();
+        contest.rehearse(name, REHEARSED);
+        (name.to_owned(), begun.elapsed().as_secs_f64() / REHEARSED as f64)
+    };
+    let expected: Vec<(String, f64)> = contest.searches().map(each).collect();
+    let seconds: f64 = contest.searches().zip(&expected).map(|((_, n), (_, s))| n as f64 * s).sum();
+    if let Some((_, candidates)) = contest.searches().next() {
+        note(format_args!(
+            "{} controller(s) tuned with {} candidates each: about {} on this machine, what is there already and the judging not counted",
+            expected.len(),
+            grouped(candidates as u64),
+            duration(seconds)
+        ));
+    }
+    expected
 }
 
 /// Tells how far the contest is, and when states are to be saved.
@@ -87,17 +120,72 @@ struct Watch {
     told: Instant,
     kept: Instant,
     last: Option<String>,
+    /// Seconds that a candidate of each controller was expected to take.
+    expected: Vec<(String, f64)>,
+    /// When flying began.
+    begun: Option<Instant>,
+    /// Seconds that were expected for what was flown since.
+    flown_s: f64,
+    /// The search and its candidates when it was last told of.
+    before: (usize, usize),
 }
 
 impl Watch {
+    fn new(telling: Telling, expected: Vec<(String, f64)>) -> Self {
+        let now = Instant::now();
+        let before = (0, 0);
+        Self {
+            telling,
+            told: now,
+            kept: now,
+            last: None,
+            expected,
+            begun: None,
+            flown_s: 0.0,
+            before,
+        }
+    }
+
+    fn seconds(&self, controller: &str) -> f64 {
+        let found = self.expected.iter().find(|(name, _)| name == controller);
+        found.map_or(0.0, |(_, seconds)| *seconds)
+    }
+
+    /// Seconds that are left, by what flying took so far beside what was expected; none before something was flown.
+    fn left(&mut self, progress: &Progress) -> Option<f64> {
+        let ((number, of), (spent, budget)) = (progress.search, progress.candidates);
+        if progress.was_there {
+            return None;
+        }
+        let begun = *self.begun.get_or_insert_with(Instant::now);
+        let was = if self.before.0 == number { self.before.1 } else { 0 };
+        if self.before != (0, 0) {
+            self.flown_s += spent.saturating_sub(was) as f64 * self.seconds(&progress.controller);
+        }
+        self.before = (number, spent);
+        // Those that come after this one, in their order.
+        let seeds = of.checked_div(self.expected.len()).unwrap_or(1).max(1);
+        let rest = (number..of).filter_map(|place| self.expected.get(place / seeds));
+        let rest: f64 = rest.map(|(_, seconds)| *seconds * budget as f64).sum();
+        let mine = budget.saturating_sub(spent) as f64 * self.seconds(&progress.controller);
+        let pace = begun.elapsed().as_secs_f64() / self.flown_s;
+        (self.flown_s > 0.0 && pace.is_finite()).then_some((mine + rest) * pace)
+    }
+
     fn then(&mut self, progress: &Progress) -> Then {
         if self.telling != Telling::Nothing {
-            let text = line(progress);
+            let mut text = line(progress);
+            if let Some(left) = self.left(progress) {
+                text.push_str(&format!(", {} left", duration(left)));
+            }
             if self.told.elapsed() >= self.telling.period() {
                 self.told = Instant::now();
                 tell(self.telling, &text);
             }
             self.last = Some(text);
+        }
+        if interrupt::asked() {
+            return Then::Stop;
         }
         // A state of no candidates is worth nothing.
         if progress.was_there || self.kept.elapsed() < SAVED_EVERY {

@@ -1,20 +1,25 @@
 //! Drawings, one file each.
 
-use std::path::Path;
-
-use crate::exit::{Failure, note};
+use crate::argument::{Drawings, is_standard};
+use crate::exit::{Failure, wrote};
 use fspid_study::output;
 
 /// One drawing into its file; several into a folder, or beside each other if `path` is a file's.
-pub(super) fn write(path: &Path, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
-    let is_drawing = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+pub(super) fn write(path: &Drawings, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
+    if is_standard(path) {
+        return match figures.as_slice() {
+            [(_, svg)] => Ok(output::write(path, svg)?),
+            several => Err(several_on_one(several)),
+        };
+    }
+    let is_drawing = path.is_file();
     if !is_drawing {
         output::make_folder(path)?;
     }
     let several = figures.len() > 1;
     for (name, svg) in figures {
         let file = match (is_drawing, several) {
-            (true, false) => path.to_owned(),
+            (true, false) => path.to_path_buf(),
             (true, true) => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
                 path.with_file_name(format!("{stem}-{}.svg", file_name(name)))
@@ -22,13 +27,23 @@ pub(super) fn write(path: &Path, figures: Vec<(&str, &str)>) -> Result<(), Failu
             (false, _) => path.join(format!("{}.svg", file_name(name))),
         };
         output::write(&file, svg)?;
-        note(format_args!("wrote {}", file.display()));
+        wrote(&file);
     }
     Ok(())
 }
 
+/// Several drawings that cannot stand on standard output together.
+fn several_on_one(figures: &[(&str, &str)]) -> Failure {
+    let names: Vec<&str> = figures.iter().map(|(name, _)| *name).collect();
+    Failure::input(format_args!(
+        "standard output holds one drawing, and there are {}: {}; name a folder",
+        figures.len(),
+        names.join(", ")
+    ))
+}
+
 /// A name that every file system takes.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
 }

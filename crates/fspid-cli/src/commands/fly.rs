@@ -1,13 +1,14 @@
 //! `fspid fly`: a scenario's controller over standard input and output.
 
-use std::io::{self, IsTerminal as _};
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::io::{self, IsTerminal as _};
 
-use crate::exit::{Failure, note};
+use super::Format;
+use crate::argument::{InFile, is_standard};
+use crate::exit::{Failure, note, stream};
 use fspid_study::file;
-use fspid_study::fly::{self, Pilot, StreamError};
+use fspid_study::fly::{self, Pilot, StreamError, Summary};
 
 /// Let a controller of a scenario fly whatever is at the other end of standard input and output.
 ///
@@ -25,7 +26,7 @@ use fspid_study::fly::{self, Pilot, StreamError};
 )]
 pub(crate) struct Arguments {
     /// The scenario file; its aircraft, servo and disturbances are not used.
-    file: PathBuf,
+    file: InFile,
     /// Which of its controllers flies, if there are several.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
@@ -38,6 +39,10 @@ pub(crate) struct Arguments {
     /// End with code 1 if a sample was held, late, early or at fault.
     #[arg(long)]
     strict: bool,
+    /// How the summary at the end is written: words if something was wrong, or JSON in any case, on standard error;
+    /// standard output holds the commands.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 /// A unit of angles.
@@ -59,18 +64,32 @@ impl From<Angles> for fly::Angles {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if is_standard(&arguments.file) {
+        return Err(Failure::input(
+            "the samples come on standard input; the scenario needs a file",
+        ));
+    }
     let mut pilot = pilot(arguments)?;
+    // Standard output holds commands from here on, and no answer of another kind.
+    stream();
     if io::stdin().is_terminal() {
         let period_s = pilot.period_s();
         note(format_args!("set-point, measured pitch, {period_s:?} and pitch rate, please:"));
     }
     let (mut input, mut output) = (io::stdin().lock(), io::stdout().lock());
     let done = fly::fly(&mut pilot, &mut input, &mut output, |text| note(text));
-    finish(&pilot, arguments.strict, done)
+    finish(&pilot, arguments, done)
+}
+
+fn summary_json(summary: &Summary) -> Value {
+    json!({
+        "schema": 1, "commands": summary.commands, "slips": summary.slips, "held": summary.held,
+        "other_faults": summary.faults, "resets": summary.resets,
+    })
 }
 
 fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
@@ -80,10 +99,16 @@ fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
 }
 
 /// A simulator that has gone away is as good an end as one that closes its side.
-fn finish(pilot: &Pilot, strict: bool, done: Result<(), StreamError>) -> Result<(), Failure> {
+fn finish(
+    pilot: &Pilot,
+    arguments: &Arguments,
+    done: Result<(), StreamError>,
+) -> Result<(), Failure> {
     let summary = pilot.summary();
-    if !summary.is_clean() {
-        note(summary);
+    match arguments.format {
+        Format::Json => note(summary_json(&summary)),
+        Format::Text if !summary.is_clean() => note(summary),
+        Format::Text => {}
     }
     match done {
         Ok(()) => {}
@@ -92,7 +117,7 @@ fn finish(pilot: &Pilot, strict: bool, done: Result<(), StreamError>) -> Result<
             return Err(Failure::input(format_args!("standard input cannot be read: {error}")));
         }
     }
-    match strict && !summary.is_clean() {
+    match arguments.strict && !summary.is_clean() {
         true => Err(Failure::not_met("not every sample came in time and could be used")),
         false => Ok(()),
     }

@@ -1,11 +1,12 @@
 //! `fspid infer`: ask a fuzzy system, or the supervisor of the paper.
 
 use std::io::{self, BufReader, BufWriter};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{ArgGroup, Args};
 
-use super::{Format, Loading, json_text};
+use super::{Format, Inputs, Which, json_text};
+use crate::argument::InFile;
 use crate::exit::{Failure, print};
 use fspid_study::fuzzy_system::{self, SystemTable};
 use fspid_study::inference::{self, Question, SupervisorTable};
@@ -13,51 +14,39 @@ use fspid_study::rows::{self, RowsError, Table};
 
 /// Ask a fuzzy system: one question, or a table of them.
 ///
-/// Without SYSTEM the supervisor of the paper is asked, by --error and --change.
+/// Without SYSTEM the supervisor of the paper is asked.
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("inputs").required(true).args(["error", "points", "input"]))]
+#[command(group = ArgGroup::new("inputs").required(true).multiple(true).args(["error", "change", "points", "input"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: Option<String>,
     #[command(flatten)]
-    loading: Loading,
-    /// The value of an input; once for each input.
-    #[arg(long, value_name = "NAME=VALUE", requires = "system", allow_hyphen_values = true)]
-    input: Vec<String>,
+    which: Which,
+    #[command(flatten)]
+    inputs: Inputs,
     /// Answer every row of this CSV file with a row of CSV; `-` reads standard input.
     ///
     /// There is a column for each input, found by its name; without SYSTEM they are `e,ec`. A file
     /// is checked first, and nothing is written if one of its rows is wrong. Standard input is
     /// answered as it comes, up to the first row that is wrong.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["error", "change", "input", "format"])]
-    points: Option<PathBuf>,
-    /// Without SYSTEM: the rule table, `printed`, `mirrored`, or a file.
-    #[arg(long, default_value = "printed", conflicts_with = "system")]
-    table: String,
-    /// Without SYSTEM: the error, in the supervisor's units.
-    #[arg(long, allow_negative_numbers = true, requires = "change", conflicts_with = "system")]
-    error: Option<f64>,
-    /// Without SYSTEM: the change of the error, in the supervisor's units.
-    #[arg(long, allow_negative_numbers = true, requires = "error", conflicts_with = "system")]
-    change: Option<f64>,
+    points: Option<InFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.system {
-        Some(name) => general(arguments, name),
-        None => supervisor(arguments),
+    match arguments.which.system.is_some() || !arguments.inputs.input.is_empty() {
+        true => general(arguments),
+        false => supervisor(arguments),
     }
 }
 
-fn general(arguments: &Arguments, name: &str) -> Result<(), Failure> {
-    let system = arguments.loading.load(name)?;
+fn general(arguments: &Arguments) -> Result<(), Failure> {
+    let system = arguments.which.load()?;
     if let Some(path) = &arguments.points {
         return table(&mut SystemTable::new(&system), path);
     }
-    let asked = fuzzy_system::ask(&system, &arguments.input).map_err(Failure::input)?;
+    let asked = fuzzy_system::ask(&system, &arguments.inputs.texts()).map_err(Failure::input)?;
     match arguments.format {
         Format::Json => print(&json_text(&asked.json())),
         Format::Text => print(&asked.text()),
@@ -65,14 +54,14 @@ fn general(arguments: &Arguments, name: &str) -> Result<(), Failure> {
 }
 
 fn supervisor(arguments: &Arguments) -> Result<(), Failure> {
-    let loading = &arguments.loading;
+    let loading = &arguments.which.loading;
     let Some(range) = loading.range else {
         return Err(Failure::input(
             "add --range, the half range of inputs and outputs, or name a SYSTEM",
         ));
     };
     let question = Question {
-        table: &arguments.table,
+        table: arguments.which.name(),
         range,
         defuzzifier: loading.defuzzifier.as_deref().unwrap_or("exact"),
         out_of_range: loading.out_of_range.as_deref().unwrap_or("clamp"),
@@ -81,7 +70,9 @@ fn supervisor(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.points {
         return table(&mut SupervisorTable(supervisor), path);
     }
-    let (error, change) = (arguments.error.unwrap_or(0.0), arguments.change.unwrap_or(0.0));
+    let (Some(error), Some(change)) = (arguments.inputs.error, arguments.inputs.change) else {
+        return Err(Failure::input("--error and --change are asked for together"));
+    };
     let answer = supervisor.infer(error, change).map_err(Failure::input)?;
     match arguments.format {
         Format::Json => print(&json_text(&inference::json(&answer))),

@@ -1,11 +1,12 @@
 //! `fspid learn`: the numbers of a fuzzy system, from data.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use clap::{ArgGroup, Args, ValueEnum};
 
 use super::{Format, Loading, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{InFile, OutFile, Source, is_standard, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_study::fuzzy_system::{self, NUMBER_GRID, Parts, Target};
 use fspid_study::output;
 use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
@@ -16,25 +17,25 @@ use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("teaching").required(true).args(["data", "teacher"]))]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: String,
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
+    system: Source,
     #[command(flatten)]
     loading: Loading,
     /// A CSV file with a column for each input and each output, found by their names.
     #[arg(long, value_name = "FILE.csv")]
-    data: Option<PathBuf>,
+    data: Option<InFile>,
     /// In place of data: a system whose answers are to be learned, named as SYSTEM is.
     #[arg(long, value_name = "SYSTEM", requires = "points")]
-    teacher: Option<String>,
+    teacher: Option<Source>,
     /// How many points the grid has along each input of the teacher, such as `15,15`.
     #[arg(long, value_name = "N,N", value_delimiter = ',', requires = "teacher")]
     points: Vec<usize>,
     /// Give every rule a conclusion of its own in place of those of the file.
     #[arg(long, value_enum, value_name = "WHAT")]
     conclude: Option<Conclude>,
-    /// The new file: .toml (everything can be said), .fis, .fcl or .fll.
-    #[arg(long, value_name = "OUT")]
-    out: PathBuf,
+    /// The new file: .toml (everything can be said), .fis, .t2fis, .fcl, .fll or .xml.
+    #[arg(value_parser = written(&["toml", "fis", "t2fis", "fcl", "fll", "xml"]), long, value_name = "OUT")]
+    out: OutFile,
     /// Most epochs.
     #[arg(long, default_value_t = Plan::default().epochs)]
     epochs: usize,
@@ -106,16 +107,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..Plan::default()
     };
     let learned = learn(&parts, &data.map_err(Failure::input)?, &plan).map_err(Failure::input)?;
-    let written = fuzzy_system::write_as(&learned.parts, &arguments.out, Target::default());
+    let out = &arguments.out;
+    // Everything can be said in our own format.
+    let named = if is_standard(out) { Path::new("standard-output.toml") } else { out.as_ref() };
+    let written = fuzzy_system::write_as(&learned.parts, named, Target::default());
     output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
-    note(format_args!("wrote {}", arguments.out.display()));
+    wrote(&arguments.out);
     tell(arguments, &learned)
 }
 
 /// What was learned, and whether it flies.
 fn tell(arguments: &Arguments, learned: &Learned) -> Result<(), Failure> {
     let numbers = fuzzy_system::numbers_of(&learned.parts);
-    if let (true, Err(differences)) = (arguments.system == NUMBER_GRID, &numbers) {
+    if let (true, Err(differences)) = (&*arguments.system == NUMBER_GRID, &numbers) {
         let first = differences.first().map_or("", String::as_str);
         note(format_args!("warning: it does not fly: {first}; --sets-stay keeps the sets"));
     }

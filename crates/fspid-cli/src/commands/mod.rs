@@ -14,6 +14,7 @@ pub(crate) mod explain;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
+mod interrupt;
 pub(crate) mod learn;
 mod progress;
 pub(crate) mod reproduce;
@@ -25,7 +26,8 @@ pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};
 
-use crate::exit::{Failure, note};
+use crate::argument::Source;
+use crate::exit::{Failure, note, print};
 use fspid_study::fuzzy_system::{self, Dialect, Options, System};
 
 /// How a fuzzy system answers, where its file shall not decide.
@@ -50,6 +52,56 @@ pub(crate) struct Loading {
     /// The controller of a scenario file whose supervisor is meant, if several have one.
     #[arg(long, value_name = "NAME")]
     pub(crate) controller: Option<String>,
+}
+
+/// Which fuzzy system is asked, the same for every command that asks one.
+#[derive(Debug, Args)]
+pub(crate) struct Which {
+    /// A file (.toml, .fis, .t2fis, .fcl, .fll, .xml), a scenario for its supervisor, a rule table, or `printed`, `mirrored` or
+    /// `sugeno-grid`; rule tables need --range. The table `printed` if left out.
+    pub(crate) system: Option<Source>,
+    /// The rule table in place of SYSTEM: `printed`, `mirrored`, or a file.
+    #[arg(long, conflicts_with = "system")]
+    pub(crate) table: Option<Source>,
+    #[command(flatten)]
+    pub(crate) loading: Loading,
+}
+
+impl Which {
+    /// The name of the system.
+    pub(crate) fn name(&self) -> &str {
+        let named = self.system.as_deref().or(self.table.as_deref());
+        named.unwrap_or("printed")
+    }
+
+    /// The system; what had to be assumed is told as warnings.
+    pub(crate) fn load(&self) -> Result<System, Failure> {
+        self.loading.load(self.name())
+    }
+}
+
+/// The inputs of a question, spelled alike everywhere.
+#[derive(Debug, Args)]
+pub(crate) struct Inputs {
+    /// The value of an input; once for each input.
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub(crate) input: Vec<String>,
+    /// The error, in the units of a supervisor: short for `--input error=…`.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) error: Option<f64>,
+    /// The change of the error, in the units of a supervisor: short for `--input change=…`.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) change: Option<f64>,
+}
+
+impl Inputs {
+    /// All of them as `name=value`.
+    pub(crate) fn texts(&self) -> Vec<String> {
+        let short = [("error", self.error), ("change", self.change)];
+        let short =
+            short.into_iter().filter_map(|(name, value)| Some(format!("{name}={:?}", value?)));
+        self.input.iter().cloned().chain(short).collect()
+    }
 }
 
 /// A tool with a dialect of FCL.
@@ -128,6 +180,20 @@ pub(crate) enum Format {
     Text,
     /// For programs.
     Json,
+}
+
+impl Format {
+    /// Prints the form that was asked for.
+    pub(crate) fn print(
+        self,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> serde_json::Value,
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Text => print(&text()),
+            Self::Json => print(&json_text(&json())),
+        }
+    }
 }
 
 /// Pretty JSON with a line end.

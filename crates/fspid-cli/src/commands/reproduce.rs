@@ -1,10 +1,13 @@
 //! `fspid reproduce`: the paper, flown again.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
+use serde_json::{Map, Value, json};
 
-use crate::exit::{Failure, note, print};
+use super::Format;
+use crate::argument::Folder;
+use crate::exit::{Failure, note};
 use fspid_study::output;
 use fspid_study::report;
 use fspid_study::reproduce::identify::{Options, identify};
@@ -15,7 +18,7 @@ use fspid_study::reproduce::{Library, Reproduction, Status, Stored, fallen, reco
 pub(crate) struct Arguments {
     /// Folder for the report, the figures, the traces and the claims.
     #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    out: Folder,
     /// Exit with 1 when a claim stands worse than recorded.
     #[arg(long)]
     check: bool,
@@ -28,6 +31,9 @@ pub(crate) struct Arguments {
     /// Number of seeds; the best is kept and the spread reported.
     #[arg(long, default_value_t = 3, requires = "identify", value_parser = clap::value_parser!(u64).range(1..=100))]
     seeds: u64,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -39,7 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Library::stored(), Reproduction::stored().map_err(Failure::input)?)
     };
     write_all(out, &library, &reproduction)?;
-    print(&summary(out, &reproduction))?;
+    arguments.format.print(|| summary(out, &reproduction), || summary_json(out, &reproduction))?;
     if arguments.check { check(&reproduction) } else { Ok(()) }
 }
 
@@ -78,12 +84,32 @@ fn write_below(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
 fn summary(out: &Path, reproduction: &Reproduction) -> String {
     let counts =
         Status::ALL.map(|status| format!("{} {}", reproduction.count(status), status.name()));
+    let (numbers, sentences) = (reproduction.claims.len(), reproduction.statements.len());
+    let [own, shared] = reproduction.numbers_reproduced();
     format!(
-        "{} claims: {}\nreport: {}\n",
-        reproduction.statuses().count(),
+        "{} claims, {numbers} numbers and {sentences} sentences, with parameters of each figure's own: {}\n\
+         of the {numbers} numbers {own} come out so, and {shared} with one set of parameters for all figures of a range\n\
+         report: {}\n",
+        numbers + sentences,
         counts.join(", "),
         out.join("report.html").display()
     )
+}
+
+fn summary_json(out: &Path, reproduction: &Reproduction) -> Value {
+    let counts = Status::ALL.map(|status| (status.name(), reproduction.count(status)));
+    let fallen = fallen(reproduction);
+    let fallen: Vec<Value> = fallen
+        .iter()
+        .map(|it| json!({ "id": it.id, "recorded": it.recorded.to_string(), "now": it.now.to_string() }))
+        .collect();
+    json!({
+        "schema": 1,
+        "claims": reproduction.statuses().count(),
+        "statuses": counts.into_iter().map(|(name, count)| (name.to_owned(), json!(count))).collect::<Map<_, _>>(),
+        "fallen": fallen,
+        "report": out.join("report.html").display().to_string(),
+    })
 }
 
 fn check(reproduction: &Reproduction) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::json_text;
+use super::{Format, json_text};
 use crate::exit::{Failure, print};
 use fspid_study::{file, fuzzy_system};
 
@@ -12,6 +12,9 @@ pub(crate) struct Arguments {
     /// Which file.
     #[arg(value_enum, default_value_t = Kind::Scenario)]
     kind: Kind,
+    /// A schema is JSON in any case.
+    #[arg(long, value_enum, default_value_t = Format::Json)]
+    format: Format,
 }
 
 /// A kind of file.
@@ -24,6 +27,7 @@ enum Kind {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (Format::Text | Format::Json) = arguments.format;
     print(&json_text(&match arguments.kind {
         Kind::Scenario => file::schema(),
         Kind::FuzzySystem => fuzzy_system::schema(),

@@ -1,10 +1,9 @@
 //! `fspid simulate`: fly a scenario.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::{Format, json_text};
+use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_study::simulation::Simulation;
 use fspid_study::{file, output, report};
@@ -13,7 +12,7 @@ use fspid_study::{file, output, report};
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    file: PathBuf,
+    file: InFile,
     /// Set a value before flying, e.g. `--set loop.sample_period_s=0.02`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -21,15 +20,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// Write the traces of all controllers to this CSV file.
-    #[arg(long, value_name = "OUT.csv")]
-    trace: Option<PathBuf>,
+    #[arg(value_parser = written(&["csv"]), long, value_name = "OUT.csv")]
+    trace: Option<OutFile>,
     /// Write a report that opens offline in a browser.
-    #[arg(long, value_name = "OUT.html")]
-    report: Option<PathBuf>,
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    report: Option<OutFile>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::input)?;
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }

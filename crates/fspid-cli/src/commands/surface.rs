@@ -1,11 +1,10 @@
 //! `fspid surface`: a fuzzy system, drawn.
 
-use std::path::{Path, PathBuf};
-
 use clap::Args;
 
-use super::{Loading, drawings};
-use crate::exit::{Failure, print};
+use super::{Format, Which, drawings, json_text};
+use crate::argument::{Drawings, OutFile, written};
+use crate::exit::{Failure, print, wrote};
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
 
@@ -14,10 +13,8 @@ use fspid_study::output;
 /// Without --out the drawing of the one output goes to standard output.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file (.toml, .fis, .fcl, .fll), a scenario for its supervisor, or `printed`, `mirrored` or `sugeno-grid` with --range.
-    system: String,
     #[command(flatten)]
-    loading: Loading,
+    which: Which,
     /// The input to the right; the first one if left out.
     #[arg(long, value_name = "NAME")]
     x: Option<String>,
@@ -25,7 +22,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     y: Option<String>,
     /// Where another input stays; the middle of its range if left out.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     fix: Vec<String>,
     /// The range over which an input is drawn; that of the file if left out.
     #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
@@ -38,14 +35,17 @@ pub(crate) struct Arguments {
     nodes: Option<usize>,
     /// The drawing, or the folder for one drawing an output.
     #[arg(long, value_name = "FILE.svg or FOLDER")]
-    out: Option<PathBuf>,
+    out: Option<Drawings>,
     /// Write the values at all nodes to this file; `-` is standard output.
-    #[arg(long, value_name = "FILE.csv")]
-    csv: Option<PathBuf>,
+    #[arg(value_parser = written(&["csv"]), long, value_name = "FILE.csv")]
+    csv: Option<OutFile>,
+    /// How the answer on standard output is written where no file is named: the drawing, or the values at all nodes.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let system = arguments.loading.load(&arguments.system)?;
+    let system = arguments.which.load()?;
     let question = SliceQuestion {
         x: arguments.x.as_deref(),
         y: arguments.y.as_deref(),
@@ -56,13 +56,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let slice = slice(&system, &question).map_err(Failure::input)?;
     if let Some(path) = &arguments.csv {
-        match path == Path::new("-") {
-            true => print(&slice.csv())?,
-            false => output::write(path, slice.csv())?,
-        }
+        output::write(path, slice.csv())?;
+        wrote(path);
     }
     let figures = slice.figures();
     let named = figures.iter().map(|(name, svg)| (*name, svg.as_str()));
+    if arguments.format == Format::Json {
+        if let Some(path) = &arguments.out {
+            drawings::write(path, named.collect())?;
+        }
+        return print(&json_text(&slice.json()));
+    }
     match (&arguments.out, figures.as_slice()) {
         (Some(path), _) => drawings::write(path, named.collect()),
         (None, _) if arguments.csv.is_some() => Ok(()),

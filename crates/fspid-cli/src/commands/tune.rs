@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use serde_json::json;
 
 use super::progress::{Telling, answer_after, duration, grouped, tell};
-use super::{Format, json_text};
-use crate::exit::{Failure, note, print};
+use super::{Format, drawings, interrupt, json_text};
+use crate::argument::{InFile, OutFile, is_standard, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
+use fspid_study::file::{known_words, unread_in_words};
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
@@ -22,14 +25,19 @@ const SAVED_EVERY: Duration = Duration::from_secs(2);
 /// Mark numbers with `{ tune = [0.1, 10.0], scale = "log", start = 1.0 }`, say under [[tuning.objective]] what
 /// shall become small, and under [[tuning.case]] on what to fly. Requirements of the scenario are limits
 /// that come before any cost. The same seed gives the same design on any number of threads; a search that
-/// was interrupted goes on where it was when the same command is given again.
+/// was interrupted goes on where it was when the same command is given again: its state is kept beside the design, or
+/// beside the scenario where none is written.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     /// The controller; needed only where several have free numbers.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
+    /// Tune every controller that has free numbers, all alike, and print them side by side. With --out each gets a
+    /// design of its own, as in `design-PID.toml`.
+    #[arg(long, conflicts_with_all = ["controller", "rule", "history"])]
+    all: bool,
     /// How to search: cma-es, de, l-shade, pso, ga, nelder-mead, or nsga-ii for trade-offs; by default as
     /// the scenario says.
     #[arg(long, value_name = "NAME")]
@@ -56,11 +64,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     anywhere: bool,
     /// Write the design: the scenario with what was found in place of the marks.
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    #[arg(value_parser = written(&["toml"]), long, value_name = "FILE")]
+    out: Option<OutFile>,
     /// Write every candidate as a row of a Parquet file.
-    #[arg(long, value_name = "FILE")]
-    history: Option<PathBuf>,
+    #[arg(value_parser = written(&["parquet"]), long, value_name = "FILE")]
+    history: Option<OutFile>,
     /// Set a value before anything is read, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -77,36 +85,76 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source =
-        Source { path: arguments.scenario.clone(), overrides: arguments.overrides.clone() };
+        Source { path: arguments.scenario.to_path_buf(), overrides: arguments.overrides.clone() };
     if let Some(rule) = &arguments.rule {
         return by_rule(arguments, &source, rule);
     }
-    let problem = Problem::new(&source, arguments.controller.as_deref()).map_err(failure)?;
-    problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
-    if let Some(out) = &arguments.out {
-        design::check_place(&source, out).map_err(failure)?;
-    }
-    let effort = effort(arguments, &problem);
-    let tuned = local::in_threads(arguments.threads, || search(arguments, &problem, &effort));
-    let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
-    let answer = match arguments.format {
-        Format::Text => tuned.text(),
-        Format::Json => json_text(&tuned.json()),
+    interrupt::watch();
+    let tuned = match arguments.all {
+        false => vec![one(arguments, &source, arguments.controller.as_deref())?],
+        true => all(arguments, &source)?,
     };
-    print(&answer)?;
-    if let Some(out) = &arguments.out {
-        let heading = tuned.heading(&effort.command(&source, arguments.controller.as_deref()));
-        let text = design::text(&source, problem.space(), &best, &heading).map_err(failure)?;
-        output::write(out, text)?;
-        remove(&state_path(out));
-        note(format_args!("wrote {}", out.display()));
+    match arguments.format {
+        Format::Text => {
+            let mut answer = tuned.iter().map(Tuned::text).collect::<Vec<_>>().join("\n");
+            if arguments.all {
+                answer.push_str(&Tuned::side_by_side(&tuned));
+            }
+            print(&answer)?;
+        }
+        Format::Json if arguments.all => {
+            let each: Vec<_> = tuned.iter().map(Tuned::json).collect();
+            print(&json_text(&json!({ "schema": 1, "controllers": each })))?;
+        }
+        Format::Json => tuned.iter().try_for_each(|it| print(&json_text(&it.json())))?,
     }
-    match tuned.is_allowed() {
+    match tuned.iter().all(Tuned::is_allowed) {
         true => Ok(()),
         false => Err(Failure::not_met(
             "no candidate came back from every flight and met every requirement",
         )),
     }
+}
+
+/// Every controller with free numbers, one after the other, with the same effort.
+fn all(arguments: &Arguments, source: &Source) -> Result<Vec<Tuned>, Failure> {
+    let names = fspid_tune::controllers_with_marks(source).map_err(failure)?;
+    if names.is_empty() {
+        return one(arguments, source, None).map(|tuned| vec![tuned]);
+    }
+    names.iter().map(|name| one(arguments, source, Some(name))).collect()
+}
+
+/// Tunes one controller, and writes its design.
+fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tuned, Failure> {
+    let problem = Problem::new(source, name).map_err(failure)?;
+    problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
+    let out = arguments.out.as_ref().map(|out| place(arguments, out, problem.controller()));
+    if let Some(out) = &out {
+        design::check_place(source, out).map_err(failure)?;
+    }
+    let effort = effort(arguments, &problem);
+    let kept = Kept::of(arguments, out.as_deref(), problem.controller());
+    let tuned =
+        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &kept)));
+    let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
+    if let Some(out) = &out {
+        let heading = tuned.heading(&effort.command(source, name));
+        let text = design::text(source, problem.space(), &best, &heading).map_err(failure)?;
+        output::write(out, text)?;
+        wrote(out);
+    }
+    kept.remove();
+    Ok(tuned)
+}
+
+/// Where the design of a controller is written.
+fn place(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
+    if !arguments.all || is_standard(out) {
+        return out.to_owned();
+    }
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    out.with_file_name(format!("{stem}-{}.toml", drawings::file_name(controller)))
 }
 
 /// The gains of a classical rule.
@@ -115,19 +163,19 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
         let row = |rule: &Rule| format!("{:<18}{}\n", rule.name(), rule.about());
         return print(&Rule::ALL.iter().map(row).collect::<String>());
     }
-    let rule = Rule::from_name(name).ok_or_else(|| wrong("the rule", name, &Rule::NAMES))?;
+    let rule = Rule::from_name(name).ok_or_else(|| unknown("rule", name, &Rule::NAMES))?;
     let form = match arguments.form.as_deref() {
         None => None,
-        Some(name) => Some(
-            Form::from_name(name).ok_or_else(|| wrong("the form", name, &["p", "pi", "pid"]))?,
-        ),
+        Some(name) => {
+            Some(Form::from_name(name).ok_or_else(|| unknown("form", name, &["p", "pi", "pid"]))?)
+        }
     };
     let options = Options { form, closed_loop_s: arguments.closed_loop_s, ..Options::default() };
     let found = Baseline::of(source, arguments.controller.as_deref(), (rule, &options));
     let found = found.map_err(failure)?;
     match arguments.format {
-        Format::Text => print(&found.design.text())?,
-        Format::Json => print(&json_text(&found.design.json()))?,
+        Format::Text => print(&found.answer())?,
+        Format::Json => print(&json_text(&found.json()))?,
     }
     if let Some(out) = &arguments.out {
         let heading = [format!(
@@ -137,7 +185,7 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
             found.design.verdict.sentence()
         )];
         output::write(out, found.text(source, out, &heading).map_err(failure)?)?;
-        note(format_args!("wrote {}", out.display()));
+        wrote(out);
     }
     match found.design.verdict {
         Verdict::NotHeld(_) => Err(Failure::not_met("the rule's gains do not hold this aircraft")),
@@ -145,14 +193,18 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
     }
 }
 
-fn wrong(what: &'static str, found: &str, allowed: &[&str]) -> Failure {
-    let (found, allowed) = (format!("\"{found}\""), allowed.join(", "));
-    failure(TuneError::Value { what, found, allowed })
+fn unknown(what: &str, found: &str, known: &[&str]) -> Failure {
+    Failure::input(format_args!("there is no {what} `{found}`{}", known_words(found, known)))
 }
 
 fn failure(error: TuneError) -> Failure {
     match error {
         TuneError::Output(_) | TuneError::History(_) => Failure::output(error),
+        TuneError::NotKept => Failure::interrupted(error),
+        TuneError::Stopped => Failure::interrupted(format_args!(
+            "interrupted; the same command goes on from there: {}",
+            interrupt::command()
+        )),
         _ => Failure::input(error),
     }
 }
@@ -172,10 +224,9 @@ fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
 fn search(
     arguments: &Arguments,
     problem: &Problem,
-    effort: &Effort,
+    (effort, place): (&Effort, &Kept),
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
-    let saved = arguments.out.as_deref().map(state_path);
-    let mut search = begun(problem, effort, saved.as_deref())?;
+    let mut search = place.begun(problem, effort)?;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let begun_at = (Instant::now(), search.spent());
     // The first generation is kept at once: what is found must not be lost, nor whether it can be kept.
@@ -188,10 +239,14 @@ fn search(
             told = Instant::now();
             tell(telling, &line(&search, begun_at));
         }
-        if let Some(path) = &saved
-            && kept.is_none_or(|kept| kept.elapsed() >= SAVED_EVERY)
-        {
-            output::write(path, json_text(&state_json(&search.state())))?;
+        if interrupt::asked() {
+            return Err(match place.save(&search)? {
+                true => TuneError::Stopped,
+                false => TuneError::NotKept,
+            });
+        }
+        if kept.is_none_or(|kept| kept.elapsed() >= SAVED_EVERY) {
+            place.save(&search)?;
             kept = Some(Instant::now());
         }
     };
@@ -205,39 +260,85 @@ fn search(
     Ok((tuned, search.best().point.clone()))
 }
 
-fn begun<'a>(
-    problem: &'a Problem,
-    effort: &Effort,
-    saved: Option<&Path>,
-) -> Result<Search<'a>, TuneError> {
-    let Some(path) = saved.filter(|path| path.exists()) else {
-        return Search::begin(problem, effort.clone());
-    };
-    let name = path.display().to_string();
-    let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(output::in_words(&error)))?;
-    let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    let search = Search::resume(problem, effort, state, &name)?;
-    note(format_args!("going on after {} candidates, from {name}", grouped(search.spent() as u64)));
-    Ok(search)
+/// Where the state of a search is kept while it goes on, so that it can be interrupted.
+struct Kept {
+    /// None for a scenario that is no file and a design that is none.
+    path: Option<PathBuf>,
+    /// Whether it stands for a design that was asked for: then a state that does not fit is told, and one that cannot
+    /// be written ends the search.
+    is_asked: bool,
+}
+
+impl Kept {
+    /// Beside the design; beside the scenario where none is written.
+    fn of(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Self {
+        let beside = |path: &Path, ending: &str| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(ending);
+            PathBuf::from(name)
+        };
+        if let Some(out) = out.filter(|out| !is_standard(out)) {
+            return Self { path: Some(beside(out, ".state.json")), is_asked: true };
+        }
+        let scenario = Some(&*arguments.scenario).filter(|path| !is_standard(path));
+        let ending = format!(".{}.state.json", drawings::file_name(controller));
+        Self { path: scenario.map(|path| beside(path, &ending)), is_asked: false }
+    }
+
+    /// The search where it was, or from the start.
+    fn begun<'a>(&self, problem: &'a Problem, effort: &Effort) -> Result<Search<'a>, TuneError> {
+        let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
+            return Search::begin(problem, effort.clone());
+        };
+        match Self::resumed(path, problem, effort) {
+            // Of another search, or another scenario of that name.
+            Err(_) if !self.is_asked => Search::begin(problem, effort.clone()),
+            found => found,
+        }
+    }
+
+    fn resumed<'a>(
+        path: &Path,
+        problem: &'a Problem,
+        effort: &Effort,
+    ) -> Result<Search<'a>, TuneError> {
+        let name = path.display().to_string();
+        let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(unread_in_words(&error)))?;
+        let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        let search = Search::resume(problem, effort, state, &name)?;
+        note(format_args!(
+            "going on after {} candidates, from {name}",
+            grouped(search.spent() as u64)
+        ));
+        Ok(search)
+    }
+
+    /// Whether it could be kept.
+    fn save(&self, search: &Search<'_>) -> Result<bool, TuneError> {
+        let Some(path) = &self.path else {
+            return Ok(false);
+        };
+        match output::write(path, json_text(&state_json(&search.state()))) {
+            Ok(()) => Ok(true),
+            // Nobody asked for a file there: the folder may be one that nobody may write to.
+            Err(_) if !self.is_asked => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The state of a search that is over is of no use any more.
+    fn remove(&self) {
+        if let Some(path) = self.path.as_deref().filter(|path| path.exists())
+            && std::fs::remove_file(path).is_err()
+        {
+            note(format_args!("warning: {} could not be removed", path.display()));
+        }
+    }
 }
 
 fn state_json(state: &State) -> serde_json::Value {
     serde_json::to_value(state).unwrap_or_default()
-}
-
-/// Where the state of a search lies while it goes on.
-fn state_path(out: &Path) -> PathBuf {
-    let mut name = out.as_os_str().to_owned();
-    name.push(".state.json");
-    PathBuf::from(name)
-}
-
-/// The state of a search that is over is of no use any more.
-fn remove(path: &Path) {
-    if path.exists() && std::fs::remove_file(path).is_err() {
-        note(format_args!("warning: {} could not be removed", path.display()));
-    }
 }
 
 fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {

@@ -1,10 +1,11 @@
 //! `fspid verify`: are the requirements met?
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 
 use super::{Format, json_text};
+use crate::argument::{Folder, InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_study::output;
 use fspid_study::verify::{Question, Verification, verify};
@@ -18,7 +19,7 @@ use fspid_study::verify::{Question, Verification, verify};
 #[command(after_long_help = LONG_HELP, after_help = HELP)]
 pub(crate) struct Arguments {
     /// The scenario file.
-    file: PathBuf,
+    file: InFile,
     /// Add a ready set, `mil-f-9490d`, `mil-f-8785c` or `ctms`, with its choices after a colon:
     /// `--set mil-f-8785c:level=2,category=C`; or change a value first, as in `fspid simulate`:
     /// `--set loop.sample_period_s=0.02`.
@@ -26,16 +27,16 @@ pub(crate) struct Arguments {
     settings: Vec<String>,
     /// Add the requirements of a file with `[[requirement]]` entries.
     #[arg(long = "requirements", value_name = "FILE.toml")]
-    requirement_files: Vec<PathBuf>,
+    requirement_files: Vec<InFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// Write the answer as JUnit XML too, for continuous integration.
-    #[arg(long, value_name = "OUT.xml")]
-    junit: Option<PathBuf>,
+    #[arg(value_parser = written(&["xml"]), long, value_name = "OUT.xml")]
+    junit: Option<OutFile>,
     /// Write a scenario for each line into this folder that gives its number again.
     #[arg(long, value_name = "DIR", num_args = 0..=1, default_missing_value = "verify-replay")]
-    replay: Option<PathBuf>,
+    replay: Option<Folder>,
 }
 
 const HELP: &str = "Examples:
@@ -88,7 +89,7 @@ Exit codes: 0 all met; 1 one is not met; 2 the input is wrong; 4 the output coul
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let requirement_files: Vec<&Path> =
-        arguments.requirement_files.iter().map(PathBuf::as_path).collect();
+        arguments.requirement_files.iter().map(AsRef::as_ref).collect();
     let question = Question {
         path: &arguments.file,
         settings: &arguments.settings,

@@ -26,6 +26,7 @@ use quantity::{Quantities, Quantity};
 #[derive(Clone, Debug)]
 pub struct TableForces {
     aerodynamics: Wired<6>,
+    axes: ForceAxes,
     engine: Option<Wired<6>>,
     reference: Geometry,
     setting: Setting,
@@ -51,6 +52,24 @@ struct Wired<const N: usize> {
     answers: Answers<N>,
 }
 
+/// Along which axes a model has the coefficients of force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ForceAxes {
+    /// Forward, right and down of the body.
+    Body,
+    /// Drag against the flow, side force to the right of the body, lift across the flow in the plane of symmetry.
+    Wind,
+}
+
+const WIND_COEFFICIENTS: [&str; 6] = [
+    "totalCoefficientOfDrag",
+    "aeroBodyForceCoefficient_Y",
+    "totalCoefficientOfLift",
+    "aeroBodyMomentCoefficient_Roll",
+    "aeroBodyMomentCoefficient_Pitch",
+    "aeroBodyMomentCoefficient_Yaw",
+];
+
 const COEFFICIENTS: [&str; 6] = [
     "aeroBodyForceCoefficient_X",
     "aeroBodyForceCoefficient_Y",
@@ -60,7 +79,9 @@ const COEFFICIENTS: [&str; 6] = [
     "aeroBodyMomentCoefficient_Yaw",
 ];
 
-const REFERENCE: [&str; 3] = ["referenceWingArea", "referenceWingSpan", "referenceWingChord"];
+const AREA: &str = "referenceWingArea";
+const SPAN: &str = "referenceWingSpan";
+const CHORD: &str = "referenceWingChord";
 
 const THRUST: [&str; 6] = [
     "thrustBodyForce_X",
@@ -84,13 +105,18 @@ impl TableForces {
         engine: Option<Model>,
         setting: Setting,
     ) -> Result<Self, FlightError> {
-        let [area_m2, span_m, chord_m] = port::constants(&aerodynamics, &REFERENCE)?;
+        let [_, _, _, roll, pitch, yaw] = COEFFICIENTS;
+        let [area_m2] = port::constants(&aerodynamics, &[AREA])?;
+        let span_m = length(&aerodynamics, SPAN, &[roll, yaw])?;
+        let chord_m = length(&aerodynamics, CHORD, &[pitch])?;
+        let axes = ForceAxes::of(&aerodynamics);
         let mut validity = Validity::EVERYWHERE;
         for model in core::iter::once(&aerodynamics).chain(&engine) {
             narrow(&mut validity, model)?;
         }
         Ok(Self {
-            aerodynamics: Wired::new(aerodynamics, &COEFFICIENTS)?,
+            aerodynamics: Wired::new(aerodynamics, axes.coefficients())?,
+            axes,
             engine: engine.map(|engine| Wired::new(engine, &THRUST)).transpose()?,
             reference: Geometry { area_m2, span_m, chord_m },
             setting,
@@ -107,12 +133,20 @@ impl TableForces {
     /// Loads of the air about the moment reference centre.
     ///
     /// $$ F = \bar q S\, C_F, \quad M = \bar q S\,(b\, C_l,\ \bar c\, C_m,\ b\, C_n) $$
-    fn air(&self, quantities: &Quantities, dynamic_pressure_pa: f64) -> Loads {
-        let [x, y, z, roll, pitch, yaw] = self.aerodynamics.answer(quantities);
+    ///
+    /// With lift and drag in place of X and Z, and $\hat v$ the direction of flight in body axes,
+    ///
+    /// $$ C_F = -C_D \hat v + C_L (\sin\alpha,\ 0,\ -\cos\alpha) + C_Y (0,\ 1,\ 0) $$
+    fn air(&self, quantities: &Quantities, flow: &Flow) -> Loads {
+        let [first, second, third, roll, pitch, yaw] = self.aerodynamics.answer(quantities);
         let Geometry { area_m2, span_m, chord_m } = self.reference;
-        let scale_n = dynamic_pressure_pa * area_m2;
+        let scale_n = flow.dynamic_pressure_pa() * area_m2;
+        let force = match self.axes {
+            ForceAxes::Body => Vector3::new(first, second, third),
+            ForceAxes::Wind => along_the_wind(flow, first, third) + Vector3::new(0.0, second, 0.0),
+        };
         Loads {
-            force_n: scale_n * Vector3::new(x, y, z),
+            force_n: scale_n * force,
             moment_n_m: scale_n * Vector3::new(span_m * roll, chord_m * pitch, span_m * yaw),
         }
     }
@@ -146,7 +180,7 @@ impl ForceModel for TableForces {
     /// $$ M_{cm} = M - d \times F $$
     fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
         let quantities = self.quantities(flow, controls);
-        let air = self.air(&quantities, flow.dynamic_pressure_pa());
+        let air = self.air(&quantities, flow);
         let Loads { force_n, moment_n_m } = air.plus(self.thrust(&quantities));
         let moment_n_m = moment_n_m - self.setting.centre_of_mass_m.cross(force_n);
         Loads { force_n, moment_n_m }
@@ -156,12 +190,55 @@ impl ForceModel for TableForces {
         self.thrust(&self.quantities(flow, controls)).force_n.x
     }
 
+    fn has_engine(&self) -> bool {
+        self.engine.is_some()
+    }
+
     fn validity(&self) -> &Validity {
         &self.validity
     }
 
     fn travel(&self) -> &Travel {
         &self.setting.travel
+    }
+}
+
+impl ForceAxes {
+    /// The body's where a model has X and Z, lift and drag where it has these instead.
+    fn of(model: &Model) -> Self {
+        let has = |name: &str| model.outputs().any(|port| port.name == name);
+        let [x, _, z, ..] = COEFFICIENTS;
+        let [drag, _, lift, ..] = WIND_COEFFICIENTS;
+        if !(has(x) || has(z)) && (has(drag) || has(lift)) { Self::Wind } else { Self::Body }
+    }
+
+    fn coefficients(self) -> &'static [&'static str; 6] {
+        match self {
+            Self::Body => &COEFFICIENTS,
+            Self::Wind => &WIND_COEFFICIENTS,
+        }
+    }
+}
+
+/// Coefficients of drag and lift in body axes; none at rest.
+fn along_the_wind(flow: &Flow, drag: f64, lift: f64) -> Vector3 {
+    let Vector3 { x: u, z: w, .. } = flow.velocity_body_m_s;
+    let in_plane_m_s = (u * u + w * w).sqrt();
+    let per = |length_m_s: f64| if length_m_s > 0.0 { 1.0 / length_m_s } else { 0.0 };
+    let (against, across) = (-drag * per(flow.airspeed_m_s), lift * per(in_plane_m_s));
+    against * flow.velocity_body_m_s + across * Vector3::new(w, 0.0, -u)
+}
+
+/// A length of reference. It may be missing where every moment that it would make is 0 for good: it is 0 then.
+fn length(model: &Model, name: &'static str, moments: &[&str]) -> Result<f64, FlightError> {
+    match port::constants(model, &[name]) {
+        Ok([length_m]) => Ok(length_m),
+        Err(FlightError::Output { .. })
+            if moments.iter().all(|moment| model.constant(moment) == Some(0.0)) =>
+        {
+            Ok(0.0)
+        }
+        Err(error) => Err(error),
     }
 }
 

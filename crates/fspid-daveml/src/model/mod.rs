@@ -166,6 +166,16 @@ impl Model {
         slots.iter().filter_map(|&slot| self.variables.get(slot))
     }
 
+    /// The value of an output that nothing computes; `None` for another, and where there is none of that name.
+    #[must_use]
+    pub fn constant(&self, name: &str) -> Option<f64> {
+        let named =
+            |slot: &&usize| self.variables.get(**slot).is_some_and(|port| port.name == name);
+        let slot = *self.outputs.iter().find(named)?;
+        let computed = self.steps.iter().any(|step| step.slot() == Some(slot));
+        (!computed && !self.inputs.contains(&slot)).then(|| self.start.get(slot).copied()).flatten()
+    }
+
     /// Values of the inputs that the file gives, 0 for the others.
     #[must_use]
     pub fn initial_inputs(&self) -> Vec<f64> {

@@ -4,6 +4,7 @@ use roxmltree::{Document as Tree, Node};
 
 use crate::MAX_MAGNITUDE;
 use crate::finding::{Findings, Origin};
+use crate::xml::arithmetic::arithmetic;
 
 /// An element of the file.
 #[derive(Clone, Copy)]
@@ -162,8 +163,13 @@ fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// A finite number, or a problem.
 pub(super) fn number(text: &str, at: Origin, findings: &mut Findings) -> Option<f64> {
     let text = text.trim();
-    match text.parse::<f64>() {
-        Ok(value) if value.abs() <= MAX_MAGNITUDE => Some(value),
+    let value = text.parse::<f64>().ok().or_else(|| {
+        let value = arithmetic(text)?;
+        findings.note(at, format!("`{text}` is read as {value}"));
+        Some(value)
+    });
+    match value {
+        Some(value) if value.abs() <= MAX_MAGNITUDE => Some(value),
         _ => {
             let expected = format!("a decimal number of at most {MAX_MAGNITUDE:e} in magnitude");
             findings.problem(at, text, "this is not a number that can be used", expected);

@@ -1,5 +1,6 @@
 //! Reading DAVE-ML.
 
+mod arithmetic;
 mod doctype;
 mod element;
 mod function;

@@ -72,7 +72,7 @@ impl<'a> Parser<'a> {
             |word: &str| TYPES.iter().any(|known| known.eq_ignore_ascii_case(word)).then_some(());
         let kind = self.choice(find, "a type of numbers", TYPES.into_iter());
         let mut value = None;
-        if kind.is_some() && self.tokens.eat(":=") {
+        if kind.is_some() && (self.tokens.eat(":=") || self.tokens.eat("=")) {
             value = Some(term::finite(self.tokens.advance(), self.report())?.value);
         }
         for name in names {

@@ -153,9 +153,13 @@ impl<'a> Parser<'a> {
         None
     }
 
-    /// `:` or `:=`, whichever comes.
+    /// `:` or `:=`, whichever comes; jFuzzyLogic takes `=` as well.
     pub(super) fn assign(&mut self) -> Option<()> {
-        if self.next().is_any(&[":", ":="]) {
+        if self.next().is("=") {
+            let place = self.next().place();
+            self.draft.evidence.jfuzzylogic(place, "`=` for `:=`");
+        }
+        if self.next().is_any(&[":", ":=", "="]) {
             self.tokens.advance();
             return Some(());
         }

@@ -7,9 +7,9 @@
 //! | dialect | what is read |
 //! | --- | --- |
 //! | MATLAB up to version 2.0 | everything but functions of one's own |
-//! | Octave's toolkit | other norms, hedges of any two digits, `centroid_integral` |
+//! | Octave's toolkit | other norms, hedges of any two digits, in conclusions too, `centroid_integral` |
 //! | fuzzylite's export | its norms and shapes, `1.000` for an index, empty norms, infinities |
-//! | Taskin's interval type-2 toolbox | `MF1U` and `MF1L` with heights, intervals as conclusions |
+//! | Taskin's interval type-2 toolbox, `.t2fis` | `MF1U` and `MF1L` with heights, intervals as conclusions |
 //! | MATLAB's type-2 since R2019b | refused by name: its files are not described anywhere |
 //!
 //! # Example

@@ -18,12 +18,21 @@ use crate::vocabulary::known;
 use crate::vocabulary::methods;
 use crate::vocabulary::norms::{self, S_NORMS};
 
-pub(super) fn read(section: &Section, with_x: &[&str], report: &mut Report) -> Option<Output> {
+/// What the conclusions of an output may name.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'k> {
+    /// `x`, the inputs, the outputs.
+    pub(super) with_x: &'k [&'k str],
+    /// How many of them are inputs.
+    pub(super) inputs: usize,
+}
+
+pub(super) fn read(section: &Section, known: Known, report: &mut Report) -> Option<Output> {
     let method = method(section, report);
     let integrates = method.is_none_or(|(method, _)| method.sampling().is_some());
     let mut found = Vec::new();
     for term in terms(section, report) {
-        let conclusion = conclusion(&term, integrates, with_x, report);
+        let conclusion = conclusion(&term, integrates, known, report);
         let name = term.name.text.into();
         found.extend(conclusion.map(|conclusion| OutputTerm { name, conclusion }));
     }
@@ -148,19 +157,20 @@ pub(crate) fn is_monotone(membership: &Membership) -> bool {
 fn conclusion(
     term: &TermLine,
     integrates: bool,
-    with_x: &[&str],
+    variables: Known,
     report: &mut Report,
 ) -> Option<Conclusion> {
     let TermLine { class, mut rest, .. } = *term;
-    let inputs = with_x.get(1..).unwrap_or_default();
+    let Known { with_x, inputs } = variables;
     if class.is("Constant") {
         return term::constant(class, &finite(rest, report)?, report);
     }
     if class.is("Linear") {
-        return term::linear(class, &finite(rest, report)?, inputs.len(), report);
+        return term::linear(class, &finite(rest, report)?, inputs, report);
     }
     if class.is("Function") && !integrates {
-        return term::formula(rest.take_raw('\n'), inputs, report).map(Conclusion::Formula);
+        return term::formula(rest.take_raw('\n'), with_x.get(1..).unwrap_or_default(), report)
+            .map(Conclusion::Formula);
     }
     let membership = membership(term, with_x, report)?;
     Some(Conclusion::Set { membership, lower: None })

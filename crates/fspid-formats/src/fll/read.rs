@@ -18,7 +18,7 @@ use crate::term::{formula, shape};
 use crate::tokens::Tokens;
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{known, norms};
-use crate::{check, rule};
+use crate::{check, rule, term};
 
 /// Reads a system in the FuzzyLite Language.
 ///
@@ -41,6 +41,9 @@ fn tell(parts: &Parts, report: &mut Report) {
         report.note_whole(format!(
             "integrals are computed by `{sampling}`{others}, as fuzzylite does"
         ));
+    }
+    if parts.formulas_name_outputs() {
+        report.note_whole(term::OUTPUTS_IN_FORMULAS);
     }
     for output in &parts.outputs {
         let weighted = output.defuzzifier.sampling().is_none();
@@ -77,11 +80,12 @@ fn assembled(sections: &[Section], report: &mut Report) -> Parts {
     let of = |kind| sections.iter().filter(move |section| section.kind == kind);
     engine(&mut parts, of(Kindred::Engine), report);
     distinct(of(Kindred::Input).chain(of(Kindred::Output)).map(|s| s.heading.value), report);
-    let inputs: Vec<&str> = of(Kindred::Input).map(|section| section.heading.text()).collect();
-    let with_x: Vec<&str> = ["x"].into_iter().chain(inputs.iter().copied()).collect();
+    let variables = of(Kindred::Input).chain(of(Kindred::Output)).map(|s| s.heading.text());
+    let with_x: Vec<&str> = ["x"].into_iter().chain(variables).collect();
     parts.inputs = of(Kindred::Input).map(|section| input(section, &with_x, report)).collect();
+    let known = output::Known { with_x: &with_x, inputs: parts.inputs.len() };
     for section in of(Kindred::Output) {
-        parts.outputs.extend(output::read(section, &with_x, report));
+        parts.outputs.extend(output::read(section, known, report));
     }
     let mut names = Names::empty(true);
     for section in of(Kindred::Input).chain(of(Kindred::Output)) {
@@ -157,7 +161,7 @@ fn only(token: Token) -> Cursor {
     token.start.up_to(after)
 }
 
-/// A fuzzy set: a shape, or a function of `x` and the inputs.
+/// A fuzzy set: a shape, or a function of `x`, the inputs and the outputs.
 pub(super) fn membership(
     term: &TermLine,
     with_x: &[&str],

@@ -140,7 +140,7 @@ impl Writer<'_> {
                 format!("Linear {}", written_all(&[coefficients, &[*constant][..]].concat()))
             }
             Conclusion::Formula(formula) => {
-                let names = adapt::input_names(self.parts);
+                let names = adapt::formula_names(self.parts);
                 adapt::check_formula(name, formula, &names, self.loss);
                 format!("Function {}", formula.text())
             }
@@ -157,7 +157,7 @@ impl Writer<'_> {
         }
         match membership {
             Membership::Formula { formula, height } => {
-                let inputs = adapt::input_names(self.parts);
+                let inputs = adapt::formula_names(self.parts);
                 let names: Vec<&str> = ["x"].into_iter().chain(inputs).collect();
                 adapt::check_formula(name, formula, &names, self.loss);
                 if *height < 1.0 {

@@ -15,7 +15,7 @@
 //! | `^` | from right to left: `2^3^2` is 512 |
 //! | `! not ~` before a number | `!` and `not` are 1 for 0 and 0 for all else; `~` is minus: `~2^2` is 4 |
 //!
-//! Functions: see [`Formula::functions`]. `log` is the natural logarithm. Comparisons are functions
+//! Functions: see [`Formula::functions`], in any case. `log` and `ln` are the natural logarithm. Comparisons are functions
 //! of two numbers, `gt ge lt le eq neq`, and answer 0 or 1.
 //!
 //! # Source

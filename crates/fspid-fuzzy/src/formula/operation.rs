@@ -112,6 +112,7 @@ pub(super) const FUNCTIONS: &[(&str, Function)] = &[
     ("ge", Function::Two(Two::GreaterOrEqual)),
     ("gt", Function::Two(Two::Greater)),
     ("le", Function::Two(Two::LessOrEqual)),
+    ("ln", Function::One(One::Log)),
     ("log", Function::One(One::Log)),
     ("log10", Function::One(One::Log10)),
     ("log1p", Function::One(One::Log1p)),

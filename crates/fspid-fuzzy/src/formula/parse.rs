@@ -99,10 +99,14 @@ impl Parser<'_, '_> {
         if let Some(index) = self.names.iter().position(|&name| name == token.text) {
             return self.emit(token.position, Operation::Variable(index)).map(|()| true);
         }
-        if let Some(&(_, value)) = CONSTANTS.iter().find(|(name, _)| *name == token.text) {
+        if let Some(&(_, value)) =
+            CONSTANTS.iter().find(|(name, _)| name.eq_ignore_ascii_case(token.text))
+        {
             return self.emit(token.position, Operation::Number(value)).map(|()| true);
         }
-        let Some(&(name, function)) = FUNCTIONS.iter().find(|(name, _)| *name == token.text) else {
+        // jFuzzyLogic writes functions in upper case.
+        let is = |(name, _): &&(&str, Function)| name.eq_ignore_ascii_case(token.text);
+        let Some(&(name, function)) = FUNCTIONS.iter().find(is) else {
             let (found, known) = (token.text.to_string(), known(self.names));
             return Err(FormulaErrorKind::Name { found, known }.at(token.position));
         };

@@ -89,7 +89,9 @@ impl System {
     }
 
     /// As [`evaluate`](Self::evaluate), with the previous answers for outputs that keep theirs
-    /// where no rule fires (`lock-previous` of fuzzylite, `NC` of FCL).
+    /// where no rule fires (`lock-previous` of fuzzylite, `NC` of FCL), and for formulas that name
+    /// outputs. Outputs are answered in their order: a formula finds the new answers of the outputs
+    /// before its own and the previous ones of the others; one that finds none has no value.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -100,16 +102,31 @@ impl System {
         workspace: &'w mut Workspace,
     ) -> Result<&'w [Answer], InputError> {
         self.take_inputs(inputs, workspace)?;
+        for (index, place) in workspace.before.iter_mut().enumerate() {
+            *place = previous.get(index).copied().flatten().unwrap_or(f64::NAN);
+        }
+        self.look_from(0, workspace);
         self.fire(workspace);
         self.fire_bounds(workspace);
         for (index, output) in self.parts.outputs.iter().enumerate() {
             let previous = previous.get(index).copied().flatten();
+            self.look_from(index, workspace);
             let answer = self.answer(index, output, previous, workspace);
             if let Some(place) = workspace.answers.get_mut(index) {
                 *place = answer;
             }
         }
         Ok(&workspace.answers)
+    }
+
+    /// Gives formulas the answers that there are while the output at `index` is answered.
+    pub(crate) fn look_from(&self, index: usize, workspace: &mut Workspace) {
+        let Workspace { inputs, before, answers, .. } = workspace;
+        let places = inputs.iter_mut().skip(self.parts.inputs.len());
+        for (at, (place, (answer, &before))) in places.zip(answers.iter().zip(&*before)).enumerate()
+        {
+            *place = if at < index { answer.value.unwrap_or(f64::NAN) } else { before };
+        }
     }
 
     fn take_inputs(&self, values: &[f64], workspace: &mut Workspace) -> Result<(), InputError> {

@@ -29,6 +29,33 @@ pub struct Parts {
     pub blocks: Vec<RuleBlock>,
 }
 
+impl Parts {
+    /// True if some formula names an output: its answers then depend on the answers before, see
+    /// [`System::evaluate_after`](super::System::evaluate_after).
+    #[must_use]
+    pub fn formulas_name_outputs(&self) -> bool {
+        let (first, count) = (self.inputs.len(), self.outputs.len());
+        let names = |formula: &Formula, before: usize| {
+            (0..count).any(|output| formula.uses(before + first + output))
+        };
+        let set = |set: &Membership| match set {
+            Membership::Formula { formula, .. } => names(formula, 1),
+            Membership::Shape { .. } => false,
+        };
+        let pair = |upper: &Membership, lower: &Option<Membership>| {
+            set(upper) || lower.as_ref().is_some_and(set)
+        };
+        let of_inputs = self.inputs.iter().flat_map(|input| &input.terms);
+        let of_outputs = self.outputs.iter().flat_map(|output| &output.terms);
+        of_inputs.into_iter().any(|term| pair(&term.membership, &term.lower))
+            || of_outputs.into_iter().any(|term| match &term.conclusion {
+                Conclusion::Set { membership, lower } => pair(membership, lower),
+                Conclusion::Formula(formula) => names(formula, 0),
+                _ => false,
+            })
+    }
+}
+
 /// The universe of discourse of a variable: from `lower` to `upper`, in the variable's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Universe {
@@ -98,7 +125,8 @@ pub enum Membership {
         /// Largest grade, in (0, 1]; the shape is multiplied by it.
         height: f64,
     },
-    /// A formula in `x` (variable 0) and the inputs (variables 1 and up), cut off to [0, 1].
+    /// A formula in `x` (variable 0), the inputs (variables 1 and up), and the last answers of the
+    /// outputs (behind them), cut off to [0, 1].
     Formula {
         /// The formula.
         formula: Formula,
@@ -160,7 +188,7 @@ pub enum Conclusion {
         /// $c_0$.
         constant: f64,
     },
-    /// A formula in the inputs (variables 0 and up).
+    /// A formula in the inputs (variables 0 and up) and, behind them, the last answers of the outputs.
     Formula(Formula),
 }
 

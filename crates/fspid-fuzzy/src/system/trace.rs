@@ -60,6 +60,7 @@ impl System {
             }
             _ => None,
         };
+        self.look_from(output, workspace);
         let Workspace { inputs, degrees, scratch, .. } = workspace;
         let one = |&conclusion: &usize| {
             let (found, &degree) = (self.conclusions.get(conclusion)?, degrees.get(conclusion)?);

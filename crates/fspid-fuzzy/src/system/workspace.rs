@@ -15,8 +15,10 @@ use super::type2::{Type2, Type2Room};
 /// carries nothing from one evaluation to the next.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    /// Inputs as used: after clamping.
+    /// What formulas may name: the inputs as used, after clamping, then the outputs' last answers.
     pub(crate) inputs: Vec<f64>,
+    /// The answers before this evaluation; NaN where there is none.
+    pub(crate) before: Vec<f64>,
     /// Which inputs lay outside their universe.
     pub(crate) outside: Vec<bool>,
     /// Grades of the program's statements.
@@ -40,7 +42,8 @@ impl System {
     pub fn workspace(&self) -> Workspace {
         let nothing = Answer { value: None, error_bound: 0.0, source: Source::Nothing };
         Workspace {
-            inputs: vec![0.0; self.parts.inputs.len()],
+            inputs: vec![0.0; self.parts.inputs.len() + self.parts.outputs.len()],
+            before: vec![f64::NAN; self.parts.outputs.len()],
             outside: vec![false; self.parts.inputs.len()],
             grades: vec![0.0; self.program.statements.len()],
             stack: vec![0.0; STACK],
@@ -58,6 +61,13 @@ impl Workspace {
     /// The inputs of the last evaluation as they were used: those to be clamped are clamped.
     #[must_use]
     pub fn inputs(&self) -> &[f64] {
+        self.inputs.get(..self.outside.len()).unwrap_or_default()
+    }
+
+    /// What formulas were given in the last evaluation: the inputs as they were used, then for each
+    /// output the last answer that there was for the output that was looked at last, NaN for none.
+    #[must_use]
+    pub fn variables(&self) -> &[f64] {
         &self.inputs
     }
 

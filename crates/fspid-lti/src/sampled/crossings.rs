@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use super::bracket::Proof;
 use super::reduced::{Reduced, Response};
 use super::squares::Squares;
 use super::{SampledLoop, scan};
@@ -25,7 +26,8 @@ impl SampledLoop {
             return Err(LtiError::NotPositive { what: "gain to be crossed", value: level });
         }
         let scaled = self.reduced.scaled(1.0 / level);
-        let angles = unit_gain_angles(&scaled, &Squares::new(&scaled)?)?;
+        let proof = self.proof_scaled(1.0 / level);
+        let angles = unit_gain_angles(&scaled, &Squares::new(&scaled)?, proof.as_ref())?;
         Ok(self.frequencies(angles))
     }
 
@@ -36,14 +38,23 @@ impl SampledLoop {
     /// # Errors
     /// As [`SampledLoop::gain_crossings`].
     pub fn real_crossings(&self) -> Result<Vec<f64>, LtiError> {
-        Ok(self.frequencies(self.real_angles(&Squares::new(&self.reduced)?)?))
+        Ok(self
+            .frequencies(self.real_angles(&Squares::new(&self.reduced)?, self.proof().as_ref())?))
     }
 
     /// The same as angles ωT.
-    pub(super) fn real_angles(&self, squares: &Squares<'_>) -> Result<Vec<f64>, LtiError> {
+    pub(super) fn real_angles(
+        &self,
+        squares: &Squares<'_>,
+        proof: Option<&Proof>,
+    ) -> Result<Vec<f64>, LtiError> {
         let candidates = squares.angles_of_real_values()?;
         let across = |angle_rad: f64| sine(self.response(angle_rad));
-        let inside = scan::sign_changes(across, &candidates, (END_RAD, PI - END_RAD));
+        let ends = (END_RAD, PI - END_RAD);
+        let mut inside = scan::sign_changes(across, &candidates, ends);
+        if let Some(proof) = proof {
+            inside = proof.real_angles(inside, ends);
+        }
         let finite = |angle_rad: &f64| modulus(self.response(*angle_rad).open()) < POLE;
         Ok(core::iter::once(0.0).chain(inside).chain([PI]).filter(finite).collect())
     }
@@ -57,10 +68,15 @@ impl SampledLoop {
 pub(super) fn unit_gain_angles(
     reduced: &Reduced,
     squares: &Squares<'_>,
+    proof: Option<&Proof>,
 ) -> Result<Vec<f64>, LtiError> {
     let candidates = squares.angles_of_unit_gain()?;
     let above = |angle_rad: f64| excess(reduced.at(super::zeta(angle_rad)));
-    Ok(scan::sign_changes(above, &candidates, (END_RAD, PI)))
+    let found = scan::sign_changes(above, &candidates, (END_RAD, PI));
+    Ok(match proof {
+        Some(proof) => proof.unit_gain_angles(found, (END_RAD, PI)),
+        None => found,
+    })
 }
 
 /// $|L|^2 - 1$ over $|L|^2 + 1$.

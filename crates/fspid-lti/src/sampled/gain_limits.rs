@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use super::bracket::Proof;
 use super::quick::quick_eigenvalues;
 use super::squares::Squares;
 use super::{SampledLoop, poles};
@@ -33,26 +34,31 @@ impl SampledLoop {
     pub(super) fn gain_limits(
         &self,
         squares: &Squares<'_>,
+        proof: Option<&Proof>,
     ) -> Result<[Option<GainLimit>; 2], LtiError> {
-        let mut candidates = self.gain_candidates(squares)?;
+        let mut candidates = self.gain_candidates(squares, proof)?;
         let above = candidates.iter().copied().filter(|limit| limit.factor > 1.0).collect();
         candidates.retain(|limit| limit.factor < 1.0);
         candidates.reverse();
         Ok([
-            self.limit_towards(1.0 / FACTOR_MAX, candidates)?,
-            self.limit_towards(FACTOR_MAX, above)?,
+            self.limit_towards(1.0 / FACTOR_MAX, candidates, proof)?,
+            self.limit_towards(FACTOR_MAX, above, proof)?,
         ])
     }
 
     /// Positive factors that bring a pole to the unit circle, $-1/L$ where L is real, rising.
-    fn gain_candidates(&self, squares: &Squares<'_>) -> Result<Vec<GainLimit>, LtiError> {
+    fn gain_candidates(
+        &self,
+        squares: &Squares<'_>,
+        proof: Option<&Proof>,
+    ) -> Result<Vec<GainLimit>, LtiError> {
         let limit = |angle_rad: f64| {
-            let response = self.response(angle_rad);
+            let response = self.proved_response(angle_rad, proof);
             let factor = -quotient(response.under, response.over).re;
             GainLimit { factor, omega_rad_s: angle_rad / self.dt_s() }
         };
         let mut limits: Vec<GainLimit> =
-            self.real_angles(squares)?.into_iter().map(limit).collect();
+            self.real_angles(squares, proof)?.into_iter().map(limit).collect();
         limits.retain(|limit| limit.factor > 1.0 / FACTOR_MAX && limit.factor < FACTOR_MAX);
         limits.sort_by(|left, right| left.factor.total_cmp(&right.factor));
         Ok(limits)
@@ -61,11 +67,14 @@ impl SampledLoop {
     /// The first candidate beyond which the loop is unstable; candidates come in the order of their distance from 1.
     ///
     /// Between two candidates the number of unstable poles does not change, so one factor between them tells it. Should
-    /// the poles beside a limit and at the end of the search not agree with the candidates, the poles are believed.
+    /// the poles beside a limit and at the end of the search not agree with the candidates, the poles are believed; but
+    /// a crossing of the real axis that is proved needs no poles, which are known to less than a millionth of the gain
+    /// where they crowd at 1.
     fn limit_towards(
         &self,
         end: f64,
         candidates: Vec<GainLimit>,
+        proof: Option<&Proof>,
     ) -> Result<Option<GainLimit>, LtiError> {
         let (mut stable, mut rest) = (1.0, candidates.as_slice());
         while let Some(&limit) = rest.first() {
@@ -75,6 +84,12 @@ impl SampledLoop {
             let (group, others) = rest.split_at(rest.iter().take_while(one).count());
             let next = others.first().map_or(end, |other| other.factor);
             let beyond = (limit.factor * next).sqrt();
+            let crosses = |proof: &Proof| {
+                proof.crosses_at(limit.omega_rad_s * self.dt_s()) && group.len() == 1
+            };
+            if proof.is_some_and(crosses) {
+                return Ok(Some(limit));
+            }
             if !self.stable_with(beyond)? {
                 let beside = |other: f64| limit.factor + BESIDE * (other - limit.factor);
                 let (before, after) = (beside(stable), beside(beyond));
@@ -130,7 +145,7 @@ mod tests {
     fn a_limit_is_where_the_poles_leave_the_circle() {
         let open = two_poles(0.5);
         let [low, high] = open
-            .gain_limits(&Squares::new(&open.reduced).expect("poles"))
+            .gain_limits(&Squares::new(&open.reduced).expect("poles"), None)
             .expect("eigenvalues converge");
         let high = high.expect("a limit");
         assert_eq!(low, None);
@@ -142,7 +157,7 @@ mod tests {
     fn candidates_beyond_which_the_loop_is_stable_are_no_limits() {
         // As when poles touch the circle and turn back: once alone, once as two crossings a billionth apart.
         let candidates = [1.5, 2.0, 2.0 * (1.0 + 1e-12), 3.0, 8.0].map(candidate).to_vec();
-        let found = two_poles(0.5).limit_towards(FACTOR_MAX, candidates).expect("converges");
+        let found = two_poles(0.5).limit_towards(FACTOR_MAX, candidates, None).expect("converges");
         assert_eq!(found, Some(candidate(3.0)));
     }
 
@@ -150,15 +165,16 @@ mod tests {
     fn a_limit_that_no_candidate_names_is_found_by_halving() {
         let open = two_poles(0.5);
         for candidates in [vec![], vec![candidate(7.0)], vec![candidate(1.5), candidate(1e3)]] {
-            let found = open.limit_towards(FACTOR_MAX, candidates).expect("converges");
+            let found = open.limit_towards(FACTOR_MAX, candidates, None).expect("converges");
             let found = found.expect("a limit");
             assert!((found.factor - 3.0).abs() < 1e-12, "{found:?}");
             assert!((found.omega_rad_s - core::f64::consts::FRAC_PI_2).abs() < 1e-6, "{found:?}");
         }
         // The negative of the loop is stable down to −1/2 only: nothing below 1 is a limit, 1 − … above is.
         let open = two_poles(-0.25);
-        let found = open.limit_towards(FACTOR_MAX, vec![]).expect("converges").expect("a limit");
+        let found =
+            open.limit_towards(FACTOR_MAX, vec![], None).expect("converges").expect("a limit");
         assert!((found.factor - 2.0).abs() < 1e-12 && found.omega_rad_s.abs() < 1e-6, "{found:?}");
-        assert_eq!(open.limit_towards(1.0 / FACTOR_MAX, vec![]), Ok(None));
+        assert_eq!(open.limit_towards(1.0 / FACTOR_MAX, vec![], None), Ok(None));
     }
 }

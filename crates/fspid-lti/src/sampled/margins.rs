@@ -2,10 +2,10 @@
 
 use core::f64::consts::{PI, TAU};
 
+use super::bracket::{Bracket, Proof};
 use super::crossings::unit_gain_angles;
-use super::level_set::Mapped;
 use super::squares::Squares;
-use super::{DiskMargin, GainLimit, Peak, SampledLoop, poles};
+use super::{DiskMargin, GainLimit, Peak, SampledLoop, phase_rad, poles};
 use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
 
@@ -60,8 +60,35 @@ pub struct SampledMargins {
     pub modulus_margin: f64,
     /// Disk margin of skew 0.
     pub disk: DiskMargin,
+    /// What is proved of the two peaks and the disk. Where an upper and a lower end do not meet, the answers above are
+    /// the worse ones.
+    pub proved: Proved,
     /// Largest modulus of a closed-loop pole.
     pub spectral_radius: f64,
+}
+
+/// What is proved of the peaks of a stable loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Proved {
+    /// Of the largest sensitivity.
+    pub sensitivity: Bracket,
+    /// Of the largest complementary sensitivity.
+    pub complementary: Bracket,
+    /// Of the size of the disk of skew 0.
+    pub disk: Bracket,
+}
+
+impl Proved {
+    pub(super) fn nothing() -> Self {
+        let unknown = Bracket::unknown();
+        Self { sensitivity: unknown, complementary: unknown, disk: unknown }
+    }
+
+    /// Whether each bracket is tight.
+    #[must_use]
+    pub fn is_tight(&self) -> bool {
+        [self.sensitivity, self.complementary, self.disk].iter().all(Bracket::is_tight)
+    }
 }
 
 impl SampledLoop {
@@ -81,11 +108,13 @@ impl SampledLoop {
             let poles = poles.into_iter().filter(outside).collect();
             return Ok(Stability::Unstable { poles, spectral_radius });
         }
-        let squares = Squares::new(&self.reduced)?;
-        let [gain_low, gain_high] = self.gain_limits(&squares)?;
-        let crossovers = self.crossovers(&squares)?;
-        let maps = Mapped::both(&self.reduced)?;
-        let sensitivity_peak = self.peak_of(1.0, &poles, &maps)?;
+        let (squares, proof) = (Squares::new(&self.reduced)?, self.proof());
+        let [gain_low, gain_high] = self.gain_limits(&squares, proof.as_ref())?;
+        let crossovers = self.crossovers(&squares, proof.as_ref())?;
+        let search = self.search_with(&poles, proof)?;
+        let (sensitivity_peak, sensitivity) = search.peak(1.0)?;
+        let (complementary_peak, complementary) = search.peak(0.0)?;
+        let (disk, disk_proved) = search.disk(0.0)?;
         Ok(Stability::Stable(Box::new(SampledMargins {
             gain_low,
             gain_high,
@@ -93,20 +122,26 @@ impl SampledLoop {
             delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
             crossovers,
             sensitivity_peak,
-            complementary_peak: self.peak_of(0.0, &poles, &maps)?,
+            complementary_peak,
             modulus_margin: 1.0 / sensitivity_peak.value,
-            disk: self.disk_with(0.0, &poles, &maps)?,
+            disk,
+            proved: Proved { sensitivity, complementary, disk: disk_proved },
             spectral_radius,
         })))
     }
 
-    fn crossovers(&self, squares: &Squares<'_>) -> Result<Vec<SampledCrossover>, LtiError> {
+    fn crossovers(
+        &self,
+        squares: &Squares<'_>,
+        proof: Option<&Proof>,
+    ) -> Result<Vec<SampledCrossover>, LtiError> {
         let crossover = |omega_rad_s: f64| {
-            let margin = libm::remainder(self.phase_rad(omega_rad_s) + PI, TAU);
+            let value = self.proved_response(omega_rad_s * self.dt_s(), proof).open();
+            let margin = libm::remainder(phase_rad(value) + PI, TAU);
             let lag = if margin < 0.0 { margin + TAU } else { margin };
             SampledCrossover { omega_rad_s, phase_margin_rad: margin, delay_s: lag / omega_rad_s }
         };
-        let angles = unit_gain_angles(&self.reduced, squares)?;
+        let angles = unit_gain_angles(&self.reduced, squares, proof)?;
         Ok(self.frequencies(angles).into_iter().map(crossover).collect())
     }
 

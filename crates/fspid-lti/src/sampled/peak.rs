@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use super::bracket::{Bracket, Proof, Top};
 use super::level_set::Mapped;
 use super::{DiskMargin, SampledLoop, poles, scan, zeta};
 use crate::complex::{Complex, modulus};
@@ -27,7 +28,9 @@ impl SampledLoop {
     /// Largest sensitivity $M_s = \max |S|$, $S = 1 / (1 + L)$.
     ///
     /// Found by level sets: from the best of some frequencies to the top of its peak, then to a frequency at which the
-    /// gain is higher by $10^{-9}$ of it, until eigenvalues of a Hamiltonian matrix leave no place for one.
+    /// gain is higher by $10^{-9}$ of it, until eigenvalues of a Hamiltonian matrix leave no place for one. What comes
+    /// of it is then proved or mended: by evaluation from below, and from above by a polynomial that is positive at
+    /// every frequency. Where the two do not meet, the answer is the upper end.
     ///
     /// # Source
     /// S. Boyd, V. Balakrishnan, P. Kabamba, A bisection method for computing the H∞ norm of a transfer matrix, Math.
@@ -37,7 +40,7 @@ impl SampledLoop {
     /// # Errors
     /// A closed loop that is not stable, or of which rounding hides whether it is; eigenvalues that do not converge.
     pub fn peak_sensitivity(&self) -> Result<Peak, LtiError> {
-        self.peak_of(1.0, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
+        self.search()?.peak(1.0).map(|(peak, _)| peak)
     }
 
     /// Largest complementary sensitivity $M_t = \max |T|$, $T = L / (1 + L)$, as [`SampledLoop::peak_sensitivity`].
@@ -45,7 +48,7 @@ impl SampledLoop {
     /// # Errors
     /// As [`SampledLoop::peak_sensitivity`].
     pub fn peak_complementary(&self) -> Result<Peak, LtiError> {
-        self.peak_of(0.0, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
+        self.search()?.peak(0.0).map(|(peak, _)| peak)
     }
 
     /// Disk margin of a skew.
@@ -54,48 +57,76 @@ impl SampledLoop {
     /// A skew that is not finite; as [`SampledLoop::peak_sensitivity`].
     pub fn disk_margin(&self, skew: f64) -> Result<DiskMargin, LtiError> {
         LtiError::unless_finite("skew of the disk", &[skew])?;
-        self.disk_with(skew, &self.stable_poles()?, &Mapped::both(&self.reduced)?)
+        self.search()?.disk(skew).map(|(disk, _)| disk)
     }
 
-    pub(super) fn disk_with(
-        &self,
-        skew: f64,
-        poles: &[Complex],
-        maps: &[Mapped],
-    ) -> Result<DiskMargin, LtiError> {
-        // S + (σ − 1)/2 = (1 + σ)/2 − T.
-        let peak = self.peak_of(0.5 * (1.0 + skew), poles, maps)?;
-        Ok(DiskMargin::new(1.0 / peak.value, skew, peak.omega_rad_s))
-    }
-
-    fn stable_poles(&self) -> Result<Vec<Complex>, LtiError> {
+    /// What a search for peaks needs, for a loop that is stable.
+    fn search(&self) -> Result<Search<'_>, LtiError> {
         match self.verdict()? {
-            (poles, _, true) => Ok(poles),
+            (poles, _, true) => self.search_with(&poles, self.proof()),
             (_, spectral_radius, false) => Err(LtiError::UnstableLoop { spectral_radius }),
         }
     }
 
-    /// Largest distance of T from a real value, for a loop that is stable with these closed poles.
-    pub(super) fn peak_of(
+    /// The same with the closed poles and the proof that are known already.
+    pub(super) fn search_with(
         &self,
-        centre: f64,
         poles: &[Complex],
-        maps: &[Mapped],
-    ) -> Result<Peak, LtiError> {
-        let mut angles = poles::angles_rad(poles);
+        proof: Option<Proof>,
+    ) -> Result<Search<'_>, LtiError> {
+        let maps = Mapped::both(&self.reduced)?;
+        Ok(Search { open: self, angles: poles::angles_rad(poles), maps, proof })
+    }
+}
+
+/// A stable loop whose peaks are looked for.
+pub(super) struct Search<'a> {
+    open: &'a SampledLoop,
+    /// Angles of the closed poles.
+    angles: Vec<f64>,
+    maps: Vec<Mapped>,
+    proof: Option<Proof>,
+}
+
+impl Search<'_> {
+    pub(super) fn disk(&self, skew: f64) -> Result<(DiskMargin, Bracket), LtiError> {
+        // S + (σ − 1)/2 = (1 + σ)/2 − T.
+        let (peak, bracket) = self.peak(0.5 * (1.0 + skew))?;
+        Ok((DiskMargin::new(1.0 / peak.value, skew, peak.omega_rad_s), bracket.inverse()))
+    }
+
+    /// Largest distance of T from a real value, and what is proved of it.
+    pub(super) fn peak(&self, centre: f64) -> Result<(Peak, Bracket), LtiError> {
+        let found = match self.found(centre) {
+            Err(LtiError::NotConverged { .. }) if self.proof.is_some() => (0.0, 0.0),
+            found => found?,
+        };
+        let top = match &self.proof {
+            Some(proof) => proof.top(centre, found),
+            None => Top::unproved(found),
+        };
+        let omega_rad_s = top.angle_rad / self.open.dt_s;
+        Ok((Peak { value: top.value, omega_rad_s }, top.bracket))
+    }
+
+    /// Largest distance of T from a real value as level sets find it, and its angle.
+    fn found(&self, centre: f64) -> Result<(f64, f64), LtiError> {
+        let mut angles = self.angles.clone();
         let (mut best, mut level) = ((0.0, 0.0), 0.0);
         for _ in 0..CLIMBS_MAX {
-            let higher = self.highest(centre, &angles);
+            let higher = self.open.highest(centre, &angles);
             if !(higher.1 > level) {
-                return Ok(Peak { value: best.1, omega_rad_s: best.0 / self.dt_s });
+                return Ok((best.1, best.0));
             }
             best = higher;
             level = best.1 * (1.0 + ABOVE);
-            angles = Mapped::angles_of_distance(maps, centre, level)?;
+            angles = Mapped::angles_of_distance(&self.maps, centre, level)?;
         }
         Err(LtiError::NotConverged { what: "peak of a response", iterations: CLIMBS_MAX })
     }
+}
 
+impl SampledLoop {
     /// Top of the peak of the best of some angles and the places between them, and its height.
     fn highest(&self, centre: f64, angles: &[f64]) -> (f64, f64) {
         let places = scan::with_middles(angles, (0.0, PI));

@@ -138,6 +138,32 @@ pub fn inside_limit(p: &Matrix, level: f64, row: &[Interval], limit: f64) -> Res
     prove_named("limit on the ellipsoid", &bordered)
 }
 
+/// A bound of $|r z|$ over the ellipsoid $z^T P z \le$ `level`, for every row r inside `row`:
+/// $\sqrt{c\, r P^{-1} r^T}$, as in [`inside_limits`].
+///
+/// # Errors
+/// [`NotProved`] where shapes do not fit, a number is not allowed, or P is not symmetric and positive definite.
+pub fn reach(p: &Matrix, level: f64, row: &[Interval]) -> Result<f64, NotProved> {
+    if level == 0.0 {
+        return Ok(0.0);
+    }
+    let level = Interval::point(positive("level", level)?);
+    let own = symmetric("Lyapunov matrix", p)?;
+    let size = own.rows();
+    if row.len() != size {
+        return Err(
+            LtiError::Shape { what: "row", found: (1, row.len()), allowed: (1, size) }.into()
+        );
+    }
+    let basis = basis("Lyapunov matrix", &own.middle, size)?;
+    let turned_form = form(&own, &basis)?;
+    dominant("Lyapunov matrix", &turned_form)?;
+    let least = Interval::point(least_eigenvalue(&turned_form));
+    let turned = IntervalMatrix::from_rows(&[row])?.product(&basis)?;
+    let squares = turned.entries().fold(Interval::ZERO, |sum, entry| sum + entry * entry);
+    Ok((squares * level / least).sqrt().upper())
+}
+
 /// As [`inside_limit`] for many rows, each with its limit, and for every symmetric P inside a matrix.
 ///
 /// In the basis X in which the middle of P is about the identity, with $\lambda$ below all eigenvalues of

@@ -21,6 +21,7 @@ use super::error::NotProved;
 use super::exponential::require_bounded;
 use super::matrix::IntervalMatrix;
 use super::packed::Packed;
+use crate::sizes::MOST_WORK;
 
 /// Most gains that may move.
 const GAINS: usize = 3;
@@ -29,8 +30,8 @@ const GAINS: usize = 3;
 const GRID: f64 = 4096.0;
 /// A cell that is no wider, in half widths of the box, is not halved any more: the form does not fall there.
 const NARROWEST: f64 = 1.0 / 64.0;
-/// Cells looked at before giving up.
-const MOST_CELLS: usize = 20_000;
+/// Cells looked at before giving up; fewer where the loop is large, so that work has a bound.
+const MOST_CELLS: u64 = 20_000;
 /// Coefficients along each gain.
 const ALONG: usize = 4;
 const WHAT: &str = "fall of the moving form";
@@ -102,7 +103,8 @@ pub fn falls_while_moving(
     let gains = moving.changes.len();
     let mut open: Vec<Ends> = vec![vec![[-1.0, 1.0]; gains]];
     let mut proof = MovingProof { cells: Vec::new(), inequalities: 0 };
-    let mut looked = 0;
+    let most = most_cells(gains, moving.forms.first().map_or(0, Matrix::rows));
+    let mut looked = 0_u64;
     while let Some(whole) = open.pop() {
         let Some(needed) = part(&whole) else { continue };
         let cell = on_grid(&whole, &needed);
@@ -116,12 +118,19 @@ pub fn falls_while_moving(
                 let gains = middle(&cell);
                 let asked = part(&gains.iter().map(|&gain| [gain, gain]).collect()).is_some();
                 let lost = asked && parts.prove_at(&gains).is_err();
-                let halves = halves(&cell).filter(|_| looked < MOST_CELLS && !lost);
+                let halves = halves(&cell).filter(|_| looked < most && !lost);
                 open.extend(halves.ok_or(NotProvedAt { gains, reason })?);
             }
         }
     }
     Ok(proof)
+}
+
+/// Cells that may be looked at: each takes a factor of as many matrices as its fall has coefficients.
+fn most_cells(gains: usize, size: usize) -> u64 {
+    let coefficients = (ALONG as u64).saturating_pow(u32::try_from(gains).unwrap_or(u32::MAX));
+    let work = coefficients.saturating_mul((size as u64).saturating_pow(3)).max(1);
+    (MOST_WORK / work).clamp(1, MOST_CELLS)
 }
 
 /// What is needed of a cell, with ends moved outward to the grid: all of the cell where that is not inside.

@@ -151,7 +151,7 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
     if map.tuner.settings().law != Law::Memoryless {
         let gains = of_each(&each, hull(map), One::accumulated);
         let rest = of_each(&each, map.rest, One::settled);
-        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains };
+        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains, change_gain: 0.0 };
         let [kp, ki, kd] = &each;
         let [of_kp, of_ki, of_kd] = hull(map);
         let rates = [kp.rate_per_s(of_kp), ki.rate_per_s(of_ki), kd.rate_per_s(of_kd)];
@@ -162,6 +162,7 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
         error: cell.error,
         change: cell.change,
         gains: of_each(&each, cell.delta, One::memoryless),
+        change_gain: 0.0,
     });
     let mut cells: Vec<GainCell> = cells.collect();
     if map.tuner.supervisor().out_of_range() == OutOfRange::Error {
@@ -173,7 +174,12 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
 /// A supervisor that refuses inputs leaves the gains as they were, at the first sample the nominal
 /// ones: the gains of any cell may be in force beyond the range, and that lies on all sides.
 fn hold(cells: &mut Vec<GainCell>, nominal: [Interval; 3]) {
-    cells.push(GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: nominal });
+    cells.push(GainCell {
+        error: EVERYWHERE,
+        change: EVERYWHERE,
+        gains: nominal,
+        change_gain: 0.0,
+    });
     for cell in cells {
         (cell.error, cell.change) = (EVERYWHERE, EVERYWHERE);
     }

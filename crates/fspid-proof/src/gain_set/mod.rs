@@ -19,6 +19,7 @@
 //! finite, beyond its guard, or overflowing) is answered by its last command, whatever the gains.
 
 mod cones;
+mod held;
 mod hull;
 mod increments;
 mod law;
@@ -29,6 +30,7 @@ use fspid_core::Gains;
 use fspid_fuzzy::scalar::Interval;
 
 pub use cones::Cone;
+pub(crate) use held::{HeldCommand, KnownSlopes};
 pub use increments::{IncrementCell, IncrementMap};
 pub use produced::{grid, producible};
 pub use slopes::{IncrementSlopes, NoSlopes};
@@ -68,6 +70,13 @@ pub struct GainSet {
     pub rate_per_s: Option<[f64; 3]>,
 }
 
+/// Gains, and what a held command adds to the gain on the change of the error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldGains {
+    pub(crate) gains: Gains<f64>,
+    pub(crate) change_gain: f64,
+}
+
 /// The gains over a cell of the supervisor's inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainCell {
@@ -77,6 +86,9 @@ pub struct GainCell {
     pub change: [f64; 2],
     /// Bounds of kp, ki and kd.
     pub gains: [Interval; 3],
+    /// Most, either way, that a held command adds to the gain on the change of the error in a sample; what it
+    /// adds to the gain on the error stands with kp. 0 where nothing is held.
+    pub change_gain: f64,
 }
 
 impl GainSet {
@@ -84,7 +96,8 @@ impl GainSet {
     #[must_use]
     pub fn fixed(gains: Gains<f64>) -> Self {
         let point = array(gains).map(Interval::point);
-        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point };
+        let cell =
+            GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point, change_gain: 0.0 };
         Self { nominal: gains, rest: point, cells: vec![cell], rate_per_s: Some([0.0; 3]) }
     }
 
@@ -112,6 +125,34 @@ impl GainSet {
     pub fn corners(&self) -> impl Iterator<Item = (usize, Gains<f64>)> {
         let cells = self.cells.iter().enumerate();
         cells.flat_map(|(index, cell)| corners(cell.gains).map(move |corner| (index, corner)))
+    }
+
+    /// As [`corners`](Self::corners), each with either end of its cell's change gain.
+    pub(crate) fn held_corners(&self) -> impl Iterator<Item = (usize, HeldGains)> {
+        self.corners().flat_map(|(index, gains)| {
+            let most = self.cells.get(index).map_or(0.0, |cell| cell.change_gain);
+            let ends = [-most, most].into_iter().skip(usize::from(most == 0.0));
+            ends.map(move |change_gain| (index, HeldGains { gains, change_gain }))
+        })
+    }
+
+    /// As [`hull_within`](Self::hull_within), with the change gains: of the cells that have one the largest,
+    /// either way.
+    pub(crate) fn held_hull(&self, tolerance: f64) -> Vec<HeldGains> {
+        let most = self.cells.iter().map(|cell| cell.change_gain).fold(0.0, f64::max);
+        let part = |with: bool| -> Vec<Gains<f64>> {
+            let cells = self.cells.iter().filter(|cell| (cell.change_gain > 0.0) == with);
+            let cells: Vec<GainCell> = cells.copied().collect();
+            if cells.is_empty() {
+                return Vec::new();
+            }
+            Self { cells, ..self.clone() }.hull_within(tolerance)
+        };
+        let still = part(false).into_iter().map(|gains| HeldGains { gains, change_gain: 0.0 });
+        let held = part(true).into_iter();
+        let held = held
+            .flat_map(|gains| [-most, most].map(|change_gain| HeldGains { gains, change_gain }));
+        still.chain(held).collect()
     }
 
     /// Those of the [`corners`](Self::corners) that span the convex hull of all.
@@ -167,7 +208,8 @@ mod tests {
     use super::*;
 
     fn of_boxes(boxes: &[[Interval; 3]]) -> GainSet {
-        let cell = |&gains| GainCell { error: EVERYWHERE, change: EVERYWHERE, gains };
+        let cell =
+            |&gains| GainCell { error: EVERYWHERE, change: EVERYWHERE, gains, change_gain: 0.0 };
         let nominal = Gains { kp: 1.0, ki: 0.5, kd: 0.25 };
         let rest = array(nominal).map(Interval::point);
         GainSet { nominal, rest, cells: boxes.iter().map(cell).collect(), rate_per_s: None }

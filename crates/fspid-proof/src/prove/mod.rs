@@ -6,7 +6,7 @@ mod region;
 mod stable;
 mod unstable;
 
-use fspid_core::{Fspid, Gains};
+use fspid_core::Fspid;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{Matrix, spectral_radius};
 use fspid_sim::Controller;
@@ -14,9 +14,11 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
-use crate::gain_set::{GainSet, IncrementMap};
+use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
 use crate::recheck::{Kept, Recheck, Rechecked};
+use crate::rest::{NoRest, Rest};
+use crate::scope::{Asked, Range};
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,8 +54,13 @@ impl Default for Effort {
 /// What came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The answer.
+    /// The answer, for the whole range of set-points and loads that was asked for.
     pub verdict: Verdict,
+    /// What was asked for.
+    pub asked: Range,
+    /// Where the answer is neither for the range that was asked for: what is proved of a smaller one, the
+    /// largest that was found.
+    pub instead: Option<(Certificate, Rechecked)>,
     /// Bounds of every gain that the controller can have.
     pub bounds: [Interval; 3],
     /// The largest output scale that was proved, as a factor on the loop's own.
@@ -90,26 +97,51 @@ pub struct Largest {
 ///
 /// # Errors
 /// [`NotProvable`] for a loop that a proof cannot speak of.
-pub fn certify(description: &LoopDescription, effort: &Effort) -> Result<Outcome, NotProvable> {
-    let prover = Prover::new(description, effort)?;
+pub fn certify(
+    description: &LoopDescription,
+    asked: &Asked,
+    effort: &Effort,
+) -> Result<Outcome, NotProvable> {
+    let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
     let verdict = prover.verdict(&set);
+    let instead = match verdict {
+        Verdict::Open => prover.smaller(&set),
+        Verdict::Proved(..) | Verdict::Refuted(..) => None,
+    };
     let largest = prover.largest(&verdict);
     let (pitch_within_rad, limits_left_out) = prover.limits(&verdict);
-    Ok(Outcome { verdict, bounds: set.bounds(), largest, pitch_within_rad, limits_left_out })
+    Ok(Outcome {
+        verdict,
+        asked: asked.range,
+        instead,
+        bounds: set.bounds(),
+        largest,
+        pitch_within_rad,
+        limits_left_out,
+    })
 }
 
 struct Prover<'a> {
     description: &'a LoopDescription,
+    asked: &'a Asked,
     effort: &'a Effort,
+    /// Set-points and loads for which something is to be proved.
+    range: Range,
     enclosed: LoopModel<Interval>,
     /// The same in ordinary arithmetic.
     model: LoopModel<f64>,
     increments: Option<IncrementMap>,
+    /// Found where they are asked for.
+    slopes: KnownSlopes,
 }
 
 impl<'a> Prover<'a> {
-    fn new(description: &'a LoopDescription, effort: &'a Effort) -> Result<Self, NotProvable> {
+    fn new(
+        description: &'a LoopDescription,
+        asked: &'a Asked,
+        effort: &'a Effort,
+    ) -> Result<Self, NotProvable> {
         description.clone().provable()?;
         let enclosed = description.enclosed()?;
         let model = enclosed.midpoint();
@@ -119,7 +151,16 @@ impl<'a> Prover<'a> {
                 Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
             }
         };
-        Ok(Self { description, effort, enclosed, model, increments })
+        Ok(Self {
+            description,
+            asked,
+            effort,
+            range: asked.range,
+            enclosed,
+            model,
+            increments,
+            slopes: KnownSlopes::default(),
+        })
     }
 
     fn set(&self, factor: f64) -> GainSet {
@@ -152,6 +193,33 @@ impl<'a> Prover<'a> {
         self.sequence_growth().unwrap_or(Verdict::Open)
     }
 
+    /// What can be proved for less than the range that is asked for: the largest part of it, by halving, down
+    /// to the return to rest alone.
+    fn smaller(&self, set: &GainSet) -> Option<(Certificate, Rechecked)> {
+        if self.range == Range::REST {
+            return None;
+        }
+        let proved = |share: f64| {
+            let prover = self.within(self.range.scaled(share));
+            match prover.verdict(set) {
+                Verdict::Proved(certificate, rechecked) => Some((certificate, rechecked)),
+                Verdict::Refuted(..) | Verdict::Open => None,
+            }
+        };
+        // Found once, for all parts of the range.
+        let _ = self.rest(set).map(|rest| self.held(set, 1.0, &rest).is_ok());
+        let mut best = proved(0.0)?;
+        let (mut within, mut beyond) = (0.0, 1.0);
+        for _ in 0..self.effort.halvings {
+            let share = 0.5 * (within + beyond);
+            match proved(share) {
+                Some(found) => (best, within) = (found, share),
+                None => beyond = share,
+            }
+        }
+        Some(best)
+    }
+
     /// A certificate of stability at an output scale, re-checked; with the best rate if that is asked for.
     fn proved(
         &self,
@@ -165,9 +233,42 @@ impl<'a> Prover<'a> {
         self.tied(set, factor, best_rate)
     }
 
+    /// The prover of the same loop for another range of set-points and loads.
+    fn within(&self, range: Range) -> Self {
+        Self {
+            enclosed: self.enclosed.clone(),
+            model: self.model.clone(),
+            increments: self.increments.clone(),
+            slopes: self.slopes.clone(),
+            range,
+            ..*self
+        }
+    }
+
+    /// Rest for the range of set-points and loads.
+    fn rest(&self, set: &GainSet) -> Result<Rest, NoRest> {
+        Rest::of(self.description, set, self.range)
+    }
+
+    /// A set with what its gains make of the command that is held at rest.
+    fn held(&self, set: &GainSet, factor: f64, rest: &Rest) -> Result<GainSet, NoSlopes> {
+        match self.tuned() {
+            None => Ok(set.clone()),
+            Some(fspid) => {
+                set.holding(fspid, factor, rest.held, &self.slopes).map(|(held, _)| held)
+            }
+        }
+    }
+
+    fn level(&self, corners: &[HeldGains], of: (&Matrix, &Rest)) -> Option<f64> {
+        limits::level(self.description, &self.model, corners, of)
+    }
+
     /// Closed loops at some gains, if each of them is stable on its own.
-    fn matrices(&self, gains: &[Gains<f64>]) -> Option<Vec<Matrix>> {
-        let closed = gains.iter().map(|gains| self.model.closed_matrix(*gains).ok());
+    fn matrices(&self, gains: &[HeldGains]) -> Option<Vec<Matrix>> {
+        let closed = gains.iter().map(|held| {
+            self.model.with_change_gain(held.change_gain).closed_matrix(held.gains).ok()
+        });
         let matrices: Vec<Matrix> = closed.collect::<Option<_>>()?;
         let holds = |matrix: &Matrix| spectral_radius(matrix).is_ok_and(|radius| radius < 1.0);
         matrices.iter().all(holds).then_some(matrices)
@@ -187,10 +288,13 @@ impl<'a> Prover<'a> {
             description: self.description.clone(),
             output_factor: factor,
             divisions: self.effort.divisions,
+            range: self.range,
+            left_out: self.asked.left_out.clone(),
             claim,
             level,
         };
-        let recheck = Recheck::with(&certificate, self.enclosed.clone(), self.set(factor));
+        let set = self.set(factor);
+        let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
         let rechecked = recheck.run().ok()?;
         Some((certificate, rechecked))
     }

@@ -44,10 +44,15 @@ impl<'a> Region<'a> {
             description: prover.description.clone(),
             output_factor: factor,
             divisions: prover.effort.divisions,
+            range: prover.range,
+            left_out: prover.asked.left_out.clone(),
             claim: Claim::BoundedRate(claim.clone()),
             level: None,
         };
-        let recheck = Recheck::with(&certificate, prover.enclosed.clone(), set.clone());
+        let recheck =
+            Recheck::with(&certificate, prover.enclosed.clone(), set.clone(), &prover.slopes)
+                .ok()?;
+        let rest = prover.rest(set).ok()?;
         let fall = recheck.moving_fall(claim).ok()?;
         let inputs = input_rows(&prover.model, fspid);
         let corners = fall.corners(claim).ok()?;
@@ -57,8 +62,11 @@ impl<'a> Region<'a> {
             let form = corner.form.midpoint();
             let [error, change] = inputs.each_ref().map(|row| product(&form, row, row));
             let [by_error, by_change] = &moved;
-            let limits = limits::rows(prover.description, &prover.model, gains);
+            let limits = limits::rows(prover.description, &prover.model, gains, &rest);
             let within = limits.iter().map(|(row, limit)| {
+                if !(*limit > 0.0) {
+                    return Some(0.0);
+                }
                 let size = product(&form, row, row)?;
                 Some(if size > 0.0 { limit * limit / size } else { f64::INFINITY })
             });

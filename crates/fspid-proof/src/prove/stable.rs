@@ -6,7 +6,6 @@ use fspid_lti::Matrix;
 use super::Prover;
 use crate::certificate::{Certificate, Claim};
 use crate::gain_set::GainSet;
-use crate::limits;
 use crate::recheck::{Rechecked, cone_form};
 use crate::solve::{self, Condition, Problem};
 
@@ -21,16 +20,23 @@ impl Prover<'_> {
         factor: f64,
         best_rate: bool,
     ) -> Option<(Certificate, Rechecked)> {
-        let corners = set.hull_within(THINNED);
+        let rest = self.rest(set).ok()?;
+        let corners = self.held(set, factor, &rest).ok()?.held_hull(THINNED);
         let matrices = self.matrices(&corners)?;
         let conditions: Vec<Condition<'_>> =
             matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
         let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let form = solution.p;
-            let level = limits::level(self.description, &self.model, &corners, &form);
+            let level = self.level(&corners, (&form, &rest));
             (Claim::AnySpeed { form, rate }, level)
         })
+    }
+
+    /// True where something of bounded size may never cease.
+    fn needs_a_rate(&self) -> bool {
+        let blurred = self.description.blurs().iter().any(|blur| *blur > 0.0);
+        blurred || self.rest(&self.set(1.0)).is_ok_and(|rest| !rest.held.is_none())
     }
 
     /// As the memoryless law ties the gains to the error; not for gains that remember.
@@ -42,13 +48,19 @@ impl Prover<'_> {
     ) -> Option<(Certificate, Rechecked)> {
         let memoryless = |fspid: &&Fspid<f64>| fspid.tuner().settings().law == Law::Memoryless;
         let fspid = self.tuned().filter(memoryless).filter(|_| self.effort.cones > 0)?;
+        let rest = self.rest(set).ok()?;
+        // With a steady error, or one that is seen in steps, gains are tied to something else.
+        if rest.error_rad > 0.0 || self.description.blurs().iter().any(|blur| *blur > 0.0) {
+            return None;
+        }
+        let held = self.held(set, factor, &rest).ok()?;
         let cones = set.cones(self.effort.cones);
         let forms = cones.iter().map(|cone| cone_form(&self.enclosed, fspid, cone));
         let forms: Vec<Matrix> = forms.map(|form| form.midpoint()).collect();
         let mut matrices = Vec::new();
         let mut corners = Vec::new();
         for (number, cone) in cones.iter().enumerate() {
-            let gains = set.of_cells(&cone.cells).hull_within(THINNED);
+            let gains = held.of_cells(&cone.cells).held_hull(THINNED);
             matrices.extend(self.matrices(&gains)?.into_iter().map(|matrix| (number, matrix)));
             corners.extend(gains);
         }
@@ -57,7 +69,7 @@ impl Prover<'_> {
         let problem = Problem { conditions: &conditions, cones: &forms, rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let solve::Solution { p: form, multipliers, .. } = solution;
-            let level = limits::level(self.description, &self.model, &corners, &form);
+            let level = self.level(&corners, (&form, &rest));
             (Claim::Tied { form, rate, multipliers }, level)
         })
     }
@@ -83,7 +95,9 @@ impl Prover<'_> {
             let (claim, level) = claim(solution, rate);
             self.rechecked(claim, factor, level.filter(|_| self.covers_limits()))
         };
-        let at_best = if best_rate { best().and_then(rechecked) } else { None };
+        // What remains of a motion is known where there is a rate.
+        let at_best =
+            if best_rate || self.needs_a_rate() { best().and_then(rechecked) } else { None };
         at_best.or_else(|| plain().and_then(rechecked))
     }
 }

@@ -1,6 +1,7 @@
 //! The re-check of a whole certificate: what it says is believed because this function answers `Ok`.
 
 mod moving;
+mod remains;
 
 use core::fmt;
 
@@ -14,15 +15,13 @@ use fspid_sim::loop_model::LoopModel;
 use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, NotProved, falls, is_positive, prove_growth};
 use crate::description::NotProvable;
-use crate::gain_set::{Cone, GainSet, IncrementMap, producible};
+use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
+use crate::rest::{NoRest, Rest};
+use crate::scope::Range;
+use crate::sizes::{self, WrongSizes};
 
 pub(crate) use moving::{Corner, moved_inputs, part_in};
-
-/// Longest sequence of gains that is multiplied out.
-const MOST_SAMPLES: usize = 20_000;
-/// Most double cones of a claim, and most cells along an input: a file must not fill the memory.
-const MOST_PARTS: usize = 1000;
 
 /// What was re-checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +38,14 @@ pub struct Rechecked {
     /// Where a level is claimed: how far the pitch angle may be off, everything else at rest, to lie within,
     /// rad.
     pub pitch_within_rad: Option<f64>,
+    /// The claim is about every constant set-point, as long as no limit acts, not only about those in its range.
+    pub any_setpoint: bool,
+    /// The claim is about every constant load, likewise.
+    pub any_load: bool,
+    /// How far rest may be from the set-point, rad: without an integral an error stays.
+    pub rest_error_rad: f64,
+    /// How far from rest the pitch angle may stay, rad; 0 where every deviation falls for ever.
+    pub remains_rad: f64,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -56,6 +63,7 @@ struct Proved {
     inequalities: usize,
     kept: Option<Kept>,
     pitch_within_rad: Option<f64>,
+    remains_rad: f64,
 }
 
 /// Why a certificate is not believed.
@@ -70,6 +78,12 @@ pub enum Doubt {
         /// What was found.
         reason: NotProved,
     },
+    /// The certificate is too large, or its parts do not fit the loop; nothing was computed.
+    Sizes(WrongSizes),
+    /// Nothing is known of rest for these set-points and loads.
+    Rest(NoRest),
+    /// Nothing bounds what the gains make of the command that holds set-points and loads.
+    Held(NoSlopes),
     /// The certificate does not fit together.
     Malformed {
         /// What is wrong.
@@ -85,6 +99,12 @@ impl fmt::Display for Doubt {
                 write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
             }
             Self::Inequality { gains: None, reason } => reason.fmt(f),
+            Self::Sizes(wrong) => wrong.fmt(f),
+            Self::Rest(reason) => reason.fmt(f),
+            Self::Held(reason) => write!(
+                f,
+                "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {reason}"
+            ),
             Self::Malformed { what } => f.write_str(what),
         }
     }
@@ -92,9 +112,27 @@ impl fmt::Display for Doubt {
 
 impl core::error::Error for Doubt {}
 
+impl From<WrongSizes> for Doubt {
+    fn from(wrong: WrongSizes) -> Self {
+        Self::Sizes(wrong)
+    }
+}
+
 impl From<NotProvable> for Doubt {
     fn from(reason: NotProvable) -> Self {
         Self::NotProvable(reason)
+    }
+}
+
+impl From<NoRest> for Doubt {
+    fn from(reason: NoRest) -> Self {
+        Self::Rest(reason)
+    }
+}
+
+impl From<NoSlopes> for Doubt {
+    fn from(reason: NoSlopes) -> Self {
+        Self::Held(reason)
     }
 }
 
@@ -119,6 +157,12 @@ pub(crate) struct Recheck<'a> {
     certificate: &'a Certificate,
     model: LoopModel<Interval>,
     set: GainSet,
+    /// Rest for the set-points and loads of the claim.
+    rest: Rest,
+    /// The set with what the gains make of the command that is held there.
+    held: GainSet,
+    /// What of that command is left out, rad.
+    off_rad: f64,
 }
 
 fn malformed(what: &'static str) -> Doubt {
@@ -136,9 +180,7 @@ impl<'a> Recheck<'a> {
         if !(certificate.output_factor >= 0.0 && certificate.output_factor.is_finite()) {
             return Err(malformed("the output factor is not 0 or more"));
         }
-        if !(1..=MOST_PARTS).contains(&certificate.divisions) {
-            return Err(malformed("the cells along an input are not 1 to 1000"));
-        }
+        sizes::check(certificate)?;
         let description = certificate.description.clone().provable()?;
         let model = description.enclosed()?;
         let set = match &description.controller {
@@ -147,7 +189,7 @@ impl<'a> Recheck<'a> {
                 .map_err(NotProvable::from)?
                 .gains(certificate.output_factor),
         };
-        Ok(Self::with(certificate, model, set))
+        Self::with(certificate, model, set, &KnownSlopes::default())
     }
 
     /// With enclosures that were made before, of the same description.
@@ -155,30 +197,58 @@ impl<'a> Recheck<'a> {
         certificate: &'a Certificate,
         model: LoopModel<Interval>,
         set: GainSet,
-    ) -> Self {
-        Self { certificate, model, set }
+        known: &KnownSlopes,
+    ) -> Result<Self, Doubt> {
+        if !certificate.range.is_allowed() {
+            return Err(malformed("set-points and loads are not two finite numbers, 0 or more"));
+        }
+        // Gains that grow standing still, or in an order of our own, say nothing of what is held.
+        let stable = certificate.claim.is_of_stability();
+        let range = if stable { certificate.range } else { Range::REST };
+        let rest = Rest::of(&certificate.description, &set, range)?;
+        let (held, off_rad) = match &certificate.description.controller {
+            Controller::Fixed(_) => (set.clone(), 0.0),
+            Controller::SelfTuning(fspid) => {
+                set.holding(fspid, certificate.output_factor, rest.held, known)?
+            }
+        };
+        Ok(Self { certificate, model, set, rest, held, off_rad })
     }
 
     pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
+        // Also of what the solver found: what is written must be read again.
+        sizes::check(self.certificate)?;
         let description = &self.certificate.description;
         if self.certificate.level.is_some()
             && let Some(what) = limits::not_covered(description)
         {
             return Err(malformed(what));
         }
-        let Proved { inequalities, kept, pitch_within_rad } = self.proved()?;
+        let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
         let bounds = self.set.bounds();
-        Ok(Rechecked { cells: self.set.cells.len(), inequalities, bounds, kept, pitch_within_rad })
+        Ok(Rechecked {
+            cells: self.set.cells.len(),
+            inequalities,
+            bounds,
+            kept,
+            pitch_within_rad,
+            any_setpoint: self.rest.any_setpoint,
+            any_load: self.rest.any_load,
+            rest_error_rad: self.rest.error_rad,
+            remains_rad,
+        })
     }
 
     fn proved(&self) -> Result<Proved, Doubt> {
         let only = |inequalities| Proved { inequalities, ..Proved::default() };
         match &self.certificate.claim {
             Claim::AnySpeed { form, rate } => {
-                self.any_speed(form, *rate).map(|proved| self.with_pitch(proved, form))
+                let proved = self.any_speed(form, *rate)?;
+                self.with_pitch(proved, (form, *rate))
             }
             Claim::Tied { form, rate, multipliers } => {
-                self.tied(form, *rate, multipliers).map(|proved| self.with_pitch(proved, form))
+                let proved = self.tied(form, *rate, multipliers)?;
+                self.with_pitch(proved, (form, *rate))
             }
             Claim::BoundedRate(claim) => self.bounded_rate(claim),
             Claim::FrozenGrowth { input, factor, form, direction } => {
@@ -190,16 +260,21 @@ impl<'a> Recheck<'a> {
         }
     }
 
-    fn with_pitch(&self, inequalities: usize, form: &Matrix) -> Proved {
+    fn with_pitch(
+        &self,
+        inequalities: usize,
+        (form, rate): (&Matrix, f64),
+    ) -> Result<Proved, Doubt> {
         let level = self.certificate.level;
         let within = |level| limits::pitch_within(&self.model, form, level);
-        Proved { inequalities, kept: None, pitch_within_rad: level.and_then(within) }
+        let pitch_within_rad = level.and_then(within);
+        let remains_rad = self.remains(form, rate)?;
+        Ok(Proved { inequalities, kept: None, pitch_within_rad, remains_rad })
     }
 
     /// The closed loop at gains.
     fn closed(&self, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
-        let rows = self.model.closed(gains);
-        IntervalMatrix::from_rows(&rows).map_err(|error| NotProved::from(error).into())
+        closed(&self.model, gains)
     }
 
     fn form(&self, form: &Matrix, rate: f64) -> Result<(), Doubt> {
@@ -213,23 +288,24 @@ impl<'a> Recheck<'a> {
     /// Proves at gains that the form falls, and that no limit acts within the level.
     fn holds(
         &self,
-        gains: Gains<f64>,
+        HeldGains { gains, change_gain }: HeldGains,
         (form, rate): (&Matrix, f64),
         region: Option<(f64, &IntervalMatrix)>,
     ) -> Result<usize, Doubt> {
         let doubt = |reason| Doubt::Inequality { gains: Some(gains), reason };
         let at = points(gains);
-        falls(form, rate, &self.closed(at)?, region).map_err(doubt)?;
+        let model = self.model.with_change_gain(Interval::point(change_gain));
+        falls(form, rate, &closed(&model, at)?, region).map_err(doubt)?;
         let Some(level) = self.certificate.level else { return Ok(1) };
         let description = &self.certificate.description;
-        let limits = limits::prove(description, &self.model, at, (form, level)).map_err(doubt)?;
-        Ok(1 + limits)
+        let limits = limits::prove(description, &model, at, (form, level, &self.rest));
+        Ok(1 + limits.map_err(doubt)?)
     }
 
     fn any_speed(&self, form: &Matrix, rate: f64) -> Result<usize, Doubt> {
         self.form(form, rate)?;
         let holds = |(_, gains)| self.holds(gains, (form, rate), None);
-        let proved = self.set.corners().map(holds).sum::<Result<usize, Doubt>>()?;
+        let proved = self.held.held_corners().map(holds).sum::<Result<usize, Doubt>>()?;
         Ok(1 + proved)
     }
 
@@ -241,11 +317,18 @@ impl<'a> Recheck<'a> {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(malformed("gains that remember are not tied to the error of the moment"));
         }
-        // Without a cone nothing would be asked of the loop at all.
-        if !(1..=MOST_PARTS).contains(&multipliers.len()) {
-            return Err(malformed("the double cones are not 1 to 1000"));
+        // Without a cone nothing would be asked of the loop at all: sizes were checked.
+        if self.rest.error_rad > 0.0 {
+            return Err(malformed(
+                "where an error stays, gains are not tied to how far rest is off",
+            ));
         }
-        let corners: Vec<(usize, Gains<f64>)> = self.set.corners().collect();
+        if self.is_blurred() {
+            return Err(malformed(
+                "with a resolution the supervisor sees another error than the loop's",
+            ));
+        }
+        let corners: Vec<(usize, HeldGains)> = self.held.held_corners().collect();
         let mut proved = 1;
         for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
             let region = cone_form(&self.model, fspid, cone);
@@ -264,9 +347,6 @@ impl<'a> Recheck<'a> {
         factor: f64,
         (form, direction): (&Matrix, &[f64]),
     ) -> Result<usize, Doubt> {
-        if !(1..=MOST_SAMPLES).contains(&inputs.len()) {
-            return Err(malformed("a sequence of no samples, or of more than 20000"));
-        }
         if !(factor >= 1.0 && factor.is_finite()) {
             return Err(malformed("the factor of the growth is below 1"));
         }
@@ -283,6 +363,11 @@ impl<'a> Recheck<'a> {
         prove_growth(&slowed, form, direction)?;
         Ok(2)
     }
+}
+
+fn closed(model: &LoopModel<Interval>, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
+    let rows = model.closed(gains);
+    IntervalMatrix::from_rows(&rows).map_err(|error| NotProved::from(error).into())
 }
 
 /// The gains that a controller has at an input of its supervisor.

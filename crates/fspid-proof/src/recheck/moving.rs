@@ -170,6 +170,15 @@ impl Fall {
 impl Recheck<'_> {
     /// Proves a claim with all that comes with it.
     pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<Proved, Doubt> {
+        // With an error that stays, bounds of the inputs around zero are none around rest.
+        if !self.rest.held.is_none() || self.rest.error_rad > 0.0 {
+            return Err(malformed(
+                "a claim about gains of bounded rate covers no command that gains move while it is held",
+            ));
+        }
+        if self.is_blurred() {
+            return Err(malformed("a claim about gains of bounded rate covers no resolution"));
+        }
         let fall = self.moving_fall(claim)?;
         let mut proved = Proved { inequalities: fall.proof.inequalities, ..Proved::default() };
         if self.keeps_everywhere(claim, &fall) {
@@ -269,7 +278,8 @@ impl Recheck<'_> {
     fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, Doubt> {
         let mut proved = 0;
         for corner in corners {
-            let rows = limits::rows(&self.certificate.description, &self.model, corner.gains);
+            let rows =
+                limits::rows(&self.certificate.description, &self.model, corner.gains, &self.rest);
             proved += rows.len();
             let gains = Some(middles(corner.gains));
             inside_limits(&corner.form, level, &rows)

@@ -43,6 +43,27 @@ pub struct Actuator {
     delay_samples: usize,
 }
 
+/// Everything of an actuator by name, for what has to decide about each part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActuatorParts {
+    /// The linear part.
+    pub lag: Lag,
+    /// Limits of the command, rad.
+    pub command_limits_rad: Option<(f64, f64)>,
+    /// Half width of the deadband, rad.
+    pub deadband_rad: f64,
+    /// Rate limit, rad/s.
+    pub rate_limit_rad_s: Option<f64>,
+    /// Ends of the travel, rad.
+    pub travel_rad: Option<(f64, f64)>,
+    /// Full width of the play, rad.
+    pub play_rad: f64,
+    /// How far the surface stands from where the actuator says, rad.
+    pub bias_rad: f64,
+    /// Delay of the command in samples.
+    pub delay_samples: usize,
+}
+
 /// Where an actuator is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActuatorState {
@@ -165,6 +186,31 @@ impl Actuator {
             return Err(SimError::Number { what: "delay_samples", found, allowed });
         }
         Ok(Self { delay_samples: samples, ..self })
+    }
+
+    /// Everything by name.
+    #[must_use]
+    pub fn parts(&self) -> ActuatorParts {
+        let Self {
+            lag,
+            command_limits_rad,
+            deadband_rad,
+            rate_limit_rad_s,
+            travel_rad,
+            play_rad,
+            bias_rad,
+            delay_samples,
+        } = *self;
+        ActuatorParts {
+            lag,
+            command_limits_rad,
+            deadband_rad,
+            rate_limit_rad_s,
+            travel_rad,
+            play_rad,
+            bias_rad,
+            delay_samples,
+        }
     }
 
     /// The linear part.

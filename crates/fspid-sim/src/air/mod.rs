@@ -20,12 +20,16 @@
 //! and has a state. Heights in the source documents are in feet; here they are in metres.
 
 pub mod dryden;
+mod grid;
 pub mod wind;
 
-pub use dryden::{Dryden, DrydenState, Intensity, Severity, Specification, Turbulence};
+pub(crate) use dryden::Shaping;
+pub use dryden::{Dryden, DrydenState, Follows, Intensity, Severity, Specification, Turbulence};
+pub use grid::GRID_S;
+pub(crate) use grid::{Grid, Piece};
 pub use wind::{
-    AirMotion, FullCycle, LogShear, Microburst, Place, RampHold, Steady, Wind, WindField, WindKind,
-    design_gust_m_s, reference_gust_m_s, sum_at,
+    AirMotion, Corners, FullCycle, LogShear, Microburst, Place, RampHold, Steady, Wind, WindField,
+    WindKind, design_gust_m_s, reference_gust_m_s, sum_at,
 };
 
 /// Metres in a foot, exactly.

@@ -2,17 +2,18 @@
 
 use fspid_aircraft::{AirMotion, Vector3};
 
-use crate::air::{self, Dryden, Place, Wind};
+use super::corner::{Corner, Corners};
+use crate::air::{self, Place, Shaping, Wind};
 use crate::error::{SimError, finite};
 use crate::surroundings::Weather;
-use crate::timing::Timing;
 
-/// Winds and gusts by place, and turbulence by sample.
+/// Winds and gusts by place, and turbulence by its own grid of time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Atmosphere {
     winds: Vec<Wind>,
-    /// One a sample; empty without turbulence.
-    turbulence: Vec<air::AirMotion>,
+    /// Distances and heights at which winds are not smooth.
+    corners: Corners,
+    turbulence: Option<Shaping>,
     start_m: [f64; 2],
     heading_rad: f64,
     ground_altitude_m: f64,
@@ -20,11 +21,7 @@ pub(super) struct Atmosphere {
 
 impl Atmosphere {
     /// The weather around an aircraft that starts at an altitude; calm air, heading north, without.
-    pub(super) fn new(
-        weather: Option<&Weather>,
-        altitude_m: f64,
-        timing: Timing,
-    ) -> Result<Self, SimError> {
+    pub(super) fn new(weather: Option<&Weather>, altitude_m: f64) -> Result<Self, SimError> {
         let Some(weather) = weather else {
             return Ok(Self::default());
         };
@@ -35,7 +32,8 @@ impl Atmosphere {
         }
         Ok(Self {
             winds: weather.winds.clone(),
-            turbulence: turbulence(weather, timing)?,
+            corners: Corners::of(&weather.winds),
+            turbulence: weather.turbulence.as_ref().map(Shaping::start).transpose()?,
             start_m: course.start_m,
             heading_rad: course.heading_rad,
             ground_altitude_m: altitude_m - course.height_m,
@@ -56,10 +54,24 @@ impl Atmosphere {
         motion(self.winds_at(place))
     }
 
-    /// Winds and gusts at a place with the turbulence of sample `k`.
-    pub(super) fn at(&self, place: &Place, k: usize) -> AirMotion {
-        let turbulence = self.turbulence.get(k).copied().unwrap_or_default();
+    /// True for air that changes along the way or in time.
+    pub(super) fn moves(&self) -> bool {
+        !self.winds.is_empty() || self.turbulence.is_some()
+    }
+
+    /// Winds and gusts at a place with turbulence.
+    pub(super) fn at(&self, place: &Place, turbulence: air::AirMotion) -> AirMotion {
         motion(self.winds_at(place) + turbulence)
+    }
+
+    /// The turbulence at the start.
+    pub(super) fn start_turbulence(&self) -> Option<Shaping> {
+        self.turbulence.clone()
+    }
+
+    /// The first corner of the winds between two places, not counting those at the first.
+    pub(super) fn corner(&self, from: &Place, to: &Place) -> Option<Corner> {
+        self.corners.first_between(from, to)
     }
 
     fn winds_at(&self, place: &Place) -> air::AirMotion {
@@ -75,20 +87,4 @@ fn motion(motion: air::AirMotion) -> AirMotion {
         gust_body_m_s: vector(motion.body_m_s),
         gust_rates_rad_s: vector(motion.body_rad_s),
     }
-}
-
-/// The same for every controller, so that all of them meet the same gusts.
-fn turbulence(weather: &Weather, timing: Timing) -> Result<Vec<air::AirMotion>, SimError> {
-    let Some(turbulence) = &weather.turbulence else {
-        return Ok(Vec::new());
-    };
-    let dryden = Dryden::new(turbulence, timing.dt_s())?;
-    let mut state = dryden.start();
-    let sample = |k: usize| {
-        if k > 0 {
-            dryden.advance(&mut state, k);
-        }
-        dryden.motion(&state)
-    };
-    Ok((0..timing.rows()).map(sample).collect())
 }

@@ -2,13 +2,14 @@
 
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
-    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RigidState,
-    Vector3,
+    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RIGID_STATES,
+    RigidState, Vector3,
 };
 
+use super::corner::Corner;
 use super::{AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller};
 use crate::actuator::{Actuator, ActuatorState};
-use crate::air::Place;
+use crate::air::{self, Grid, Place, Shaping};
 use crate::error::SimError;
 use crate::surroundings::Weather;
 use crate::timing::Timing;
@@ -20,6 +21,7 @@ pub(crate) struct AircraftFlight {
     actuator: Actuator,
     leveller: WingLeveller,
     steps: SubSteps,
+    grid: Grid,
     atmosphere: Atmosphere,
     start: RigidState,
     /// Pitch of the trim, rad.
@@ -33,17 +35,38 @@ struct SubSteps {
     step_s: f64,
 }
 
-/// Where aircraft and actuator are.
+/// Where aircraft, actuator and air are.
 #[derive(Clone, Debug)]
 pub(crate) struct AircraftMotion {
     /// Sample that has been reached.
     k: usize,
-    /// Way through the air since the start, m.
-    distance_m: f64,
-    state: RigidState,
+    /// Time of the air's grid that has been reached.
+    tick: usize,
+    /// From that time on.
+    turbulence: Option<Shaping>,
+    /// Aileron, within its travel, rad.
+    aileron_rad: f64,
     /// Pitch less that of the trim, rad.
     theta_rad: f64,
+    body: Moving,
+}
+
+/// What moves between the times of the grid.
+#[derive(Clone, Copy, Debug)]
+struct Moving {
+    state: RigidState,
+    /// Way through the air since the start, m.
+    distance_m: f64,
     actuator: ActuatorState,
+}
+
+/// What is held while it does.
+#[derive(Clone, Copy, Debug)]
+struct Holding {
+    command_rad: f64,
+    disturbance_rad: f64,
+    aileron_rad: f64,
+    turbulence: air::AirMotion,
 }
 
 impl SubSteps {
@@ -68,13 +91,13 @@ impl AircraftMotion {
 
     /// Pitch rate of the body, rad/s.
     pub(crate) fn rate_rad_s(&self) -> f64 {
-        self.state.rates_rad_s.y
+        self.body.state.rates_rad_s.y
     }
 
     /// True for an aircraft on its back or nowhere: its pitch angle means nothing any more.
     pub(crate) fn is_lost(&self) -> bool {
-        let down = self.state.attitude.to_ned(Vector3::new(0.0, 0.0, 1.0)).z;
-        let sum: f64 = self.state.to_array().iter().sum();
+        let down = self.body.state.attitude.to_ned(Vector3::new(0.0, 0.0, 1.0)).z;
+        let sum: f64 = self.body.state.to_array().iter().sum();
         // Written so that NaN is lost.
         !(down > 0.0 && sum.is_finite())
     }
@@ -88,13 +111,14 @@ impl AircraftFlight {
         weather: Option<&Weather>,
         timing: Timing,
     ) -> Result<Self, SimError> {
-        let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m, timing)?;
+        let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m)?;
         let start = start(plant, &atmosphere);
         Ok(Self {
             plant: plant.clone(),
             actuator,
             leveller: WingLeveller::of(plant.aircraft(), plant.trim()),
             steps: SubSteps::of(timing.dt_s()),
+            grid: Grid::new(timing.dt_s()),
             trim_theta_rad: start.euler().theta_rad,
             start,
             atmosphere,
@@ -103,7 +127,9 @@ impl AircraftFlight {
 
     /// True at or below the ground, if the plant has one.
     pub(crate) fn is_at_ground(&self, motion: &AircraftMotion) -> bool {
-        self.plant.ground_altitude_m().is_some_and(|ground_m| motion.state.altitude_m() <= ground_m)
+        self.plant
+            .ground_altitude_m()
+            .is_some_and(|ground_m| motion.body.state.altitude_m() <= ground_m)
     }
 
     fn aircraft(&self) -> &Aircraft<Forces> {
@@ -113,21 +139,26 @@ impl AircraftFlight {
     pub(crate) fn at_rest(&self) -> AircraftMotion {
         AircraftMotion {
             k: 0,
-            distance_m: 0.0,
-            state: self.start,
+            tick: 0,
+            turbulence: self.atmosphere.start_turbulence(),
+            aileron_rad: self.aileron_rad(&self.start),
             theta_rad: 0.0,
-            actuator: ActuatorState::default(),
+            body: Moving { state: self.start, distance_m: 0.0, actuator: ActuatorState::default() },
         }
     }
 
     /// Moves an actuator without lag to its command at once; another stays where it is.
     pub(crate) fn settle(&self, motion: &mut AircraftMotion, command_rad: f64) {
-        self.actuator.settle(&mut motion.actuator, command_rad);
+        self.actuator.settle(&mut motion.body.actuator, command_rad);
     }
 
     /// Elevator, trailing edge down positive, disturbance included, within its travel, rad.
     pub(crate) fn elevator_rad(&self, motion: &AircraftMotion, disturbance_rad: f64) -> f64 {
-        let deflection_rad = self.actuator.deflection_rad(&motion.actuator) + disturbance_rad;
+        self.elevator_at_rad(&motion.body.actuator, disturbance_rad)
+    }
+
+    fn elevator_at_rad(&self, actuator: &ActuatorState, disturbance_rad: f64) -> f64 {
+        let deflection_rad = self.actuator.deflection_rad(actuator) + disturbance_rad;
         let travel = self.aircraft().model().travel().elevator_rad;
         travel.clamp(self.plant.trim().point.elevator_rad - deflection_rad)
     }
@@ -143,8 +174,11 @@ impl AircraftFlight {
 
     /// The air where the aircraft is.
     fn air(&self, motion: &AircraftMotion) -> AirMotion {
-        let place = place(&motion.state, &self.atmosphere, motion.distance_m);
-        self.atmosphere.at(&place, motion.k)
+        self.atmosphere.at(&self.place(&motion.body), turbulence(motion))
+    }
+
+    fn place(&self, body: &Moving) -> Place {
+        place(&body.state, &self.atmosphere, body.distance_m)
     }
 
     /// One sample period with command and disturbance held.
@@ -154,69 +188,153 @@ impl AircraftFlight {
         command_rad: f64,
         disturbance_rad: f64,
     ) {
-        for _ in 0..self.steps.count {
-            self.sub_step(motion, command_rad, disturbance_rad);
+        let held = [command_rad, disturbance_rad];
+        if self.atmosphere.moves() {
+            for piece in self.grid.pieces(motion.k) {
+                self.reach(motion, piece.tick);
+                motion.body = self.way(motion.body, &holding(motion, held), piece.length_s);
+            }
+            motion.k += 1;
+            self.reach(motion, self.grid.tick(motion.k));
+        } else {
+            for _ in 0..self.steps.count {
+                motion.body = self.stepped(&motion.body, &holding(motion, held), self.steps.step_s);
+                motion.aileron_rad = self.aileron_rad(&motion.body.state);
+            }
+            motion.k += 1;
         }
-        motion.theta_rad = motion.state.euler().theta_rad - self.trim_theta_rad;
-        motion.k += 1;
+        motion.theta_rad = motion.body.state.euler().theta_rad - self.trim_theta_rad;
     }
 
-    fn sub_step(&self, motion: &mut AircraftMotion, command_rad: f64, disturbance_rad: f64) {
-        let step_s = self.steps.step_s;
-        let air = self.air(motion);
-        let [begin, middle, end] = self.stages(motion, command_rad, disturbance_rad);
-        let rate = |time_s: f64, state: &_| {
+    /// Takes the turbulence and the aileron of a time of the grid.
+    fn reach(&self, motion: &mut AircraftMotion, tick: usize) {
+        while motion.tick < tick {
+            motion.tick += 1;
+            let height_m = self.place(&motion.body).height_m;
+            let airspeed_m_s =
+                self.aircraft().flow(&motion.body.state, &self.air(motion)).airspeed_m_s;
+            if let Some(shaping) = &mut motion.turbulence {
+                shaping.advance(height_m, airspeed_m_s);
+            }
+            motion.aileron_rad = self.aileron_rad(&motion.body.state);
+        }
+    }
+
+    /// A part of a period in moving air, cut where winds are not smooth.
+    fn way(&self, mut body: Moving, held: &Holding, length_s: f64) -> Moving {
+        let mut left_s = length_s;
+        // Every corner is met once; the bound is for air that carries an aircraft to and fro.
+        for _ in 0..MOST_CORNERS {
+            let next = self.stepped(&body, held, left_s);
+            let Some(corner) = self.atmosphere.corner(&self.place(&body), &self.place(&next))
+            else {
+                return next;
+            };
+            let (there, step_s) = self.stepped_to((&body, &next), held, (corner, left_s));
+            body = there;
+            left_s -= step_s;
+        }
+        self.stepped(&body, held, left_s)
+    }
+
+    /// The motion at a corner that a step of `most_s` passes, and how long a step reaches it: by regula falsi.
+    fn stepped_to(
+        &self,
+        (body, beyond): (&Moving, &Moving),
+        held: &Holding,
+        (corner, most_s): (Corner, f64),
+    ) -> (Moving, f64) {
+        let past_m = |body: &Moving| corner.past_m(&self.place(body));
+        let (mut before, mut after) = ((0.0, past_m(body)), (most_s, past_m(beyond)));
+        let mut found = (*body, 0.0);
+        for _ in 0..MOST_TRIES {
+            let step_s = before.0 + (after.0 - before.0) * before.1 / (before.1 - after.1);
+            found = (self.stepped(body, held, step_s), step_s);
+            if corner.is_at(&self.place(&found.0)) {
+                break;
+            }
+            let here = (step_s, past_m(&found.0));
+            if (here.1 < 0.0) == (before.1 < 0.0) {
+                before = here;
+            } else {
+                after = here;
+            }
+        }
+        found
+    }
+
+    /// The motion after one step of Runge and Kutta, in the air of the place at each stage.
+    fn stepped(&self, body: &Moving, held: &Holding, step_s: f64) -> Moving {
+        let mut next = *body;
+        let [begin, middle, end] = self.stages(&mut next.actuator, held, step_s);
+        let rate = |time_s: f64, values: &[f64; STATES]| {
             let controls = match time_s {
                 t if t <= 0.0 => &begin,
                 t if t < step_s => &middle,
                 _ => &end,
             };
-            self.aircraft().rate(state, controls, &air)
+            self.rate(values, controls, held.turbulence)
         };
-        let next = RigidState::from_array(&rk4::step(rate, 0.0, &motion.state.to_array(), step_s));
-        motion.distance_m += step_s * self.aircraft().flow(&motion.state, &air).airspeed_m_s;
-        motion.state = RigidState { attitude: next.attitude.normalised(), ..next };
+        let values = rk4::step(rate, 0.0, &joined(body), step_s);
+        let (state, distance_m) = parted(&values);
+        Moving {
+            state: RigidState { attitude: state.attitude.normalised(), ..state },
+            distance_m,
+            ..next
+        }
+    }
+
+    /// Rates of the body's state and of the way through the air.
+    fn rate(
+        &self,
+        values: &[f64; STATES],
+        controls: &Controls,
+        turbulence: air::AirMotion,
+    ) -> [f64; STATES] {
+        let (state, distance_m) = parted(values);
+        let air = self.atmosphere.at(&place(&state, &self.atmosphere, distance_m), turbulence);
+        let instant = self.aircraft().instant(&state, controls, &air);
+        let rates = state.rate(&instant.accelerations);
+        let mut all = [0.0; STATES];
+        all[..RIGID_STATES].copy_from_slice(&rates);
+        all[RIGID_STATES] = instant.flow.airspeed_m_s;
+        all
     }
 
     /// The controls at the beginning, the middle and the end of a sub-step; the actuator is left at
     /// the end.
-    fn stages(
-        &self,
-        motion: &mut AircraftMotion,
-        command_rad: f64,
-        disturbance_rad: f64,
-    ) -> [Controls; 3] {
-        let aileron_rad = self.aileron_rad(&motion.state);
+    fn stages(&self, actuator: &mut ActuatorState, held: &Holding, step_s: f64) -> [Controls; 3] {
         [0.0, 0.5, 0.5].map(|share| {
             if share > 0.0 {
-                let time_s = share * self.steps.step_s;
-                self.actuator.advance(&mut motion.actuator, command_rad, time_s);
+                self.actuator.advance(actuator, held.command_rad, share * step_s);
             }
-            self.controls(self.elevator_rad(motion, disturbance_rad), aileron_rad)
+            let elevator_rad = self.elevator_at_rad(actuator, held.disturbance_rad);
+            self.controls(elevator_rad, held.aileron_rad)
         })
     }
 
     /// True where a limit of the actuator or the travel of the elevator acts on the coming sample.
     pub(crate) fn is_limited(&self, motion: &AircraftMotion, command_rad: f64) -> bool {
         let dt_s = self.steps.step_s * f64::from(self.steps.count);
-        let free_rad =
-            self.plant.trim().point.elevator_rad - self.actuator.deflection_rad(&motion.actuator);
+        let free_rad = self.plant.trim().point.elevator_rad
+            - self.actuator.deflection_rad(&motion.body.actuator);
         let cut = (self.elevator_rad(motion, 0.0) - free_rad).abs() > 0.0;
-        cut || self.actuator.is_limited(&motion.actuator, command_rad, dt_s)
+        cut || self.actuator.is_limited(&motion.body.actuator, command_rad, dt_s)
     }
 
     /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
     pub(crate) fn values(&self, motion: &AircraftMotion) -> Vec<f64> {
-        let velocity = motion.state.velocity_body_m_s;
-        let deflection_rad = self.actuator.deflection_rad(&motion.actuator);
+        let velocity = motion.body.state.velocity_body_m_s;
+        let deflection_rad = self.actuator.deflection_rad(&motion.body.actuator);
         let mut values = vec![
             motion.theta_rad,
             velocity.x,
             velocity.z,
-            motion.state.rates_rad_s.y,
+            motion.body.state.rates_rad_s.y,
             deflection_rad,
         ];
-        values.extend((self.actuator.lag().order() == 2).then(|| motion.actuator.rate_rad_s()));
+        values
+            .extend((self.actuator.lag().order() == 2).then(|| motion.body.actuator.rate_rad_s()));
         values
     }
 
@@ -224,22 +342,22 @@ impl AircraftFlight {
     pub(crate) fn nudge(&self, motion: &mut AircraftMotion, place: usize, by: f64) {
         match place {
             0 => {
-                let euler = motion.state.euler();
+                let euler = motion.body.state.euler();
                 let turned = EulerAngles { theta_rad: euler.theta_rad + by, ..euler };
-                motion.state.attitude = Quaternion::from_euler(turned);
+                motion.body.state.attitude = Quaternion::from_euler(turned);
                 motion.theta_rad += by;
             }
-            1 => motion.state.velocity_body_m_s.x += by,
-            2 => motion.state.velocity_body_m_s.z += by,
-            3 => motion.state.rates_rad_s.y += by,
-            _ => motion.actuator.nudge(place - 4, by),
+            1 => motion.body.state.velocity_body_m_s.x += by,
+            2 => motion.body.state.velocity_body_m_s.z += by,
+            3 => motion.body.state.rates_rad_s.y += by,
+            _ => motion.body.actuator.nudge(place - 4, by),
         }
     }
 
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
-        let (state, air) = (&motion.state, self.air(motion));
-        let aileron_rad = self.aileron_rad(state);
+        let (state, air) = (&motion.body.state, self.air(motion));
+        let aileron_rad = motion.aileron_rad;
         let instant =
             self.aircraft().instant(state, &self.controls(elevator_rad, aileron_rad), &air);
         let wind_body_m_s = state.attitude.to_body(air.wind_ned_m_s);
@@ -269,6 +387,36 @@ fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
     let felt = state.attitude.to_ned(load_factors);
     let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
     libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
+}
+
+/// States of a body and its way through the air.
+const STATES: usize = RIGID_STATES + 1;
+/// Most corners in a part of a period that a step ends at.
+const MOST_CORNERS: usize = 64;
+/// Most tries for a corner; three are usual.
+const MOST_TRIES: usize = 20;
+
+/// The air's turbulence in a motion; none without.
+fn turbulence(motion: &AircraftMotion) -> air::AirMotion {
+    motion.turbulence.as_ref().map(Shaping::motion).unwrap_or_default()
+}
+
+/// Everything that is held from here on.
+fn holding(motion: &AircraftMotion, [command_rad, disturbance_rad]: [f64; 2]) -> Holding {
+    let (aileron_rad, turbulence) = (motion.aileron_rad, turbulence(motion));
+    Holding { command_rad, disturbance_rad, aileron_rad, turbulence }
+}
+
+fn joined(body: &Moving) -> [f64; STATES] {
+    let mut values = [body.distance_m; STATES];
+    values[..RIGID_STATES].copy_from_slice(&body.state.to_array());
+    values
+}
+
+fn parted(values: &[f64; STATES]) -> (RigidState, f64) {
+    let mut state = [0.0; RIGID_STATES];
+    state.copy_from_slice(&values[..RIGID_STATES]);
+    (RigidState::from_array(&state), values[RIGID_STATES])
 }
 
 fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> Place {

@@ -71,6 +71,10 @@ impl ForceModel for Forces {
         self.model().thrust_n(flow, controls)
     }
 
+    fn has_engine(&self) -> bool {
+        self.model().has_engine()
+    }
+
     fn validity(&self) -> &Validity {
         self.model().validity()
     }

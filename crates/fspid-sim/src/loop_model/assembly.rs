@@ -194,6 +194,8 @@ impl<T: Scalar> LoopModel<T> {
     ///
     /// $$ u = -k_p y + I + k_d d - K_r q, \quad I = I_{k-1} - k_i T y, \quad
     /// d = \frac{T_f d_{k-1} - y - c_{k-1}}{T_f + T}, \quad c = -y $$
+    ///
+    /// and, where there is a change gain g, $u + g (c - c_{k-1})$.
     fn controller(&self, gains: Gains<T>, layout: &Layout) -> ControllerRows<T> {
         let shell = &self.settings.shell;
         let constant = T::constant;
@@ -225,6 +227,8 @@ impl<T: Scalar> LoopModel<T> {
                 *own = *own + gains.kd * *by;
             }
             command_by_pitch = command_by_pitch - gains.kd * by_difference;
+            command[previous] = command[previous] - self.change_gain;
+            command_by_pitch = command_by_pitch - self.change_gain;
             if let Some(place) = layout.derivative {
                 memory.push((place, derivative, -by_difference));
             }
@@ -290,6 +294,10 @@ impl<T: Scalar> Assembly<T> {
             by_rate,
             pitch: self.pitch,
         }
+    }
+
+    pub(super) fn command_by_seen(&self) -> [T; 2] {
+        [self.command_by_pitch, self.command_by_rate]
     }
 
     pub(super) fn arriving(&self) -> Vec<T> {

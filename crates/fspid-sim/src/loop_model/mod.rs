@@ -91,13 +91,25 @@ impl From<LinearStep> for SampledPlant<f64> {
 pub struct LoopModel<T> {
     plant: SampledPlant<T>,
     settings: LoopSettings,
+    /// Rows of the plant over states and command, less 1 on the diagonal, and what 64 bits leave out of them.
+    change: Option<[Vec<T>; 2]>,
+    /// Rad of command per rad by which the error changes in a sample, beside the derivative.
+    change_gain: T,
 }
 
 impl<T: Scalar> LoopModel<T> {
     /// A loop of a sampled plant.
     #[must_use]
     pub fn new(plant: SampledPlant<T>, settings: LoopSettings) -> Self {
-        Self { plant, settings }
+        Self { plant, settings, change: None, change_gain: T::zero() }
+    }
+
+    /// The loop with a command of so many rad for each rad by which the error changes in a sample, beside the
+    /// derivative: what gains that move with the change make of a constant part of the command. It acts only in a
+    /// loop that remembers the last sample.
+    #[must_use]
+    pub fn with_change_gain(&self, change_gain: T) -> Self {
+        Self { change_gain, ..self.clone() }
     }
 
     /// Everything but gains and plant.
@@ -166,6 +178,31 @@ impl<T: Scalar> LoopModel<T> {
         self.assembly(zero_gains()).pitch_off(pitch, self.settings.pitch.scale)
     }
 
+    /// What a unit of command adds to the next state, rad.
+    #[must_use]
+    pub fn by_command(&self) -> Vec<T> {
+        self.assembly(zero_gains()).broken(BreakPoint::Command).entry
+    }
+
+    /// What a unit that is added to what the loop sees of a quantity adds to the next state.
+    #[must_use]
+    pub fn by_seen(&self, point: BreakPoint, gains: Gains<T>) -> Vec<T> {
+        self.assembly(gains).broken(point).entry
+    }
+
+    /// What a unit that is added to the seen pitch, and to the seen rate, adds to the command at once.
+    #[must_use]
+    pub fn command_by_seen(&self, gains: Gains<T>) -> [T; 2] {
+        self.assembly(gains).command_by_seen()
+    }
+
+    /// Rows from the state to the seen pitch, rad, and the seen rate, rad/s; zeros for a rate that is not used.
+    #[must_use]
+    pub fn seen_rows(&self) -> [Vec<T>; 2] {
+        let assembly = self.assembly(zero_gains());
+        [BreakPoint::Pitch, BreakPoint::Rate].map(|point| assembly.broken(point).exit)
+    }
+
     /// Rows from the state to the error, rad, and its change since the last sample, rad, as the
     /// controller sees them; the change is 0 in a loop that does not remember the last sample.
     #[must_use]
@@ -190,6 +227,16 @@ impl LoopModel<f64> {
         Ok(Self::new(step.into(), LoopSettings::of(scenario, shell, memory)))
     }
 
+    /// The same loop with the digits of its slow modes, which the matrix of a sample has not beside its ones: for
+    /// margins, which are then proved of the loop itself. The plant and the scenario are those it was made of.
+    ///
+    /// # Errors
+    /// [`SimError`] where the plant cannot be sampled.
+    pub fn sharpened(self, scenario: &Scenario, plant: &LinearPlant) -> Result<Self, SimError> {
+        let propagation = scenario.propagation(plant, self.settings.shell.dt_s)?;
+        Ok(Self { change: propagation.linear_change(plant)?, ..self })
+    }
+
     /// The one-sample matrix of the closed loop.
     ///
     /// # Errors
@@ -209,7 +256,8 @@ impl LoopModel<Interval> {
             rows: middles(&self.plant.rows),
             rate: middles(&self.plant.rate),
         };
-        LoopModel::new(plant, self.settings.clone())
+        let change_gain = self.change_gain.midpoint();
+        LoopModel { plant, settings: self.settings.clone(), change: None, change_gain }
     }
 }
 

@@ -1,10 +1,10 @@
 //! The loop broken at a named point, the others closed.
 
 use fspid_core::Gains;
-use fspid_lti::{LoopFamily, Matrix, SampledLoop, SeriesControl};
+use fspid_lti::{FineMatrix, LoopFamily, Matrix, SampledLoop, SeriesControl};
 
 use super::assembly::Broken;
-use super::{LoopModel, LoopSettings, Memory};
+use super::{LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::error::SimError;
 
 /// Where a loop is broken. At each point the signal there is replaced by another, and what comes back
@@ -75,7 +75,44 @@ impl LoopModel<f64> {
         let Broken { matrix, entry, exit } = self.assembly(gains).broken(point);
         let returned = exit.iter().map(|value| -value).collect();
         let dt_s = self.settings.shell.dt_s;
-        Ok(SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?)
+        let open = SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?;
+        match &self.change {
+            Some(rows) => {
+                let (change, input) = self.change_when_broken(rows, gains, point)?;
+                Ok(open.with_change(change, input)?)
+            }
+            None => Ok(open),
+        }
+    }
+
+    /// The matrix of the loop broken at a point, less 1 on the diagonal, and what enters.
+    fn change_when_broken(
+        &self,
+        [high, low]: &[Vec<f64>; 2],
+        gains: Gains<f64>,
+        point: BreakPoint,
+    ) -> Result<(FineMatrix, FineMatrix), SimError> {
+        let states = self.plant.states;
+        let broken = |rows: &Vec<f64>| {
+            let plant = SampledPlant { rows: rows.clone(), ..self.plant.clone() };
+            Self { plant, ..self.clone() }.assembly(gains).broken(point)
+        };
+        let (mut change, mut rest) = (broken(high), broken(low));
+        for (place, row) in change.matrix.iter_mut().enumerate().skip(states) {
+            row[place] -= 1.0;
+        }
+        // Queues, sensors and controller are what they are.
+        rest.matrix.iter_mut().skip(states).for_each(|row| row.fill(0.0));
+        rest.entry.iter_mut().skip(states).for_each(|entry| *entry = 0.0);
+        let matrix = |rows: &[Vec<f64>]| Matrix::from_rows(rows);
+        let column = |entry: &[f64]| {
+            let rows: Vec<[f64; 1]> = entry.iter().map(|&value| [value]).collect();
+            Matrix::from_rows(&rows)
+        };
+        Ok((
+            FineMatrix::new(matrix(&change.matrix)?, matrix(&rest.matrix)?)?,
+            FineMatrix::new(column(&change.entry)?, column(&rest.entry)?)?,
+        ))
     }
 }
 

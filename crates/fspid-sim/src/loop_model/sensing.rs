@@ -5,8 +5,8 @@ use crate::sensor::Sensor;
 /// How far from a whole number of samples an age may lie and still count as whole.
 const SAME_SAMPLE: f64 = 1e-6;
 
-/// A sensor as the loop around rest sees it: scale and age. Bias, drift, noise and resolution are no
-/// part of a linear loop.
+/// A sensor as the loop around rest sees it: scale and age. Bias, drift and noise are no part of a linear
+/// loop; resolution is a bounded disturbance of it.
 ///
 /// $$ m_k = s \left( (1 - f)\, y_{k-n} + f\, y_{k-n-1} \right) $$
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,16 @@ pub struct Sensing {
     pub samples: usize,
     /// Part f of a sample beyond them.
     pub part: f64,
+    /// Resolution, unit: what is shown is the nearest multiple, off by half of it at most. No part of the matrix.
+    pub resolution: f64,
     /// The sensor has a clock of its own, so that the age of its values changes; taken is the largest.
     pub at_largest_age: bool,
 }
 
 impl Sensing {
     /// The quantity as it is.
-    pub const DIRECT: Self = Self { scale: 1.0, samples: 0, part: 0.0, at_largest_age: false };
+    pub const DIRECT: Self =
+        Self { scale: 1.0, samples: 0, part: 0.0, resolution: 0.0, at_largest_age: false };
 
     /// Through a sensor that is read every `dt_s`, if there is one.
     #[must_use]
@@ -32,12 +35,13 @@ impl Sensing {
             return Self::DIRECT;
         };
         let scale = 1.0 + model.scale_error;
+        let resolution = model.resolution;
         let delay = model.delay_s / dt_s;
         if model.period_s == 0.0 {
             let whole = (delay + SAME_SAMPLE).floor();
             let part = (delay - whole).max(0.0);
             let part = if part <= SAME_SAMPLE { 0.0 } else { part };
-            return Self { scale, samples: count(whole), part, at_largest_age: false };
+            return Self { scale, samples: count(whole), part, resolution, at_largest_age: false };
         }
         let period = model.period_s / dt_s;
         let aligned = (period - period.round()).abs() <= SAME_SAMPLE;
@@ -45,7 +49,7 @@ impl Sensing {
         let beyond = if aligned { period.round() - 1.0 } else { period };
         let age = (delay - SAME_SAMPLE).ceil().max(0.0) + beyond.max(0.0);
         let at_largest_age = !aligned || beyond > 0.0;
-        Self { scale, samples: count(age.ceil()), part: 0.0, at_largest_age }
+        Self { scale, samples: count(age.ceil()), part: 0.0, resolution, at_largest_age }
     }
 
     /// How many samples of the quantity the loop has to remember.

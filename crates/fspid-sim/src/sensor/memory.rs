@@ -70,7 +70,7 @@ impl Sensor {
             sensor: *self,
             dt_s,
             period_s,
-            bias: if model.bias > 0.0 { model.bias * normal(1) } else { 0.0 },
+            bias: self.bias(),
             noise: model.noise_density * (0.5 / period_s).sqrt(),
             drift_step: [kept, model.drift * (1.0 - kept * kept).sqrt()],
             drift: if model.drift > 0.0 { model.drift * normal(2) } else { 0.0 },

@@ -20,7 +20,9 @@
 //!
 //! # Random streams
 //! Of the seed, from [`STREAM`] on, 4 for each channel number: noise 0, bias 1, drift 2. Sample j of
-//! the sensor takes number j, so that the noise does not depend on the loop's period.
+//! the sensor's own clock takes number j. With a sampling time of its own the noise and the drift at a
+//! time do not depend on the loop's period; without one the sensor's clock is the loop's, so that at
+//! another period the density is the same and the numbers belong to other times.
 //!
 //! Quantities are in any one unit: rad for pitch, rad/s for pitch rate, m for altitude, m/s for speed.
 
@@ -31,6 +33,7 @@ pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
 
 use crate::error::{SimError, finite, not_negative, positive};
+use crate::signal::noise::standard_normal;
 
 /// Number of the first random stream of sensors; turbulence and disturbances have others.
 pub const STREAM: u64 = 2 << 32;
@@ -104,6 +107,15 @@ impl Sensor {
     #[must_use]
     pub fn model(&self) -> &SensorModel {
         &self.model
+    }
+
+    /// The bias of this sensor, drawn from its seed, unit.
+    #[must_use]
+    pub fn bias(&self) -> f64 {
+        match self.model.bias {
+            bias if bias > 0.0 => bias * standard_normal(self.seed, self.stream(1), 0),
+            _ => 0.0,
+        }
     }
 
     /// Stream of a source of randomness.

@@ -54,6 +54,12 @@ impl Disturbance {
         self.entry
     }
 
+    /// True for noise, which never stands still.
+    #[must_use]
+    pub fn is_noise(&self) -> bool {
+        matches!(self.shape, Shape::Noise { .. })
+    }
+
     pub(crate) fn add_to(&self, values: &mut [f64], timing: Timing, stream: u64) {
         self.shape.add_to(values, self.amplitude_rad, timing, stream);
     }

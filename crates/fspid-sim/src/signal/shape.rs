@@ -50,7 +50,8 @@ pub enum Shape {
         /// Frequency, Hz.
         frequency_hz: f64,
     },
-    /// White noise of standard deviation 1, a new value each sample, from `at_s` on.
+    /// White noise of standard deviation 1, a new value each sample of the loop, from `at_s` on: number k of
+    /// its stream at sample k, so that another period is another noise.
     Noise {
         /// Start, s.
         at_s: f64,

@@ -76,9 +76,9 @@ pub(crate) fn page(figures: &[(&'static str, Svg)]) -> String {
             ),
             verdict(
                 Standing::Bad,
-                "REFUTED",
+                "REFUTED standing still",
                 "FSPID",
-                "Frozen at e = 5 deg, ec = -1.25 deg, it is unstable.",
+                "Frozen at e = 5 deg, ec = -1.25 deg, it is unstable; in flight it may still settle.",
             ),
             verdict(Standing::Fair, "Open", "FSPID, box of gains", "99 of 144 boxes are proved."),
         ],

@@ -2,12 +2,13 @@
 
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::atmosphere::{ALTITUDE_MAX_M, ALTITUDE_MIN_M};
-use fspid_aircraft::data::{AircraftData, Laws, ModelData, Reference};
-use fspid_aircraft::{Air, Aircraft, Trim, TrimTarget};
+use fspid_aircraft::data::{AircraftData, Laws, Loading, ModelData, Reference};
+use fspid_aircraft::{Air, Aircraft, ForceModel, Trim, TrimTarget};
 use fspid_sim::aircraft::Forces;
 
 use super::failure::AircraftFailure;
-use super::load::load;
+use super::load::load_at;
+use super::loading::{self, LoadingQuestion};
 use super::parse::quantity;
 use super::units::{ANGLES, Kind, LENGTHS, SPEEDS, Units};
 use crate::flyer::flyer;
@@ -16,7 +17,7 @@ use crate::inference::Refused;
 /// Which air and gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AirChoice {
-    /// The standard atmosphere at the altitude, standard gravity.
+    /// The standard atmosphere at the altitude, with standard gravity; for tables with the gravity of their file.
     #[default]
     Standard,
     /// Density and gravity of the aircraft's source, at every altitude: the flight of its book.
@@ -54,6 +55,8 @@ pub struct Question<'a> {
     pub altitude: Option<&'a str>,
     /// Angle of the flight path, climbing positive; level if left out.
     pub climb_angle: Option<&'a str>,
+    /// How it is loaded.
+    pub loading: LoadingQuestion<'a>,
     /// Units of bare numbers and of the answer.
     pub units: Units,
     /// Which air.
@@ -70,19 +73,26 @@ pub struct Flight {
     pub(super) data: AircraftData,
     pub(super) aircraft: Aircraft<Forces>,
     pub(super) target: TrimTarget,
+    pub(super) loading: Loading,
     pub(super) units: Units,
     pub(super) air: AirChoice,
 }
 
 impl Question<'_> {
-    /// The aircraft alone.
+    /// The aircraft alone, as loaded.
     pub(super) fn data(&self) -> Result<AircraftData, AircraftFailure> {
-        load(self.aircraft)
+        let loading = self.read_loading()?;
+        loading::loaded(load_at(self.aircraft, loading.cg_mac)?, loading)
+    }
+
+    fn read_loading(&self) -> Result<Loading, AircraftFailure> {
+        self.loading.read(self.units).map_err(AircraftFailure::Refused)
     }
 
     /// True where no flight is named, so that the source's own condition is meant.
     pub(super) fn is_at_reference(&self) -> bool {
-        self.speed.is_none() && self.altitude.is_none() && self.climb_angle.is_none()
+        let loading = self.loading == LoadingQuestion::default();
+        self.speed.is_none() && self.altitude.is_none() && self.climb_angle.is_none() && loading
     }
 
     fn laws(&self) -> Laws {
@@ -166,7 +176,13 @@ pub fn flight(question: &Question<'_>) -> Result<Flight, AircraftFailure> {
     let reference = reference(&data)?;
     let target = question.target(reference).map_err(AircraftFailure::Refused)?;
     let aircraft = question.aircraft_of(&data)?;
-    Ok(Flight { aircraft, target, units: question.units, air: question.air, data })
+    let (units, air, loading) = (question.units, question.air, question.read_loading()?);
+    if !aircraft.model().has_engine() && question.climb_angle.is_some() {
+        let message =
+            "--climb-angle: the aircraft has no engine; at its speed its path is that of its glide";
+        return Err(AircraftFailure::Refused(Refused::one(message.to_owned())));
+    }
+    Ok(Flight { aircraft, target, loading, units, air, data })
 }
 
 /// The flight of the aircraft's source; tables have none.
@@ -191,7 +207,11 @@ impl Flight {
         let gravity = self.aircraft.environment().gravity_m_s2;
         let gravity = super::failure::quantity(self.units, Kind::Acceleration, gravity);
         match self.air {
-            AirChoice::Standard => format!("standard atmosphere, gravity {gravity}"),
+            AirChoice::Standard => {
+                let own = matches!(self.data.model, ModelData::Forces(_));
+                let whose = if own { " of the aircraft's file" } else { "" };
+                format!("standard atmosphere, gravity {gravity}{whose}")
+            }
             AirChoice::Source => format!("density of the source everywhere, gravity {gravity}"),
         }
     }

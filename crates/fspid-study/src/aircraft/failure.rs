@@ -73,10 +73,11 @@ impl fmt::Display for AircraftFailure {
         match self {
             Self::Unknown { name, meant, known } => {
                 write!(f, "there is no aircraft `{name}`")?;
-                if let Some(meant) = meant {
-                    write!(f, "; did you mean `{meant}`?")?;
+                match meant {
+                    Some(meant) => write!(f, "; did you mean `{meant}`? Known are ")?,
+                    None => f.write_str("; known are ")?,
                 }
-                write!(f, " known are {}, and files that end in .toml", known.join(", "))
+                write!(f, "{}, and files that end in .toml", known.join(", "))
             }
             Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
             Self::Problems(problems) => problems.fmt(f),

@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_aircraft::data::AircraftData;
 
 use super::failure::AircraftFailure;
-use crate::file::files::read_regular;
+use crate::file::files::{STANDARD_INPUT, read_regular};
 use crate::file::{self, aircraft_names};
 
 /// The aircraft of a name that the program carries, or of a `.toml` file.
@@ -13,16 +13,22 @@ use crate::file::{self, aircraft_names};
 /// # Errors
 /// [`AircraftFailure`]: a name that is not known, a file that cannot be read or is wrong.
 pub fn load(name: &str) -> Result<AircraftData, AircraftFailure> {
+    load_at(name, None)
+}
+
+/// As [`load`], an aircraft of tables with its centre of gravity at a share of its chord.
+pub(super) fn load_at(name: &str, cg_mac: Option<f64>) -> Result<AircraftData, AircraftFailure> {
     if let Some(data) = file::aircraft(name) {
         return Ok(data);
     }
     let path = Path::new(name);
-    let is_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let is_file = name == STANDARD_INPUT
+        || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     if !is_file {
         return Err(AircraftFailure::unknown(name, &aircraft_names()));
     }
     let text = text(path)?;
-    file::parse_aircraft(&text, name, path.parent()).map_err(AircraftFailure::Problems)
+    file::parse_aircraft_at(&text, name, (path.parent(), cg_mac)).map_err(AircraftFailure::Problems)
 }
 
 /// The text of a file.

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::condition::{Flight, Question, flight};
 use super::facts::Facts;
 use super::failure::{AircraftFailure, quantity};
+use super::loading;
 use super::units::{KNOT_M_S, Kind};
 
 /// A flight that is held.
@@ -64,6 +65,7 @@ impl Trimmed {
             }
             None => facts,
         };
+        let facts = loading::facts(facts, &self.flight.loading, &self.flight.data);
         facts
             .number("Mach number", "mach", Kind::Plain, flow.mach())
             .number("altitude", "altitude", Kind::Length, target.altitude_m)
@@ -160,6 +162,7 @@ impl Trimmed {
             "aircraft": self.flight.data.name,
             "units": units.name(),
             "air": self.flight.air_name(),
+            "gravity_m_s2": self.flight.aircraft.environment().gravity_m_s2,
             "flight": self.target().json(units),
             "trim": self.point().json(units),
             "residual": self.residual().json(units),

@@ -135,6 +135,21 @@ pub(super) const SPEEDS: [Unit; 4] = [
 pub(super) const LENGTHS: [Unit; 3] =
     [unit("km", "km", 1000.0), unit("m", "m", 1.0), unit("ft", "ft", FOOT_M)];
 
+/// A pound of mass, by definition.
+const POUND_KG: f64 = 0.453_592_37;
+
+/// Units that a mass may be given in.
+pub(super) const MASSES: [Unit; 4] = [
+    unit("kg", "kg", 1.0),
+    unit("t", "t", 1000.0),
+    unit("lb", "lb", POUND_KG),
+    unit("slug", "slug", SLUG_KG),
+];
+
+/// Units that a moment of inertia may be given in.
+pub(super) const INERTIAS: [Unit; 2] =
+    [unit("kg m2", "kg_m2", 1.0), unit("slug ft2", "slug_ft2", SLUG_KG * FOOT_M * FOOT_M)];
+
 /// Units that an angle may be given in.
 pub(super) const ANGLES: [Unit; 2] = [unit("deg", "deg", DEGREE), unit("rad", "rad", 1.0)];
 

@@ -1,6 +1,6 @@
 //! Margins as they are answered: in dB, degrees and seconds.
 
-use fspid_lti::{SampledMargins, Stability};
+use fspid_lti::{Bracket, Proved, SampledMargins, Stability};
 
 use crate::metrics::Absent;
 use crate::units::degrees;
@@ -34,6 +34,9 @@ pub struct Margins {
     pub complementary_peak: f64,
     /// Largest modulus of a pole of the closed loop.
     pub spectral_radius: f64,
+    /// What is proved of the peaks and the disk margin; where its ends do not meet, the numbers above are the worse
+    /// ones. Of points of a map that were asked in the quick way nothing is proved.
+    pub proved: Proved,
 }
 
 /// A gain factor in dB.
@@ -78,6 +81,7 @@ impl Margins {
             sensitivity_peak_rad_s: found.sensitivity_peak.omega_rad_s,
             complementary_peak: found.complementary_peak.value,
             spectral_radius: found.spectral_radius,
+            proved: found.proved,
         }
     }
 
@@ -86,6 +90,19 @@ impl Margins {
     pub fn smaller_gain_margin_db(&self) -> f64 {
         let [low, high] = self.gain_margin_db;
         (-low).min(high)
+    }
+
+    /// Names and brackets of what is proved only to lie between two numbers that differ; none as a rule.
+    #[must_use]
+    pub fn open_brackets(&self) -> Vec<(&'static str, Bracket)> {
+        let Proved { sensitivity, complementary, disk } = self.proved;
+        let all = [
+            ("disk_margin", disk),
+            ("sensitivity_peak", sensitivity),
+            ("complementary_peak", complementary),
+        ];
+        let open = |(_, bracket): &(_, Bracket)| bracket.is_known() && !bracket.is_tight();
+        all.into_iter().filter(open).collect()
     }
 
     /// True below 6 dB or 45 deg, what MIL-F-9490D asks of a rigid aircraft in normal operation

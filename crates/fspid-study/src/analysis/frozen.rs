@@ -103,7 +103,8 @@ impl<'a> Mapper<'a> {
     ) -> Result<Self, SimError> {
         let rest = producible(fspid.tuner(), 0.0, 0.0);
         let shell = fspid.shell_at(rest);
-        let model = LoopModel::of(scenario, plant, &shell, Memory::of_gains(rest, &shell))?;
+        let model = LoopModel::of(scenario, plant, &shell, Memory::of_gains(rest, &shell))?
+            .sharpened(scenario, plant)?;
         let family = model.family(question.point)?;
         Ok(Self { scenario, plant, fspid, question, model, family })
     }
@@ -201,7 +202,8 @@ impl<'a> Mapper<'a> {
         let open = if self.has_the_shell_at(gains) && memory == self.model.settings().memory {
             self.model.open(gains, self.question.point)?
         } else {
-            let own = LoopModel::of(self.scenario, self.plant, &shell, memory)?;
+            let own = LoopModel::of(self.scenario, self.plant, &shell, memory)?
+                .sharpened(self.scenario, self.plant)?;
             own.open(gains, self.question.point)?
         };
         let (_, margins) = judged(&open)?;

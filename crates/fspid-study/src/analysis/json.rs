@@ -4,6 +4,8 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, modulus};
 use serde_json::{Map, Value, json};
 
+use crate::units::degrees;
+
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop};
 
@@ -61,6 +63,10 @@ fn controller(found: &AnalysedLoop) -> Value {
 fn plant_into(answer: &mut Map<String, Value>, plant: &PlantLoop) {
     let unstable = plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
     answer.insert("stable".into(), json!(plant.margins.is_ok()));
+    // Where gains that move make a constant command part of the loop, at the set-point at which it is worst.
+    if plant.setpoint_rad != 0.0 {
+        answer.insert("setpoint_deg".into(), json!(degrees(plant.setpoint_rad)));
+    }
     let shown = |pole: &Complex| pole_of(*pole, plant.open.dt_s());
     answer.insert(
         "unstable_poles".into(),
@@ -116,6 +122,15 @@ fn margins_into(answer: &mut Map<String, Value>, margins: &Margins) {
         ("spectral_radius", json!(margins.spectral_radius)),
     ];
     answer.extend(values.map(|(name, value)| (name.to_owned(), value)));
+    let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+    let open: Map<String, Value> = margins
+        .open_brackets()
+        .into_iter()
+        .map(|(name, it)| (name.to_owned(), json!([finite(it.at_least), finite(it.at_most)])))
+        .collect();
+    if !open.is_empty() {
+        answer.insert("proved_between".into(), Value::Object(open));
+    }
     if !reasons.is_empty() {
         answer.insert("reasons".into(), Value::Object(reasons));
     }

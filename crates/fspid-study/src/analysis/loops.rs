@@ -1,9 +1,10 @@
 //! One controller with every plant that it has to hold.
 
-use fspid_core::Gains;
 use fspid_lti::{Complex, LtiError, SampledLoop, Stability};
-use fspid_sim::loop_model::{BreakPoint, LoopModel, Memory};
-use fspid_sim::{AircraftPlant, Controller, LinearPlant, NamedController, Scenario, SimError};
+use fspid_sim::loop_model::BreakPoint;
+use fspid_sim::{
+    AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError,
+};
 
 use super::Question;
 use super::answer::Margins;
@@ -17,6 +18,9 @@ use crate::metrics::Absent;
 pub struct PlantLoop {
     /// From when the plant is that one, s.
     pub from_s: f64,
+    /// The set-point at which the loop rests, rad from the trim: of those that the scenario holds the one with
+    /// the smallest disk margin, where they differ.
+    pub setpoint_rad: f64,
     /// The open loop.
     pub open: SampledLoop,
     /// Stable with margins, or unstable with poles.
@@ -69,14 +73,24 @@ impl AnalysedLoop {
         }
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
-            let open = open_loop(scenario, plant, (controller, gains), question.point)?;
+            let rests = AtRest::all(scenario, plant, controller, gains);
+            let found = rests.iter().map(|rest| {
+                let model = rest.model(scenario, plant, controller)?;
+                let open = model.sharpened(scenario, plant)?.open(rest.gains, question.point)?;
+                PlantLoop::of(*from_s, rest, open)
+            });
+            let found = found.collect::<Result<Vec<PlantLoop>, SimError>>()?;
+            let worst = found.into_iter().reduce(|one, other| {
+                if rank(&other.margins) < rank(&one.margins) { other } else { one }
+            });
+            let Some(worst) = worst else { continue };
             let map = match controller {
                 Controller::SelfTuning(fspid) if question.map_points > 0 => {
                     FrozenMap::of(scenario, plant, fspid, question)?
                 }
                 _ => None,
             };
-            plants.push(PlantLoop { map, ..PlantLoop::of(*from_s, open)? });
+            plants.push(PlantLoop { map, ..worst });
         }
         Ok(Self { name, equilibrium, plants, absent: None, flights })
     }
@@ -128,10 +142,11 @@ impl AnalysedLoop {
 }
 
 impl PlantLoop {
-    fn of(from_s: f64, open: SampledLoop) -> Result<Self, SimError> {
+    fn of(from_s: f64, rest: &AtRest, open: SampledLoop) -> Result<Self, SimError> {
         let closed_poles = open.closed_poles()?;
         let (stability, margins) = judged(&open)?;
-        Ok(Self { from_s, open, stability, closed_poles, margins, map: None })
+        let setpoint_rad = rest.setpoint_rad;
+        Ok(Self { from_s, setpoint_rad, open, stability, closed_poles, margins, map: None })
     }
 }
 
@@ -156,8 +171,23 @@ pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, A
 pub(crate) struct Held {
     /// From when the plant is that one, s.
     pub(crate) from_s: f64,
+    /// The set-point at which it is held worst, rad from the trim.
+    pub(crate) setpoint_rad: f64,
     /// Why it is not.
     pub(crate) verdict: Result<(), Absent>,
+}
+
+impl Held {
+    /// The smaller, the worse.
+    fn rank(&self) -> f64 {
+        match self.verdict {
+            Ok(()) => 0.0,
+            Err(Absent::Unstable { spectral_radius } | Absent::Undecided { spectral_radius }) => {
+                -spectral_radius
+            }
+            Err(_) => f64::NEG_INFINITY,
+        }
+    }
 }
 
 /// Whether a controller holds each plant at its gains at rest: what [`AnalysedLoop`] says of it, without margins. None
@@ -171,8 +201,16 @@ pub(crate) fn held_at_rest(
     };
     let plants = lasting_plants(scenario)?;
     let held = plants.iter().map(|(from_s, plant)| {
-        let open = open_loop(scenario, plant, (controller, gains), BreakPoint::default())?;
-        Ok(Held { from_s: *from_s, verdict: verdict(&open)? })
+        let mut worst = None;
+        for rest in AtRest::all(scenario, plant, controller, gains) {
+            let model = rest.model(scenario, plant, controller)?;
+            let verdict = verdict(&model.open(rest.gains, BreakPoint::default())?)?;
+            let found = Held { from_s: *from_s, setpoint_rad: rest.setpoint_rad, verdict };
+            if worst.as_ref().is_none_or(|worst: &Held| found.rank() < worst.rank()) {
+                worst = Some(found);
+            }
+        }
+        worst.ok_or(SimError::NotLinear)
     });
     held.collect()
 }
@@ -208,20 +246,10 @@ pub(crate) fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlan
     Ok(around_trim.chain(linear.into_iter().map(|(at, plant)| (at, plant.clone()))).collect())
 }
 
-/// The open loop of one plant with fixed gains.
-pub(crate) fn open_loop(
-    scenario: &Scenario,
-    plant: &LinearPlant,
-    (controller, gains): (&Controller, Gains<f64>),
-    point: BreakPoint,
-) -> Result<SampledLoop, SimError> {
-    let shell = controller.shell_at(gains);
-    let memory = Memory::of_gains(gains, &shell);
-    LoopModel::of(scenario, plant, &shell, memory)?.open(gains, point)
-}
-
 #[cfg(test)]
 mod tests {
+    use fspid_core::Gains;
+
     use super::*;
     use crate::file;
 
@@ -246,6 +274,7 @@ mod tests {
                         AnalysedLoop::of(&study.scenario, named, question).expect("a loop");
                     let plants = analysed.plants.iter().map(|plant| Held {
                         from_s: plant.from_s,
+                        setpoint_rad: plant.setpoint_rad,
                         verdict: plant.margins.map(|_| ()),
                     });
                     let held = held_at_rest(&study.scenario, &named.controller).expect("a loop");

@@ -24,6 +24,7 @@ mod text;
 use fspid_sim::{Scenario, SimError};
 
 use crate::file::Study;
+use crate::simulation::too_large;
 
 pub use answer::{Margins, decibels};
 pub use at_rest::{AtRest, RestGains};
@@ -87,7 +88,9 @@ impl Analysis {
         let loops = scenario
             .controllers
             .iter()
-            .map(|named| AnalysedLoop::of(scenario, named, question))
+            .map(|named| {
+                AnalysedLoop::of(scenario, named, question).map_err(|error| too_large(error, named))
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let left_out = not_in_the_linear_loop(scenario);
         Ok(Self { scenario: scenario.name.clone(), question, loops, left_out })

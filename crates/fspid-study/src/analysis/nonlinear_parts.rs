@@ -23,6 +23,24 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
         None => !scenario.servo.is_linear(),
     };
     say(limited, "Limits of the actuator are left out; they act beyond small motions.");
+    let widths = surroundings
+        .actuator
+        .as_ref()
+        .is_some_and(|actuator| actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0);
+    say(
+        widths,
+        "Deadband and play of the actuator are left out: a loop that is called stable may keep a small oscillation.",
+    );
+    let sensors = || [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter().flatten();
+    say(
+        sensors().any(|sensor| sensor.model().resolution > 0.0),
+        "The resolution of the sensors is left out: a loop that is called stable may keep a small oscillation.",
+    );
+    let erects = surroundings.pitch_sensor.is_some_and(|s| s.model().erection_rad_s > 0.0);
+    say(
+        erects && scenario.plant.aircraft().is_some(),
+        "The vertical gyro's erection is left out: it follows the apparent vertical at a bounded rate, so that a loop that is called stable may keep an oscillation.",
+    );
     let shells = || scenario.controllers.iter().map(|named| named.controller.shell());
     say(
         shells().any(|shell| !shell.is_linear()),

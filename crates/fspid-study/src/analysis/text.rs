@@ -6,6 +6,9 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
+use crate::metrics::short;
+use crate::units::degrees;
+
 use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop};
 
 impl Analysis {
@@ -39,12 +42,23 @@ fn verdict(found: &AnalysedLoop) -> String {
     if let Some(reason) = found.absent {
         return format!("no margins: {reason}");
     }
+    let held = found.worst().map(|plant| at_setpoint(plant.setpoint_rad)).unwrap_or_default();
     let unstable = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
     match (unstable, found.plants.len()) {
-        (0, _) if found.has_poor_margins() => format!("stable {gains}; {POOR_MARGINS}"),
-        (0, _) => format!("stable {gains}"),
-        (_, 1) => format!("UNSTABLE {gains}"),
-        (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}"),
+        (0, _) if found.has_poor_margins() => format!("stable {gains}; {POOR_MARGINS}{held}"),
+        (0, _) => format!("stable {gains}{held}"),
+        (_, 1) => format!("UNSTABLE {gains}{held}"),
+        (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}{held}"),
+    }
+}
+
+/// Where the loop at rest is worst, if not at the trim.
+pub(crate) fn at_setpoint(setpoint_rad: f64) -> String {
+    match degrees(setpoint_rad) {
+        0.0 => String::new(),
+        setpoint_deg => {
+            format!("; worst while the set-point is held at {} deg", short(setpoint_deg))
+        }
     }
 }
 
@@ -143,6 +157,17 @@ fn push_margins(out: &mut String, margins: &Margins) {
             margins.sensitivity_peak, margins.sensitivity_peak_rad_s, margins.complementary_peak
         ),
     );
+    for (name, bracket) in margins.open_brackets() {
+        line(
+            out,
+            format_args!(
+                "  proved only        {} between {:.4} and {:.4}; the worse end stands above",
+                name.replace('_', " "),
+                bracket.at_least,
+                bracket.at_most
+            ),
+        );
+    }
 }
 
 fn end(db: f64, omega_rad_s: Option<f64>, reason: &str) -> String {

@@ -111,7 +111,7 @@ fn ends(limits: &Limits<f64>) -> Ends {
 fn limits(what: &'static str, [lower, upper]: Ends) -> Result<Limits<f64>, String> {
     let lower = lower.unwrap_or(f64::NEG_INFINITY);
     let upper = upper.unwrap_or(f64::INFINITY);
-    Limits::new(what, lower, upper).map_err(said("controller"))
+    Limits::new(what, lower, upper).map_err(|error| error.to_string())
 }
 
 impl GainsFile {
@@ -170,15 +170,17 @@ impl ControllerFile {
             anti_windup: self.anti_windup.build()?,
             limits: self.output_limits_rad.map(|ends| limits("output limits", ends)).transpose()?,
             slew_rad_s: self.slew_limit_rad_s,
-            guard: Guard::new(self.sample_guard_rad).map_err(said("controller"))?,
+            guard: Guard::new(self.sample_guard_rad).map_err(|error| error.to_string())?,
             ..Shell::sampled_every(dt_s)
         };
         let gains = self.gains.build();
         match &self.tuner {
-            None => Pid::new(gains, shell).map(Controller::Fixed).map_err(said("controller")),
+            None => {
+                Pid::new(gains, shell).map(Controller::Fixed).map_err(|error| error.to_string())
+            }
             Some(tuner) => Fspid::new(tuner.build(gains)?, shell)
                 .map(Controller::SelfTuning)
-                .map_err(said("controller")),
+                .map_err(|error| error.to_string()),
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Plant, actuator and sensing of a certificate's loop.
 
 use fspid_proof::LoopDescription;
+use fspid_proof::sizes::MOST_STATES;
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, SimError};
 use serde::{Deserialize, Serialize};
 
-/// Longest delays and highest orders that are read; a certificate that asks for more is not one of ours.
-const MOST_SAMPLES: usize = 10_000;
+use super::shape::Wrong;
 
 /// The loop as written.
 #[derive(Debug, Serialize, Deserialize)]
@@ -54,6 +54,7 @@ struct SensingFile {
     scale: f64,
     samples: usize,
     part: f64,
+    resolution: f64,
 }
 
 impl LoopFile {
@@ -72,24 +73,46 @@ impl LoopFile {
         }
     }
 
-    pub(super) fn build(self, controller: Controller) -> Result<LoopDescription, String> {
+    /// Everything but the controller, or all that is wrong with it. It is not asked here whether the loop is
+    /// one that a proof can speak of.
+    pub(super) fn parts(&self) -> Result<LoopParts, Vec<Wrong>> {
+        let mut problems = Vec::new();
+        let mut tell = |path: &str, what: String| {
+            problems.push(Wrong { path: format!("loop.{path}"), what });
+        };
         let elevator_sign = match self.elevator_sign {
             Sign::NoseUpPositive => ElevatorSign::NoseUpPositive,
             Sign::NoseDownPositive => ElevatorSign::NoseDownPositive,
         };
         // Refuses what is no plant: lengths, numbers that are not finite, feedthrough.
-        LinearPlant::new(&self.numerator, &self.denominator, elevator_sign)
-            .map_err(|error| format!("loop: {error}"))?;
-        let description = LoopDescription {
-            numerator: self.numerator,
-            denominator: self.denominator,
-            elevator_sign,
-            actuator: self.actuator.build().map_err(|error| format!("actuator: {error}"))?,
-            pitch: self.pitch_sensing.build()?,
-            rate: self.rate_sensing.build()?,
-            controller,
+        let plant = LinearPlant::new(&self.numerator, &self.denominator, elevator_sign);
+        let plant = plant.map_err(|error| tell("denominator", error.to_string()));
+        let actuator = self.actuator.build().map_err(|error| tell("actuator", error.to_string()));
+        let pitch = self.pitch_sensing.build().map_err(|what| tell("pitch_sensing", what));
+        let rate = self.rate_sensing.build().map_err(|what| tell("rate_sensing", what));
+        let (Ok(_), Ok(actuator), Ok(pitch), Ok(rate)) = (plant, actuator, pitch, rate) else {
+            return Err(problems);
         };
-        description.provable().map_err(|error| error.to_string())
+        let (numerator, denominator) = (self.numerator.clone(), self.denominator.clone());
+        Ok(LoopParts { numerator, denominator, elevator_sign, actuator, pitch, rate })
+    }
+}
+
+/// A loop without its controller.
+#[derive(Debug)]
+pub(super) struct LoopParts {
+    numerator: Vec<f64>,
+    denominator: Vec<f64>,
+    elevator_sign: ElevatorSign,
+    actuator: Actuator,
+    pitch: Sensing,
+    rate: Sensing,
+}
+
+impl LoopParts {
+    pub(super) fn with(self, controller: Controller) -> LoopDescription {
+        let Self { numerator, denominator, elevator_sign, actuator, pitch, rate } = self;
+        LoopDescription { numerator, denominator, elevator_sign, actuator, pitch, rate, controller }
     }
 }
 
@@ -138,16 +161,24 @@ impl ActuatorFile {
 
 impl SensingFile {
     fn of(sensing: &Sensing) -> Self {
-        Self { scale: sensing.scale, samples: sensing.samples, part: sensing.part }
+        Self {
+            scale: sensing.scale,
+            samples: sensing.samples,
+            part: sensing.part,
+            resolution: sensing.resolution,
+        }
     }
 
     fn build(&self) -> Result<Sensing, String> {
-        let Self { scale, samples, part } = *self;
-        let good = scale.is_finite() && (0.0..1.0).contains(&part) && samples <= MOST_SAMPLES;
-        let sensing = Sensing { scale, samples, part, at_largest_age: false };
+        let Self { scale, samples, part, resolution } = *self;
+        let good = scale.is_finite()
+            && (0.0..1.0).contains(&part)
+            && samples <= MOST_STATES
+            && resolution >= 0.0
+            && resolution.is_finite();
+        let sensing = Sensing { scale, samples, part, resolution, at_largest_age: false };
         good.then_some(sensing).ok_or_else(|| {
-            "sensing: allowed are a finite scale, up to 10000 samples, and a part from 0 to below 1"
-                .to_owned()
+            format!("allowed are a finite scale, up to {MOST_STATES} samples, a part from 0 to below 1, and a resolution of 0 or more")
         })
     }
 }

@@ -3,25 +3,39 @@
 //! Each controller is certified with each plant that lasts. A certificate is a file that is complete in
 //! itself; [`check_text`] proves its claim anew and trusts nothing in it but its numbers.
 
+mod against;
+mod checked;
+mod checked_text;
 mod controller_file;
+mod coverage;
+mod digest;
 mod file;
 mod json;
+mod json_text;
 mod loop_file;
+mod scope;
+mod shape;
+#[cfg(test)]
+mod tests;
 mod text;
 
-use std::fmt;
-
 use fspid_proof::{
-    Certificate, Doubt, LoopDescription, NotProvable, Outcome, Rechecked, Verdict, certify,
+    Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
+    left_out_of,
 };
-use fspid_sim::SimError;
+use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
 use crate::file::Study;
 
 pub use fspid_proof::Effort;
 
-pub use file::{Origin, from_text, to_text};
+pub use against::{Comparison, Difference};
+pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
+pub use file::{Origin, Seal, from_text, to_text};
+pub(crate) use scope::in_short as scope_in_short;
+pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.
 #[derive(Clone, Debug)]
@@ -45,13 +59,11 @@ impl Certified {
         matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)))
     }
 
-    /// The certificate of the verdict: of stability, or of growth.
+    /// The certificate of the verdict: of stability, or of growth; where the answer is neither for what the
+    /// scenario asks, of the smaller range that is proved.
     #[must_use]
     pub fn certificate(&self) -> Option<&Certificate> {
-        match &self.outcome.as_ref().ok()?.verdict {
-            Verdict::Proved(certificate, _) | Verdict::Refuted(certificate, _) => Some(certificate),
-            Verdict::Open => None,
-        }
+        text::found(self.outcome.as_ref().ok()?).map(|(certificate, _)| certificate)
     }
 
     /// A file name for its certificate.
@@ -74,7 +86,7 @@ pub struct Certification {
     pub scenario: String,
     /// One for each controller and lasting plant.
     pub results: Vec<Certified>,
-    /// What the proofs leave out, in sentences.
+    /// What a claim does not speak of, in sentences; each is said beside its claim as well.
     pub left_out: Vec<String>,
 }
 
@@ -87,15 +99,16 @@ impl Certification {
         let scenario = &study.scenario;
         let plants = lasting_plants(scenario)?;
         let mut results = Vec::new();
-        let asked = |name: &str| only.is_none_or(|only| only == name);
-        for named in scenario.controllers.iter().filter(|named| asked(&named.name)) {
+        let wanted = |name: &str| only.is_none_or(|only| only == name);
+        for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 let limits = described.as_ref().map(LoopDescription::limits).unwrap_or_default();
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
-                    outcome: described.and_then(|loop_| certify(&loop_, effort)),
+                    outcome: described
+                        .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     limits,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -106,7 +119,7 @@ impl Certification {
                 });
             }
         }
-        let left_out = left_out(study, plants.len());
+        let left_out = left_out(study, &results);
         Ok(Self { scenario: scenario.name.clone(), results, left_out })
     }
 
@@ -117,53 +130,26 @@ impl Certification {
     }
 }
 
-fn left_out(study: &Study, plants: usize) -> Vec<String> {
-    let scenario = &study.scenario;
-    let mut sentences = Vec::new();
-    if scenario.plant.aircraft().is_some() {
-        sentences.push(
-            "The aircraft is nonlinear: proved is a statement about its linear model at the trim.",
-        );
+/// What is asked of a loop of a study.
+fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> Asked {
+    let mut asked = Asked::of(&study.scenario, plant, description);
+    if !study.dispersions.is_empty() {
+        asked.left_out.push(LeftOut::Dispersions);
     }
-    if plants > 1 {
-        sentences.push("Each plant is proved on its own; the passage from one to the next is not.");
+    asked
+}
+
+/// What the scenario holds, or at least one of the claims leaves out, and no claim speaks of; in sentences.
+fn left_out(study: &Study, results: &[Certified]) -> Vec<String> {
+    let outcomes = results.iter().filter_map(|certified| certified.outcome.as_ref().ok());
+    let found = outcomes.filter_map(text::found);
+    let mut left_out: Vec<LeftOut> =
+        found.flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out).collect();
+    left_out.extend(left_out_of(&study.scenario));
+    if !study.dispersions.is_empty() {
+        left_out.push(LeftOut::Dispersions);
     }
-    sentences.push("Rounding in the controller's own arithmetic is left out.");
-    sentences.into_iter().map(str::to_owned).collect()
-}
-
-/// A certificate that was checked.
-#[derive(Clone, Debug)]
-pub struct CheckedFile {
-    /// The certificate.
-    pub certificate: Certificate,
-    /// Where it says that it comes from.
-    pub origin: Origin,
-    /// What the re-check found.
-    pub result: Result<Rechecked, Doubt>,
-}
-
-/// Why a text is no certificate.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoCertificate {
-    /// The reason.
-    pub reason: String,
-}
-
-impl fmt::Display for NoCertificate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for NoCertificate {}
-
-/// Proves the claim of a certificate anew.
-///
-/// # Errors
-/// [`NoCertificate`] for a text that is none; a claim that does not hold is a result.
-pub fn check_text(text: &str) -> Result<CheckedFile, NoCertificate> {
-    let (certificate, origin) = from_text(text).map_err(|reason| NoCertificate { reason })?;
-    let result = certificate.check();
-    Ok(CheckedFile { certificate, origin, result })
+    left_out.sort_unstable();
+    left_out.dedup();
+    left_out.iter().map(LeftOut::to_string).collect()
 }

@@ -3,11 +3,12 @@
 use std::fmt::Write as _;
 
 use fspid_fuzzy::scalar::Interval;
-use fspid_proof::{BoundedRate, Certificate, Claim, Kept, Outcome, Rechecked, Verdict};
+use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
+use fspid_sim::Controller;
 
-use super::{Certification, Certified, CheckedFile};
+use super::scope::{Told, asked_in_words};
+use super::{Certification, Certified};
 use crate::metrics::short;
-use crate::units::degrees;
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -16,10 +17,6 @@ impl Certification {
         let mut out = format!("{}: stability while the gains move\n", self.scenario);
         for certified in &self.results {
             push(&mut out, certified);
-        }
-        out.push_str("\nNot in these proofs:\n");
-        for sentence in &self.left_out {
-            line(&mut out, format_args!("  {sentence}"));
         }
         out
     }
@@ -41,18 +38,49 @@ fn push(out: &mut String, certified: &Certified) {
 }
 
 fn headline(outcome: &Outcome) -> String {
-    match &outcome.verdict {
-        Verdict::Proved(certificate, _) => format!("PROVED: {}", sentence(&certificate.claim)),
-        Verdict::Refuted(certificate, _) => format!("REFUTED: {}", sentence(&certificate.claim)),
-        Verdict::Open => {
+    match (&outcome.verdict, &outcome.instead) {
+        (Verdict::Proved(certificate, _), _) => format!("PROVED: {}", sentence(certificate)),
+        (Verdict::Refuted(certificate, rechecked), _) => {
+            let bearing = certificate.bearing(rechecked);
+            format!("{}: {}; {bearing}", refuted(bearing), sentence(certificate))
+        }
+        (Verdict::Open, Some((certificate, _))) => format!(
+            "OPEN for what the scenario asks ({}): neither proved nor refuted; proved is less: {}",
+            asked_in_words(outcome.asked),
+            sentence(certificate)
+        ),
+        (Verdict::Open, None) => {
             "OPEN: neither proved nor refuted; do not call this loop proved".to_owned()
         }
     }
 }
 
+/// What an outcome has a certificate of.
+pub(super) fn found(outcome: &Outcome) -> Option<(&Certificate, &Rechecked)> {
+    match &outcome.verdict {
+        Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) => {
+            Some((certificate, rechecked))
+        }
+        Verdict::Open => {
+            outcome.instead.as_ref().map(|(certificate, rechecked)| (certificate, rechecked))
+        }
+    }
+}
+
+/// What is refuted, in capitals.
+pub(super) fn refuted(bearing: Bearing) -> &'static str {
+    match bearing {
+        Bearing::GrowsStandingStill => "REFUTED FOR GAINS THAT STAND STILL",
+        Bearing::GrowsInSomeOrder => "REFUTED FOR GAINS THAT MOVE IN ANY ORDER",
+        Bearing::Grows | Bearing::Stable | Bearing::OtherScale { .. } | Bearing::RateNotKept => {
+            "REFUTED"
+        }
+    }
+}
+
 /// What a claim says.
-fn sentence(claim: &Claim) -> String {
-    match claim {
+pub(super) fn sentence(certificate: &Certificate) -> String {
+    match &certificate.claim {
         Claim::AnySpeed { .. } => {
             "stable for every gain that the controller can have, however fast the gains move".to_owned()
         }
@@ -63,11 +91,16 @@ fn sentence(claim: &Claim) -> String {
             "stable for every gain that the controller can have, as long as gains move no faster than stated"
                 .to_owned()
         }
+        Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }
+            if matches!(certificate.description.controller, Controller::Fixed(_)) =>
+        {
+            "unstable with its gains".to_owned()
+        }
         Claim::FrozenGrowth { input: [error, change], .. } => format!(
-            "unstable with gains that the supervisor really produces, standing still: those at error {error:.4}, change {change:.4}"
+            "unstable with gains that the supervisor produces at error {error:.4}, change {change:.4}, if they stand still"
         ),
         Claim::SequenceGrowth { inputs, .. } => format!(
-            "a sequence of {} samples of gains, all of which the supervisor can produce, lets the loop grow. This refutes arbitrary motion of the gains, not the flown loop",
+            "a sequence of {} samples of gains, all of which the supervisor can produce, lets the loop grow",
             inputs.len()
         ),
     }
@@ -80,14 +113,14 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         Some(certificate) => certificate.description.controller.shell().dt_s,
         None => f64::NAN,
     };
-    if let Verdict::Proved(certificate, rechecked) | Verdict::Refuted(certificate, rechecked) =
-        &outcome.verdict
-    {
+    if let Some((certificate, rechecked)) = found(outcome) {
         push_claim(out, certificate, dt_s);
         push_rechecked(out, rechecked);
     }
     push_largest(out, outcome);
-    push_limits(out, certified, outcome);
+    if let Some((certificate, rechecked)) = found(outcome) {
+        Told::of(certificate, rechecked).push(out);
+    }
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.
@@ -103,7 +136,7 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
     line(out, format_args!("  gains move         at most kp {kp}, ki {ki}, kd {kd}"));
 }
 
-fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
+pub(super) fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
     match &certificate.claim {
         Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => push_rate(out, *rate, dt_s),
         Claim::BoundedRate(claim) => {
@@ -141,7 +174,7 @@ fn push_rate(out: &mut String, rate: f64, dt_s: f64) {
     }
 }
 
-fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
+pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
     line(
         out,
         format_args!(
@@ -168,74 +201,11 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
     line(out, format_args!("  output scale       {text}"));
 }
 
-fn push_limits(out: &mut String, certified: &Certified, outcome: &Outcome) {
-    if certified.limits.is_empty() {
-        return;
-    }
-    let limits = certified.limits.join(", ");
-    let text = match (outcome.pitch_within_rad, outcome.limits_left_out) {
-        (Some(pitch_rad), _) => format!(
-            "with a pitch angle off by up to {:.3} deg, all else at rest, none acts: {limits}",
-            degrees(pitch_rad)
-        ),
-        (None, Some(reason)) => format!("SATURATION IS NOT COVERED: {limits}; {reason}"),
-        (None, None) => format!("SATURATION IS NOT COVERED: {limits}"),
-    };
-    line(out, format_args!("  limits             {text}"));
-}
-
-fn range(bounds: Interval) -> String {
+pub(super) fn range(bounds: Interval) -> String {
     format!("{:.4} to {:.4}", bounds.lower(), bounds.upper())
 }
 
-impl CheckedFile {
-    /// The answer of `certify --check`.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let origin = &self.origin;
-        let mut out = format!(
-            "{} of \"{}\": {}\n",
-            origin.controller,
-            origin.scenario,
-            sentence(&self.certificate.claim)
-        );
-        let dt_s = self.certificate.description.controller.shell().dt_s;
-        push_claim(&mut out, &self.certificate, dt_s);
-        if (self.certificate.output_factor - 1.0).abs() > 0.0 {
-            let factor = self.certificate.output_factor;
-            line(
-                &mut out,
-                format_args!("  output scale       {factor} times that of the controller"),
-            );
-        }
-        match &self.result {
-            Ok(rechecked) => {
-                push_rechecked(&mut out, rechecked);
-                push_kept(&mut out, &self.certificate, rechecked);
-                let [kp, ki, kd] = rechecked.bounds.map(range);
-                line(&mut out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
-                out.push_str("HOLDS\n");
-            }
-            Err(doubt) => line(&mut out, format_args!("DOES NOT HOLD: {doubt}")),
-        }
-        out
-    }
-}
-
-/// Whether the law of the loop keeps its gains to the rate that is claimed.
-fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked) {
-    if !matches!(certificate.claim, Claim::BoundedRate(_)) {
-        return;
-    }
-    let kept = match rechecked.kept {
-        Some(Kept::Everywhere) => "in every flight",
-        Some(Kept::WithinLevel) => "in flights that begin near enough to rest",
-        None => "not shown: this is no proof of the flown loop",
-    };
-    line(out, format_args!("  law keeps to this  {kept}"));
-}
-
 /// Writing to a string cannot fail.
-fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
+pub(super) fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
     let _ = writeln!(out, "{text}");
 }

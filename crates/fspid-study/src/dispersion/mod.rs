@@ -72,10 +72,6 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// The words in files.
-    pub const NAMES: [&'static str; 6] =
-        ["normal", "uniform", "log-uniform", "choice", "seed", "correlated"];
-
     /// How many coordinates it takes, which is also how many values it gives.
     #[must_use]
     pub fn dimensions(&self) -> usize {

@@ -7,16 +7,16 @@ use std::path::Path;
 use fspid_aircraft::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
-use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, ModelData, Reference};
+use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, Loading, ModelData, Reference};
 use fspid_aircraft::{Range, Travel, Validity};
 
 use crate::file::check;
-use crate::file::document;
+use crate::file::document::{self, Item};
 use crate::file::files::Files;
 use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
-use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
 use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 
@@ -83,14 +83,46 @@ pub fn parse_aircraft(
     name: &str,
     folder: Option<&Path>,
 ) -> Result<AircraftData, Problems> {
+    parse_aircraft_at(text, name, (folder, None))
+}
+
+/// As [`parse_aircraft`], an aircraft of tables with its centre of gravity at a share of its chord.
+pub(crate) fn parse_aircraft_at(
+    text: &str,
+    name: &str,
+    (folder, cg_mac): (Option<&Path>, Option<f64>),
+) -> Result<AircraftData, Problems> {
     let mut report = Report::default();
     let mut files = Files::new(folder);
+    let given = Given { cg_mac, ..Given::default() };
     let file = document::read(&mut report, None, text)
         .and_then(|item| check::table(&mut report, &AIRCRAFT_FILE, &item, ""))
         .filter(|section| section.sound)
-        .and_then(|section| aircraft_data(&mut report, &mut files, (&section, Path::new(""))));
+        .and_then(|section| {
+            aircraft_data(&mut report, &mut files, (&section, Path::new("")), given)
+        });
     report.finish(name)?;
     file.ok_or_else(|| Problems::new(name, Vec::new(), 0))
+}
+
+/// What a scenario knows of an aircraft before its file is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Given {
+    /// Weight of the reference as the file has it, where a change of the scenario makes another of it.
+    pub(super) weight_n: Option<f64>,
+    /// Centre of gravity for an aircraft of tables, whose body depends on it.
+    pub(super) cg_mac: Option<f64>,
+}
+
+impl Given {
+    /// The weight that a file has, before it is changed.
+    pub(super) fn of(written: Option<&Item>, cg_mac: Option<f64>) -> Self {
+        let mass = written.and_then(|file| file.member("mass"));
+        let weight = |(key, size): (&str, f64)| Some(size * mass?.member(key)?.number()?);
+        let weight_n =
+            [("weight_lbf", POUND_FORCE_N), ("weight_n", 1.0)].into_iter().find_map(weight);
+        Self { weight_n, cg_mac }
+    }
 }
 
 /// The aircraft of a checked file, whose tables are relative to `place` in the folder of `files`.
@@ -98,12 +130,17 @@ pub(super) fn aircraft_data(
     report: &mut Report,
     files: &mut Files<'_>,
     (section, place): (&Section, &Path),
+    given: Given,
 ) -> Option<AircraftData> {
     let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
-    let model = match section.kind {
-        "linear" => ModelData::Linear(linear::model(report, section)?),
-        "tables" => ModelData::Forces(Box::new(tables(report, files, (section, place))?)),
-        _ => ModelData::Derivatives(Box::new(derivatives(report, section)?)),
+    let model = match section.variant()? {
+        AircraftKind::Linear => ModelData::Linear(linear::model(report, section)?),
+        AircraftKind::Tables => {
+            ModelData::Forces(Box::new(tables(report, files, (section, place), given.cg_mac)?))
+        }
+        AircraftKind::Derivatives => {
+            ModelData::Derivatives(Box::new(derivatives(report, section, given)?))
+        }
     };
     Some(AircraftData {
         name: text("name"),
@@ -114,13 +151,19 @@ pub(super) fn aircraft_data(
     })
 }
 
-fn derivatives(report: &mut Report, section: &Section) -> Option<DerivativeData> {
+fn derivatives(report: &mut Report, section: &Section, given: Given) -> Option<DerivativeData> {
     let part = |name: &str| section.section(name);
+    let reference = reference(part("reference")?)?;
+    let flown_n = quantity(part("mass")?, "weight")?;
+    let weight_n = given.weight_n.unwrap_or(flown_n);
+    // A scenario that changes the weight loads the aircraft; its wing carries what the file says.
+    let mass_kg = (flown_n != weight_n).then_some(flown_n / reference.gravity_m_s2);
     let data = DerivativeData {
-        reference: reference(part("reference")?)?,
+        reference,
         geometry: geometry(part("geometry")?)?,
-        weight_n: quantity(part("mass")?, "weight")?,
+        weight_n,
         inertia: inertia(part("mass")?)?,
+        loading: Loading { mass_kg, ..Loading::default() },
         longitudinal: longitudinal(part("longitudinal")?)?,
         lateral: part("lateral").and_then(lateral),
         validity: validity(part("validity")?)?,
@@ -148,6 +191,7 @@ fn reference(section: &Section) -> Option<Reference> {
         mach: section.number("mach")?,
         gravity_m_s2: quantity(section, "gravity")?,
         alpha_rad: radians(section.number("alpha_deg")?),
+        cg_mac: section.number("cg_mac"),
     })
 }
 

@@ -9,7 +9,7 @@ use crate::file::problem::Problems;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::dispersion::{
-    OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
+    DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
 };
 use crate::file::{NewValue, SettingPath, Template};
 
@@ -29,17 +29,16 @@ pub(crate) fn dispersions(report: &mut Report, sections: &[Section]) -> Vec<Disp
 }
 
 fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
-    let word = section.text("distribution")?;
+    let word: DistributionWord = section.word("distribution")?;
     let before = report.count();
     check_keys(report, section, word);
     let paths = paths(report, section);
-    let choices = if word == "choice" { values(report, section) } else { Some(Vec::new()) };
-    let correlation = match word {
-        "correlated" => matrix(report, section),
-        _ => Some(Vec::new()),
-    };
+    let is_correlated = word == DistributionWord::Correlated;
+    let is_choice = word == DistributionWord::Choice;
+    let choices = if is_choice { values(report, section) } else { Some(Vec::new()) };
+    let correlation = if is_correlated { matrix(report, section) } else { Some(Vec::new()) };
     let (paths, choices, correlation) = (paths?, choices?, correlation?);
-    if word == "correlated" {
+    if is_correlated {
         check_lengths(report, section, paths.len());
     }
     if report.count() > before {
@@ -50,10 +49,13 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
         Ok(distribution) => distribution,
         Err(error) => {
             let key = match word {
-                "correlated" => "correlation",
-                "choice" => "weights",
-                _ if section.given("lower") => "lower",
-                _ => "mean",
+                DistributionWord::Correlated => "correlation",
+                DistributionWord::Choice => "weights",
+                DistributionWord::Normal if !section.given("lower") => "mean",
+                DistributionWord::Normal
+                | DistributionWord::Uniform
+                | DistributionWord::LogUniform => "lower",
+                DistributionWord::Seed => "distribution",
             };
             let text = error.to_string();
             let (message, allowed) = in_two(&text);
@@ -62,12 +64,12 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
         }
     };
     let relative = section.boolean("relative")?;
-    if relative && (word == "seed" || choices.iter().any(|it| !is_number(it))) {
+    if relative && (word == DistributionWord::Seed || choices.iter().any(|it| !is_number(it))) {
         let (place, path) = (section.at("relative"), section.path("relative"));
         report.value(place, &path, "only numbers can be factors", "false");
         return None;
     }
-    let targets = targets(report, section, paths, word == "correlated")?;
+    let targets = targets(report, section, paths, is_correlated)?;
     Some(Dispersion { targets, distribution, relative, choices })
 }
 
@@ -81,8 +83,9 @@ fn is_number(value: &NewValue) -> bool {
 }
 
 /// Refuses keys of other distributions, and misses those of this one.
-fn check_keys(report: &mut Report, section: &Section, word: &str) {
-    let [needed, allowed] = keys_of(word);
+fn check_keys(report: &mut Report, section: &Section, distribution: DistributionWord) {
+    let [needed, allowed] = keys_of(distribution);
+    let word = distribution.name();
     for key in needed.iter().filter(|key| !section.given(key)) {
         let message = format!("missing key; distribution \"{word}\" needs it");
         report.missing(section.place, &section.path(key), message, "");
@@ -131,7 +134,7 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
             report.missing(section.at(key), &section.path(key), message, allowed);
             return None;
         };
-        if ["dispersion", "requirement", "schema", "set"].contains(&path.root()) {
+        if super::paths::NEVER_DRAWN.contains(&path.root()) {
             let message = format!("`{text}` cannot differ from run to run");
             let allowed = "a place of what flies or of what disturbs it";
             report.missing(section.at(key), &section.path(key), message, allowed);
@@ -205,27 +208,30 @@ struct Numbers<'a> {
 }
 
 impl Numbers<'_> {
-    fn distribution(&self, word: &str) -> Option<Result<Distribution, DispersionError>> {
+    fn distribution(
+        &self,
+        word: DistributionWord,
+    ) -> Option<Result<Distribution, DispersionError>> {
         let section = self.section;
         let number = |key: &str| section.number(key);
         Some(match word {
-            "normal" => {
+            DistributionWord::Normal => {
                 let (mean, deviation) = (number("mean")?, number("standard_deviation")?);
                 normal(mean, deviation, [number("lower"), number("upper")])
                     .map(Distribution::Normal)
             }
-            "uniform" => {
+            DistributionWord::Uniform => {
                 Uniform::new(number("lower")?, number("upper")?).map(Distribution::Uniform)
             }
-            "log-uniform" => {
+            DistributionWord::LogUniform => {
                 LogUniform::new(number("lower")?, number("upper")?).map(Distribution::LogUniform)
             }
-            "choice" => {
+            DistributionWord::Choice => {
                 let weights = section.numbers("weights");
                 Choice::new(self.choices, weights.as_deref()).map(Distribution::Choice)
             }
-            "seed" => Ok(Distribution::Seed),
-            _ => self.correlated()?,
+            DistributionWord::Seed => Ok(Distribution::Seed),
+            DistributionWord::Correlated => self.correlated()?,
         })
     }
 

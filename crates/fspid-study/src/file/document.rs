@@ -46,6 +46,22 @@ impl Value {
 }
 
 impl Item {
+    /// What a table says under a key.
+    pub(crate) fn member(&self, name: &str) -> Option<&Self> {
+        let Value::Table(members) = &self.value else {
+            return None;
+        };
+        members.iter().find(|member| member.name == name).map(|member| &member.item)
+    }
+
+    /// The number that it is.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Integer(number, _) | Value::Float(number) => Some(number),
+            _ => None,
+        }
+    }
+
     /// What it says without the places, so that texts that mean the same are written alike: for digests.
     pub(crate) fn meaning(&self) -> String {
         match &self.value {

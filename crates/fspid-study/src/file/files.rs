@@ -2,6 +2,7 @@
 
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use sha2::{Digest as _, Sha256};
 
@@ -21,6 +22,8 @@ pub(crate) struct Files<'a> {
     filled: Vec<(String, &'static str)>,
     /// Changes that wait for the file that they are in, and whether it came.
     changes: Vec<(Change, bool)>,
+    /// What files say that were changed, before the changes, by the path of the key that names them.
+    written: Vec<(String, Item)>,
     /// What was read, by the path of the key that names it; kept if asked for.
     documents: Option<Vec<(String, Item)>>,
 }
@@ -34,6 +37,7 @@ impl<'a> Files<'a> {
             referred: Vec::new(),
             filled: Vec::new(),
             changes: Vec::new(),
+            written: Vec::new(),
             documents: None,
         }
     }
@@ -66,6 +70,9 @@ impl<'a> Files<'a> {
 
     /// Changes what the file says that the key at `path` refers to; every file passes here.
     pub(crate) fn apply_changes(&mut self, report: &mut Report, path: &str, document: &mut Item) {
+        if self.changes.iter().any(|(change, _)| change.path == path) {
+            self.written.push((path.to_owned(), document.clone()));
+        }
         for (change, used) in self.changes.iter_mut().filter(|(change, _)| change.path == path) {
             change.apply(report, document);
             *used = true;
@@ -73,6 +80,12 @@ impl<'a> Files<'a> {
         if let Some(documents) = &mut self.documents {
             documents.push((path.to_owned(), document.clone()));
         }
+    }
+
+    /// What the file says that the key at `path` names, without the changes; none where there are no changes.
+    pub(crate) fn written(&self, path: &str) -> Option<&Item> {
+        let (_, document) = self.written.iter().find(|(at, _)| at == path)?;
+        Some(document)
     }
 
     /// Keeps what is read from here on.
@@ -125,13 +138,41 @@ impl<'a> Files<'a> {
     }
 }
 
-/// The bytes of a regular file that is not too large.
-pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
-    let reason = |error: std::io::Error| match error.kind() {
+/// Why a file could not be read, in the same words everywhere.
+#[must_use]
+pub fn unread_in_words(reason: &std::io::Error) -> String {
+    match reason.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
         std::io::ErrorKind::PermissionDenied => "it may not be read".to_owned(),
-        _ => error.to_string(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        _ => reason.to_string(),
+    }
+}
+
+/// The name that stands for standard input.
+pub(crate) const STANDARD_INPUT: &str = "-";
+
+/// What standard input holds. It is read once, for a scenario is asked for again and again.
+fn standard_input() -> Result<Vec<u8>, String> {
+    static READ: OnceLock<Result<Vec<u8>, String>> = OnceLock::new();
+    let read = || {
+        let mut bytes = Vec::new();
+        let mut limited = std::io::stdin().lock().take(FILE_LIMIT + 1);
+        limited.read_to_end(&mut bytes).map_err(|error| unread_in_words(&error))?;
+        match bytes.len() as u64 > FILE_LIMIT {
+            true => Err(format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024))),
+            false => Ok(bytes),
+        }
     };
+    READ.get_or_init(read).clone()
+}
+
+/// The bytes of a regular file that is not too large.
+pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
+    let reason = |error: std::io::Error| unread_in_words(&error);
+    if path == Path::new(STANDARD_INPUT) {
+        return standard_input();
+    }
     let metadata = std::fs::metadata(path).map_err(reason)?;
     if !metadata.is_file() {
         return Err("it is no regular file".to_owned());

@@ -24,6 +24,7 @@ mod extra;
 pub(crate) mod files;
 mod mark;
 mod overrides;
+mod paths;
 mod preset;
 pub(crate) mod problem;
 pub(crate) mod report;
@@ -35,6 +36,7 @@ mod setting;
 pub(crate) mod spec;
 pub(crate) mod tables;
 mod template;
+mod templates;
 mod tuning;
 
 use std::fmt;
@@ -49,20 +51,24 @@ use crate::file::report::Report;
 use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
+pub(crate) use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
 pub use extra::Extra;
+pub use files::unread_in_words;
+pub use paths::{PathRow, paths, paths_json, paths_text};
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use problem::{Problem, Problems};
+pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
 pub(crate) use setting::grid_text;
 pub use template::{NewValue, SettingPath, Template};
+pub use templates::{STARTERS, Starter, starter_named};
 
 /// A scenario with what its file asks of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -24,6 +24,8 @@ pub(crate) struct Replay<'a> {
     pub(crate) frozen: Option<(Gains<f64>, Shell<f64>)>,
     /// The one plant: 0 for the first, otherwise the number of its change.
     pub(crate) plant: Option<usize>,
+    /// Size of the one step of its command, deg, where it has a flight of its own.
+    pub(crate) own_step_deg: Option<f64>,
     /// Sign of the first plant's elevator, which changes have where they say none.
     pub(crate) sign: ElevatorSign,
 }
@@ -60,6 +62,13 @@ pub(crate) fn replay(
         put(&mut members, overrides::KEY, Value::Array(changes));
     }
     put(&mut members, "requirement", Value::Array(vec![requirement(replay)]));
+    if let Some(step_deg) = replay.own_step_deg {
+        let mut step = Vec::new();
+        put(&mut step, "kind", text_value("step"));
+        put(&mut step, "amplitude_deg", Value::Float(step_deg));
+        put(&mut step, "at_s", Value::Float(0.0));
+        put(&mut members, "setpoint", Value::Table(step));
+    }
     move_paths(&SCENARIO, &mut members, moved);
     let mut out = String::new();
     write_document(&mut out, &members);

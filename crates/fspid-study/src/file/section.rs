@@ -4,6 +4,7 @@ use fspid_fuzzy::{Defuzzifier, Grid};
 
 use crate::file::document::Item;
 use crate::file::report::Place;
+use crate::file::spec::word::Word;
 
 /// A checked table.
 #[derive(Debug)]
@@ -96,6 +97,16 @@ impl Section {
         }
     }
 
+    /// The word of a key, as what it stands for.
+    pub(crate) fn word<W: Word>(&self, name: &str) -> Option<W> {
+        self.text(name).and_then(known)
+    }
+
+    /// The table's kind, as what it stands for.
+    pub(crate) fn variant<W: Word>(&self) -> Option<W> {
+        known(self.kind)
+    }
+
     /// Numbers with their places.
     pub(crate) fn placed_numbers(&self, name: &str) -> Option<&[(f64, Place)]> {
         match &self.entry(name)?.value {
@@ -160,4 +171,11 @@ impl Section {
             _ => &[],
         }
     }
+}
+
+/// The check let the words of the specification pass alone, and these are the type's.
+fn known<W: Word>(word: &str) -> Option<W> {
+    let found = W::from_word(word);
+    debug_assert!(found.is_some(), "\"{word}\" is none of {:?}", W::WORDS);
+    found
 }

@@ -123,12 +123,12 @@ impl Walk<'_> {
     }
 }
 
-fn join(path: &str, name: &str) -> String {
+pub(super) fn join(path: &str, name: &str) -> String {
     if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
 }
 
 /// The step to a table of a list: its name where a path can hold it, its number elsewhere.
-fn step(section: &Section, index: usize) -> String {
+pub(super) fn step(section: &Section, index: usize) -> String {
     named_step(section.text("name").unwrap_or_default(), index)
 }
 
@@ -151,7 +151,7 @@ fn is_hidden(c: char) -> bool {
 }
 
 /// A value as TOML has it.
-fn written(value: &Checked) -> String {
+pub(super) fn written(value: &Checked) -> String {
     match value {
         Checked::Number(value) => number(*value),
         Checked::Integer(value) => value.to_string(),
@@ -177,7 +177,7 @@ fn written(value: &Checked) -> String {
 }
 
 /// The shortest digits that read back as the same number.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e7).contains(&value.abs()) {
         format!("{value:?}")
     } else {

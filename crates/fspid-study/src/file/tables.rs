@@ -9,7 +9,7 @@ use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
 use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};
-use crate::file::files::Files;
+use crate::file::files::{Files, STANDARD_INPUT};
 use crate::file::report::{Place, Report};
 use crate::file::section::Section;
 
@@ -20,6 +20,9 @@ const ALLOWED: &str =
 /// Reads a model as the ending of its file says.
 pub(crate) fn read_model(path: &Path, text: &str) -> Result<Reading, fspid_daveml::Problems> {
     let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    // Standard input has no ending; XML begins with a sign that no TOML begins with.
+    let is_toml =
+        is_toml || (path == Path::new(STANDARD_INPUT) && !text.trim_start().starts_with('<'));
     if is_toml { fspid_daveml::data::read(text) } else { fspid_daveml::read(text) }
 }
 
@@ -28,14 +31,25 @@ pub(super) fn tables(
     report: &mut Report,
     files: &mut Files<'_>,
     (section, place): (&Section, &Path),
+    cg_mac: Option<f64>,
 ) -> Option<ForceData> {
     let part = section.section("tables")?;
-    let [aerodynamics, inertia, propulsion] = ["aerodynamics", "inertia", "propulsion"]
-        .map(|key| model(report, files, (part, key), place));
-    let body = inertia.and_then(|inertia| body(report, section, &inertia));
+    engine_fits(report, section, part)?;
+    let [aerodynamics, inertia] =
+        ["aerodynamics", "inertia"].map(|key| model(report, files, (part, key), place));
+    let propulsion = match part.given("propulsion") {
+        true => Some(model(report, files, (part, "propulsion"), place)),
+        false => None,
+    };
+    let body = inertia.and_then(|inertia| body(report, section, (&inertia, cg_mac)));
     // Without a body the forces are looked at all the same, so that all problems are told at once.
     let centre_of_mass_m = body.map_or(Vector3::ZERO, |body| body.centre_of_mass_m);
-    let forces = forces(report, section, [aerodynamics?, propulsion?], centre_of_mass_m)?;
+    let forces = forces(
+        report,
+        section,
+        (aerodynamics?, propulsion.map_or(Some(None), |it| it.map(Some))?),
+        centre_of_mass_m,
+    )?;
     Some(ForceData {
         mass: body?.mass,
         geometry: forces.geometry(),
@@ -103,9 +117,17 @@ fn offset(text: &str, place: fspid_daveml::Place) -> usize {
     begin + column.map(char::len_utf8).sum::<usize>()
 }
 
-fn body(report: &mut Report, section: &Section, inertia: &Model) -> Option<Body> {
-    let place_pct = section.section("body")?.number("centre_of_mass_pct");
-    let engine_kg_m2_s = quantity(section.section("engine")?, "angular_momentum")?;
+fn body(
+    report: &mut Report,
+    section: &Section,
+    (inertia, cg_mac): (&Model, Option<f64>),
+) -> Option<Body> {
+    let loaded_pct = cg_mac.map(|share| 100.0 * share);
+    let place_pct = loaded_pct.or(section.section("body")?.number("centre_of_mass_pct"));
+    let engine_kg_m2_s = match section.section("engine") {
+        Some(engine) => quantity(engine, "angular_momentum")?,
+        None => 0.0,
+    };
     fitting(report, (section, "inertia"), Body::placed(inertia, place_pct, engine_kg_m2_s))
 }
 
@@ -113,25 +135,42 @@ fn body(report: &mut Report, section: &Section, inertia: &Model) -> Option<Body>
 fn forces(
     report: &mut Report,
     section: &Section,
-    [aerodynamics, propulsion]: [Model; 2],
+    (aerodynamics, propulsion): (Model, Option<Model>),
     centre_of_mass_m: Vector3,
 ) -> Option<TableForces> {
     let setting = Setting {
         centre_of_mass_m,
-        gearing: gearing(section.section("engine")?)?,
+        gearing: section.section("engine").map_or(Some(Gearing::default()), gearing)?,
         travel: surfaces(section.section("travel")?)?,
     };
     let alone = TableForces::new(aerodynamics.clone(), None, setting);
-    fitting(report, (section, "aerodynamics"), alone)?;
+    let alone = fitting(report, (section, "aerodynamics"), alone)?;
+    let Some(propulsion) = propulsion else {
+        return Some(alone);
+    };
     let both = TableForces::new(aerodynamics, Some(propulsion), setting);
     fitting(report, (section, "propulsion"), both)
 }
 
+/// Propulsion and what its tables do not say come together, or neither does.
+fn engine_fits(report: &mut Report, section: &Section, part: &Section) -> Option<()> {
+    match (part.given("propulsion"), section.section("engine")) {
+        (true, None) => {
+            let message = "the propulsion needs an [engine], which says what its tables do not";
+            report.value(part.at("propulsion"), &part.path("propulsion"), message, "[engine]");
+            None
+        }
+        (false, Some(engine)) => {
+            let message = "there is no propulsion, so that nothing is left to say of an engine";
+            report.value(engine.place, &engine.path, message, "nothing; leave it out");
+            None
+        }
+        _ => Some(()),
+    }
+}
+
 fn gearing(engine: &Section) -> Option<Gearing> {
-    Some(match engine.text("gearing")? {
-        "stevens-lewis" => Gearing::StevensLewis,
-        _ => Gearing::Proportional,
-    })
+    engine.word("gearing")
 }
 
 /// A part of the aircraft, or a problem at the file that does not make it.

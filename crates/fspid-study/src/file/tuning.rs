@@ -6,6 +6,7 @@ use crate::file::report::Report;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
+use crate::file::spec::tuning::{ConstantLoadWord, OverWord};
 use crate::metrics::Measure;
 use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
@@ -33,10 +34,10 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
             "two [[tuning.objective]] or more",
         );
     }
-    let over = match section.text("over")? {
-        "worst" => Over::Worst,
-        "tail" => Over::Tail { share: section.number("share").unwrap_or(USUAL_SHARE) },
-        _ => Over::Mean,
+    let over = match section.word("over")? {
+        OverWord::Mean => Over::Mean,
+        OverWord::Worst => Over::Worst,
+        OverWord::Tail => Over::Tail { share: section.number("share").unwrap_or(USUAL_SHARE) },
     };
     if section.given("share") && !matches!(over, Over::Tail { .. }) {
         let message = "says nothing where `over` is not \"tail\"";
@@ -53,7 +54,8 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
         cases: cases(report, section.sections("case")),
         objectives,
         limits: limits(report, section),
-        removes_constant_load: section.text("constant_load")? != "ignored",
+        removes_constant_load: section.word::<ConstantLoadWord>("constant_load")?
+            == ConstantLoadWord::Removed,
     })
 }
 

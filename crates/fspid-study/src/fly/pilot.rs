@@ -8,7 +8,7 @@ use fspid_sim::{Controller, NamedController, Scenario};
 use super::line::{Angles, Line, Request};
 use super::log::{Log, Summary};
 use super::rate::RateFilter;
-use crate::file::problem::nearest;
+use crate::file::problem::known_words;
 
 /// Of the period: how far `dt_s` may lie beside it and still be kept. As for events in a scenario.
 const SAME_PERIOD: f64 = 1e-6;
@@ -43,9 +43,7 @@ impl fmt::Display for ChoiceError {
             }
             Self::Unknown { name, known } => {
                 let names: Vec<&str> = known.iter().map(String::as_str).collect();
-                let meant = nearest(name, &names).map(|meant| format!("; did you mean `{meant}`?"));
-                let meant = meant.unwrap_or_else(|| ";".to_owned());
-                write!(f, "there is no controller `{name}`{meant} known are {}", known.join(", "))
+                write!(f, "there is no controller `{name}`{}", known_words(name, &names))
             }
         }
     }

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
 use serde_json::{Map, Value, json};
 
-use crate::file::problem::nearest;
+use crate::file::problem::known_words;
 use crate::inference::Refused;
 
 /// A question with its answers.
@@ -91,10 +91,8 @@ pub(super) fn named(
                 problems.push(format!("{name} is `{number}`; allowed is a number"));
             }
             (None, _) => {
-                let meant = nearest(name, &known).map(|meant| format!("; did you mean {meant}?"));
-                let known = known.join(", ");
-                let meant = meant.unwrap_or_default();
-                problems.push(format!("there is no input `{name}`{meant} known are {known}"));
+                let known = known_words(name, &known);
+                problems.push(format!("there is no input `{name}`{known}"));
             }
         }
     }
@@ -202,6 +200,9 @@ impl<'a> Asked<'a> {
         let names = self.system.parts().outputs.iter().map(|output| output.name.chars().count());
         let width = names.max().unwrap_or(0);
         let mut out = String::new();
+        if self.system.parts().outputs.is_empty() {
+            out.push_str("the system has no output: nothing is concluded\n");
+        }
         for (index, (output, answer)) in self.answers().enumerate() {
             let interval = self.workspace.interval(index);
             let between = interval.map(|[from, to]| format!(", middle of {from:.6} to {to:.6}"));

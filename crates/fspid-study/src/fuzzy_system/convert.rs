@@ -4,10 +4,10 @@ use std::fmt;
 use std::path::Path;
 
 use fspid_formats::fcl::Dialect;
-use fspid_formats::{Problems, WriteOptions, fcl, fis, fll};
+use fspid_formats::{Problems, WriteOptions, fcl, fis, fll, fml};
 use fspid_fuzzy::system::Parts;
 
-use super::load::{Format, LoadError, Options, load};
+use super::load::{ENDINGS, Format, LoadError, Options, load};
 use super::toml_file;
 
 /// Which tool a file is for, where a format has dialects, and what may be lost.
@@ -52,7 +52,7 @@ impl fmt::Display for ConvertError {
         match self {
             Self::Load(error) => error.fmt(f),
             Self::UnknownEnding { path } => {
-                write!(f, "{path}: the ending says no format; known are .toml, .fis, .fcl and .fll")
+                write!(f, "{path}: the ending says no format; known are {ENDINGS}")
             }
             Self::Unwritable { problems } => f.write_str(&problems.join("\n")),
         }
@@ -92,7 +92,9 @@ pub fn write_as(parts: &Parts, path: &Path, target: Target) -> Result<Converted,
     let options = WriteOptions { lossy: target.lossy };
     let written = match format {
         Format::Toml => return Ok(Converted::whole(toml_file::write(parts))),
-        Format::Fis => fis::write(parts, options),
+        Format::T2fis if !parts.is_interval_type2() => return Err(not_type_2(path)),
+        Format::Fis | Format::T2fis => fis::write(parts, options),
+        Format::Fml => fml::write(parts, options),
         Format::Fll => fll::write(parts, options),
         Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
     };
@@ -111,6 +113,14 @@ impl Converted {
     fn whole(text: String) -> Self {
         Self { text, assumed: Vec::new(), lost: Vec::new() }
     }
+}
+
+/// A pair of equal functions for each would say the same, but the toolbox is not for such systems.
+fn not_type_2(path: &Path) -> ConvertError {
+    let path = path.display();
+    let told =
+        "a .t2fis file holds an interval type-2 system, and this one is type-1; write a .fis file";
+    ConvertError::Unwritable { problems: vec![format!("{path}: {told}")] }
 }
 
 /// What the format cannot say, and how to go on.

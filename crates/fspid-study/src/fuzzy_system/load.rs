@@ -5,12 +5,12 @@ use std::path::Path;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_formats::fcl::{Dialect, ReadOptions};
-use fspid_formats::{fcl, fis, fll};
+use fspid_formats::{fcl, fis, fll, fml};
 use fspid_fuzzy::system::{Parts, Sampling, System};
 use fspid_fuzzy::{LABEL_COUNT, NumberTable, Supervisor};
 
 use super::{scenario, toml_file};
-use crate::file::files::read_regular;
+use crate::file::files::{STANDARD_INPUT, read_regular};
 use crate::file::{Problem, Problems, rule_table_names};
 use crate::inference::{Question, Refused};
 
@@ -68,7 +68,7 @@ impl fmt::Display for LoadError {
                 let tables = rule_table_names().join(", ");
                 write!(
                     f,
-                    "{name}: no fuzzy system; known are files that end in .toml, .fis, .fcl or .fll, the rule tables {tables}, and {NUMBER_GRID}"
+                    "{name}: no fuzzy system; known are files that end in {ENDINGS}, the rule tables {tables}, and {NUMBER_GRID}"
                 )
             }
             Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
@@ -91,19 +91,43 @@ pub enum Format {
     Fcl,
     /// fuzzylite.
     Fll,
+    /// IEEE 1855, the Fuzzy Markup Language.
+    Fml,
+    /// Taskin's interval type-2 toolbox: MATLAB's format with pairs of membership functions.
+    T2fis,
 }
 
+/// The endings of files with systems, as a sentence lists them.
+pub const ENDINGS: &str = ".toml, .fis, .t2fis, .fcl, .fll or .xml";
+
 impl Format {
-    /// The format of a file, by its ending.
+    /// The format of a file, by its ending; that of standard input by what it begins with.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
+        if path == Path::new(STANDARD_INPUT) {
+            return text(path).ok().map(|text| Self::of_text(&text));
+        }
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "toml" => Some(Self::Toml),
             "fis" => Some(Self::Fis),
             "fcl" => Some(Self::Fcl),
             "fll" => Some(Self::Fll),
+            "xml" => Some(Self::Fml),
+            "t2fis" => Some(Self::T2fis),
             _ => None,
+        }
+    }
+
+    /// The format of a text that has no ending, by what it begins with.
+    fn of_text(text: &str) -> Self {
+        let text = text.trim_start_matches('\u{feff}').trim_start();
+        let has_block = || text.to_ascii_uppercase().contains("FUNCTION_BLOCK");
+        match text {
+            fis if fis.starts_with("[System]") => Self::Fis,
+            fll if fll.starts_with("Engine:") => Self::Fll,
+            _ if has_block() => Self::Fcl,
+            _ => Self::Toml,
         }
     }
 }
@@ -127,6 +151,23 @@ pub fn needs_range(name: &str) -> bool {
     name == NUMBER_GRID || rule_table_names().contains(&name)
 }
 
+/// True for a `.toml` file with a rule table alone.
+#[must_use]
+pub fn is_rule_table_file(path: &Path) -> bool {
+    Format::of(path) == Some(Format::Toml) && text(path).is_ok_and(|text| is_rule_table(&text))
+}
+
+/// True for a text with a rule table alone: three grids, and neither a fuzzy system nor a scenario.
+fn is_rule_table(text: &str) -> bool {
+    let has = |key: &str| {
+        let lines = text.lines().map(str::trim_start);
+        let mut values = lines.filter_map(|line| line.strip_prefix(key));
+        values.any(|rest| rest.trim_start().starts_with('='))
+    };
+    let has_grids = ["delta_kp", "delta_ki", "delta_kd"].into_iter().all(has);
+    has_grids && !toml_file::is_of_this_kind(text) && !scenario::is_one(text)
+}
+
 /// True for a file with a scenario.
 #[must_use]
 pub fn is_scenario(name: &str) -> bool {
@@ -145,6 +186,9 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     }
     let path = Path::new(name);
     let format = Format::of(path).ok_or_else(|| LoadError::UnknownFormat { name: name.into() })?;
+    if format == Format::Toml && text(path).is_ok_and(|text| is_rule_table(&text)) {
+        return shipped(name, options);
+    }
     let mut misplaced = Vec::new();
     if options.range.is_some() {
         misplaced.push("--range goes with a shipped rule table; a file says its own ranges".into());
@@ -188,7 +232,8 @@ pub fn read(
             let system = toml_file::parse(text, name).map_err(LoadError::Problems)?;
             Ok(Loaded { system, notes: Vec::new() })
         }
-        Format::Fis => of_tool(name, fis::read(text)),
+        Format::Fis | Format::T2fis => of_tool(name, fis::read(text)),
+        Format::Fml => of_tool(name, fml::read(text)),
         Format::Fll => of_tool(name, fll::read(text)),
         Format::Fcl => {
             let options = ReadOptions { dialect: options.dialect, block: options.block };

@@ -24,8 +24,8 @@ pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit}
 pub use convert::{ConvertError, Converted, Target, convert, write_as};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
 pub use load::{
-    Format, LoadError, Loaded, NUMBER_GRID, Options, is_scenario, is_system, load, needs_range,
-    read,
+    ENDINGS, Format, LoadError, Loaded, NUMBER_GRID, Options, is_rule_table_file, is_scenario,
+    is_system, load, needs_range, read,
 };
 pub use numbers::{Numbers, numbers_of};
 pub use slice::{Question as SliceQuestion, Slice, slice};

@@ -157,6 +157,30 @@ impl Drawing<'_> {
         spiky.then_some((lowest.max(low - margin), highest.min(high + margin)))
     }
 
+    /// What the panels show, from above: only those that are drawn.
+    pub(super) fn panels_in_words(&self) -> String {
+        let bands = match self.bands().is_empty() {
+            true => "",
+            false => " with bands of 2 % of the step about each level of the command",
+        };
+        let mut panels = vec![
+            format!("pitch angle{bands}"),
+            "command of the controller (positive: nose up)".to_owned(),
+            "elevator in the aircraft's own sign".to_owned(),
+        ];
+        let columns = AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
+        panels.extend(columns.map(|(label, _)| {
+            label.split(" (").next().unwrap_or(label).replace(", downward", " moving downwards")
+        }));
+        match self.flown().filter(|(_, result)| self.is_tuned(&result.name)).count() {
+            0 => {}
+            1 => panels.push("the gains of the self-tuning controller".to_owned()),
+            _ => panels.push("the gains of the self-tuning controllers".to_owned()),
+        }
+        let last = panels.pop().unwrap_or_default();
+        format!("From above: {} and {last}.", panels.join(", "))
+    }
+
     /// A sentence for the caption where the command's panel leaves spikes out.
     pub(super) fn spikes(&self) -> String {
         let command: fn(&ControllerResult) -> &Vec<f64> = |result| &result.trace.command_rad;

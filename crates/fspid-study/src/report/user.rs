@@ -158,9 +158,7 @@ impl User<'_> {
         };
         let failing: Vec<&str> =
             self.simulation.results.iter().filter(|r| fails(r)).map(|r| r.name.as_str()).collect();
-        let caption = "From above: pitch angle with bands of 2 % of the step about each level of the command, command \
-                       of the controller (positive: nose up), elevator in the aircraft's own sign, and the gains of \
-                       self-tuning controllers.";
+        let caption = drawing.panels_in_words();
         let aircraft = match self.study.scenario.plant.aircraft() {
             Some(_) => " Pitch counts from the trim; the elevator is the whole deflection.",
             None => "",
@@ -176,9 +174,13 @@ impl User<'_> {
     }
 
     fn measures(self) -> Section {
+        let has_steps = self.simulation.results.iter().any(|it| !it.metrics.edges.is_empty());
+        let failed = self.simulation.results.iter().any(fails);
+        let steps =
+            || measures::table("Every step of the command, for every controller.", self.simulation);
         let context = context! {
             part => "measures",
-            steps => measures::table("Every step of the command, for every controller.", self.simulation),
+            steps => (has_steps || failed).then(steps),
             integrals => measures::integrals("Whole flights: integrals of the error, and effort.", self.simulation),
         };
         Section::of("measures", "Measures", "user", context)

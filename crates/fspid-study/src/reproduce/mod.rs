@@ -174,6 +174,16 @@ impl Reproduction {
         self.statuses().filter(|(_, of)| *of == status).count()
     }
 
+    /// How many of the paper's numbers come out with parameters of each figure's own, and with one set for all figures
+    /// of a range.
+    #[must_use]
+    pub fn numbers_reproduced(&self) -> [usize; 2] {
+        let count = |of: fn(&JudgedClaim) -> Status| {
+            self.claims.iter().filter(|judged| of(judged) == Status::Reproduced).count()
+        };
+        [count(|judged| judged.status), count(|judged| judged.shared_status)]
+    }
+
     /// `claims.json`: one entry per number and statement.
     #[must_use]
     pub fn claims_json(&self) -> Value {

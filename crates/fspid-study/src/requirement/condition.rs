@@ -106,7 +106,7 @@ fn range(from: Option<f64>, to: Option<f64>, unit: &str) -> Option<String> {
 }
 
 /// Six significant digits without zeros behind them: for conditions such as 0.2 rad in degrees.
-pub(super) fn shortest(value: f64) -> String {
+pub(crate) fn shortest(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     format!("{rounded}")
 }

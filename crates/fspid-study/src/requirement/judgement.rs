@@ -24,6 +24,8 @@ pub struct Judgement {
     pub found: Result<Case, NotEvaluated>,
     /// Whether it is met.
     pub met: bool,
+    /// Size of the step, deg, where a ready set was judged on a flight of its own and not on that of the scenario.
+    pub own_step_deg: Option<f64>,
 }
 
 impl Judgement {
@@ -43,7 +45,7 @@ impl Judgement {
             true => AIRCRAFT.to_owned(),
             false => evidence.controller().to_owned(),
         };
-        Self { controller, requirement: requirement.clone(), found, met }
+        Self { controller, requirement: requirement.clone(), found, met, own_step_deg: None }
     }
 
     /// True for a judgement of the aircraft alone, whoever flies it.
@@ -172,7 +174,8 @@ mod tests {
             let requirement = requirement(Some(0.3), None);
             let met = requirement.is_met_by(value);
             let found = Ok(Case { value, place: Place::default() });
-            Judgement { controller: "c".to_owned(), requirement, found, met }.value_in_words()
+            let (controller, own_step_deg) = ("c".to_owned(), None);
+            Judgement { controller, requirement, found, met, own_step_deg }.value_in_words()
         };
         assert_eq!(judgement(0.299_999_999), "0.299999999");
         assert_eq!(judgement(0.300_000_001), "0.3");

@@ -11,15 +11,18 @@ mod condition;
 mod confidence;
 mod evidence;
 mod judgement;
+mod own_flight;
 mod reason;
 mod set;
 
 pub use case::{Case, FrozenAt, Place, PlantAt, StepAt};
+pub(crate) use condition::shortest;
 pub use condition::{Air, Conditions};
 pub use confidence::Confidence;
 pub use evidence::Evidence;
 pub(crate) use judgement::is_of_aircraft;
 pub use judgement::{AIRCRAFT, Judgement, judge};
+pub(crate) use own_flight::flown as flown_on_their_own;
 pub use reason::NotEvaluated;
 pub(crate) use set::{Choices, SetLine, set_names, set_text};
 pub use set::{RequirementSet, SET_NAMES, set};

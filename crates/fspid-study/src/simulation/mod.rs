@@ -9,13 +9,15 @@ pub(crate) use json::finite;
 pub use words::WRONG_WAY;
 pub use words::left_validity;
 
-use fspid_sim::{Exit, SimError, Trace, simulate};
+use fspid_lti::LtiError;
+use fspid_sim::stability::instability;
+use fspid_sim::{Controller, Exit, NamedController, SimError, Trace, simulate};
 
 use crate::analysis::AtRest;
 use crate::file::{RangeRule, Study};
 use crate::metrics::FlightMetrics;
 pub use crate::requirement::Judgement;
-use crate::requirement::judge;
+use crate::requirement::{flown_on_their_own, judge};
 
 /// One controller's flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,11 +76,18 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Flies the study.
+    /// Flies the study; and once more for ready sets that ask for a step which its command does not have.
     ///
     /// # Errors
     /// [`SimError`] where the plants cannot be sampled; an unstable loop is a result, not an error.
     pub fn of(study: &Study) -> Result<Self, SimError> {
+        let mut simulation = Self::as_commanded(study)?;
+        flown_on_their_own(study, &mut simulation.judgements)?;
+        Ok(simulation)
+    }
+
+    /// Flies the study with its own command alone.
+    pub(crate) fn as_commanded(study: &Study) -> Result<Self, SimError> {
         let scenario = &study.scenario;
         let flight = simulate(scenario)?;
         let results = scenario
@@ -86,6 +95,9 @@ impl Simulation {
             .iter()
             .zip(flight.traces)
             .map(|(named, trace)| {
+                // Numbers so large that the loop cannot be judged are refused by their keys.
+                instability(scenario, &named.controller)
+                    .map_err(|error| too_large(error, named))?;
                 let at_rest = AtRest::of(scenario, &named.controller);
                 let unstable = at_rest.unstable;
                 let metrics = FlightMetrics::of(&trace, &flight.edges, scenario.timing, unstable);
@@ -121,4 +133,20 @@ impl Simulation {
     pub fn result(&self, name: &str) -> Option<&ControllerResult> {
         self.results.iter().find(|result| result.name == name)
     }
+}
+
+/// A sampled loop that leaves the range of numbers, blamed on the gain that is farthest out.
+pub(crate) fn too_large(error: SimError, named: &NamedController) -> SimError {
+    let SimError::Linear(LtiError::NotFinite { .. } | LtiError::OutOfRange { .. }) = error else {
+        return error;
+    };
+    let gains = named.controller.nominal();
+    let all = [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)];
+    let rate = ("rate_gain", named.controller.shell().rate_gain_s);
+    let largest = all.into_iter().fold(rate, |a, b| if b.1.abs() > a.1.abs() { b } else { a });
+    let key = match &named.controller {
+        Controller::SelfTuning(_) if largest.0 != "rate_gain" => format!("nominal.{}", largest.0),
+        _ => largest.0.to_owned(),
+    };
+    SimError::TooLarge { key: format!("controller.{}.{key}", named.name), found: largest.1 }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::{ControllerResult, Judgement, Simulation, WRONG_WAY, failing_exit, left_validity};
 use crate::metrics::{Absent, Measured, StepMetrics};
+use crate::requirement::shortest;
 use crate::units::degrees;
 
 impl Simulation {
@@ -97,7 +98,10 @@ fn push_judgement(out: &mut String, judgement: &Judgement) {
         id if id == name => String::new(),
         id => format!(" ({id})"),
     };
-    line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}"));
+    let own = judgement.own_step_deg.map_or(String::new(), |step_deg| {
+        format!(", on a flight of its own with a step of {} deg", shortest(step_deg))
+    });
+    line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}{own}"));
 }
 
 /// Writing to a string cannot fail.

@@ -26,11 +26,6 @@ pub enum Over {
     },
 }
 
-impl Over {
-    /// Names in files.
-    pub const NAMES: [&'static str; 3] = ["mean", "worst", "tail"];
-}
-
 /// The scenario with some changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {

@@ -21,14 +21,17 @@ impl Verification {
     ///     "id": "…", "controller": "…", "measure": "phase_margin_deg", "unit": "deg",
     ///     "value": 31.2, "least": 45.0, "met": false,
     ///     "clause": "…", "source": "…", "confidence": "recalled", "set": "…", "note": "…",
-    ///     "conditions": {"from_hz": 0.06}, "worst_case": {"frequency_rad_s": 2.3}, "replay": "…"
+    ///     "conditions": {"from_hz": 0.06}, "worst_case": {"frequency_rad_s": 2.3}, "replay": "…",
+    ///     "own_flight": {"step_deg": 11.46}
     ///   }]
     /// }
     /// ```
     /// `not_met` counts what could not be evaluated too; such a line has `reason` in place of `value`. A margin without
-    /// an end is the text `"inf"`. Keys without a value are left out. `failed_flights` are flights that fail whatever is
-    /// required of them, `[{"controller": "…", "failures": ["…"]}]`; with one `all_met` is false. `at_rest` says of each
-    /// self-tuning controller its gains at rest, and of each controller a constant load that it does not remove.
+    /// an end is the text `"inf"`. `own_flight` stands
+    /// where a ready set was judged on a flight of its own. Keys without a value are left out. `failed_flights` are
+    /// flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`; with one `all_met` is
+    /// false. `at_rest` says of each self-tuning controller its gains at rest, and of each controller a constant load
+    /// that it does not remove.
     #[must_use]
     pub fn json(&self, replays: Option<&[String]>) -> Value {
         let unevaluated = self.judgements.iter().filter(|judgement| judgement.found.is_err());
@@ -94,6 +97,7 @@ fn line(judgement: &Judgement, replay: Option<&String>) -> Value {
     put("conditions", conditions(judgement));
     let place = judgement.place();
     put("worst_case", (!place.is_empty()).then(|| place.json()));
+    put("own_flight", judgement.own_step_deg.map(|step_deg| json!({ "step_deg": step_deg })));
     put("replay", replay.map(|replay| json!(replay)));
     Value::Object(whole)
 }

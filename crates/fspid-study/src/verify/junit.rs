@@ -4,8 +4,10 @@ use super::{FailedFlight, Verification};
 use crate::requirement::Judgement;
 
 impl Verification {
-    /// JUnit XML. A line that is not met is a failure of type `not met`, one that could not be evaluated a failure of
-    /// type `not evaluated`, a flight that fails by itself one of type `failed flight`; there are no errors, because input that cannot be used ends the program before.
+    /// JUnit XML. Every line has properties: the number, its limits, and its margin to the nearer of them. A line that is
+    /// not met is a failure of type `not met`, one that could not be evaluated a failure of type `not evaluated`, a flight
+    /// that fails by itself one of type `failed flight`; there are no errors, because input that cannot be used ends the
+    /// program before.
     #[must_use]
     pub fn junit(&self, replays: Option<&[String]>) -> String {
         let flights = self.failed_flights.len();
@@ -53,8 +55,9 @@ impl Verification {
             escaped(&judgement.requirement.id),
             escaped(&class)
         );
+        let properties = properties(judgement);
         if judgement.met {
-            return format!("{head}/>\n");
+            return format!("{head}>\n{properties}    </testcase>\n");
         }
         let kind = if judgement.found.is_ok() { "not met" } else { "not evaluated" };
         let requirement = &judgement.requirement;
@@ -75,11 +78,37 @@ impl Verification {
         details.extend((!place.is_empty()).then(|| format!("worst case: {place}")));
         details.extend(replay.map(|replay| format!("replay: fspid verify {replay}")));
         format!(
-            "{head}>\n      <failure type=\"{kind}\" message=\"{}\">{}</failure>\n    </testcase>\n",
+            "{head}>\n{properties}      <failure type=\"{kind}\" message=\"{}\">{}</failure>\n    </testcase>\n",
             escaped(&message),
             escaped(&details.join("\n"))
         )
     }
+}
+
+/// The number, its limits, how far it is from the nearer one, and where it is worst.
+fn properties(judgement: &Judgement) -> String {
+    let requirement = &judgement.requirement;
+    let number = |value: f64| format!("{value:?}");
+    let value = judgement.found.as_ref().ok().map(|case| case.value);
+    let own = judgement.own_step_deg.map(number);
+    let place = judgement.place();
+    let rows = [
+        ("measure", Some(requirement.measure.name().to_owned())),
+        ("unit", Some(requirement.measure.unit().to_owned()).filter(|unit| !unit.is_empty())),
+        ("value", value.map(number)),
+        ("least", requirement.least.map(number)),
+        ("most", requirement.most.map(number)),
+        // Above 0 inside of the limits, in the unit of the measure.
+        ("margin", value.map(|value| number(requirement.slack(value)))),
+        ("own_flight_step_deg", own),
+        ("worst_case", (!place.is_empty()).then(|| place.to_string())),
+    ];
+    let row = |(name, value): (&str, Option<String>)| {
+        let value = escaped(&value?);
+        Some(format!("        <property name=\"{name}\" value=\"{value}\"/>\n"))
+    };
+    let rows: String = rows.into_iter().filter_map(row).collect();
+    format!("      <properties>\n{rows}      </properties>\n")
 }
 
 /// A text as XML has it, in attributes and between tags; characters that no XML may hold become U+FFFD.

@@ -58,6 +58,7 @@ impl Verification {
                 .then_some(judgement.controller.as_str()),
             frozen,
             plant,
+            own_step_deg: judgement.own_step_deg,
             sign: sign.unwrap_or(ElevatorSign::NoseDownPositive),
         };
         let extra = Extra { overrides: &self.overrides, ..Extra::default() };

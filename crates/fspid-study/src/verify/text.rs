@@ -8,7 +8,7 @@ use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
 use crate::metrics::{Family, Measure};
 use crate::report::number::capital;
-use crate::requirement::{Judgement, Origin, set};
+use crate::requirement::{Judgement, Origin, set, shortest};
 use crate::shell;
 
 /// Width of a paragraph in characters.
@@ -102,9 +102,35 @@ impl Verification {
         format!("{} of {count} {noun} met{some}{flights}; {word}", count - self.unmet())
     }
 
+    /// Which lines were judged on a flight of their own, and what that flight is.
+    fn own_flights(&self) -> Vec<String> {
+        let mut sizes_deg: Vec<f64> = Vec::new();
+        for size_deg in self.judgements.iter().filter_map(|judgement| judgement.own_step_deg) {
+            if !sizes_deg.contains(&size_deg) {
+                sizes_deg.push(size_deg);
+            }
+        }
+        let own = |size_deg: f64| {
+            let mut names: Vec<&str> = Vec::new();
+            let of_it = self.judgements.iter().filter(|it| it.own_step_deg == Some(size_deg));
+            for judgement in of_it {
+                if !names.contains(&judgement.requirement.id.as_str()) {
+                    names.push(&judgement.requirement.id);
+                }
+            }
+            format!(
+                "Judged on a flight of their own, because the command has no step of {0} deg: {1}. It is the scenario with a step of {0} deg at 0 s in place of its command; everything else is as written.",
+                shortest(size_deg),
+                names.join(", ")
+            )
+        };
+        sizes_deg.into_iter().map(own).collect()
+    }
+
     /// What should be known about the numbers above.
     fn notes(&self) -> Vec<String> {
-        let mut notes = self.at_rest.clone();
+        let mut notes = self.own_flights();
+        notes.extend(self.at_rest.iter().cloned());
         notes.extend(self.study.range_rule.note().map(|note| format!("{}.", capital(note))));
         let asks = |family: Family| {
             self.judgements.iter().any(|judgement| judgement.requirement.measure.family() == family)

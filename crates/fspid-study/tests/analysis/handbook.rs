@@ -93,3 +93,35 @@ fn a_rate_loop_is_broken_with_the_pitch_loop_closed() {
     let none = analysed_at(LOOP, &["loop.sample_period_s=0.01"], BreakPoint::Rate);
     assert_eq!(none.loops[0].margins(), Err(Absent::NoRateLoop));
 }
+
+/// Issue 14: a phugoid of 0.0024 rad/s sampled at 100 Hz lies within 3e-5 of z = 1, where level sets lost its peak: the
+/// answer was a disk margin of 1.9944 and a sensitivity peak of 1.0014, both at Nyquist's frequency.
+#[test]
+fn a_slow_phugoid_sampled_fast_keeps_its_peak() {
+    let slow = r#"
+schema = 1
+name = "slow"
+[plant]
+numerator = [0.164319198678308, 0.019741450638662523, 0.0001578062351632995, 5.91386240829545e-07]
+denominator = [1.0, 2.2670562990848655, 11.092049189641381, 0.0005505139406397153, 6.328349077933575e-05]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.0
+[loop]
+sample_period_s = 0.01
+duration_s = 5.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "C"
+kind = "pid"
+kp = 1.7147072448943388
+ki = 0.00015804193991113128
+kd = 0.0
+"#;
+    let found = margins(slow, &[]).expect("stable");
+    assert!(found.disk_margin <= 1.49538, "{found:?}");
+    assert!(found.sensitivity_peak >= 1.13194, "{found:?}");
+    near(found.sensitivity_peak_rad_s, 0.00246, 5e-6);
+}

@@ -161,3 +161,43 @@ fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
     let text = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &[&set[0]]).text();
     assert!(text.contains("all 81 on the map and 49 cells hold"), "{text}");
 }
+
+/// The largest modulus of the closed loop's poles at the worst set-point that a scenario holds, and that.
+fn held(text: &str, set: &[&str]) -> (f64, f64) {
+    let analysis = analysed(text, set);
+    let plant = analysis.loops[0].worst().expect("a loop").clone();
+    let moduli = plant.closed_poles.iter().map(|pole| pole.re.hypot(pole.im));
+    (moduli.fold(0.0, f64::max), plant.setpoint_rad.to_degrees())
+}
+
+/// It used to be called stable, with margins, at every set-point: the slope of kp times (b - 1) r was left out.
+#[test]
+fn a_setpoint_weight_of_zero_makes_the_747_unstable_at_rest_at_20_deg_and_not_at_1_deg() {
+    let weight = "controller.C.setpoint_weights.proportional=0.0";
+    let (radius, at_deg) = held(TUNED, &[weight, "setpoint.amplitude_deg=-20"]);
+    // On the steepest side of the kink that the rules have at rest; in the mean of its sides 1.0032.
+    assert!(radius > 1.003, "{radius}");
+    assert!((at_deg + 20.0).abs() < 1e-9, "{at_deg}");
+    let steep = analysed(TUNED, &[weight, "setpoint.amplitude_deg=-20"]);
+    assert!(!steep.all_stable());
+    assert!(steep.text().contains("UNSTABLE") && steep.text().contains("at -20 deg"));
+    assert!(steep.json()["controllers"][0]["setpoint_deg"].as_f64().is_some_and(|deg| deg < -19.0));
+    assert!(analysed(TUNED, &[weight]).loops[0].margins().is_ok());
+    // With a weight of 1 the loop at rest is the same at every set-point.
+    let plain = analysed(TUNED, &["setpoint.amplitude_deg=-20"]);
+    assert_eq!(plain.loops[0].margins(), analysed(TUNED, &[]).loops[0].margins());
+}
+
+/// It used to be called stable: the slope of ki times the sum that holds the plant was left out.
+#[test]
+fn the_literal_integral_makes_the_747_unstable_at_rest_at_10_deg() {
+    let set = [
+        "controller.C.integral=\"literal\"",
+        "controller.C.derivative_on=\"measurement\"",
+        "controller.C.supervisor.error_scale=5",
+        "controller.C.supervisor.output_scale.ki=0.1",
+        "setpoint.amplitude_deg=-10",
+    ];
+    let (radius, at_deg) = held(TUNED, &set);
+    assert!(radius > 1.0 && at_deg != 0.0, "{radius} at {at_deg}");
+}

@@ -18,32 +18,44 @@ const SETPOINTS: [&str; 6] = [
     "kind = \"table\"\ntime_s = [0.0, 1.0]\nvalue_deg = [1.0, 2.0]\ninterpolation = \"linear\"\n",
 ];
 
-/// Speed, altitude and wind of the flying file: every unit and every kind.
-const FLIGHTS: [[&str; 3]; 5] = [
+/// Inertia of the flying file: in every unit, and by radii.
+const INERTIAS: [&str; 3] = [
+    "ix_kg_m2 = 1400.0\niy_kg_m2 = 4000.0\niz_kg_m2 = 4700.0\nixz_kg_m2 = 10.0\n",
+    "ix_slug_ft2 = 1000.0\niy_slug_ft2 = 3000.0\niz_slug_ft2 = 3500.0\nixz_slug_ft2 = 8.0\n",
+    "ix_gyration_m = 1.1\niy_gyration_m = 1.8\niz_gyration_m = 2.0\n",
+];
+
+/// Speed, altitude, wind and inertia of the flying file: every unit and every kind.
+const FLIGHTS: [[&str; 4]; 5] = [
     [
         "airspeed_m_s = 54.0",
         "altitude_m = 300.0",
         "kind = \"steady\"\nspeed_m_s = 5.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+        INERTIAS[0],
     ],
     [
         "airspeed_kt = 104.0",
         "altitude_ft = 1000.0",
         "kind = \"steady\"\nspeed_kt = 10.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+        INERTIAS[1],
     ],
     [
         "airspeed_ft_s = 176.0",
         "altitude_m = 300.0",
         "kind = \"log-shear\"\nw20_m_s = 5.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+        INERTIAS[2],
     ],
     [
         "airspeed_m_s = 54.0",
         "altitude_m = 300.0",
         "kind = \"log-shear\"\nw20_kt = 10.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+        INERTIAS[0],
     ],
     [
         "airspeed_m_s = 54.0",
         "altitude_m = 300.0",
         "kind = \"microburst\"\noutflow_m_s = 8.0\nradius_m = 600.0\npeak_height_m = 40.0\nnorth_m = 700.0\neast_m = 50.0\n",
+        INERTIAS[0],
     ],
 ];
 

@@ -15,6 +15,7 @@ mod reading;
 mod schedule;
 mod schema;
 mod settings;
+mod words;
 
 use std::path::PathBuf;
 

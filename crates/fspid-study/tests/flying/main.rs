@@ -7,6 +7,7 @@ mod gallery;
 mod ground;
 mod limits;
 mod linear_file;
+mod loading;
 mod moving_air;
 
 use fspid_sim::Trace;

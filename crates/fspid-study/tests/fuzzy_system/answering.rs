@@ -31,7 +31,7 @@ fn every_problem_of_a_question_is_told_at_once() {
     let told =
         ask(&system, &values(&["fod=1", "service=x", "service"])).expect_err("wrong").to_string();
     for part in [
-        "there is no input `fod`; did you mean food? known are service, food",
+        "there is no input `fod`; did you mean `food`? Known are service, food",
         "service is `x`; allowed is a number",
         "`service` is no name=value",
         "food has no value; add --input food=…",
@@ -62,7 +62,10 @@ fn an_option_overrides_the_rule_of_the_file() {
 #[test]
 fn a_name_that_is_no_system_lists_what_is() {
     let told = load("nowhere", Options::default()).expect_err("wrong").to_string();
-    assert!(told.contains(".fis, .fcl or .fll") && told.contains("printed, mirrored"), "{told}");
+    assert!(
+        told.contains(".fis, .t2fis, .fcl, .fll or .xml") && told.contains("printed, mirrored"),
+        "{told}"
+    );
     let needs = load("printed", Options::default()).expect_err("wrong").to_string();
     assert!(needs.contains("--range"), "{needs}");
     let missing = load("nowhere.toml", Options::default());

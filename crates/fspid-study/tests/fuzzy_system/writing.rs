@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::Parts;
-use fspid_study::fuzzy_system::{Options, System, load, parse, write};
+use fspid_study::fuzzy_system::{AuditQuestion, Options, System, audit, load, parse, write};
 
 use super::{EVERY_KEY, TIP, TYPE_2};
 
@@ -133,4 +133,15 @@ fn a_system_with_nothing_but_variables_comes_back() {
     parts.outputs[0].terms.clear();
     let text = comes_back(&parts);
     assert!(!text.contains("terms") || text.matches("terms").count() == 1, "{text}");
+}
+
+/// Files of fuzzylite whose formulas name outputs were refused.
+#[test]
+fn a_formula_that_names_an_output_comes_back_and_its_surface_is_refused() {
+    let text = include_str!("../systems/memory.toml");
+    let (system, _) = written(text);
+    comes_back(system.parts());
+    assert!(system.parts().formulas_name_outputs());
+    let told = audit(&system, &AuditQuestion::default()).expect_err("refused").to_string();
+    assert!(told.contains("a formula names an output"), "{told}");
 }

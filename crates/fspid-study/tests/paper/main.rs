@@ -4,6 +4,7 @@
 
 mod claims;
 mod fits;
+mod readme;
 
 use std::sync::OnceLock;
 

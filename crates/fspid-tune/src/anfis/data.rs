@@ -6,6 +6,7 @@ use std::path::Path;
 
 use fspid_campaign::sample::{Cube, Sampling};
 use fspid_fuzzy::system::{Parts, System};
+use fspid_study::file::unread_in_words;
 use fspid_study::rows::{self, RowsError, Table};
 
 use super::error::AnfisError;
@@ -118,9 +119,14 @@ impl Data {
     /// As [`read`](Self::read); each problem begins with the path.
     pub fn load(parts: &Parts, path: &Path) -> Result<Self, AnfisError> {
         let named = |problem: String| format!("{}:{problem}", path.display());
+        if path == Path::new("-") {
+            return Self::read(parts, &mut io::stdin().lock());
+        }
         let file = File::open(path);
-        let file =
-            file.map_err(|error| AnfisError::Table { problems: vec![named(format!(" {error}"))] })?;
+        let file = file.map_err(|error| {
+            let reason = format!(" cannot be read: {}", unread_in_words(&error));
+            AnfisError::Table { problems: vec![named(reason)] }
+        })?;
         Self::read(parts, &mut BufReader::new(file)).map_err(|error| match error {
             AnfisError::Table { problems } => {
                 AnfisError::Table { problems: problems.into_iter().map(named).collect() }

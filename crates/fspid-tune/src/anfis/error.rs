@@ -95,6 +95,14 @@ pub enum AnfisError {
     /// Data or sets so large that the least squares overflow.
     #[error("the least squares overflow; choose other units")]
     Overflow,
+    /// Rows for validation at which the learned system answers beyond the range of numbers.
+    #[error(
+        "the error of the rows for validation is {found} in every epoch: the answers there, or the numbers to be answered, are so large that their squares leave the range of 64-bit numbers; choose other units, or look at these rows"
+    )]
+    Validation {
+        /// What was found.
+        found: f64,
+    },
     /// A setting of the plan that is not allowed.
     #[error("{what} is {found}; allowed is {allowed}")]
     Plan {

@@ -227,6 +227,10 @@ pub fn learn_beside(
     let premises = Premises::of(&start, training);
     let session = Session { training, validation, plan, consequents, premises };
     let mut learned = session.run(&start)?;
+    // Nothing was judged: no epoch is better than another.
+    if let Some(found) = learned.best().validation.filter(|error| !error.is_finite()) {
+        return Err(AnfisError::Validation { found });
+    }
     for (output, given) in learned.parts.outputs.iter_mut().zip(&parts.outputs) {
         output.clamp = given.clamp;
     }

@@ -12,9 +12,9 @@ pub(crate) const CONFIDENCE: f64 = 0.95;
 /// How a controller stands against the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// It loses a smaller share of its flights; or as many, and its error is significantly smaller.
+    /// It loses a smaller share of its flights; or as many, and its error is significantly smaller over the cases.
     Better,
-    /// It loses a larger share of its flights; or as many, and its error is significantly larger.
+    /// It loses a larger share of its flights; or as many, and its error is significantly larger over the cases.
     Worse,
     /// The difference is not significant.
     Open,
@@ -56,7 +56,7 @@ pub struct Comparison {
     pub standing: Standing,
     /// Whether lost flights decided that.
     pub by_flights: bool,
-    /// Whether that is significant.
+    /// Whether that is significant, over cases and over tunings; never where each was tuned once.
     pub is_sure: bool,
 }
 
@@ -222,12 +222,14 @@ impl Pair<'_> {
         let flights = lost_mine.cmp_lost(lost_theirs);
         found.by_flights = flights.is_ne();
         let p = if found.by_flights { found.lost.p_adjusted } else { found.p_adjusted };
-        found.is_sure = p <= 1.0 - CONFIDENCE;
+        let is_significant = p <= 1.0 - CONFIDENCE;
+        // One tuning each says nothing of what another seed would have found: the p-values are of these designs alone.
+        found.is_sure = is_significant && !self.judged.is_tuned_once();
         found.standing = match (flights, found.ratio.mean) {
             (Ordering::Greater, _) => Standing::Worse,
             (Ordering::Less, _) => Standing::Better,
-            (Ordering::Equal, Some(ratio)) if found.is_sure && ratio < 1.0 => Standing::Better,
-            (Ordering::Equal, Some(ratio)) if found.is_sure && ratio > 1.0 => Standing::Worse,
+            (Ordering::Equal, Some(ratio)) if is_significant && ratio < 1.0 => Standing::Better,
+            (Ordering::Equal, Some(ratio)) if is_significant && ratio > 1.0 => Standing::Worse,
             _ => Standing::Open,
         };
     }

@@ -6,6 +6,7 @@ use super::compare::{CONFIDENCE, Comparison, Lost, Ratio, Standing};
 use super::judged::{Contestant, Count, Design, Quantity};
 use super::outcome::{First, Outcome};
 use super::summary::{Spread, Summary};
+use super::words::{Headline, headline};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -38,11 +39,19 @@ pub(super) fn json(outcome: &Outcome) -> Value {
         "confidence": CONFIDENCE,
         "against": name(judged.against),
         "tuning": tuned,
+        "verdict": verdict(outcome),
         "ranking": ranking(outcome, &outcome.first()),
         "groups": groups.collect::<Vec<_>>(),
         "cases": cases(outcome),
         "controllers": controllers.map(|(place, it)| controller(outcome, place, it)).collect::<Vec<_>>(),
     })
+}
+
+/// What stands at the head of the text and of the page.
+fn verdict(outcome: &Outcome) -> Value {
+    let Headline { word, winner, why, .. } = headline(outcome);
+    let winner = winner.and_then(|place| outcome.judged.contestants.get(place));
+    json!({ "winner": winner.map(|it| it.name.as_str()), "words": word, "why": why })
 }
 
 fn ranking<'a>(outcome: &'a Outcome, first: &First) -> Vec<&'a str> {

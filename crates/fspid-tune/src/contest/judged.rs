@@ -121,6 +121,14 @@ impl Count {
 }
 
 impl Judged {
+    /// Whether a controller was tuned, and none more than once: then nobody knows what another seed would have found,
+    /// and there is no winner.
+    #[must_use]
+    pub fn is_tuned_once(&self) -> bool {
+        let tuned = || self.contestants.iter().filter(|it| it.is_tuned);
+        tuned().next().is_some() && tuned().any(|it| it.designs.len() < 2)
+    }
+
     /// Groups of cases in the order of their first case, with the places of their cases.
     #[must_use]
     pub fn groups(&self) -> Vec<(String, Vec<usize>)> {

@@ -114,6 +114,21 @@ impl Contest {
         each_once(tuned.iter().chain(judged))
     }
 
+    /// The controllers that are tuned, each with the candidates of all its tunings.
+    pub fn searches(&self) -> impl Iterator<Item = (&str, usize)> {
+        let candidates: usize = self.efforts.iter().map(|effort| effort.budget).sum();
+        let tuned = self.entrants.iter().filter(|entrant| entrant.problem.is_some());
+        tuned.map(move |entrant| (entrant.name.as_str(), candidates))
+    }
+
+    /// Flies the start of a controller's tuning so many times, for whoever wants to know how long a candidate takes.
+    pub fn rehearse(&self, controller: &str, candidates: usize) {
+        let entrant = self.entrants.iter().find(|entrant| entrant.name == controller);
+        if let Some(problem) = entrant.and_then(|entrant| entrant.problem.as_ref()) {
+            let _ = problem.scores(&vec![problem.space().start(); candidates]);
+        }
+    }
+
     /// Tunes what is to be tuned, judges all, and writes `contest.parquet`, `contest.json` and `contest.html` into
     /// the folder, designs below it. Designs that are there already are not searched again.
     ///

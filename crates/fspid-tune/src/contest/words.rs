@@ -171,8 +171,10 @@ pub(super) fn group(name: &str) -> &str {
 pub(super) struct Headline {
     /// Whether lost flights or a significant difference decide it.
     pub(super) is_decided: bool,
-    /// "PID wins", "PID is first, and nobody wins".
+    /// "PID wins", "PID is first, and nobody wins", "one tuning each: no winner can be named".
     pub(super) word: String,
+    /// Who wins, if anybody does.
+    pub(super) winner: Option<usize>,
     /// Why, without a full stop.
     pub(super) why: String,
 }
@@ -183,11 +185,12 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
     let ranking = outcome.first().ranking;
     let first = ranking.first().copied().unwrap_or(against);
     let winner = cut(name(outcome, first), 60);
+    let is_once = outcome.judged.is_tuned_once();
     let open: Vec<String> = ranking
         .iter()
         .filter(|place| {
             let found = outcome.comparison(**place);
-            found.is_some_and(|it| !(it.standing == Standing::Worse && it.is_sure))
+            found.is_some_and(|it| !(it.standing == Standing::Worse && (it.is_sure || is_once)))
         })
         .map(|place| cut(name(outcome, *place), 60))
         .collect();
@@ -209,7 +212,18 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
         None => (is_decided, why),
         Some(words) => (false, format!("{words}; {why}")),
     };
+    if is_once {
+        let why = format!(
+            "{winner} is first in it, and another seed may find another order; contest.seeds = 3 or more would tell; {why}"
+        );
+        let word = "one tuning each: no winner can be named".to_owned();
+        return Headline { is_decided: false, word, winner: None, why };
+    }
     let word = match is_decided {
+        // Nothing is known of how the designs were found.
+        true if !outcome.judged.contestants.iter().any(|it| it.is_tuned) => {
+            format!("{winner} wins, as these designs are written")
+        }
         true => format!("{winner} wins"),
         false => format!("{winner} is first, and nobody wins"),
     };
@@ -217,7 +231,7 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
         true => why,
         false => format!("not significantly different from {reference}; {why}"),
     };
-    Headline { is_decided, word, why }
+    Headline { is_decided, word, winner: is_decided.then_some(first), why }
 }
 
 /// How many flights of a controller are of loops that are unstable at rest, if any.
@@ -255,7 +269,9 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
                     counted(found.ratio.cases, "case", "cases")
                 ),
             };
-            words.push(format!("{change}{place}{sure}, {}", p_value(found.p_adjusted)));
+            let p = p_value(found.p_adjusted);
+            let alone = if outcome.judged.is_tuned_once() { " over the cases alone" } else { "" };
+            words.push(format!("{change}{place}{sure}, {p}{alone}"));
         }
     }
     if let Some(ratio) = outcome.activity_of(found.contestant).and_then(|it| it.ratio.mean) {
@@ -309,8 +325,10 @@ pub(super) fn standing(found: &Comparison) -> String {
         (Standing::Worse, true, false) => "behind by lost flights",
         (Standing::Better, true, true) => "better by lost flights",
         (Standing::Worse, true, true) => "worse by lost flights",
-        (Standing::Better, false, _) => "better",
-        (Standing::Worse, false, _) => "worse",
+        (Standing::Better, false, true) => "better",
+        (Standing::Worse, false, true) => "worse",
+        (Standing::Better, false, false) => "ahead in this one tuning",
+        (Standing::Worse, false, false) => "behind in this one tuning",
         (Standing::Open, ..) => "not significant",
     };
     // Lost flights come first, and do not hide what holds where both came back.

@@ -1,13 +1,12 @@
 //! `fspid aircraft envelope`: an aircraft over speeds and altitudes.
 
-use std::path::{Path, PathBuf};
-
 use clap::Args;
 
 use super::super::{Format, drawings, json_text};
 use super::qualities::Category;
 use super::{Answer, Plane};
-use crate::exit::{Failure, note, print};
+use crate::argument::{Drawings, InFile, OutFile, is_standard, written};
+use crate::exit::{Failure, print, wrote};
 use fspid_study::aircraft::{EnvelopeQuestion, envelope};
 use fspid_study::output;
 
@@ -30,16 +29,16 @@ pub(super) struct Arguments {
     category: Category,
     /// A scenario with the autopilot: its servo, sample period and controller.
     #[arg(long, value_name = "FILE.toml")]
-    scenario: Option<PathBuf>,
+    scenario: Option<InFile>,
     /// The controller of the scenario, if it has several.
     #[arg(long, value_name = "NAME", requires = "scenario")]
     controller: Option<String>,
     /// Write every point to this file; `-` is standard output, in place of the summary.
-    #[arg(long, value_name = "OUT.csv")]
-    csv: Option<PathBuf>,
+    #[arg(value_parser = written(&["csv"]), long, value_name = "OUT.csv")]
+    csv: Option<OutFile>,
     /// Draw a map of each quantity into this folder.
     #[arg(long, value_name = "FOLDER")]
-    svg: Option<PathBuf>,
+    svg: Option<Drawings>,
     #[command(flatten)]
     answer: Answer,
 }
@@ -60,10 +59,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         drawings::write(path, figures.iter().map(|(name, svg)| (*name, svg.as_str())).collect())?;
     }
     match (&arguments.csv, answer.format) {
-        (Some(path), _) if path == Path::new("-") => return print(&envelope.csv()),
+        // In place of the summary.
+        (Some(path), _) if is_standard(path) => return Ok(output::write(path, envelope.csv())?),
         (Some(path), _) => {
             output::write(path, envelope.csv())?;
-            note(format_args!("wrote {}", path.display()));
+            wrote(path);
         }
         (None, _) => {}
     }

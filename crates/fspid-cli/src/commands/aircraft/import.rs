@@ -1,11 +1,10 @@
 //! `fspid aircraft import`: a flight model in DAVE-ML.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::super::{Format, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{InFile, OutFile, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_study::aircraft::import;
 use fspid_study::output;
 
@@ -16,10 +15,10 @@ use fspid_study::output;
 pub(super) struct Arguments {
     /// The model: a DAVE-ML file, or a .toml file that was written from one.
     #[arg(value_name = "FILE.dml")]
-    file: PathBuf,
+    file: InFile,
     /// Write the model to this file.
-    #[arg(long, value_name = "OUT.toml")]
-    out: Option<PathBuf>,
+    #[arg(value_parser = written(&["toml"]), long, value_name = "OUT.toml")]
+    out: Option<OutFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -32,7 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(path) = &arguments.out {
         output::write(path, imported.toml())?;
-        note(format_args!("wrote {}", path.display()));
+        wrote(path);
     }
     match arguments.format {
         Format::Text => print(&imported.text()),

@@ -1,11 +1,10 @@
 //! `fspid aircraft linearise`: the linear model of a flight.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 
 use super::{Answer, Flight};
-use crate::exit::{Failure, note};
+use crate::argument::{OutFile, written};
+use crate::exit::{Failure, wrote};
 use fspid_study::aircraft::{VelocityForm, linearise};
 use fspid_study::output;
 
@@ -20,8 +19,8 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = States::Components)]
     states: States,
     /// Write pitch over elevator as a plant file; a scenario names it under `[plant]` as `file = "OUT.toml"`.
-    #[arg(long, value_name = "OUT.toml")]
-    plant: Option<PathBuf>,
+    #[arg(value_parser = written(&["toml"]), long, value_name = "OUT.toml")]
+    plant: Option<OutFile>,
     #[command(flatten)]
     answer: Answer,
 }
@@ -45,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let linear = linearise(&question, form).map_err(Failure::input)?;
     if let Some(path) = &arguments.plant {
         output::write(path, linear.plant_file())?;
-        note(format_args!("wrote {}", path.display()));
+        wrote(path);
     }
     answer.print(|| linear.text(), || linear.json())
 }

@@ -13,9 +13,10 @@ mod trim;
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::Value;
 
-use super::{Format, json_text};
-use crate::exit::{Failure, print};
-use fspid_study::aircraft::{self, AirChoice, DragChoice, Question, ThrustChoice};
+use super::Format;
+use crate::argument::Source;
+use crate::exit::Failure;
+use fspid_study::aircraft::{self, AirChoice, DragChoice, LoadingQuestion, Question, ThrustChoice};
 
 /// Trim, linearise and judge aircraft anywhere in their envelope.
 ///
@@ -88,10 +89,7 @@ impl Answer {
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> Value,
     ) -> Result<(), Failure> {
-        match self.format {
-            Format::Text => print(&text()),
-            Format::Json => print(&json_text(&json())),
-        }
+        self.format.print(text, json)
     }
 }
 
@@ -100,8 +98,9 @@ impl Answer {
 struct Plane {
     /// An aircraft that the program carries (see `fspid aircraft list`), or an aircraft file.
     #[arg(value_name = "NAME or FILE")]
-    name: String,
-    /// The air: the standard atmosphere, or density and gravity of the aircraft's source everywhere.
+    name: Source,
+    /// The air: the standard atmosphere (gravity is standard, for an aircraft of tables that of its file), or density and
+    /// gravity of the aircraft's source everywhere.
     #[arg(long, value_enum, default_value_t = Air::Standard)]
     air: Air,
     /// How drag depends on lift: along the tangent at the source's condition, or by a parabola.
@@ -110,12 +109,22 @@ struct Plane {
     /// How thrust depends on speed while the throttle is held.
     #[arg(long, value_enum, default_value_t = Thrust::Constant)]
     thrust: Thrust,
+    /// Mass that flies, such as 907kg or 2000lb; the wing stays that of the source. That of the source if left out.
+    #[arg(long, value_name = "MASS")]
+    mass: Option<String>,
+    /// Centre of gravity behind the leading edge of the mean chord as a share of it, such as 0.33; that of the source if
+    /// left out.
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    cg: Option<String>,
+    /// Moment of inertia in pitch, such as "4000 kg m2" or "3000 slug ft2"; that of the source if left out.
+    #[arg(long, value_name = "INERTIA")]
+    iy: Option<String>,
 }
 
 /// Which air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Air {
-    /// The standard atmosphere and standard gravity.
+    /// The standard atmosphere and standard gravity; for tables the gravity of their file.
     Standard,
     /// Density and gravity of the source, at every altitude.
     Source,
@@ -143,6 +152,11 @@ impl Plane {
     fn question(&self, units: aircraft::Units) -> Question<'_> {
         Question {
             aircraft: &self.name,
+            loading: LoadingQuestion {
+                mass: self.mass.as_deref(),
+                cg: self.cg.as_deref(),
+                iy: self.iy.as_deref(),
+            },
             units,
             air: match self.air {
                 Air::Standard => AirChoice::Standard,

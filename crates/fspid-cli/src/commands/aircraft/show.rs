@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::Answer;
+use crate::argument::Source;
 use crate::exit::Failure;
 use fspid_study::aircraft::show;
 
@@ -11,7 +12,7 @@ use fspid_study::aircraft::show;
 pub(super) struct Arguments {
     /// An aircraft that the program carries, or an aircraft file.
     #[arg(value_name = "NAME or FILE")]
-    name: String,
+    name: Source,
     #[command(flatten)]
     answer: Answer,
 }

@@ -9,10 +9,9 @@ mod run;
 mod search;
 mod shard;
 
-use std::path::PathBuf;
-
 use clap::{Args, Subcommand, ValueEnum};
 
+use crate::argument;
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Campaign, CampaignError, Folder, Question};
@@ -182,7 +181,7 @@ impl Planned {
 struct Place {
     /// The campaign's folder.
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    out: argument::Folder,
 }
 
 impl Place {

@@ -1,21 +1,25 @@
 //! `fspid campaign plan`: fix what is flown, and in which parts.
 
-use std::path::PathBuf;
-
 use clap::Args;
+use serde_json::json;
 
+use super::super::Format;
 use super::{Place, Planned};
-use crate::exit::{Failure, print};
+use crate::argument::InFile;
+use crate::exit::Failure;
 
 /// Plan a campaign without flying it: for machines that share the shards.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     #[command(flatten)]
     planned: Planned,
     #[command(flatten)]
     place: Place,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -23,11 +27,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = arguments.planned.campaign(&arguments.scenario, &folder)?;
     let plan = campaign.plan();
     let last = plan.shards().saturating_sub(1);
-    print(&format!(
-        "{}: {} runs in {} shards, numbered 0 to {last}\ncampaign {}\n",
-        folder.plan_path().display(),
-        plan.runs,
-        plan.shards(),
-        plan.id(),
-    ))
+    let (path, shards) = (folder.plan_path(), plan.shards());
+    arguments.format.print(
+        || {
+            format!(
+                "{}: {} runs in {shards} shards, numbered 0 to {last}\ncampaign {}\n",
+                path.display(),
+                plan.runs,
+                plan.id(),
+            )
+        },
+        || {
+            json!({
+                "schema": 1, "plan": path.display().to_string(), "runs": plan.runs, "shards": shards,
+                "campaign": plan.id().to_string(),
+            })
+        },
+    )
 }

@@ -1,11 +1,10 @@
 //! `fspid campaign replay`: one run again, with its trace.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::super::{Format, json_text};
 use super::{failure, planned};
+use crate::argument::{self, OutFile, written};
 use crate::exit::{Failure, print};
 use fspid_campaign::{Folder, replay};
 use fspid_study::{output, report};
@@ -14,16 +13,16 @@ use fspid_study::{output, report};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The campaign's folder.
-    folder: PathBuf,
+    folder: argument::Folder,
     /// Number of the run, from 0.
     #[arg(long)]
     run: u64,
     /// Write the traces of all controllers to this CSV file.
-    #[arg(long, value_name = "OUT.csv")]
-    trace: Option<PathBuf>,
+    #[arg(value_parser = written(&["csv"]), long, value_name = "OUT.csv")]
+    trace: Option<OutFile>,
     /// Write a report that opens offline in a browser.
-    #[arg(long, value_name = "OUT.html")]
-    report: Option<PathBuf>,
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    report: Option<OutFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,

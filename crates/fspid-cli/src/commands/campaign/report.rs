@@ -1,11 +1,10 @@
 //! `fspid campaign report`: what a file of rows says.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
 use super::super::{Format, json_text};
-use crate::exit::{Failure, note, print};
+use crate::argument::{InFile, OutFile, is_standard, written};
+use crate::exit::{Failure, print, wrote};
 use fspid_campaign::report;
 use fspid_campaign::summary::{self, Summary, SummarySettings};
 use fspid_study::output;
@@ -14,10 +13,10 @@ use fspid_study::output;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The merged file of a campaign.
-    file: PathBuf,
+    file: InFile,
     /// Write a page that opens offline in a browser: distributions, envelopes, failure maps.
-    #[arg(long, value_name = "OUT.html")]
-    out: Option<PathBuf>,
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    out: Option<OutFile>,
     /// How sure the intervals shall be.
     #[arg(long, default_value_t = SummarySettings::default().confidence)]
     confidence: f64,
@@ -27,6 +26,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if is_standard(&arguments.file) {
+        return Err(Failure::input(
+            "a table is read here and there; name its file in place of `-`",
+        ));
+    }
     let settings = SummarySettings { confidence: arguments.confidence };
     let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;
     if let Some(path) = &arguments.out {
@@ -35,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let settings = report::Settings { summary: settings, folder };
         let page = report::page_of(&arguments.file, &summary, &settings).map_err(Failure::input)?;
         output::write(path, page)?;
-        note(format_args!("{}: written", path.display()));
+        wrote(path);
     }
     match arguments.format {
         Format::Text => print(&summary::text(&summary)),

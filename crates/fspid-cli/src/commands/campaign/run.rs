@@ -1,20 +1,22 @@
 //! `fspid campaign run`: fly all of it here.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::super::progress::Telling;
+use super::super::{Format, interrupt};
 use super::progress::told;
 use super::{Place, Planned, failure, planned};
-use crate::exit::{Failure, print};
+use crate::argument::InFile;
+use crate::exit::Failure;
 use fspid_campaign::local;
+use fspid_study::shell;
 
 /// Plan, fly and merge a campaign on this machine; again after an interruption, it goes on.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file; left out, the campaign that is planned in the folder goes on.
-    scenario: Option<PathBuf>,
+    scenario: Option<InFile>,
     #[command(flatten)]
     planned: Planned,
     #[command(flatten)]
@@ -28,6 +30,9 @@ pub(super) struct Arguments {
     /// Say nothing while flying.
     #[arg(long)]
     quiet: bool,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 /// Who flies a campaign.
@@ -53,14 +58,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Engine::Local = arguments.engine;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let runs = campaign.plan().runs;
+    interrupt::ends_with(format!(
+        "interrupted; what is flown stays, and this goes on: fspid campaign run --out {}",
+        shell::word(&folder.path().display().to_string())
+    ));
     let flown =
         told(telling, runs, |progress| local::run(&folder, &campaign, arguments.threads, progress));
     let flown = flown.map_err(failure)?;
-    let merged = folder.merged_path();
-    print(&format!(
-        "{}: {runs} runs, {} rows\ndigest {}\n",
-        merged.display(),
-        runs * campaign.rows().of_run() as u64,
-        flown.digest,
-    ))
+    let (merged, rows) = (folder.merged_path(), runs * campaign.rows().of_run() as u64);
+    let (merged, digest) = (merged.display(), &flown.digest);
+    arguments.format.print(
+        || format!("{merged}: {runs} runs, {rows} rows\ndigest {digest}\n"),
+        || {
+            json!({
+                "schema": 1, "file": merged.to_string(), "runs": runs, "rows": rows,
+                "digest": digest.to_string(),
+            })
+        },
+    )
 }

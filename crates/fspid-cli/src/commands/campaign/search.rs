@@ -1,11 +1,10 @@
 //! `fspid campaign search`: the worst case inside the box of the dispersions.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
-use super::super::{Format, json_text};
+use super::super::{Format, interrupt, json_text};
 use super::failure;
+use crate::argument::InFile;
 use crate::exit::{Failure, print};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Folder, Question, local, search};
@@ -14,7 +13,7 @@ use fspid_campaign::{Folder, Question, local, search};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file.
-    scenario: PathBuf,
+    scenario: InFile,
     /// What shall be as bad as can be: a measure as campaigns name it, or the id of a requirement.
     #[arg(long, value_name = "NAME")]
     measure: String,
@@ -50,6 +49,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         sampling: Sampling::Random,
         shard_runs: None,
     };
+    interrupt::ends_with(
+        "interrupted; a search for the worst case keeps nothing, so that it begins anew".to_owned(),
+    );
     // Nothing is kept, so that the folder is only what paths are seen from.
     let here = Folder::new(std::path::Path::new("."));
     let campaign = fspid_campaign::plan(&question, &here).map_err(failure)?;

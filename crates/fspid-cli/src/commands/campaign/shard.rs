@@ -1,11 +1,13 @@
 //! `fspid campaign shard`: fly one part.
 
 use clap::Args;
+use serde_json::json;
 
 use super::super::progress::Telling;
+use super::super::{Format, interrupt};
 use super::progress::told;
 use super::{Place, failure};
-use crate::exit::{Failure, print};
+use crate::exit::Failure;
 use fspid_campaign::shard::{self, Done};
 use fspid_campaign::{CampaignError, local};
 
@@ -22,6 +24,9 @@ pub(super) struct Arguments {
     /// Say nothing while flying.
     #[arg(long)]
     quiet: bool,
+    /// How the answer is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -34,13 +39,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let range = range.map_err(failure)?;
     let _shared = folder.lock(false).map_err(failure)?;
     let _alone = folder.lock_shard(range).map_err(failure)?;
+    interrupt::ends_with(format!(
+        "interrupted; whole shards stay, and this one is flown by the same command: {}",
+        interrupt::command()
+    ));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let done = told(telling, range.end - range.first, |progress| {
         local::in_threads(arguments.threads, || shard::fly(&folder, &campaign, number, progress))?
     });
-    let words = match done.map_err(failure)? {
+    let done = done.map_err(failure)?;
+    let words = match done {
         Done::Flown => "flown",
         Done::Found => "there already",
     };
-    print(&format!("{}: {range}, {words}\n", folder.shard_path(range).display()))
+    let path = folder.shard_path(range);
+    let path = path.display();
+    arguments.format.print(
+        || format!("{path}: {range}, {words}\n"),
+        || {
+            json!({
+                "schema": 1, "file": path.to_string(), "first_run": range.first, "last_run": range.end - 1,
+                "flown": matches!(done, Done::Flown),
+            })
+        },
+    )
 }

@@ -1,6 +1,7 @@
 //! From what a text says to the system that it means.
 
 mod output;
+mod partial;
 mod rules;
 
 use std::collections::BTreeSet;
@@ -20,20 +21,30 @@ use crate::{check, rule, term};
 
 /// The system that a draft means in a dialect.
 pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading, Problems> {
-    let Draft { name, variables, blocks, mut evidence, mut report, .. } = draft;
+    let Draft { name, mut variables, blocks, mut evidence, mut report, .. } = draft;
+    let without = partial::without_a_section(&mut variables, &blocks, &mut report);
     let names = rule_names(&variables, &mut report);
     let mut missing_sign = None;
     let read = |block| rules::block(block, &names, &mut missing_sign, &mut report);
-    let rules: Vec<RuleBlock> = blocks.iter().map(read).collect();
+    let mut rules: Vec<RuleBlock> = blocks.iter().map(read).collect();
+    variables.truncate(variables.len() - without);
+    partial::leave_out(&mut rules, &variables, &mut report);
     if let Some(place) = missing_sign {
         evidence.fuzzylite(place, "a rule without `;`");
     }
     let (found, how) = evidence.judge();
     let dialect = dialect.unwrap_or(found);
     let accus = accumulations(&rules, &blocks, variables.len());
-    let mut builder = Builder { dialect, input_names: input_names(&variables), report, accus };
+    let (names, inputs) = formula_names(&variables);
+    let mut builder = Builder { dialect, formula_names: names, inputs, report, accus };
     builder.tell(dialect == found, &how);
     let parts = builder.parts(name, &variables, rules);
+    if parts.outputs.is_empty() && !parts.inputs.is_empty() {
+        builder.report.note_whole("without an output nothing can be concluded; the sets are read");
+    }
+    if parts.formulas_name_outputs() {
+        builder.report.note_whole(term::OUTPUTS_IN_FORMULAS);
+    }
     check::complete(parts, builder.report)
 }
 
@@ -82,8 +93,12 @@ fn rule_names(variables: &[Variable], report: &mut Report) -> Names {
     names
 }
 
-fn input_names<'a>(variables: &[Variable<'a>]) -> Vec<&'a str> {
-    variables.iter().filter(|v| !v.is_output()).map(|v| v.name.text).collect()
+/// The names of the inputs, then of the outputs, and how many inputs there are.
+fn formula_names<'a>(variables: &[Variable<'a>]) -> (Vec<&'a str>, usize) {
+    let of = |output: bool| {
+        variables.iter().filter(move |v| v.is_output() == output).map(|v| v.name.text)
+    };
+    (of(false).chain(of(true)).collect(), of(false).count())
 }
 
 fn wrong(report: &mut Report, token: Token, message: &str, expected: impl Into<String>) {
@@ -93,7 +108,10 @@ fn wrong(report: &mut Report, token: Token, message: &str, expected: impl Into<S
 /// Makes the system's parts.
 struct Builder<'a> {
     dialect: Dialect,
-    input_names: Vec<&'a str>,
+    /// What formulas may name: the inputs, then the outputs.
+    formula_names: Vec<&'a str>,
+    /// How many of these are inputs.
+    inputs: usize,
     report: Report,
     /// For each output, the accumulations of the blocks that conclude it.
     accus: Vec<Vec<(SNormKind, Place)>>,
@@ -164,7 +182,8 @@ impl<'a> Builder<'a> {
     }
 
     fn membership_formula(&mut self, text: Token<'a>) -> Option<Membership> {
-        let names: Vec<&str> = ["x"].into_iter().chain(self.input_names.iter().copied()).collect();
+        let names: Vec<&str> =
+            ["x"].into_iter().chain(self.formula_names.iter().copied()).collect();
         let formula = term::formula(text, &names, &mut self.report)?;
         Some(Membership::Formula { formula, height: 1.0 })
     }

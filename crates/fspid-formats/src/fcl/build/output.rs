@@ -21,9 +21,6 @@ impl<'a> Builder<'a> {
                 format!("the local variable `{}` is an output here", name.text),
             );
         }
-        if variable.section.is_none() {
-            wrong(&mut self.report, name, "has no DEFUZZIFY section", "`DEFUZZIFY` with its terms");
-        }
         let defuzzifier = self.defuzzifier(variable);
         let integrates = defuzzifier.sampling().is_some();
         let mut terms = Vec::new();
@@ -54,13 +51,13 @@ impl<'a> Builder<'a> {
             }
             Set::Number(value) => Some(Conclusion::Constant(*value)),
             Set::Linear(word, numbers) => {
-                term::linear(*word, numbers, self.input_names.len(), &mut self.report)
+                term::linear(*word, numbers, self.inputs, &mut self.report)
             }
             Set::Formula(text) if integrates => self
                 .membership_formula(*text)
                 .map(|membership| Conclusion::Set { membership, lower: None }),
             Set::Formula(text) => {
-                term::formula(*text, &self.input_names, &mut self.report).map(Conclusion::Formula)
+                term::formula(*text, &self.formula_names, &mut self.report).map(Conclusion::Formula)
             }
         }
     }

@@ -1,7 +1,6 @@
 //! Writing.
 
 mod adapt;
-mod fit;
 mod norm;
 mod options;
 mod set;

@@ -3,8 +3,8 @@
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{Membership, Universe};
 
-use super::fit;
 use crate::fcl::Dialect;
+use crate::fit;
 use crate::loss::Loss;
 use crate::number::written as number;
 use crate::vocabulary::shapes::{self, FUZZYLITE, JFUZZYLOGIC, Row};

@@ -6,7 +6,7 @@ use fspid_fuzzy::system::{
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::{options, set};
-use crate::adapt::{check_formula, input_names};
+use crate::adapt::{check_formula, formula_names};
 use crate::fcl::Dialect;
 use crate::loss::Loss;
 use crate::number::{written as number, written_all};
@@ -126,7 +126,7 @@ impl Writer<'_> {
                 format!("Linear {}", written_all(&[coefficients, &[*constant][..]].concat()))
             }
             Conclusion::Formula(formula) if self.dialect != Dialect::Iec => {
-                check_formula(name, formula, &input_names(self.parts), self.loss);
+                check_formula(name, formula, &formula_names(self.parts), self.loss);
                 format!("FUNCTION {}", formula.text())
             }
             Conclusion::Linear { .. } | Conclusion::Formula(_) | Conclusion::Interval(_) => {
@@ -140,7 +140,7 @@ impl Writer<'_> {
 
     fn formulas(&mut self, name: &str, membership: &Membership) {
         if let Membership::Formula { formula, .. } = membership {
-            let names: Vec<&str> = ["x"].into_iter().chain(input_names(self.parts)).collect();
+            let names: Vec<&str> = ["x"].into_iter().chain(formula_names(self.parts)).collect();
             check_formula(name, formula, &names, self.loss);
         }
     }

@@ -48,7 +48,7 @@ fn parts(source: &Source, report: &mut Report) -> Parts {
     let mut outputs: Vec<_> =
         outputs.into_iter().map(|found| output::output(found, &method, report)).collect();
     names::settle(source, &mut inputs, &mut outputs, report);
-    let rules = rule::rules(source, &inputs, &outputs, report);
+    let rules = rule::rules(source, &inputs, &mut outputs, report);
     header.counted(inputs.len(), outputs.len(), source.rows.len(), report);
     header.explained(&inputs, &outputs, report);
     let block = RuleBlock {

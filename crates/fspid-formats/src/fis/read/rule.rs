@@ -1,29 +1,38 @@
 //! Rules: rows checked against the variables.
 
+use std::collections::BTreeMap;
+
 use fspid_fuzzy::Hedge;
-use fspid_fuzzy::system::{Antecedent, Consequent, Input, Output, Rule, Statement, Variable};
+use fspid_fuzzy::system::{
+    Antecedent, Conclusion, Consequent, Input, Output, OutputTerm, Rule, Statement, Variable,
+};
 
 use super::row::{Index, Row, row};
 use super::source::Source;
-use crate::fis::hedge::{NONE, of_code};
+use crate::fis::hedge::{Coded, NONE, of_code};
+use crate::hedged;
 use crate::note::{Place, Problem};
+use crate::number::written;
 use crate::report::{Report, wrong};
 
-/// Every rule of the file that can be read; the others are noted down as problems.
+/// Every rule of the file that can be read; the others are noted down as problems. A hedge in a
+/// conclusion adds a term to its output.
 pub(super) fn rules(
     source: &Source,
     inputs: &[Input],
-    outputs: &[Output],
+    outputs: &mut [Output],
     report: &mut Report,
 ) -> Vec<Rule> {
     if source.rules.is_none() {
         report.whole("there is no section `[Rules]`");
     }
+    let counts: Vec<usize> = outputs.iter().map(|output| output.terms.len()).collect();
+    let mut conclusions = Conclusions { outputs, counts, made: BTreeMap::new() };
     let rules = source.rows.iter().map_while(|line| {
         if report.is_full() {
             return None;
         }
-        let rule = row(*line).and_then(|row| rule(&row, inputs, outputs, report));
+        let rule = row(*line).and_then(|row| rule(&row, inputs, &mut conclusions, report));
         Some(report.keep(rule).flatten())
     });
     rules.flatten().collect()
@@ -32,20 +41,20 @@ pub(super) fn rules(
 fn rule(
     row: &Row,
     inputs: &[Input],
-    outputs: &[Output],
+    conclusions: &mut Conclusions,
     report: &mut Report,
 ) -> Result<Option<Rule>, Problem> {
     counted(row.place, row.inputs.len(), inputs.len(), "inputs")?;
-    counted(row.place, row.outputs.len(), outputs.len(), "outputs")?;
+    counted(row.place, row.outputs.len(), conclusions.outputs.len(), "outputs")?;
     let statements = row.inputs.iter().zip(inputs).enumerate();
     let statements: Vec<_> = statements
         .filter_map(|(position, (index, input))| {
             statement(index, position, input, report).transpose()
         })
         .collect::<Result<_, _>>()?;
-    let consequents = row.outputs.iter().zip(outputs).enumerate();
+    let consequents = row.outputs.iter().enumerate();
     let consequents: Vec<_> = consequents
-        .filter_map(|(position, (index, output))| consequent(index, position, output).transpose())
+        .filter_map(|(position, index)| conclusions.one(index, position, report).transpose())
         .collect::<Result<_, _>>()?;
     if consequents.is_empty() {
         report.note(row.place, "a rule without a conclusion has no effect and is left out");
@@ -112,18 +121,74 @@ fn disputed(code: u8) -> Option<&'static str> {
     }
 }
 
-fn consequent(
-    index: &Index,
-    position: usize,
-    output: &Output,
-) -> Result<Option<Consequent>, Problem> {
-    let Some(term) = within(index, &output.name, output.terms.len())? else { return Ok(None) };
-    let message = match index.coded {
-        coded if coded.negated => "`not` in a conclusion is not read",
-        coded if coded.code != NONE => "a hedge in a conclusion is not read",
-        _ => return Ok(Some(Consequent { output: position, term, hedges: Vec::new() })),
-    };
-    Err(wrong(index.place, index.word, message, "the index of a set alone"))
+/// Conclusions, and the sets that hedges in them have made.
+struct Conclusions<'o> {
+    outputs: &'o mut [Output],
+    /// How many terms each output has in the file.
+    counts: Vec<usize>,
+    /// By output, term and what is made of it.
+    made: BTreeMap<(usize, usize, bool, u8), usize>,
+}
+
+impl Conclusions<'_> {
+    fn one(
+        &mut self,
+        index: &Index,
+        position: usize,
+        report: &mut Report,
+    ) -> Result<Option<Consequent>, Problem> {
+        let Some(output) = self.outputs.get(position) else { return Ok(None) };
+        let count = self.counts.get(position).copied().unwrap_or_default();
+        let Some(term) = within(index, &output.name, count)? else { return Ok(None) };
+        let Coded { negated, code } = index.coded;
+        // .10 is the power 1.
+        let plain = !negated && matches!(code, NONE | 10);
+        let term = if plain { term } else { self.hedged(index, (position, term), report)? };
+        Ok(Some(Consequent { output: position, term, hedges: Vec::new() }))
+    }
+
+    /// The set that a hedge makes of a set, as Octave does: its grades to a power, then one minus them.
+    fn hedged(
+        &mut self,
+        index: &Index,
+        (position, term): (usize, usize),
+        report: &mut Report,
+    ) -> Result<usize, Problem> {
+        let Coded { negated, code } = index.coded;
+        let key = (position, term, negated, code);
+        if let Some(&made) = self.made.get(&key) {
+            return Ok(made);
+        }
+        let power = (!matches!(code, NONE | 10)).then(|| f64::from(code) / 10.0);
+        let terms = self.outputs.get_mut(position).map(|output| &mut output.terms);
+        let found = terms.and_then(|terms| {
+            let base = terms.get(term)?;
+            let Conclusion::Set { membership, lower: None } = &base.conclusion else { return None };
+            let membership = hedged::set(membership, power, negated)?;
+            let name = name_of(&base.name, power, negated, terms);
+            Some((terms, name, membership))
+        });
+        let Some((terms, name, membership)) = found else {
+            let message = "a hedge or `not` in a conclusion about such a term is not read";
+            return Err(wrong(index.place, index.word, message, "the index of a set alone"));
+        };
+        let message = format!("a hedge in a conclusion changes the set, as in Octave: `{name}`");
+        report.note(index.place, message);
+        terms.push(OutputTerm { name, conclusion: Conclusion::Set { membership, lower: None } });
+        self.made.insert(key, terms.len() - 1);
+        Ok(terms.len() - 1)
+    }
+}
+
+/// `not fast^2`, or longer if that name is taken.
+fn name_of(base: &str, power: Option<f64>, negated: bool, taken: &[OutputTerm]) -> String {
+    let not = if negated { "not " } else { "" };
+    let power = power.map(|power| format!("^{}", written(power))).unwrap_or_default();
+    let mut name = format!("{not}{base}{power}");
+    while taken.iter().any(|term| term.name == name) {
+        name.push('\'');
+    }
+    name
 }
 
 /// The position of the set, if the variable is used.

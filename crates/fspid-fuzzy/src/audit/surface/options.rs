@@ -62,6 +62,8 @@ pub enum SurfaceError {
         /// Position of the input.
         input: usize,
     },
+    /// A formula names an output: the answers depend on the answers before.
+    Remembers,
 }
 
 impl fmt::Display for SurfaceError {
@@ -78,6 +80,9 @@ impl fmt::Display for SurfaceError {
             Self::Count { found, expected } => {
                 write!(f, "{found} values for {expected} inputs")
             }
+            Self::Remembers => f.write_str(
+                "a formula names an output: the answers depend on those before, and no surface says that",
+            ),
             Self::Rest { input } => {
                 write!(f, "the rest point lies outside the domain of input {}", input + 1)
             }
@@ -89,6 +94,9 @@ impl core::error::Error for SurfaceError {}
 
 impl SurfaceOptions {
     pub(super) fn domain(&self, system: &System) -> Result<Vec<Interval>, SurfaceError> {
+        if system.parts.formulas_name_outputs() {
+            return Err(SurfaceError::Remembers);
+        }
         let expected = system.parts.inputs.len();
         let given = self.domain.as_deref();
         if let Some(found) = given.map(<[_]>::len).filter(|&found| found != expected) {

@@ -125,6 +125,9 @@ impl Differentiator<'_> {
         if system.chained {
             return Err(jumps("rules that ask about outputs are not derived"));
         }
+        if system.parts.formulas_name_outputs() {
+            return Err(jumps("formulas that name outputs are not derived"));
+        }
         if system.type2.is_some() {
             return Err(jumps("interval type-2 systems are not derived"));
         }

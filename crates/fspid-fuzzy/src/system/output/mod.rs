@@ -76,7 +76,8 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn for_outputs(system: &System) -> Self {
-        let inputs = system.parts.inputs.len();
+        // Formulas may name the outputs too.
+        let inputs = system.parts.inputs.len() + system.parts.outputs.len();
         let of_inputs = system.parts.inputs.iter().flat_map(|i| &i.terms).map(|t| &t.membership);
         let of_outputs = system.parts.outputs.iter().flat_map(|o| &o.terms);
         let of_outputs = of_outputs.filter_map(|t| match &t.conclusion {

@@ -10,7 +10,7 @@ const PROMISE: f64 = 1e-12;
 const PROBE: f64 = 0.1;
 
 /// A place and the value there.
-pub(super) type Point = (f64, f64);
+pub(in crate::sampled) type Point = (f64, f64);
 
 /// The lowest point found between two places from a lower one between them; ends early at a value below `enough`.
 ///
@@ -18,7 +18,7 @@ pub(super) type Point = (f64, f64);
 ///
 /// # Source
 /// R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall (1973), chapter 5.
-pub(super) fn lowest(
+pub(in crate::sampled) fn lowest(
     function: impl Fn(f64) -> f64,
     [left, middle, right]: [Point; 3],
     enough: f64,

@@ -5,7 +5,7 @@
 //! and peak. The grid is no proof, as the eigenvalues of [`SampledLoop::margins`] are: for maps of many gains, whose
 //! worst is asked again in full.
 
-mod bowl;
+pub(super) mod bowl;
 mod chain;
 mod control;
 mod grid;
@@ -15,7 +15,7 @@ mod place;
 
 use core::f64::consts::{PI, TAU};
 
-use super::{DiskMargin, GainLimit, Peak, SampledCrossover, SampledLoop, SampledMargins};
+use super::{DiskMargin, GainLimit, Peak, Proved, SampledCrossover, SampledLoop, SampledMargins};
 use crate::complex::{Complex, modulus, quotient};
 use crate::error::LtiError;
 use crate::matrix::Matrix;
@@ -39,6 +39,9 @@ pub struct LoopFamily {
 /// From this bound of the spectral radius on the quick way leaves the verdict to the careful one. The bound rests on
 /// values of the characteristic polynomial whose rounding is some $10^{-15}$ of their terms.
 const SURELY_STABLE: f64 = 1.0 - 1e-7;
+/// Loops with a closed-loop pole nearer to z = 1, in rad per sample, are left to the careful way, which knows them to more
+/// digits.
+const SLOW: f64 = 1e-6;
 /// Disk margins below this one are left to the careful way.
 const SMALL_DISK: f64 = 0.1;
 /// Factors that differ by less than this share may be one, or a gap in which the loop is unstable.
@@ -70,7 +73,8 @@ impl LoopFamily {
     ///
     /// `None` where it is not, and [`SampledLoop::margins`] has to be asked: a loop that is unstable or nearly so, a
     /// disk margin below 0.1, limits of the gain that nearly coincide, gains that are not finite or of another number,
-    /// a plant whose numbers over- or underflow.
+    /// a plant whose numbers over- or underflow, a closed-loop pole within a millionth of z = 1.
+    /// Nothing is proved of the peaks: they are reached, and no point of the grid is higher.
     ///
     /// Poles are eigenvalues, and disks around them that hold all poles lie within the unit circle. Crossings are found
     /// to the last digits between places of a grid that is close where the plant, the controller or the numerator of
@@ -85,6 +89,9 @@ impl LoopFamily {
         let poles = member.poles()?;
         let hidden = radius(self.chain.hidden());
         if !(hidden < SURELY_STABLE && member.radius_bound(&poles) < SURELY_STABLE) {
+            return None;
+        }
+        if poles.iter().chain(self.chain.hidden()).any(|&zeta| modulus(zeta) < SLOW) {
             return None;
         }
         let samples = member.samples(&poles);
@@ -110,6 +117,7 @@ impl LoopFamily {
             complementary_peak: peak(0.0)?,
             modulus_margin: 1.0 / sensitivity_peak.value,
             disk,
+            proved: Proved::nothing(),
             spectral_radius: radius(&poles).max(hidden),
         })
     }

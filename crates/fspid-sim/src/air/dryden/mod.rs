@@ -27,19 +27,21 @@
 //! # Random streams
 //! Of the seed, one stream for each state, from [`STREAM`] on: u 0; v 4 and 5, r 6; w 8 and 9, q 10;
 //! p 12. r and q follow v and w and take one stream more for what their own lag adds. No component
-//! changes another, and sample k takes number k of its streams.
+//! changes another, and time k of the [grid](super::GRID_S) takes number k of its streams, whatever the loop's period.
 //!
 //! # Not here
 //! Velocities are taken along body axes at all heights; MIL-F-8785C aligns u and v with the mean
-//! wind near the ground. Height and airspeed are those of the reference condition throughout.
+//! wind near the ground. Height and airspeed are those of the start throughout, or follow the flight ([`Follows`]).
 
 mod intensity;
 mod scales;
 mod shaped_noise;
+mod shaping;
 
 pub(crate) use intensity::interpolated;
 pub use intensity::{Intensity, Severity};
 pub use scales::{Scales, Specification};
+pub(crate) use shaping::Shaping;
 
 use super::wind::AirMotion;
 use crate::error::{SimError, finite, positive};
@@ -67,6 +69,18 @@ pub struct Turbulence {
     pub wing_span_m: f64,
     /// Seed; the same seed gives the same turbulence.
     pub seed: u64,
+    /// Whether height and airspeed stay those above.
+    pub follows: Follows,
+}
+
+/// Whose height and airspeed scale lengths and intensities have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Follows {
+    /// Those of the start, all through the flight.
+    #[default]
+    Start,
+    /// Those of the aircraft at each time of the grid.
+    Flight,
 }
 
 /// Turbulence prepared for one sample period.
@@ -124,7 +138,7 @@ impl Dryden {
         })
     }
 
-    /// The turbulence of sample 0, from the stationary distribution.
+    /// The turbulence of period 0, from the stationary distribution.
     #[must_use]
     pub fn start(&self) -> DrydenState {
         DrydenState {
@@ -135,7 +149,7 @@ impl Dryden {
         }
     }
 
-    /// From sample `k - 1` to sample `k`; samples count up by one from the start's 0.
+    /// From period `k - 1` to period `k`; they count up by one from the start's 0.
     pub fn advance(&self, state: &mut DrydenState, k: usize) {
         self.along.advance(&mut state.along, self.source(STREAM_U), k);
         self.across.advance(&mut state.across, self.source(STREAM_V), k);

@@ -11,6 +11,7 @@ fn turbulence() -> Turbulence {
         airspeed_m_s: 176.0 * FEET,
         wing_span_m: 33.4 * FEET,
         seed: 5,
+        follows: Follows::Start,
     }
 }
 

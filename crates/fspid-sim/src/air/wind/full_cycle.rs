@@ -4,7 +4,7 @@ use fspid_fuzzy::membership::Param;
 
 use super::super::FOOT_M;
 use super::one_minus_cosine::{frozen, one_minus_cosine};
-use super::{AirMotion, Place, WindField, first, number, size};
+use super::{AirMotion, Corners, Place, WindField, first, number, size};
 use crate::error::{SimError, finite, positive};
 
 /// A gust that rises over its gradient distance and falls back over another.
@@ -47,6 +47,10 @@ impl WindField for FullCycle {
         let inside = (0.0..=2.0 * self.gradient_m).contains(&into_m);
         let shape = if inside { one_minus_cosine(into_m, self.gradient_m) } else { (0.0, 0.0) };
         frozen(self.amplitude_m_s, shape)
+    }
+
+    fn corners(&self) -> Corners {
+        Corners::along(self.start_m, 2.0 * self.gradient_m)
     }
 }
 

@@ -3,7 +3,7 @@
 use fspid_fuzzy::membership::Param;
 
 use super::super::FOOT_M;
-use super::{AirMotion, Place, WindField, first, number, size};
+use super::{AirMotion, Corners, Place, WindField, first, number, size};
 
 /// The logarithmic wind profile of the boundary layer.
 ///
@@ -25,6 +25,10 @@ pub struct LogShear {
     pub roughness_m: f64,
 }
 
+/// Edges of the layer, m.
+const LOWEST_M: f64 = 3.0 * FOOT_M;
+const HIGHEST_M: f64 = 1000.0 * FOOT_M;
+
 impl LogShear {
     /// Roughness length for category C flight phases (take-off, approach, landing): 0.15 ft.
     pub const CATEGORY_C_ROUGHNESS_M: f64 = 0.15 * FOOT_M;
@@ -34,7 +38,7 @@ impl LogShear {
     /// Wind speed at a height above the ground, m/s.
     #[must_use]
     pub fn speed_m_s(&self, height_m: f64) -> f64 {
-        let height_m = height_m.clamp(3.0 * FOOT_M, 1000.0 * FOOT_M);
+        let height_m = height_m.clamp(LOWEST_M, HIGHEST_M);
         let over_roughness = |h_m: f64| libm::log(h_m / self.roughness_m);
         self.w20_m_s * over_roughness(height_m) / over_roughness(20.0 * FOOT_M)
     }
@@ -58,5 +62,9 @@ impl WindField for LogShear {
             earth_m_s: [-speed_m_s * north, -speed_m_s * east, 0.0],
             ..AirMotion::default()
         }
+    }
+
+    fn corners(&self) -> Corners {
+        Corners { height_m: [Some(LOWEST_M), Some(HIGHEST_M)], ..Corners::default() }
     }
 }

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::membership::Param;
 
-use super::{AirMotion, Place, WindField, first, number, size};
+use super::{AirMotion, Corners, Place, WindField, first, number, size};
 use crate::math::exp;
 
 /// An axisymmetric microburst that obeys continuity.
@@ -91,5 +91,9 @@ impl WindField for Microburst {
         let along =
             |part_m: f64| if distance_m > 0.0 { outflow * part_m / distance_m } else { 0.0 };
         AirMotion { earth_m_s: [along(north_m), along(east_m), -updraught], ..AirMotion::default() }
+    }
+
+    fn corners(&self) -> Corners {
+        Corners { height_m: [Some(0.0), None], ..Corners::default() }
     }
 }

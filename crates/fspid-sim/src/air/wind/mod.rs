@@ -62,6 +62,22 @@ impl std::ops::Add for AirMotion {
     }
 }
 
+/// Where a wind is not smooth along the way: an integration that ends a step there keeps its order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Corners {
+    /// Distances flown through the air since the start, m.
+    pub distance_m: [Option<f64>; 2],
+    /// Heights above the ground, m.
+    pub height_m: [Option<f64>; 2],
+}
+
+impl Corners {
+    /// Those of a gust that begins at a distance and is that long.
+    pub(super) const fn along(start_m: f64, length_m: f64) -> Self {
+        Self { distance_m: [Some(start_m), Some(start_m + length_m)], height_m: [None; 2] }
+    }
+}
+
 /// The motion of several winds together.
 #[must_use]
 pub fn sum_at(winds: &[Wind], place: &Place) -> AirMotion {
@@ -83,6 +99,11 @@ pub trait WindField: Sized {
 
     /// How the air moves at a place. Finite wherever the place is.
     fn at(&self, place: &Place) -> AirMotion;
+
+    /// Where it is not smooth; nowhere if nothing is said.
+    fn corners(&self) -> Corners {
+        Corners::default()
+    }
 }
 
 const fn number(name: &'static str, unit: &'static str) -> Param {
@@ -138,6 +159,12 @@ macro_rules! winds {
             #[must_use]
             pub fn at(&self, place: &Place) -> AirMotion {
                 match self { $(Self::$member(wind) => wind.at(place),)* }
+            }
+
+            /// Where it is not smooth.
+            #[must_use]
+            pub fn corners(&self) -> Corners {
+                match self { $(Self::$member(wind) => wind.corners(),)* }
             }
 
             /// Which kind it is.

@@ -3,7 +3,7 @@
 use fspid_fuzzy::membership::Param;
 
 use super::one_minus_cosine::{frozen, one_minus_cosine};
-use super::{AirMotion, Place, WindField, first, number, size};
+use super::{AirMotion, Corners, Place, WindField, first, number, size};
 
 /// A gust that rises over a length and then stays.
 ///
@@ -49,5 +49,9 @@ impl WindField for RampHold {
             one_minus_cosine(into_m.max(0.0), self.length_m)
         };
         frozen(self.amplitude_m_s, shape)
+    }
+
+    fn corners(&self) -> Corners {
+        Corners::along(self.start_m, self.length_m)
     }
 }

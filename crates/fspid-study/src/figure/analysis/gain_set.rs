@@ -147,7 +147,11 @@ impl GainSet {
             (count(CellState::Proved), count(CellState::Open), count(CellState::Refuted));
         add(proved > 0, boxes(proved, "proved"), Swatch::Area(SeriesStyle::Numbered(0)));
         add(open > 0, boxes(open, "open"), Swatch::Band);
-        add(refuted > 0, boxes(refuted, "REFUTED"), Swatch::Area(SeriesStyle::Numbered(1)));
+        add(
+            refuted > 0,
+            boxes(refuted, "REFUTED standing still"),
+            Swatch::Area(SeriesStyle::Numbered(1)),
+        );
         add(self.hull.len() > 1, "hull of what the proof covers".to_owned(), Swatch::Outline);
         let flown = Swatch::Line { style: FLOWN, marked: false };
         add(self.flown.len() > 1, "gains of a flight".to_owned(), flown);

@@ -474,9 +474,12 @@ fn the_greatest_radius_is_written_with_five_decimals_and_the_time_above_one_is_s
 #[test]
 fn boxes_are_counted_by_what_is_known_of_them() {
     let svg = gain_set(8).render();
-    for words in
-        [">4 boxes proved<", ">2 boxes open<", ">2 boxes REFUTED<", ">UNSTABLE when frozen<"]
-    {
+    for words in [
+        ">4 boxes proved<",
+        ">2 boxes open<",
+        ">2 boxes REFUTED standing still<",
+        ">UNSTABLE when frozen<",
+    ] {
         assert!(svg.as_str().contains(words), "{words}");
     }
 }

@@ -2,18 +2,20 @@
 
 use fspid_aircraft::data::{LinearCondition, LinearData, LinearElevator, LinearState};
 use fspid_lti::Matrix;
+use fspid_sim::ElevatorSign;
 
 use super::quantity;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::aircraft::StateWord;
 use crate::units::FOOT_M;
 
 /// Velocities become metres in the states and in their rates; angles stay.
 pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData> {
     let equations = section.sections("equations");
     check_states(report, equations)?;
-    let names: Vec<&str> = equations.iter().filter_map(|row| row.text("state")).collect();
-    let sizes: Vec<f64> = names.iter().map(|name| state_size(name)).collect();
+    let words: Vec<StateWord> = equations.iter().filter_map(|row| row.word("state")).collect();
+    let sizes: Vec<f64> = words.iter().copied().map(state_size).collect();
     let (mut a, mut b) = (Vec::new(), Vec::new());
     for (row, rate) in equations.iter().zip(&sizes) {
         let values = row.numbers("by_states")?;
@@ -27,15 +29,15 @@ pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData
         a.push(scaled.collect::<Vec<_>>());
         b.push([row.number("by_elevator")? * rate]);
     }
-    let states: Vec<LinearState> = names.iter().filter_map(|name| state(name)).collect();
+    let states: Vec<LinearState> = words.into_iter().map(state).collect();
     check_pitch(report, equations, &states)?;
     Some(LinearData {
         states,
         a: Matrix::from_rows(&a).ok()?,
         b: Matrix::from_rows(&b).ok()?,
-        elevator: match section.text("elevator_sign") {
-            Some("nose-up-positive") => LinearElevator::NoseUpPositive,
-            _ => LinearElevator::NoseDownPositive,
+        elevator: match section.word("elevator_sign").unwrap_or(ElevatorSign::NoseDownPositive) {
+            ElevatorSign::NoseUpPositive => LinearElevator::NoseUpPositive,
+            ElevatorSign::NoseDownPositive => LinearElevator::NoseDownPositive,
         },
         by_pitch_gust: by_pitch_gust(equations, &sizes),
         condition: section.section("condition").and_then(condition),
@@ -46,7 +48,7 @@ pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData
 /// Refuses a state that an earlier equation is for, in whatever unit, and w beside alpha, which is w over the airspeed.
 fn check_states(report: &mut Report, equations: &[Section]) -> Option<()> {
     let before = report.count();
-    let of = |row: &Section| row.text("state").and_then(state);
+    let of = |row: &Section| row.word("state").map(state);
     for (index, row) in equations.iter().enumerate() {
         let earlier = equations.get(..index).unwrap_or_default();
         if let Some(twin) = earlier.iter().find(|twin| of(twin).map(axis) == of(row).map(axis)) {
@@ -114,17 +116,24 @@ fn condition(section: &Section) -> Option<LinearCondition> {
     })
 }
 
-fn state(name: &str) -> Option<LinearState> {
-    Some(match name {
-        "u_ft_s" | "u_m_s" => LinearState::ForwardVelocity,
-        "w_ft_s" | "w_m_s" => LinearState::DownwardVelocity,
-        "alpha_rad" => LinearState::Alpha,
-        "q_rad_s" => LinearState::PitchRate,
-        "theta_rad" => LinearState::Theta,
-        _ => return None,
-    })
+fn state(word: StateWord) -> LinearState {
+    match word {
+        StateWord::ForwardFeet | StateWord::ForwardMetres => LinearState::ForwardVelocity,
+        StateWord::DownwardFeet | StateWord::DownwardMetres => LinearState::DownwardVelocity,
+        StateWord::Alpha => LinearState::Alpha,
+        StateWord::PitchRate => LinearState::PitchRate,
+        StateWord::Theta => LinearState::Theta,
+    }
 }
 
-fn state_size(name: &str) -> f64 {
-    if name.ends_with("_ft_s") { FOOT_M } else { 1.0 }
+/// A unit of the state in SI units.
+fn state_size(word: StateWord) -> f64 {
+    match word {
+        StateWord::ForwardFeet | StateWord::DownwardFeet => FOOT_M,
+        StateWord::ForwardMetres
+        | StateWord::DownwardMetres
+        | StateWord::Alpha
+        | StateWord::PitchRate
+        | StateWord::Theta => 1.0,
+    }
 }

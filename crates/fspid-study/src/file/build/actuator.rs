@@ -51,6 +51,18 @@ fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
     let delay = usize::try_from(section.integer("delay_samples")?).unwrap_or(usize::MAX);
     let lag = Servo::first_order(section.number("time_constant_s")?);
     let lag = judged(report, (section, "time_constant_s"), lag)?;
+    let time_constant_s = section.number("time_constant_s")?;
+    if time_constant_s > 0.0 && !(1.0 / time_constant_s).is_finite() {
+        let path = section.path("time_constant_s");
+        let allowed = "0 for none, or 1e-300 s or more";
+        report.value(
+            section.at("time_constant_s"),
+            &path,
+            "so short that its rate is infinite",
+            allowed,
+        );
+        return None;
+    }
     let servo =
         lag.with_delay(delay).and_then(|servo| match section.number("position_limit_deg") {
             Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),

@@ -1,22 +1,28 @@
 //! Winds, gusts and turbulence around an aircraft.
 
 use fspid_sim::air::{
-    FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Specification, Steady,
-    Turbulence, Wind,
+    Follows, FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence,
+    Wind,
 };
 use fspid_sim::{Plant, Weather};
 
 use super::flight::{Flown, Way};
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
+use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::air::{GustKind, WindKind};
 
 /// The air that the file lets move, `None` for calm air around a linear plant.
 ///
 /// What gusts and turbulence are along the way depends on the airspeed, so that an assumed one flies in calm air alone.
 /// A nonlinear aircraft always has a course, since its heading is one.
-pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> Option<Weather> {
+pub(super) fn weather(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (section, flown): (&Section, &Flown),
+) -> Option<Weather> {
     let parts = ["wind", "turbulence"].map(|name| section.section(name));
     let parts = parts.into_iter().flatten().chain(section.sections("gust"));
     let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());
@@ -28,7 +34,7 @@ pub(super) fn weather(report: &mut Report, section: &Section, flown: &Flown) -> 
     let weather = Weather {
         course: way.course,
         winds: winds(section, way),
-        turbulence: turbulence(report, section.section("turbulence"), way),
+        turbulence: turbulence(report, files, (section.section("turbulence"), way)),
     };
     let linear = matches!(flown.plant, Plant::Linear(_));
     (!(calm && linear)).then_some(weather)
@@ -61,19 +67,19 @@ fn winds(section: &Section, way: Way) -> Vec<Wind> {
 }
 
 fn wind(part: &Section) -> Option<Wind> {
-    Some(match part.kind {
-        "log-shear" => Wind::LogShear(LogShear {
+    Some(match part.variant()? {
+        WindKind::LogShear => Wind::LogShear(LogShear {
             w20_m_s: quantity(part, "w20")?,
             from_rad: rad(part.number("from_deg")?),
             roughness_m: part.number("roughness_m")?,
         }),
-        "microburst" => Wind::Microburst(Microburst {
+        WindKind::Microburst => Wind::Microburst(Microburst {
             outflow_m_s: part.number("outflow_m_s")?,
             radius_m: part.number("radius_m")?,
             peak_height_m: part.number("peak_height_m")?,
             axis_m: [part.number("north_m")?, part.number("east_m")?],
         }),
-        _ => Wind::Steady(steady(part)?),
+        WindKind::Steady => Wind::Steady(steady(part)?),
     })
 }
 
@@ -89,33 +95,48 @@ fn gust(part: &Section, way: Way) -> Option<Wind> {
     let amplitude_m_s =
         [part.number("forward_m_s")?, part.number("right_m_s")?, -part.number("up_m_s")?];
     let start_m = part.number("at_s")? * way.course.airspeed_m_s;
-    Some(match part.kind {
-        "full-cycle" => {
+    Some(match part.variant()? {
+        GustKind::FullCycle => {
             let gradient_m = part.number("gradient_m")?;
             Wind::FullCycle(FullCycle { amplitude_m_s, gradient_m, start_m })
         }
-        _ => {
+        GustKind::RampHold => {
             let length_m = part.number("length_m")?;
             Wind::RampHold(RampHold { amplitude_m_s, length_m, start_m })
         }
     })
 }
 
-fn turbulence(report: &mut Report, part: Option<&Section>, way: Way) -> Option<Turbulence> {
+fn turbulence(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (part, way): (Option<&Section>, Way),
+) -> Option<Turbulence> {
     let part = part.filter(|part| part.sound)?;
-    let (model, severity) = (part.text("model")?, part.text("intensity")?);
-    let aloft = Severity::ALL.into_iter().find(|word| word.name() == severity)?;
+    let aloft: Severity = part.word("intensity")?;
     let intensity = match part.number("w20_m_s") {
         Some(w20_m_s) => Intensity::new(w20_m_s, aloft),
         None => Ok(aloft.into()),
     };
     Some(Turbulence {
-        specification: Specification::ALL.into_iter().find(|word| word.name() == model)?,
+        specification: part.word("model")?,
         intensity: judged(report, (part, "w20_m_s"), intensity)?,
         height_m: way.course.height_m,
         airspeed_m_s: way.course.airspeed_m_s,
         wing_span_m: span_m(report, part, way)?,
         seed: u64::try_from(part.integer("seed")?).ok()?,
+        follows: follows(files, part, way),
+    })
+}
+
+/// Whose height and airspeed: where the file does not say, those of a flight that does not stay at its height.
+fn follows(files: &mut Files<'_>, part: &Section, way: Way) -> Follows {
+    part.word("follows").unwrap_or_else(|| {
+        let level = way.course.climb_rad == 0.0;
+        let (follows, word) =
+            if level { (Follows::Start, "start") } else { (Follows::Flight, "flight") };
+        files.fill(part.path("follows"), word);
+        follows
     })
 }
 

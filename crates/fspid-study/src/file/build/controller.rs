@@ -1,9 +1,9 @@
 //! Controllers.
 
 use fspid_core::{
-    AntiWindup, Change, ConfigError, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits,
-    Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees,
-    SelfTuner, SetPlaces, SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, ConfigError, DeadZone, Derivative, Followers, Fspid, GainLimits, Gains,
+    Guard, InputScale, InputSets, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner, SetPlaces,
+    SetpointWeights, Shell, TunerSettings,
 };
 use fspid_sim::Controller;
 
@@ -12,6 +12,9 @@ use super::{judged, lqi, rad, supervisor};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::controller::{
+    AntiWindupKind, ControllerKind, DerivativeOn, LawWord, SeesWord,
+};
 use crate::units::degrees;
 
 /// The controller of a sound section.
@@ -21,26 +24,31 @@ pub(super) fn controller(
     section: &Section,
     (dt_s, pressure): (f64, Pressure),
 ) -> Option<Controller> {
-    if section.kind == "lqi" {
-        return lqi::controller(report, section, dt_s);
+    match section.variant()? {
+        ControllerKind::Lqi => lqi::controller(report, section, dt_s),
+        ControllerKind::P => {
+            let factor = schedule::factor(report, section, pressure);
+            let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
+            let shell =
+                Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
+            let (gains, shell) = schedule::scaled(report, section, factor?, (gains, shell))?;
+            judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed)
+        }
+        ControllerKind::Pid => {
+            let factor = schedule::factor(report, section, pressure);
+            let (gains, filter_s) = gains(report, section);
+            let shell = shell(report, section, (dt_s, filter_s));
+            let (gains, shell) = schedule::scaled(report, section, factor?, (gains?, shell?))?;
+            placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed)
+        }
+        ControllerKind::Fspid => {
+            let (gains, filter_s) = gains(report, section);
+            let shell = shell(report, section, (dt_s, filter_s));
+            let tuner = tuner(report, files, section, gains);
+            let fspid = Fspid::new(tuner?, shell?);
+            placed(report, section, fspid).map(Controller::SelfTuning)
+        }
     }
-    let factor = schedule::factor(report, section, pressure);
-    if section.kind == "p" {
-        let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
-        let shell =
-            Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
-        let (gains, shell) = schedule::scaled(report, section, factor?, (gains, shell))?;
-        return judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed);
-    }
-    let (gains, filter_s) = gains(report, section);
-    let shell = shell(report, section, (dt_s, filter_s));
-    if section.kind == "pid" {
-        let (gains, shell) = schedule::scaled(report, section, factor?, (gains?, shell?))?;
-        return placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed);
-    }
-    let tuner = tuner(report, files, section, gains);
-    let fspid = Fspid::new(tuner?, shell?);
-    placed(report, section, fspid).map(Controller::SelfTuning)
 }
 
 /// The controller, or its conflict at the setting that is in it.
@@ -97,10 +105,7 @@ fn shell(
         rate_gain_s: section.number("rate_gain")?,
         setpoint_weights: weights?,
         derivative: Derivative { filter_s: filter_s? },
-        integral: match section.text("integral")? {
-            "literal" => IntegralForm::Literal,
-            _ => IntegralForm::Bumpless,
-        },
+        integral: section.word("integral")?,
         ..ends?
     })
 }
@@ -142,7 +147,7 @@ fn weights(report: &mut Report, section: &Section) -> Option<SetpointWeights<f64
     let number = |key| given.and_then(|weights| weights.number(key)).unwrap_or(1.0);
     let explicit = given.filter(|weights| weights.given("derivative"));
     let derivative = number("derivative");
-    let on_measurement = section.text("derivative_on") == Some("measurement");
+    let on_measurement = section.word("derivative_on") == Some(DerivativeOn::Measurement);
     let conflict = match explicit {
         Some(_) if on_measurement => derivative != 0.0,
         Some(_) => section.given("derivative_on") && derivative == 0.0,
@@ -169,15 +174,17 @@ fn anti_windup(report: &mut Report, section: &Section, limited: bool) -> Option<
     let Some(part) = section.section("anti_windup") else {
         return Some(AntiWindup::None);
     };
-    let acts_at_limits = matches!(part.kind, "conditional" | "back-calculation");
+    let kind = part.variant()?;
+    let acts_at_limits =
+        matches!(kind, AntiWindupKind::Conditional | AntiWindupKind::BackCalculation);
     if acts_at_limits && !limited && section.number("slew_limit_deg_s").is_none() {
         let message = format!("\"{}\" has no limit to act at", part.kind);
         let allowed = "with `output_limits_deg` or `slew_limit_deg_s`, or left out";
         report.missing(section.at("anti_windup"), &part.path, message, allowed);
         return None;
     }
-    Some(match part.kind {
-        "clamping" => {
+    Some(match kind {
+        AntiWindupKind::Clamping => {
             let (lower, upper) = (part.number("lower_deg")?, part.number("upper_deg")?);
             if lower >= upper {
                 let (place, path) = (part.at("upper_deg"), part.path("upper_deg"));
@@ -187,11 +194,11 @@ fn anti_windup(report: &mut Report, section: &Section, limited: bool) -> Option<
             let limits = Limits::new("anti-windup limits", rad(lower), rad(upper));
             AntiWindup::Clamping(judged(report, (part, "upper_deg"), limits)?)
         }
-        "conditional" => AntiWindup::Conditional,
-        "back-calculation" => {
+        AntiWindupKind::Conditional => AntiWindup::Conditional,
+        AntiWindupKind::BackCalculation => {
             AntiWindup::BackCalculation { tracking_s: part.number("tracking_s")? }
         }
-        _ => AntiWindup::None,
+        AntiWindupKind::None => AntiWindup::None,
     })
 }
 
@@ -207,15 +214,9 @@ fn tuner(
     let gain_limits = limits.map(|limits| gain_limits(report, limits));
     let law = law(report, section);
     let settings = TunerSettings {
-        error_sign: match part.text("error_sign")? {
-            "measurement-minus-setpoint" => ErrorSign::MeasurementMinusSetpoint,
-            _ => ErrorSign::SetpointMinusMeasurement,
-        },
+        error_sign: part.word("error_sign")?,
         sees: sees(report, part)?,
-        change: match part.text("change")? {
-            "delta" => Change::Delta,
-            _ => Change::Rate,
-        },
+        change: part.word("change")?,
         input_scale: input_scale(report, part)?,
         input_sets: InputSets {
             error: set_places(report, part, "error_sets")?,
@@ -258,31 +259,33 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
 
 /// What the supervisor sees beside the error; what would go unused is refused.
 fn sees(report: &mut Report, part: &Section) -> Option<Sees<f64>> {
-    let (word, model) = (part.text("sees")?, part.section("model"));
-    if word != "error-and-change" && part.text("change") == Some("delta") {
-        let message = format!("the supervisor sees no change, but \"{word}\"");
+    let (sees, model): (SeesWord, _) = (part.word("sees")?, part.section("model"));
+    if sees != SeesWord::ErrorAndChange && part.word("change") == Some(Change::Delta) {
+        let message = format!("the supervisor sees no change, but \"{}\"", sees.name());
         let allowed = "only with sees = \"error-and-change\"";
         report.value(part.at("change"), &part.path("change"), message, allowed);
         return None;
     }
-    match (word, model) {
-        ("error-and-model-error", Some(model)) => Some(Sees::ErrorAndModelError(ReferenceModel {
-            bandwidth_rad_s: model.number("bandwidth_rad_s")?,
-            damping: model.number("damping")?,
-        })),
-        ("error-and-model-error", None) => {
+    match (sees, model) {
+        (SeesWord::ErrorAndModelError, Some(model)) => {
+            Some(Sees::ErrorAndModelError(ReferenceModel {
+                bandwidth_rad_s: model.number("bandwidth_rad_s")?,
+                damping: model.number("damping")?,
+            }))
+        }
+        (SeesWord::ErrorAndModelError, None) => {
             let (message, allowed) = ("it has no reference model", "together with `model`");
             report.missing(part.at("sees"), &part.path("sees"), message, allowed);
             None
         }
-        (_, Some(model)) => {
-            let message = format!("the supervisor sees no model, but \"{word}\"");
+        (SeesWord::ErrorAndRate | SeesWord::ErrorAndChange, Some(model)) => {
+            let message = format!("the supervisor sees no model, but \"{}\"", sees.name());
             let allowed = "only with sees = \"error-and-model-error\"";
             report.value(part.at("model"), &model.path, message, allowed);
             None
         }
-        ("error-and-rate", None) => Some(Sees::ErrorAndRate),
-        _ => Some(Sees::ErrorAndChange),
+        (SeesWord::ErrorAndRate, None) => Some(Sees::ErrorAndRate),
+        (SeesWord::ErrorAndChange, None) => Some(Sees::ErrorAndChange),
     }
 }
 
@@ -326,17 +329,16 @@ fn dead_zone(section: &Section) -> Option<DeadZone<f64>> {
 
 fn law(report: &mut Report, section: &Section) -> Option<Law<f64>> {
     let leakage = section.number("leakage_per_s");
-    if section.text("law")? == "accumulating" {
-        let leakage_per_s = leakage.unwrap_or(0.0);
-        return Some(Law::Accumulating { leakage_per_s });
+    match section.word("law")? {
+        LawWord::Accumulating => Some(Law::Accumulating { leakage_per_s: leakage.unwrap_or(0.0) }),
+        LawWord::Memoryless if leakage.is_some() => {
+            let (place, path) = (section.at("leakage_per_s"), section.path("leakage_per_s"));
+            let message = "the memoryless law has nothing that could leak";
+            report.value(place, &path, message, "only with law = \"accumulating\"");
+            None
+        }
+        LawWord::Memoryless => Some(Law::Memoryless),
     }
-    if leakage.is_some() {
-        let (place, path) = (section.at("leakage_per_s"), section.path("leakage_per_s"));
-        let message = "the memoryless law has nothing that could leak";
-        report.value(place, &path, message, "only with law = \"accumulating\"");
-        return None;
-    }
-    Some(Law::Memoryless)
 }
 
 /// The limits of each gain; an end that is not given is open.
@@ -384,7 +386,7 @@ fn warn_of_drift(
     tuner: &SelfTuner<f64>,
     limits: Option<&Section>,
 ) {
-    if section.text("law") != Some("accumulating") {
+    if tuner.settings().law == Law::Memoryless {
         return;
     }
     let (nominal, rest) = (tuner.nominal(), tuner.gains_at_rest());

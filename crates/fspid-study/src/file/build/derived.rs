@@ -6,6 +6,7 @@ use fspid_sim::Controller;
 use super::schedule::{self, Pressure};
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::controller::ControllerKind;
 
 /// The gains that a controller flies with, where they are not those of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +72,7 @@ pub(super) fn derived(
 }
 
 fn source(section: &Section, pressure: Pressure) -> Option<GainSource> {
-    if section.kind == "lqi" {
+    if section.variant() == Some(ControllerKind::Lqi) {
         return Some(GainSource::Regulator);
     }
     section.section("schedule")?;

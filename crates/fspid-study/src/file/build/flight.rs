@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
-use fspid_aircraft::{Aircraft, Environment, TrimTarget};
+use fspid_aircraft::{Aircraft, Environment, ForceModel, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
-use super::{data, judged, linear_aircraft, rad};
-use crate::file::aircraft::{aircraft_data, aircraft_text, quantity};
+use super::{data, judged, linear_aircraft, loading, rad};
+use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::spec::flight::{AtmosphereWord, ModelWord};
 use crate::flyer::flyer;
 
 /// A plant and what the air around it depends on.
@@ -53,26 +53,32 @@ pub(super) fn flown(
 fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
     let key = if part.given("file") { "file" } else { "name" };
     let data = read(report, files, part)?;
+    let model = part.word("model").unwrap_or_else(|| default_model(&data));
     if part.text("model").is_none() {
-        files.fill(part.path("model"), default_model(&data));
+        files.fill(part.path("model"), model.name());
     }
+    let data = loading::loaded(report, (part, key), data)?;
     let span_m = match &data.model {
-        ModelData::Derivatives(data) => data.geometry.span_m,
-        ModelData::Forces(data) => data.geometry.span_m,
+        ModelData::Derivatives(data) => Some(data.geometry.span_m),
+        // Tables whose moments are 0 need none.
+        ModelData::Forces(data) => Some(data.geometry.span_m).filter(|span_m| *span_m > 0.0),
         ModelData::Linear(model) => return linear_aircraft::flown(report, (part, key), model),
     };
     fits(report, part, &data)?;
     let target = target(part)?;
     check_ground(report, part, target);
-    let aircraft = flyer(&data, laws(part)?, part.text("atmosphere")? == "reference");
+    let own_air = part.word::<AtmosphereWord>("atmosphere")? == AtmosphereWord::Reference;
+    let aircraft = flyer(&data, laws(part)?, own_air);
     let aircraft = judged(report, (part, key), aircraft)?;
+    glides(report, part, &aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
-    let plant = match part.text("model") {
-        Some("linear") => Plant::Linear(judged(report, (part, key), plant.linear())?),
-        _ => above_ground(report, part, plant)?.into(),
+    let target = plant.trim().target;
+    let plant = match model {
+        ModelWord::Linear => Plant::Linear(judged(report, (part, key), plant.linear())?),
+        ModelWord::Nonlinear => above_ground(report, part, plant)?.into(),
     };
     let way = way(part, target, aircraft.environment())?;
-    Some(Flown { plant, way: Some(Way { span_m: Some(span_m), ..way }) })
+    Some(Flown { plant, way: Some(Way { span_m, ..way }) })
 }
 
 /// Along a target in the air of an environment, by an aircraft without a span.
@@ -88,10 +94,10 @@ pub(super) fn way(part: &Section, target: TrimTarget, environment: &Environment)
 }
 
 /// What flies where the scenario does not choose: the most that the data allow.
-fn default_model(data: &AircraftData) -> &'static str {
+fn default_model(data: &AircraftData) -> ModelWord {
     match data.model {
-        ModelData::Linear(_) => "linear",
-        ModelData::Derivatives(_) | ModelData::Forces(_) => "nonlinear",
+        ModelData::Linear(_) => ModelWord::Linear,
+        ModelData::Derivatives(_) | ModelData::Forces(_) => ModelWord::Nonlinear,
     }
 }
 
@@ -109,7 +115,8 @@ fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Ai
         }
     };
     let place = place.unwrap_or(Path::new(""));
-    let aircraft = aircraft_data(report, files, (&section, place));
+    let given = Given::of(files.written(&part.path(key)), part.number("cg_mac"));
+    let aircraft = aircraft_data(report, files, (&section, place), given);
     files.keep(part.path(key), &AIRCRAFT_FILE, section);
     aircraft
 }
@@ -118,7 +125,7 @@ pub(super) fn target(part: &Section) -> Option<TrimTarget> {
     Some(TrimTarget {
         airspeed_m_s: quantity(part, "airspeed")?,
         altitude_m: quantity(part, "altitude")?,
-        flight_path_rad: 0.0,
+        flight_path_rad: rad(part.number("climb_angle_deg").unwrap_or(0.0)),
     })
 }
 
@@ -154,15 +161,7 @@ fn altitude_key(part: &Section) -> &'static str {
 }
 
 fn laws(part: &Section) -> Option<Laws> {
-    let drag = match part.text("drag")? {
-        "polar" => DragLaw::Polar,
-        _ => DragLaw::Linear,
-    };
-    let thrust = match part.text("thrust")? {
-        "with-speed" => ThrustLaw::WithSpeed,
-        _ => ThrustLaw::Constant,
-    };
-    Some(Laws { drag, thrust })
+    Some(Laws { drag: part.word("drag")?, thrust: part.word("thrust")? })
 }
 
 /// Refuses what only derivatives can do, where there are tables.
@@ -179,6 +178,17 @@ fn fits(report: &mut Report, part: &Section, data: &AircraftData) -> Option<()> 
     (report.count() == before).then_some(())
 }
 
+/// Refuses a path for an aircraft that glides on its own.
+fn glides(report: &mut Report, part: &Section, aircraft: &Aircraft<Forces>) -> Option<()> {
+    if aircraft.model().has_engine() || !part.given("climb_angle_deg") {
+        return Some(());
+    }
+    let message = "the aircraft has no engine; at its speed its path is that of its glide";
+    let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+    report.value(at, &path, message, "nothing; leave it out");
+    None
+}
+
 /// Refuses the laws that are for derivatives.
 pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
     for key in ["drag", "thrust"].into_iter().filter(|key| part.given(key)) {
@@ -188,7 +198,7 @@ pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
 
 /// Refuses the air of a source that has none.
 pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str) {
-    if part.text("atmosphere") == Some("reference") {
+    if part.word("atmosphere") == Some(AtmosphereWord::Reference) {
         let at = (part.at("atmosphere"), part.path("atmosphere"));
         report.value(at.0, &at.1, message, "\"standard\"");
     }
@@ -219,6 +229,7 @@ fn course(part: &Section, target: TrimTarget) -> Option<Course> {
     Some(Course {
         airspeed_m_s: target.airspeed_m_s,
         height_m: target.altitude_m - part.number("ground_m")?,
+        climb_rad: target.flight_path_rad,
         heading_rad: rad(part.number("heading_deg")?),
         start_m: [0.0; 2],
     })

@@ -8,6 +8,7 @@ use super::flight::{self, Flown, Way};
 use super::judged;
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::flight::ModelWord;
 use crate::units::{FOOT_M, KNOT_M_S};
 
 /// How far an airspeed may be from that of the model, as a share of it: the dynamic pressure changes by 1 %, less than
@@ -38,10 +39,15 @@ pub(super) fn flown(
 /// Refuses what a linear model cannot do.
 fn fits(report: &mut Report, part: &Section) -> Option<()> {
     let before = report.count();
-    if part.text("model") == Some("nonlinear") {
+    if part.word("model") == Some(ModelWord::Nonlinear) {
         let message =
             "only a linear model of the aircraft is known; it has no forces to fly nonlinear";
         report.value(part.at("model"), &part.path("model"), message, "\"linear\", or leave it out");
+    }
+    if part.number("climb_angle_deg").is_some_and(|angle_deg| angle_deg != 0.0) {
+        let message = "only a linear model of the aircraft is known, which holds in level flight";
+        let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+        report.value(at, &path, message, "0, or leave it out");
     }
     flight::refuse_laws(
         report,

@@ -8,6 +8,7 @@ pub(crate) mod data;
 mod derived;
 mod flight;
 mod linear_aircraft;
+mod loading;
 mod lqi;
 mod range_rule;
 mod schedule;
@@ -81,7 +82,7 @@ pub(crate) fn scenario(
         section.sections("plant_change"),
         (flown.as_ref().map(|flown| &flown.plant), timing, servo),
     );
-    let surroundings = surroundings(report, section, (flown.as_ref(), drive));
+    let surroundings = surroundings(report, files, (section, flown.as_ref(), drive));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     if let Some(timing) = timing {
@@ -124,10 +125,10 @@ pub(crate) fn scenario(
 /// Moving air, actuator and sensors; what is wrong with them is reported.
 fn surroundings(
     report: &mut Report,
-    section: &Section,
-    (flown, drive): (Option<&Flown>, Option<Drive>),
+    files: &mut Files<'_>,
+    (section, flown, drive): (&Section, Option<&Flown>, Option<Drive>),
 ) -> Option<Surroundings> {
-    let weather = flown.map(|flown| air::weather(report, section, flown));
+    let weather = flown.map(|flown| air::weather(report, files, (section, flown)));
     let sensors = match section.section("sensor") {
         None => Some((None, None)),
         part => sound(part).and_then(|part| sensor::sensors(report, part)),
@@ -144,10 +145,7 @@ fn sound(part: Option<&Section>) -> Option<&Section> {
 
 /// Which way the elevator is counted.
 pub(crate) fn elevator_sign(section: &Section) -> Option<ElevatorSign> {
-    match section.text("elevator_sign")? {
-        "nose-up-positive" => Some(ElevatorSign::NoseUpPositive),
-        _ => Some(ElevatorSign::NoseDownPositive),
-    }
+    section.word("elevator_sign")
 }
 
 /// The value, or a problem at `key` in the model's own words.

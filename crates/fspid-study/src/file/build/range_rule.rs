@@ -3,6 +3,7 @@
 use fspid_sim::Scenario;
 
 use crate::file::section::Section;
+use crate::file::spec::flight::ValidityWord;
 
 /// What is made of a flight that leaves the range of its data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,10 +23,10 @@ impl RangeRule {
         let Some(part) = section.section("aircraft") else {
             return Self::NoRange;
         };
-        match (scenario.plant.aircraft(), part.text("validity")) {
+        match (scenario.plant.aircraft(), part.word("validity")) {
             (None, _) => Self::Linear,
-            (Some(_), Some("warn")) => Self::Warns,
-            (Some(_), _) => Self::Fails,
+            (Some(_), Some(ValidityWord::Warn)) => Self::Warns,
+            (Some(_), Some(ValidityWord::Fail) | None) => Self::Fails,
         }
     }
 }

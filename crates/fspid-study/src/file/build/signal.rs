@@ -1,47 +1,51 @@
 //! Set-points and disturbances.
 
 use fspid_sim::SimError;
-use fspid_sim::signal::{Disturbance, Entry, Interpolation, Profile, Shape};
+use fspid_sim::signal::{Disturbance, Profile, Shape};
 
 use super::{judged, rad};
 use crate::file::report::Report;
 use crate::file::section::Section;
+use crate::file::spec::signal::SignalKind;
 
 pub(super) fn setpoint(report: &mut Report, section: &Section) -> Option<Profile> {
-    if section.kind == "table" {
+    let Some(shape) = shape(section)? else {
         return table(report, section);
-    }
+    };
     let amplitude_rad = rad(section.number("amplitude_deg")?);
-    let profile = Profile::new(amplitude_rad, shape(section)?);
+    let profile = Profile::new(amplitude_rad, shape);
     judged(report, (section, "amplitude_deg"), profile)
 }
 
-/// The shape of a set-point or disturbance.
-fn shape(section: &Section) -> Option<Shape> {
-    let at_s = section.number("at_s")?;
-    let width_s = section.number("width_s");
-    Some(match section.kind {
-        "square" => Shape::Square {
-            at_s,
+/// The shape of a set-point or disturbance; the inner `None` for a table, which has none.
+#[allow(clippy::option_option, reason = "a table and a problem are two things")]
+fn shape(section: &Section) -> Option<Option<Shape>> {
+    let at_s = || section.number("at_s");
+    let width_s = || section.number("width_s");
+    Some(Some(match section.variant()? {
+        SignalKind::Step => Shape::Step { at_s: at_s()? },
+        SignalKind::Square => Shape::Square {
+            at_s: at_s()?,
             half_period_s: section.number("half_period_s")?,
             bipolar: section.boolean("bipolar")?,
         },
-        "doublet" => Shape::Doublet { at_s, width_s: width_s? },
-        "pulse" => Shape::Pulse { at_s, width_s: width_s? },
-        "ramp" => Shape::Ramp { at_s, width_s: width_s? },
-        "sine" => Shape::Sine { at_s, frequency_hz: section.number("frequency_hz")? },
-        "noise" => Shape::Noise { at_s, seed: u64::try_from(section.integer("seed")?).ok()? },
-        _ => Shape::Step { at_s },
-    })
+        SignalKind::Doublet => Shape::Doublet { at_s: at_s()?, width_s: width_s()? },
+        SignalKind::Pulse => Shape::Pulse { at_s: at_s()?, width_s: width_s()? },
+        SignalKind::Ramp => Shape::Ramp { at_s: at_s()?, width_s: width_s()? },
+        SignalKind::Sine => {
+            Shape::Sine { at_s: at_s()?, frequency_hz: section.number("frequency_hz")? }
+        }
+        SignalKind::Noise => {
+            Shape::Noise { at_s: at_s()?, seed: u64::try_from(section.integer("seed")?).ok()? }
+        }
+        SignalKind::Table => return Some(None),
+    }))
 }
 
 fn table(report: &mut Report, section: &Section) -> Option<Profile> {
     let times = section.placed_numbers("time_s")?;
     let values = section.numbers("value_deg")?;
-    let interpolation = match section.text("interpolation")? {
-        "linear" => Interpolation::Linear,
-        _ => Interpolation::Hold,
-    };
+    let interpolation = section.word("interpolation")?;
     if times.len() != values.len() {
         let message = format!("{} values for {} times", values.len(), times.len());
         let path = section.path("value_deg");
@@ -62,10 +66,11 @@ fn table(report: &mut Report, section: &Section) -> Option<Profile> {
 }
 
 pub(super) fn disturbance(report: &mut Report, section: &Section) -> Option<Disturbance> {
-    let word = section.text("enters_at")?;
-    let entry = Entry::ALL.into_iter().find(|entry| entry.name() == word)?;
-    let size = if section.kind == "noise" { "standard_deviation_deg" } else { "amplitude_deg" };
+    let entry = section.word("enters_at")?;
+    let shape = shape(section)??;
+    let is_noise = section.variant() == Some(SignalKind::Noise);
+    let size = if is_noise { "standard_deviation_deg" } else { "amplitude_deg" };
     let amplitude_rad = rad(section.number(size)?);
-    let disturbance = Disturbance::new(entry, amplitude_rad, shape(section)?);
+    let disturbance = Disturbance::new(entry, amplitude_rad, shape);
     judged(report, (section, size), disturbance)
 }

@@ -1,8 +1,6 @@
 //! The supervisor: rules that conclude labels, or numbers.
 
-use fspid_fuzzy::{
-    Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, OutOfRange, Output, Supervisor,
-};
+use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Output, Supervisor};
 
 use super::{data, judged};
 use crate::file::files::Files;
@@ -20,8 +18,7 @@ pub(super) fn supervisor(
     files: &mut Files<'_>,
     part: &Section,
 ) -> Option<Supervisor<f64>> {
-    let word = part.text("out_of_range")?;
-    let policy = OutOfRange::ALL.into_iter().find(|policy| policy.name() == word)?;
+    let policy = part.word("out_of_range")?;
     let range = part.number("range")?;
     if !part.given("table") {
         let before = report.count();
@@ -97,8 +94,7 @@ fn of_system(
     part: &Section,
     range: f64,
 ) -> Option<NumberTable<f64>> {
-    const ALLOWED: &str =
-        "a readable .toml, .fis, .fcl or .fll file, its path relative to the scenario's folder";
+    const ALLOWED: &str = "a readable .toml, .fis, .t2fis, .fcl, .fll or .xml file, its path relative to the scenario's folder";
     let name = part.text("system")?;
     let (place, path) = (part.at("system"), part.path("system"));
     let text = match (Format::of(name.as_ref()), files.read(name)) {

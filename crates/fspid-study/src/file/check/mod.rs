@@ -5,6 +5,8 @@ mod grid;
 pub(crate) mod number_grid;
 mod value;
 
+pub(super) use value::allowed;
+
 use crate::file::document::{Item, Member, Value};
 use crate::file::problem::nearest;
 use crate::file::report::{Place, Report, excerpt};
@@ -200,7 +202,7 @@ fn quoted_or(words: &[&str]) -> String {
 }
 
 /// Words in quotes, joined by commas.
-pub(super) fn quoted(words: &[&str]) -> String {
+pub(in crate::file) fn quoted(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     quoted.join(", ")
 }

@@ -59,7 +59,7 @@ pub(super) fn check(
 }
 
 /// What a key may hold, in words.
-pub(super) fn allowed(kind: &Kind) -> String {
+pub(in crate::file) fn allowed(kind: &Kind) -> String {
     match kind {
         Kind::Number { unit, range } => range.words(unit),
         Kind::Integer { least, most } if least == most => format!("{least}"),

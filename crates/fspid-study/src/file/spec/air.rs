@@ -1,35 +1,52 @@
 //! Winds, gusts and turbulence.
 
+use fspid_sim::air::{Follows, Severity, Specification};
+
+use super::word::{Word, words, words_of};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Variant, Way, defaulted, finite, not_negative,
     optional, plain, positive, required,
 };
 
-/// Documents that turbulence is stated by.
-const SPECIFICATIONS: [&str; 2] = ["mil-f-8785c", "mil-hdbk-1797"];
-/// Severities of turbulence.
-const INTENSITIES: [&str; 3] = ["light", "moderate", "severe"];
+words! {
+    /// Winds.
+    WindKind { Steady = "steady", LogShear = "log-shear", Microburst = "microburst" }
+}
+
+words! {
+    /// Gusts.
+    GustKind { RampHold = "ramp-hold", FullCycle = "full-cycle" }
+}
+
+words_of!(Specification { MilF8785c = "mil-f-8785c", MilHdbk1797 = "mil-hdbk-1797" });
+words_of!(Severity { Light = "light", Moderate = "moderate", Severe = "severe" });
+words_of!(Follows { Start = "start", Flight = "flight" });
 
 pub(super) static TURBULENCE: Table = plain(
-    "Turbulence of the form of Dryden, at the trimmed speed and height.",
+    "Turbulence of the form of Dryden.",
     &[&[
         defaulted(
             "model",
-            Kind::Word(&SPECIFICATIONS),
+            Kind::Word(Specification::WORDS),
             Default::Word("mil-f-8785c"),
             "Document that scale lengths are stated by.",
         ),
         required(
             "intensity",
-            Kind::Word(&INTENSITIES),
+            Kind::Word(Severity::WORDS),
             "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
+        ),
+        optional(
+            "follows",
+            Kind::Word(Follows::WORDS),
+            "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
         ),
         optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's."),
         defaulted(
             "seed",
             Kind::Integer { least: 0, most: i64::MAX },
             Default::Integer(1),
-            "The same seed gives the same turbulence.",
+            "The same seed gives the same turbulence at any sample period: it is drawn each 10 ms and held.",
         ),
     ]],
 );
@@ -47,7 +64,7 @@ pub(super) static WIND: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "steady",
+            name: WindKind::Steady.name(),
             table: Table {
                 doc: "The same everywhere.",
                 groups: &[&[
@@ -61,7 +78,7 @@ pub(super) static WIND: Table = Table {
             },
         },
         Variant {
-            name: "log-shear",
+            name: WindKind::LogShear.name(),
             table: Table {
                 doc: "Growing with the logarithm of the height up to 1000 ft.",
                 groups: &[&[
@@ -80,7 +97,7 @@ pub(super) static WIND: Table = Table {
             },
         },
         Variant {
-            name: "microburst",
+            name: WindKind::Microburst.name(),
             table: plain(
                 "Air that falls and spreads over the ground.",
                 &[&[
@@ -118,14 +135,14 @@ pub(super) static GUST: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "ramp-hold",
+            name: GustKind::RampHold.name(),
             table: plain(
                 "Rises as half a cosine over a length and stays (MIL-F-8785C).",
                 &[&[required("length_m", positive("m"), "Length of the rise.")]],
             ),
         },
         Variant {
-            name: "full-cycle",
+            name: GustKind::FullCycle.name(),
             table: plain(
                 "One minus cosine: rises over the gradient distance and falls again (CS 25.341).",
                 &[&[required("gradient_m", positive("m"), "Gradient distance: half the length.")]],

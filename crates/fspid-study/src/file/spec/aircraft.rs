@@ -1,15 +1,31 @@
 //! Aircraft files: stability derivatives, a linear model or tables, in the units of their source.
 
-use super::flight::{ALTITUDE, ALTITUDE_FT};
-use super::scenario::ELEVATOR_SIGNS;
+use fspid_sim::ElevatorSign;
+
+use super::flight::{ALTITUDE, ALTITUDE_FT, CG_MAC};
 use super::tables::TABLES;
+use super::word::{Word, words};
 use super::{
     Choice, Key, Kind, Range, Table, Variant, Way, finite, optional, plain, positive, required,
 };
 
-/// States that an equation of a linear model may be for; the unit is the last part.
-const STATES: [&str; 7] =
-    ["u_ft_s", "u_m_s", "w_ft_s", "w_m_s", "alpha_rad", "q_rad_s", "theta_rad"];
+words! {
+    /// What an aircraft is known by.
+    AircraftKind { Derivatives = "derivatives", Linear = "linear", Tables = "tables" }
+}
+
+words! {
+    /// States that an equation of a linear model may be for; the unit is the last part.
+    StateWord {
+        ForwardFeet = "u_ft_s",
+        ForwardMetres = "u_m_s",
+        DownwardFeet = "w_ft_s",
+        DownwardMetres = "w_m_s",
+        Alpha = "alpha_rad",
+        PitchRate = "q_rad_s",
+        Theta = "theta_rad",
+    }
+}
 
 const COEFFICIENT: Kind = finite("");
 const DEG: Kind = Kind::Number { unit: "deg", range: Range::Between(-90.0, 90.0) };
@@ -30,9 +46,15 @@ pub(crate) static AIRCRAFT_FILE: Table = Table {
     ]],
     choices: &[],
     variants: &[
-        Variant { name: "derivatives", table: plain("Stability derivatives.", &[DERIVATIVES]) },
-        Variant { name: "linear", table: plain("A linear model.", &[LINEAR]) },
-        Variant { name: "tables", table: plain("Tables in files of their own.", &[TABLES]) },
+        Variant {
+            name: AircraftKind::Derivatives.name(),
+            table: plain("Stability derivatives.", &[DERIVATIVES]),
+        },
+        Variant { name: AircraftKind::Linear.name(), table: plain("A linear model.", &[LINEAR]) },
+        Variant {
+            name: AircraftKind::Tables.name(),
+            table: plain("Tables in files of their own.", &[TABLES]),
+        },
     ],
 };
 
@@ -49,7 +71,7 @@ const DERIVATIVES: &[Key] = &[
 const LINEAR: &[Key] = &[
     optional(
         "elevator_sign",
-        Kind::Word(&ELEVATOR_SIGNS),
+        Kind::Word(ElevatorSign::WORDS),
         "What a positive elevator does; \"nose-down-positive\" if left out.",
     ),
     optional(
@@ -115,6 +137,11 @@ static REFERENCE: Table = Table {
         optional("gravity_ft_s2", positive("ft/s2"), "With which masses are made of weights."),
         optional("gravity_m_s2", positive("m/s2"), "With which masses are made of weights."),
         required("alpha_deg", DEG, "Angle of attack of the fuselage."),
+        optional(
+            "cg_mac",
+            CG_MAC,
+            "Centre of gravity of the derivatives behind the leading edge of the mean chord, as a share of it; without it a scenario cannot move it.",
+        ),
     ]],
     choices: &[
         one_of!("airspeed_ft_s", "airspeed_m_s"),
@@ -144,7 +171,7 @@ static GEOMETRY: Table = Table {
 };
 
 static MASS: Table = Table {
-    doc: "Weight, and moments of inertia about the axes of the fuselage.",
+    doc: "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
     groups: &[&[
         optional("weight_lbf", positive("lbf"), "Weight."),
         optional("weight_n", positive("N"), "Weight."),
@@ -241,7 +268,7 @@ static TRAVEL: Table = plain(
 static EQUATION: Table = plain(
     "Rate of change of a state.",
     &[&[
-        required("state", Kind::Word(&STATES), "Which."),
+        required("state", Kind::Word(StateWord::WORDS), "Which."),
         required(
             "by_states",
             Kind::Numbers { unit: "", range: Range::Finite, least: 1, most: 4 },

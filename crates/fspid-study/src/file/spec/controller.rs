@@ -1,12 +1,58 @@
 //! The controllers.
 
 use super::data::{GRIDS, NUMBER_GRIDS};
+use fspid_core::{Change, ErrorSign, IntegralForm};
+use fspid_fuzzy::OutOfRange;
+
 use super::lqi::LQI;
 use super::schedule::SCHEDULE;
+use super::word::{Word, words, words_of};
 use super::{
     ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
     finite, not_negative, optional, plain, positive, required,
 };
+
+words! {
+    /// What controls.
+    ControllerKind { P = "p", Pid = "pid", Fspid = "fspid", Lqi = "lqi" }
+}
+
+words! {
+    /// What the derivative acts on.
+    DerivativeOn { Error = "error", Measurement = "measurement" }
+}
+
+words! {
+    /// What the integral does at a limit.
+    AntiWindupKind {
+        None = "none",
+        Clamping = "clamping",
+        Conditional = "conditional",
+        BackCalculation = "back-calculation",
+    }
+}
+
+words! {
+    /// How increments become gains.
+    LawWord { Memoryless = "memoryless", Accumulating = "accumulating" }
+}
+
+words! {
+    /// What the supervisor sees.
+    SeesWord {
+        ErrorAndChange = "error-and-change",
+        ErrorAndRate = "error-and-rate",
+        ErrorAndModelError = "error-and-model-error",
+    }
+}
+
+words_of!(IntegralForm { Bumpless = "bumpless", Literal = "literal" });
+words_of!(OutOfRange { Clamp = "clamp", Evaluate = "evaluate", Error = "error" });
+words_of!(ErrorSign {
+    SetpointMinusMeasurement = "setpoint-minus-measurement",
+    MeasurementMinusSetpoint = "measurement-minus-setpoint",
+});
+words_of!(Change { Rate = "rate", Delta = "delta" });
 
 pub(super) static CONTROLLER: Table = Table {
     doc: "A controller; a positive command turns the nose up.",
@@ -14,14 +60,14 @@ pub(super) static CONTROLLER: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "p",
+            name: ControllerKind::P.name(),
             table: plain(
                 "Proportional, with an optional inner loop of pitch rate.",
                 &[&[required("kp", finite(""), "Command per error."), RATE_GAIN, SCHEDULE]],
             ),
         },
         Variant {
-            name: "pid",
+            name: ControllerKind::Pid.name(),
             table: Table {
                 doc: "PID with fixed gains, in parallel or ISA form.",
                 groups: &[
@@ -45,7 +91,7 @@ pub(super) static CONTROLLER: Table = Table {
             },
         },
         Variant {
-            name: "fspid",
+            name: ControllerKind::Fspid.name(),
             table: Table {
                 doc: "PID whose gains a fuzzy supervisor tunes while flying.",
                 groups: &[
@@ -71,7 +117,7 @@ pub(super) static CONTROLLER: Table = Table {
             },
         },
         Variant {
-            name: "lqi",
+            name: ControllerKind::Lqi.name(),
             table: plain(
                 "Linear-quadratic regulator with integral action, of a model of pitching.",
                 &[LQI, ENDS],
@@ -120,7 +166,7 @@ const TERMS: &[Key] = &[
     ),
     defaulted(
         "derivative_on",
-        Kind::Word(&["error", "measurement"]),
+        Kind::Word(DerivativeOn::WORDS),
         Default::Word("error"),
         "`measurement` is a derivative weight of 0.",
     ),
@@ -131,7 +177,7 @@ const TERMS: &[Key] = &[
     ),
     defaulted(
         "integral",
-        Kind::Word(&["bumpless", "literal"]),
+        Kind::Word(IntegralForm::WORDS),
         Default::Word("bumpless"),
         "Sum of ki·e, or ki times the sum of e as the paper has it.",
     ),
@@ -180,9 +226,9 @@ static ANTI_WINDUP: Table = Table {
     groups: &[],
     choices: &[],
     variants: &[
-        Variant { name: "none", table: plain("The integral runs on.", &[]) },
+        Variant { name: AntiWindupKind::None.name(), table: plain("The integral runs on.", &[]) },
         Variant {
-            name: "clamping",
+            name: AntiWindupKind::Clamping.name(),
             table: plain(
                 "The integral's part of the command is kept within limits.",
                 &[&[
@@ -192,14 +238,14 @@ static ANTI_WINDUP: Table = Table {
             ),
         },
         Variant {
-            name: "conditional",
+            name: AntiWindupKind::Conditional.name(),
             table: plain(
                 "The integral stops while it would drive the command further past its limit.",
                 &[],
             ),
         },
         Variant {
-            name: "back-calculation",
+            name: AntiWindupKind::BackCalculation.name(),
             table: plain(
                 "The integral follows the limited command.",
                 &[&[required("tracking_s", positive("s"), "Tracking time.")]],
@@ -213,7 +259,7 @@ const TUNER: &[Key] = &[
     required("supervisor", Kind::Table(&SUPERVISOR), "The fuzzy rules and their scales."),
     defaulted(
         "law",
-        Kind::Word(&["memoryless", "accumulating"]),
+        Kind::Word(LawWord::WORDS),
         Default::Word("memoryless"),
         "Gains are nominal plus increment, or add the increment up over time.",
     ),
@@ -260,7 +306,7 @@ const SUPERVISOR_KEYS: &[Key] = &[
     optional(
         "system",
         Kind::Path,
-        "A file with such rules (.toml, .fis, .fcl, .fll), as `fspid learn` writes it.",
+        "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
     ),
     required(
         "range",
@@ -274,13 +320,13 @@ const SUPERVISOR_KEYS: &[Key] = &[
     ),
     defaulted(
         "out_of_range",
-        Kind::Word(&["clamp", "evaluate", "error"]),
+        Kind::Word(OutOfRange::WORDS),
         Default::Word("clamp"),
         "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
     ),
     defaulted(
         "error_sign",
-        Kind::Word(&["setpoint-minus-measurement", "measurement-minus-setpoint"]),
+        Kind::Word(ErrorSign::WORDS),
         Default::Word("setpoint-minus-measurement"),
         "Sign of the supervisor's error and of its change.",
     ),
@@ -297,14 +343,14 @@ const SUPERVISOR_KEYS: &[Key] = &[
     ),
     defaulted(
         "sees",
-        Kind::Word(&["error-and-change", "error-and-rate", "error-and-model-error"]),
+        Kind::Word(SeesWord::WORDS),
         Default::Word("error-and-change"),
         "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
     ),
     optional("model", Kind::Table(&MODEL), "The reference model of `error-and-model-error`."),
     defaulted(
         "change",
-        Kind::Word(&["rate", "delta"]),
+        Kind::Word(Change::WORDS),
         Default::Word("rate"),
         "Change of error per second or per sample.",
     ),

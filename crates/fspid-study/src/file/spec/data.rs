@@ -1,6 +1,9 @@
 //! Plant files and rule tables.
 
-use super::scenario::{COEFFICIENTS, ELEVATOR_SIGNS};
+use fspid_sim::ElevatorSign;
+
+use super::scenario::COEFFICIENTS;
+use super::word::Word;
 use super::{Key, Kind, Range, Table, finite, optional, plain, positive, required};
 
 /// A plant in a file of its own.
@@ -15,7 +18,11 @@ pub(crate) static PLANT_FILE: Table = plain(
             "Coefficients of pitch angle over elevator, highest power of s first.",
         ),
         required("denominator", COEFFICIENTS, "As numerator; longer than it."),
-        required("elevator_sign", Kind::Word(&ELEVATOR_SIGNS), "What a positive elevator does."),
+        required(
+            "elevator_sign",
+            Kind::Word(ElevatorSign::WORDS),
+            "What a positive elevator does.",
+        ),
         optional("condition", Kind::Table(&CONDITION), "Flight condition."),
         optional("source", Kind::Text, "Where the numbers come from."),
         optional("notes", Kind::Text, "What else should be known."),

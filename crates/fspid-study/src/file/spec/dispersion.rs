@@ -1,7 +1,7 @@
 //! What differs from run to run of a campaign.
 
+use super::word::{Word, words};
 use super::{Default, Kind, Range, Table, defaulted, optional, plain, required};
-use crate::dispersion::Distribution;
 
 const ANY: Kind = Kind::Number { unit: "", range: Range::Finite };
 
@@ -30,7 +30,7 @@ pub(super) static DISPERSION: Table = plain(
         ),
         required(
             "distribution",
-            Kind::Word(&Distribution::NAMES),
+            Kind::Word(DistributionWord::WORDS),
             "How it is distributed; what else must be given depends on it.",
         ),
         defaulted(
@@ -77,16 +77,28 @@ pub(super) static DISPERSION: Table = plain(
     ]],
 );
 
+words! {
+    /// How something is distributed.
+    DistributionWord {
+        Normal = "normal",
+        Uniform = "uniform",
+        LogUniform = "log-uniform",
+        Choice = "choice",
+        Seed = "seed",
+        Correlated = "correlated",
+    }
+}
+
 /// Keys of each distribution: those that must be there, and those that may.
-pub(crate) fn keys_of(distribution: &str) -> [&'static [&'static str]; 2] {
+pub(crate) fn keys_of(distribution: DistributionWord) -> [&'static [&'static str]; 2] {
     match distribution {
-        "normal" => [&["mean", "standard_deviation"], &["lower", "upper"]],
-        "uniform" | "log-uniform" => [&["lower", "upper"], &[]],
-        "choice" => [&["values"], &["weights"]],
-        "correlated" => {
+        DistributionWord::Normal => [&["mean", "standard_deviation"], &["lower", "upper"]],
+        DistributionWord::Uniform | DistributionWord::LogUniform => [&["lower", "upper"], &[]],
+        DistributionWord::Choice => [&["values"], &["weights"]],
+        DistributionWord::Seed => [&[], &[]],
+        DistributionWord::Correlated => {
             [&["paths", "means", "standard_deviations", "correlation"], &["lowers", "uppers"]]
         }
-        _ => [&[], &[]],
     }
 }
 

@@ -11,22 +11,23 @@ macro_rules! one_of {
 }
 
 mod actuator;
-mod air;
-mod aircraft;
-mod controller;
+pub(crate) mod air;
+pub(crate) mod aircraft;
+pub(crate) mod controller;
 mod data;
 pub(crate) mod dispersion;
-mod flight;
+pub(crate) mod flight;
 mod lqi;
 mod requirement;
 mod scenario;
 mod schedule;
 mod sensor;
-mod signal;
+pub(crate) mod signal;
 mod tables;
-mod tuning;
+pub(crate) mod tuning;
+pub(crate) mod word;
 
-pub(crate) use aircraft::AIRCRAFT_FILE;
+pub(crate) use aircraft::{AIRCRAFT_FILE, AircraftKind};
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
 pub(crate) use requirement::{NOT_IN, ONLY_IN, REQUIREMENT_FILE, SET_FILE, names_in_words};
 pub(crate) use scenario::SCENARIO;

@@ -1,5 +1,7 @@
 //! The scenario file: everything but controllers and signals.
 
+use fspid_sim::ElevatorSign;
+
 use super::actuator::ACTUATOR;
 use super::air::{GUST, TURBULENCE, WIND};
 use super::controller::CONTROLLER;
@@ -9,6 +11,7 @@ use super::requirement::REQUIREMENT;
 use super::sensor::SENSOR;
 use super::signal::{DISTURBANCE, SETPOINT};
 use super::tuning::{CONTEST, TUNING};
+use super::word::{Word, words_of};
 use super::{
     Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
     positive, required,
@@ -92,8 +95,10 @@ pub(crate) static SCENARIO: Table = Table {
     variants: &[],
 };
 
-/// Words for the sign of the elevator.
-pub(crate) const ELEVATOR_SIGNS: [&str; 2] = ["nose-down-positive", "nose-up-positive"];
+words_of!(ElevatorSign {
+    NoseDownPositive = "nose-down-positive",
+    NoseUpPositive = "nose-up-positive",
+});
 
 /// A list of coefficients.
 pub(super) const COEFFICIENTS: Kind =
@@ -110,7 +115,7 @@ const NUMERATOR: Key = optional(
 const DENOMINATOR: Key = optional("denominator", COEFFICIENTS, "As numerator; longer than it.");
 const ELEVATOR_SIGN: Key = optional(
     "elevator_sign",
-    Kind::Word(&ELEVATOR_SIGNS),
+    Kind::Word(ElevatorSign::WORDS),
     "What a positive elevator does in these coefficients.",
 );
 

@@ -22,7 +22,7 @@ pub(super) static SENSOR: Table = plain(
             "seed",
             Kind::Integer { least: 0, most: i64::MAX },
             Default::Integer(1),
-            "The same seed gives the same errors.",
+            "The same seed gives the same errors, a number for each sample of the sensor: with a sampling time of its own at any period of the loop, without one new numbers of the same density at another period.",
         ),
         optional("pitch", Kind::Table(&PITCH), "Changes to the pitch channel."),
         optional("rate", Kind::Table(&RATE), "Changes to the pitch-rate channel."),

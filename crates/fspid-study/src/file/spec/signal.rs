@@ -1,5 +1,8 @@
 //! Set-points and disturbances.
 
+use fspid_sim::signal::{Entry, Interpolation};
+
+use super::word::{Word, words, words_of};
 use super::{
     ANGLE_LIMIT_DEG, Default, Key, Kind, Range, Table, Variant, angle, defaulted, not_negative,
     plain, positive, required,
@@ -11,12 +14,29 @@ const FREQUENCY: Kind = Kind::Number { unit: "Hz", range: Range::PositiveUpTo(1e
 const AMPLITUDE: Key = required("amplitude_deg", angle(), "Size; negative for the other way.");
 const AT: Key = defaulted("at_s", not_negative("s"), Default::Number(0.0), "Start.");
 
+words! {
+    /// How a set-point or a disturbance goes; each table has some of them.
+    SignalKind {
+        Step = "step",
+        Square = "square",
+        Doublet = "doublet",
+        Pulse = "pulse",
+        Ramp = "ramp",
+        Sine = "sine",
+        Noise = "noise",
+        Table = "table",
+    }
+}
+
+words_of!(Interpolation { Hold = "hold", Linear = "linear" });
+words_of!(Entry { Servo = "servo", Elevator = "elevator", Measurement = "measurement" });
+
 /// Rows that a set-point table may have.
 const MOST_ROWS: usize = 1_000_000;
 
 /// A ramp, of the command and of a disturbance alike.
 const RAMP: Variant = Variant {
-    name: "ramp",
+    name: SignalKind::Ramp.name(),
     table: plain(
         "In a straight line from 0 to the amplitude, where it stays.",
         &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of the rise.")]],
@@ -25,7 +45,7 @@ const RAMP: Variant = Variant {
 
 /// A sine, of the command and of a disturbance alike.
 const SINE: Variant = Variant {
-    name: "sine",
+    name: SignalKind::Sine.name(),
     table: plain(
         "A sine wave from the start on.",
         &[&[AMPLITUDE, AT, required("frequency_hz", FREQUENCY, "Frequency.")]],
@@ -38,11 +58,11 @@ pub(super) static SETPOINT: Table = Table {
     choices: &[],
     variants: &[
         Variant {
-            name: "step",
+            name: SignalKind::Step.name(),
             table: plain("The amplitude from the start on.", &[&[AMPLITUDE, AT]]),
         },
         Variant {
-            name: "square",
+            name: SignalKind::Square.name(),
             table: plain(
                 "The amplitude for a half period, then minus the amplitude (bipolar) or 0 for one, and so on.",
                 &[&[
@@ -59,7 +79,7 @@ pub(super) static SETPOINT: Table = Table {
             ),
         },
         Variant {
-            name: "doublet",
+            name: SignalKind::Doublet.name(),
             table: plain(
                 "The amplitude, then minus the amplitude, then 0.",
                 &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length of each half.")]],
@@ -68,7 +88,7 @@ pub(super) static SETPOINT: Table = Table {
         RAMP,
         SINE,
         Variant {
-            name: "table",
+            name: SignalKind::Table.name(),
             table: plain(
                 "Rows of time and value; 0 before the first, the last value after the last.",
                 &[&[
@@ -94,7 +114,7 @@ pub(super) static SETPOINT: Table = Table {
                     ),
                     defaulted(
                         "interpolation",
-                        Kind::Word(&["hold", "linear"]),
+                        Kind::Word(Interpolation::WORDS),
                         Default::Word("hold"),
                         "The last value holds, or a straight line to the next.",
                     ),
@@ -108,17 +128,17 @@ pub(super) static DISTURBANCE: Table = Table {
     doc: "A disturbance, held from sample to sample.",
     groups: &[&[required(
         "enters_at",
-        Kind::Word(&["servo", "elevator", "measurement"]),
+        Kind::Word(Entry::WORDS),
         "Added to the servo's command, to the elevator behind the servo (both nose up positive), or to the measured pitch.",
     )]],
     choices: &[],
     variants: &[
         Variant {
-            name: "step",
+            name: SignalKind::Step.name(),
             table: plain("The amplitude from the start on.", &[&[AMPLITUDE, AT]]),
         },
         Variant {
-            name: "pulse",
+            name: SignalKind::Pulse.name(),
             table: plain(
                 "The amplitude for a while.",
                 &[&[AMPLITUDE, AT, required("width_s", positive("s"), "Length.")]],
@@ -127,7 +147,7 @@ pub(super) static DISTURBANCE: Table = Table {
         RAMP,
         SINE,
         Variant {
-            name: "noise",
+            name: SignalKind::Noise.name(),
             table: plain(
                 "White noise, a new normal number each sample.",
                 &[&[
@@ -140,7 +160,7 @@ pub(super) static DISTURBANCE: Table = Table {
                     required(
                         "seed",
                         Kind::Integer { least: 0, most: i64::MAX },
-                        "The same seed gives the same noise.",
+                        "The same seed gives the same number at the same sample of the loop; another period is another noise.",
                     ),
                 ]],
             ),

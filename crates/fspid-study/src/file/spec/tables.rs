@@ -1,17 +1,23 @@
 //! Aircraft files of kind `tables`.
 
+use fspid_daveml::flight::Gearing;
+
 use super::aircraft::SURFACE_KEYS;
+use super::word::{Word, words_of};
 use super::{
     Choice, Default, Key, Kind, Table, Way, defaulted, finite, optional, plain, positive, required,
 };
 
-/// Words for what the throttle asks of the engine.
-const GEARINGS: [&str; 2] = ["proportional", "stevens-lewis"];
+words_of!(Gearing { Proportional = "proportional", StevensLewis = "stevens-lewis" });
 
 pub(super) const TABLES: &[Key] = &[
     required("tables", Kind::Table(&TABLE_FILES), "The files."),
     required("body", Kind::Table(&TABLE_BODY), "What the tables of the body do not say."),
-    required("engine", Kind::Table(&TABLE_ENGINE), "What the tables of the engine do not say."),
+    optional(
+        "engine",
+        Kind::Table(&TABLE_ENGINE),
+        "What the tables of the engine do not say; with propulsion, and only then.",
+    ),
     required("travel", Kind::Table(&SURFACES), "How far the surfaces go."),
     optional("air", Kind::Table(&TABLE_AIR), "Air of its source, if it is to be flown in it."),
 ];
@@ -21,7 +27,11 @@ static TABLE_FILES: Table = plain(
     &[&[
         required("aerodynamics", Kind::Path, "Coefficients, reference area, span and chord."),
         required("inertia", Kind::Path, "Mass, moments of inertia, centre of mass."),
-        required("propulsion", Kind::Path, "Thrust."),
+        optional(
+            "propulsion",
+            Kind::Path,
+            "Thrust; without it the aircraft has no engine, and glides.",
+        ),
     ]],
 );
 
@@ -60,7 +70,7 @@ static TABLE_ENGINE: Table = Table {
     groups: &[&[
         defaulted(
             "gearing",
-            Kind::Word(&GEARINGS),
+            Kind::Word(Gearing::WORDS),
             Default::Word("proportional"),
             "Power by throttle: as much, or as in the F-16 model.",
         ),

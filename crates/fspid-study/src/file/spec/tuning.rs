@@ -1,9 +1,9 @@
 //! How a scenario is tuned, and on what tuned controllers are compared.
 
 use super::requirement::{CONDITIONS, LIMITS, MEASURE};
+use super::word::{Word, words};
 use super::{Default, Key, Kind, Range, Table, defaulted, optional, plain, required};
 use crate::file::overrides;
-use crate::tuning::Over;
 
 /// Names of the optimisers.
 const OPTIMISERS: [&str; 7] = ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "nsga-ii"];
@@ -24,8 +24,15 @@ const RUN_SEED: Key = defaulted(
     "Seed of these draws.",
 );
 
-/// What is asked of a constant load.
-const CONSTANT_LOADS: [&str; 2] = ["removed", "ignored"];
+words! {
+    /// How the costs of many flights become one.
+    OverWord { Mean = "mean", Worst = "worst", Tail = "tail" }
+}
+
+words! {
+    /// What is asked of a constant load.
+    ConstantLoadWord { Removed = "removed", Ignored = "ignored" }
+}
 
 /// How a scenario is tuned.
 pub(super) static TUNING: Table = plain(
@@ -56,7 +63,7 @@ pub(super) static TUNING: Table = plain(
         ),
         defaulted(
             "over",
-            Kind::Word(&Over::NAMES),
+            Kind::Word(OverWord::WORDS),
             Default::Word("mean"),
             "What of the costs of all flights counts: their mean, the worst, or the mean of the worst `share`.",
         ),
@@ -69,7 +76,7 @@ pub(super) static TUNING: Table = plain(
         RUN_SEED,
         defaulted(
             "constant_load",
-            Kind::Word(&CONSTANT_LOADS),
+            Kind::Word(ConstantLoadWord::WORDS),
             Default::Word("removed"),
             "Whether a candidate must take off a constant load at the servo with the gains that it has at rest: at most half of its largest effect may be left at the end of the flight, and nothing for good. Asked of controllers with an integral.",
         ),

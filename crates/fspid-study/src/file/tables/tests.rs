@@ -139,3 +139,41 @@ fn problems_of_all_files_are_told_at_once_where_they_are() {
     let told = parse_aircraft(AIRCRAFT, "lines.toml", None).expect_err("no folder").to_string();
     assert!(told.contains("3 problems"), "{told}");
 }
+
+/// It used to need an engine: "propulsion" was a key that had to be there.
+#[test]
+fn an_aircraft_without_an_engine_flies_its_glide() {
+    let glider = AIRCRAFT
+        .replace("    propulsion = \"engine.dml\"\n", "")
+        .replace("    [engine]\n    angular_momentum_slug_ft2_s = 160.0\n", "");
+    let folder = hangar();
+    fs::write(folder.path().join("planes/lines.toml"), &glider).expect("written");
+    let study = parse(SCENARIO, "glide.toml", Some(folder.path()), &[]).expect("it flies");
+    let fspid_sim::Plant::Aircraft(plant) = study.scenario.plant else { panic!("nonlinear") };
+    let path_deg = plant.trim().target.flight_path_rad.to_degrees();
+    assert!(path_deg < -1.0 && path_deg > -20.0, "{path_deg}");
+    let set = ["aircraft.climb_angle_deg=0".to_owned()];
+    let told = parse(SCENARIO, "glide.toml", Some(folder.path()), &set).expect_err("it glides");
+    assert!(told.to_string().contains("has no engine"), "{told}");
+    let half = AIRCRAFT.replace("    propulsion = \"engine.dml\"\n", "");
+    let told = parse_aircraft(&half, "half.toml", Some(&folder.path().join("planes")));
+    assert!(told.expect_err("half").to_string().contains("there is no propulsion"));
+}
+
+/// The centre of gravity of tables is that of the scenario where it says one.
+#[test]
+fn a_centre_of_gravity_of_a_scenario_places_the_body_of_tables() {
+    let folder = hangar();
+    let elevator = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+        let study = parse(SCENARIO, "cg.toml", Some(folder.path()), &set).expect("it flies");
+        let fspid_sim::Plant::Aircraft(plant) = study.scenario.plant else { panic!("nonlinear") };
+        plant.trim().point.elevator_rad
+    };
+    assert_eq!(elevator(&[]).to_bits(), elevator(&["aircraft.cg_mac=0.3"]).to_bits());
+    let (known, file) = (
+        elevator(&["aircraft.cg_mac=0.25"]),
+        elevator(&["aircraft.file.body.centre_of_mass_pct=25.0"]),
+    );
+    assert!((known - file).abs() < 1e-12 && (known - elevator(&[])).abs() > 1e-4);
+}

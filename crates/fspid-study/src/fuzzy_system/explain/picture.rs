@@ -49,7 +49,7 @@ impl Explanation<'_> {
 
     /// The sets of an output as lines.
     fn sets(&self, output: &Output, range: Universe) -> Vec<(String, Vec<(f64, f64)>)> {
-        let inputs = self.asked.workspace().inputs();
+        let inputs = self.asked.workspace().variables();
         let drawn = output.terms.iter().filter_map(|term| match &term.conclusion {
             Conclusion::Set { membership, .. } => {
                 Some((term.name.clone(), line(membership, range, inputs)))

@@ -110,7 +110,7 @@ fn grid(
 ) -> Vec<Piece> {
     let Some(universe) = output.universe else { return Vec::new() };
     let is_highest = matches!(output.aggregation, SNorm::Kind(SNormKind::Maximum));
-    let inputs = workspace.inputs();
+    let inputs = workspace.variables();
     let mut room = vec![0.0; room(output).max(inputs.len() + 1)];
     let at = |n: u32| universe.lower + universe.span() * (f64::from(n) / f64::from(CELLS));
     let mut pieces: Vec<Piece> = Vec::new();

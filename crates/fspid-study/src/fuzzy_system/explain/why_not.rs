@@ -5,7 +5,7 @@ use fspid_fuzzy::system::{
     Antecedent, Firing, Membership, RuleBlock, Statement, System, Variable, Workspace,
 };
 
-use crate::file::problem::nearest;
+use crate::file::problem::known_words;
 use crate::inference::Refused;
 
 /// A rule that could conclude the term.
@@ -53,9 +53,7 @@ pub(super) fn conclusion(system: &System, text: &str) -> Result<(usize, usize), 
 fn position(what: &str, name: &str, known: &[&str]) -> Result<usize, Refused> {
     let found = known.iter().position(|known| *known == name);
     found.ok_or_else(|| {
-        let meant = nearest(name, known).map(|meant| format!("; did you mean {meant}?"));
-        let (meant, known) = (meant.unwrap_or_default(), known.join(", "));
-        Refused::one(format!("there is no {what} `{name}`{meant} known are {known}"))
+        Refused::one(format!("there is no {what} `{name}`{}", known_words(name, known)))
     })
 }
 
@@ -146,7 +144,7 @@ impl Grader<'_> {
     }
 
     fn of_input(&self, input: usize, term: usize) -> f64 {
-        let inputs = self.workspace.inputs();
+        let inputs = self.workspace.variables();
         let part = self.system.parts().inputs.get(input).filter(|part| part.enabled);
         let set = part.and_then(|part| part.terms.get(term)).map(|term| &term.membership);
         let (Some(set), Some(&x)) = (set, inputs.get(input)) else { return 0.0 };

@@ -5,6 +5,7 @@ mod question;
 use std::fmt::Write as _;
 
 use fspid_fuzzy::system::System;
+use serde_json::{Value, json};
 
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use crate::inference::Refused;
@@ -131,6 +132,25 @@ impl Slice<'_> {
             }
             axes => curve(title, name, (axes, self), values),
         }
+    }
+
+    /// The answer for programs: the nodes along each input, where the others stay, and the values of each output, the
+    /// first input running fastest; null where there is no answer.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let axis = |(input, nodes): &(usize, Vec<f64>)| json!({ "input": self.input_name(*input), "nodes": nodes });
+        let fixed = |(input, value): &(usize, f64)| json!({ "input": self.input_name(*input), "value": value });
+        let values = |(output, values): (&usize, &Vec<f64>)| {
+            let values: Vec<Option<f64>> =
+                values.iter().map(|value| Some(*value).filter(|it| it.is_finite())).collect();
+            json!({ "output": self.output_name(*output), "values": values })
+        };
+        json!({
+            "schema": 1,
+            "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
+            "fixed": self.fixed.iter().map(fixed).collect::<Vec<_>>(),
+            "outputs": self.outputs.iter().zip(&self.values).map(values).collect::<Vec<_>>(),
+        })
     }
 
     /// The grid as CSV: the inputs that are drawn along, then the outputs.

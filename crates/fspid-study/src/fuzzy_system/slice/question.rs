@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Input, Membership, System, Universe};
 
 use super::{Question, Slice};
-use crate::file::problem::nearest;
+use crate::file::problem::known_words;
 use crate::fuzzy_system::answer::named;
 
 /// Nodes along each input of a surface.
@@ -79,10 +79,8 @@ impl<'a> Asking<'a> {
     fn position(&mut self, what: &str, name: &str, known: &[&str]) -> Option<usize> {
         let found = known.iter().position(|known| *known == name);
         if found.is_none() {
-            let meant = nearest(name, known).map(|meant| format!("; did you mean {meant}?"));
-            let meant = meant.unwrap_or_default();
-            let known = known.join(", ");
-            self.problems.push(format!("there is no {what} `{name}`{meant} known are {known}"));
+            let known = known_words(name, known);
+            self.problems.push(format!("there is no {what} `{name}`{known}"));
         }
         found
     }

@@ -7,17 +7,42 @@ use super::fields::{Fields, word};
 use super::write::{number, quoted};
 use crate::file::document::{Item, Value as Written};
 use crate::file::report::Report;
+use crate::file::spec::word::{Word, words};
 
-/// Methods, with the numbers that each needs.
-const METHODS: [(&str, &[&str]); 7] = [
-    ("general", &[]),
-    ("first", &["count", "threshold"]),
-    ("last", &["count", "threshold"]),
-    ("highest", &["count"]),
-    ("lowest", &["count"]),
-    ("proportional", &[]),
-    ("threshold", &["comparison", "threshold"]),
-];
+words! {
+    /// Methods.
+    Method {
+        General = "general",
+        First = "first",
+        Last = "last",
+        Highest = "highest",
+        Lowest = "lowest",
+        Proportional = "proportional",
+        Threshold = "threshold",
+    }
+}
+
+impl Method {
+    /// The numbers that it needs.
+    const fn needed(self) -> &'static [&'static str] {
+        match self {
+            Self::General | Self::Proportional => &[],
+            Self::First | Self::Last => &["count", "threshold"],
+            Self::Highest | Self::Lowest => &["count"],
+            Self::Threshold => &["comparison", "threshold"],
+        }
+    }
+
+    /// How it is written.
+    fn example(self) -> String {
+        match self.needed() {
+            [] => format!("\"{}\"", self.name()),
+            needed => {
+                format!("{{ method = \"{}\", {} = … }}", self.name(), needed.join(" = …, "))
+            }
+        }
+    }
+}
 
 /// Comparisons as they are written.
 const COMPARISONS: [(&str, Comparison); 6] = [
@@ -32,46 +57,46 @@ const COMPARISONS: [(&str, Comparison); 6] = [
 /// The activation at `path`; general where there is none.
 pub(super) fn read(report: &mut Report, item: Option<&Item>, path: &str) -> Option<Activation> {
     let Some(item) = item else { return Some(Activation::General) };
-    let known = METHODS.map(|(name, _)| name);
     if let Written::Text(text) = &item.value {
-        let name = word(report, (item.place, path), text, ("method", &known))?;
-        let (_, needed) = METHODS.into_iter().find(|(method, _)| *method == name)?;
-        if !needed.is_empty() {
-            let example = format!("{{ method = \"{name}\", {} = … }}", needed.join(" = …, "));
-            report.value(item.place, path, "more is needed", example);
-            return None;
-        }
-        return Some(if name == "general" {
-            Activation::General
-        } else {
-            Activation::Proportional
-        });
+        let name = word(report, (item.place, path), text, ("method", Method::WORDS))?;
+        return match Method::from_word(name)? {
+            Method::General => Some(Activation::General),
+            Method::Proportional => Some(Activation::Proportional),
+            method @ (Method::First
+            | Method::Last
+            | Method::Highest
+            | Method::Lowest
+            | Method::Threshold) => {
+                report.value(item.place, path, "more is needed", method.example());
+                None
+            }
+        };
     }
     let mut fields = Fields::of(report, item, path, &in_words())?;
-    let text = fields.text("method", &known.join(", "))?;
+    let text = fields.text("method", &Method::WORDS.join(", "))?;
     let place = fields.get("method")?.item.place;
-    let name = word(fields.report, (place, path), text, ("method", &known))?;
-    let (_, needed) = METHODS.into_iter().find(|(method, _)| *method == name)?;
+    let name = word(fields.report, (place, path), text, ("method", Method::WORDS))?;
+    let method = Method::from_word(name)?;
     let mut keys = vec!["method"];
-    keys.extend(needed);
+    keys.extend(method.needed());
     fields.only(&keys);
-    match name {
-        "first" => Some(Activation::First {
+    match method {
+        Method::First => Some(Activation::First {
             count: count(&mut fields)?,
             threshold: threshold(&mut fields)?,
         }),
-        "last" => Some(Activation::Last {
+        Method::Last => Some(Activation::Last {
             count: count(&mut fields)?,
             threshold: threshold(&mut fields)?,
         }),
-        "highest" => Some(Activation::Highest { count: count(&mut fields)? }),
-        "lowest" => Some(Activation::Lowest { count: count(&mut fields)? }),
-        "proportional" => Some(Activation::Proportional),
-        "threshold" => {
+        Method::Highest => Some(Activation::Highest { count: count(&mut fields)? }),
+        Method::Lowest => Some(Activation::Lowest { count: count(&mut fields)? }),
+        Method::Proportional => Some(Activation::Proportional),
+        Method::Threshold => {
             let comparison = comparison(&mut fields)?;
             Some(Activation::Threshold { comparison, threshold: threshold(&mut fields)? })
         }
-        _ => Some(Activation::General),
+        Method::General => Some(Activation::General),
     }
 }
 
@@ -123,15 +148,13 @@ pub(super) fn write(activation: Activation) -> String {
 }
 
 pub(super) fn in_words() -> String {
-    let words = METHODS.map(|(name, needed)| match needed {
-        [] => format!("\"{name}\""),
-        _ => format!("{{ method = \"{name}\", {} = … }}", needed.join(" = …, ")),
-    });
+    let words: Vec<String> = Method::ALL.iter().map(|method| method.example()).collect();
     words.join(", ")
 }
 
 pub(super) fn schema() -> Value {
-    let ways = METHODS.map(|(name, needed)| {
+    let way = |method: &Method| {
+        let (name, needed) = (method.name(), method.needed());
         if needed.is_empty() {
             return json!({ "const": name });
         }
@@ -147,6 +170,7 @@ pub(super) fn schema() -> Value {
         }
         let required: Vec<&str> = std::iter::once("method").chain(needed.iter().copied()).collect();
         json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
-    });
+    };
+    let ways: Vec<Value> = Method::ALL.iter().map(way).collect();
     json!({ "oneOf": ways, "default": "general" })
 }

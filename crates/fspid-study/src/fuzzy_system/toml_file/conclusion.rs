@@ -15,7 +15,9 @@ use crate::file::report::Report;
 pub(super) struct Variables<'a> {
     /// Names of the inputs.
     pub(super) inputs: Names<'a>,
-    /// `x` and the names of the inputs.
+    /// Names of the inputs, then of the outputs: formulas may ask for the last answers.
+    pub(super) of_values: Names<'a>,
+    /// `x` and those.
     pub(super) of_sets: Names<'a>,
 }
 
@@ -64,7 +66,7 @@ fn conclusion(
     if has("value") {
         let mut fields = Fields::of(report, item, path, "")?;
         fields.only(&["value"]);
-        return formula(&mut fields, "value", variables.inputs).map(Conclusion::Formula);
+        return formula(&mut fields, "value", variables.of_values).map(Conclusion::Formula);
     }
     if !matches!(item.value, Written::Table(_)) {
         let message = format!("expected a number or a table, not {}", item.value.type_name());

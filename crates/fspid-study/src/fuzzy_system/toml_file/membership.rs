@@ -13,7 +13,7 @@ use crate::file::report::Report;
 /// Where the groups of a shape with any number of parameters stand.
 const GROUPS: &str = "points";
 
-/// The variables of a set's formula: `x` and the inputs.
+/// The variables of a set's formula: `x`, the inputs and the outputs.
 pub(super) type Names<'a> = &'a [&'a str];
 
 /// The terms of an input, in the order of the file.

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use fspid_formats::rule_text::RuleReader;
-use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{
-    Defuzzifier, Fallback, FallbackValue, Input, Output, Parts, RuleBlock, Sampling, SetReading,
-    System, SystemError, Universe,
+    Defuzzifier, Fallback, FallbackValue, Input, Output, Parts, RuleBlock, Sampling, System,
+    SystemError, Universe,
 };
 
 use super::conclusion::{self, Variables};
@@ -58,10 +57,11 @@ fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Pla
 }
 
 fn parts(report: &mut Report, section: &Section, places: &mut Places) -> Option<Parts> {
-    let names: Vec<&str> =
-        section.sections("input").iter().map(|s| s.text("name").unwrap_or_default()).collect();
-    let of_sets: Vec<&str> = std::iter::once("x").chain(names.iter().copied()).collect();
-    let variables = Variables { inputs: &names, of_sets: &of_sets };
+    let named = |kind| section.sections(kind).iter().map(|s| s.text("name").unwrap_or_default());
+    let names: Vec<&str> = named("input").collect();
+    let of_values: Vec<&str> = names.iter().copied().chain(named("output")).collect();
+    let of_sets: Vec<&str> = std::iter::once("x").chain(of_values.iter().copied()).collect();
+    let variables = Variables { inputs: &names, of_values: &of_values, of_sets: &of_sets };
     let mut found = (Vec::new(), Vec::new(), Vec::new());
     for part in section.sections("input") {
         found.0.extend(input(report, part, &of_sets, places));
@@ -105,13 +105,12 @@ fn input(
     let terms = membership::terms(report, section.item("terms"), &path, of_sets, |term, item| {
         places.insert(format!("{place}, term `{term}`"), item.place);
     });
-    let policy = section.text("out_of_range")?;
     Some(Input {
         name,
         description: description(section),
         enabled: section.boolean("enabled")?,
         universe: universe(section),
-        out_of_range: OutOfRange::ALL.into_iter().find(|known| known.name() == policy)?,
+        out_of_range: section.word("out_of_range")?,
         terms: terms?,
     })
 }
@@ -147,10 +146,7 @@ fn output(
 }
 
 fn defuzzifier(report: &mut Report, section: &Section) -> Option<Defuzzifier> {
-    let reading = match section.text("set_reading")? {
-        "inverse-tsukamoto" => SetReading::InverseTsukamoto,
-        _ => SetReading::Tsukamoto,
-    };
+    let reading = section.word("set_reading")?;
     let method = match Defuzzifier::from_name(section.text("defuzzifier")?)? {
         Defuzzifier::WeightedAverage(_) => Defuzzifier::WeightedAverage(reading),
         Defuzzifier::WeightedSum(_) => Defuzzifier::WeightedSum(reading),

@@ -1,10 +1,11 @@
 //! The keys of a fuzzy system's file, from which the check, the schema and the defaults come.
 
 use fspid_fuzzy::OutOfRange;
-use fspid_fuzzy::system::{Defuzzifier, Sampling};
+use fspid_fuzzy::system::{Defuzzifier, Sampling, SetReading};
 use serde_json::{Value, json};
 
 use super::{activation, conclusion, membership, norm, rules};
+use crate::file::spec::word::{Word, words_of};
 use crate::file::spec::{
     Choice, Default, Key, Kind, Range, Table, Way, defaulted, optional, plain, required,
 };
@@ -53,10 +54,6 @@ const ENABLED: Key = defaulted(
     "Whether it takes part; what is switched off stays in the file.",
 );
 
-/// Words for values outside an input's range.
-const OUT_OF_RANGE: [&str; 3] =
-    [OutOfRange::Clamp.name(), OutOfRange::Evaluate.name(), OutOfRange::Error.name()];
-
 static INPUT: Table = plain(
     "An input.",
     &[&[
@@ -66,7 +63,7 @@ static INPUT: Table = plain(
         RANGE,
         defaulted(
             "out_of_range",
-            Kind::Word(&OUT_OF_RANGE),
+            Kind::Word(OutOfRange::WORDS),
             Default::Word("evaluate"),
             "A value outside the range is moved to its end, taken as it is, or refused.",
         ),
@@ -78,8 +75,7 @@ static INPUT: Table = plain(
     ]],
 );
 
-/// Words for the number that a weighted defuzzifier takes for a set.
-pub(super) const SET_READINGS: [&str; 2] = ["tsukamoto", "inverse-tsukamoto"];
+words_of!(SetReading { Tsukamoto = "tsukamoto", InverseTsukamoto = "inverse-tsukamoto" });
 
 static OUTPUT: Table = plain(
     "An output.",
@@ -107,7 +103,7 @@ static OUTPUT: Table = plain(
         ),
         defaulted(
             "set_reading",
-            Kind::Word(&SET_READINGS),
+            Kind::Word(SetReading::WORDS),
             Default::Word("tsukamoto"),
             "Which number a weighted defuzzifier takes for a fuzzy set.",
         ),

@@ -1,9 +1,9 @@
 //! Whether the identified loops are stable at rest, with gains that stand elsewhere, and while they move.
 
-use fspid_proof::{Claim, Effort, Verdict};
+use fspid_proof::{Bearing, Claim, Effort, Outcome, Verdict};
 
 use crate::analysis::{AnalysedLoop, Analysis, Margins, Question, flown_inputs};
-use crate::certify::{Certification, Certified};
+use crate::certify::{Certification, Certified, scope_in_short};
 use crate::file::Study;
 use crate::report::html::context;
 use crate::report::number::fixed;
@@ -89,9 +89,35 @@ fn verdict(certified: &Certified) -> (&'static str, &'static str, String) {
         Ok(outcome) => outcome,
     };
     match &outcome.verdict {
-        Verdict::Proved(..) => ("met", "\u{2713} proved", "for every gain it can have".to_owned()),
-        Verdict::Refuted(certificate, _) => ("unmet", "\u{2717} refuted", why(&certificate.claim)),
-        Verdict::Open => ("absent", "? open", "neither proved nor refuted".to_owned()),
+        Verdict::Proved(certificate, rechecked) => {
+            let scope = scope_in_short(certificate, rechecked);
+            ("met", "\u{2713} proved", format!("for every gain it can have, {scope}"))
+        }
+        Verdict::Refuted(certificate, rechecked) => {
+            let bearing = certificate.bearing(rechecked);
+            ("unmet", refuted(bearing), format!("{}; {bearing}", why(&certificate.claim)))
+        }
+        Verdict::Open => ("absent", "? open", open(outcome)),
+    }
+}
+
+fn refuted(bearing: Bearing) -> &'static str {
+    match bearing {
+        Bearing::GrowsStandingStill => "\u{2717} refuted standing still",
+        Bearing::GrowsInSomeOrder => "\u{2717} refuted in some order",
+        Bearing::Grows | Bearing::Stable | Bearing::OtherScale { .. } | Bearing::RateNotKept => {
+            "\u{2717} refuted"
+        }
+    }
+}
+
+fn open(outcome: &Outcome) -> String {
+    match &outcome.instead {
+        None => "neither proved nor refuted".to_owned(),
+        Some((certificate, rechecked)) => format!(
+            "for what the scenario asks neither proved nor refuted; proved is less: {}",
+            scope_in_short(certificate, rechecked)
+        ),
     }
 }
 
@@ -102,7 +128,10 @@ fn why(claim: &Claim) -> String {
             fixed(*error, 2),
             fixed(*change, 2)
         ),
-        _ => "a sequence of gains that the rules give lets the loop grow".to_owned(),
+        Claim::SequenceGrowth { .. } => {
+            "a sequence of gains that the rules give lets the loop grow".to_owned()
+        }
+        Claim::AnySpeed { .. } | Claim::Tied { .. } | Claim::BoundedRate(_) => String::new(),
     }
 }
 

@@ -12,7 +12,7 @@ use fspid_study::report::analysis::{Chapter, Item, Picture, Standing as Colour, 
 use fspid_study::report::campaign::CampaignPage;
 use fspid_study::shell::word;
 
-use super::words::{Headline, by_group, cautions, cut, headline, list, name, sentence};
+use super::words::{Headline, cautions, cut, headline, list, name, sentence};
 use super::{Contest, Outcome, text};
 
 /// Most sentences above the table; the table has all.
@@ -46,7 +46,7 @@ pub(super) fn page(contest: &Contest, outcome: &Outcome) -> String {
 
 fn verdict(outcome: &Outcome) -> Verdict {
     let against = outcome.judged.against;
-    let Headline { is_decided, word, why } = headline(outcome);
+    let Headline { is_decided, word, why, .. } = headline(outcome);
     let first = outcome.first().ranking.first().copied();
     let name = match first == Some(against) {
         true => "the controller that the others are compared with".to_owned(),
@@ -69,8 +69,8 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
     let sentences = found.take(MOST_SENTENCES).map(|it| sentence(outcome, it));
     vec![
         Item::List(sentences.collect()),
-        Item::Heading("First to last, by kind of case".to_owned()),
-        Item::List(by_group(outcome)),
+        Item::Heading("Who is how far from whom, by kind of case".to_owned()),
+        Item::Table(tables::by_group(outcome)),
         Item::Heading("The controllers".to_owned()),
         Item::Table(tables::controllers(outcome)),
         Item::Fold("More of everyone".to_owned(), vec![Item::Table(tables::more(outcome))]),

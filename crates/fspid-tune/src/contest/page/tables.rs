@@ -10,11 +10,13 @@ use crate::contest::words::{
     counted, cut, group, kept, name, number, over_kept, p_value, per_cent, signed, signed_interval,
     spread, spread_of,
 };
-use crate::contest::{Outcome, text, words};
+use crate::contest::{First, Flight, Outcome, text, words};
 
-/// Most rows of the table of cases, and most reasons of failures that are told.
+/// Most rows of the table of cases, and most columns of a table by groups.
 const MOST_ROWS: usize = 300;
-const MOST_REASONS: usize = 30;
+const MOST_GROUPS: usize = 16;
+/// Most kinds of reasons in a cell.
+const MOST_KINDS: usize = 2;
 
 pub(super) fn table(caption: String, head: &[&str], rows: Vec<Vec<Datum>>) -> DataTable {
     let head = head.iter().map(|it| (*it).to_owned()).collect();
@@ -141,9 +143,9 @@ fn standing(outcome: &Outcome, place: usize) -> Datum {
 /// Lost and failed flights, and how alike mirrored cases are flown.
 pub(super) fn failures_chapter(outcome: &Outcome) -> Chapter {
     let mut items = vec![Item::Table(failures(outcome))];
-    let reasons = reasons(outcome);
-    if !reasons.is_empty() {
-        items.push(Item::Fold("Why flights failed".to_owned(), vec![Item::List(reasons)]));
+    if let Some(reasons) = reasons(outcome) {
+        items.push(Item::Heading("Why flights failed".to_owned()));
+        items.push(Item::Table(reasons));
     }
     let mirrors = outcome.summaries.iter().enumerate();
     let mirrors: Vec<String> =
@@ -195,34 +197,122 @@ fn failures(outcome: &Outcome) -> DataTable {
     table(caption, &head, rows.collect())
 }
 
-fn reasons(outcome: &Outcome) -> Vec<String> {
+/// Controllers by groups of cases: how many flights failed, and mostly why; none where none failed.
+fn reasons(outcome: &Outcome) -> Option<DataTable> {
     let judged = &outcome.judged;
-    let mut told: Vec<String> = Vec::new();
-    let mut more = 0;
-    for contestant in &judged.contestants {
-        for (place, case) in judged.cases.iter().enumerate() {
-            let flights = contestant.designs.iter().flat_map(|it| judged.flights(it, place));
-            let failed: Vec<_> = flights.filter(|flight| flight.failed).collect();
-            let Some(first) = failed.first() else {
-                continue;
-            };
-            if told.len() >= MOST_REASONS {
-                more += 1;
-                continue;
+    let groups = judged.groups();
+    let mut any = false;
+    let rows: Vec<Vec<Datum>> = judged
+        .contestants
+        .iter()
+        .map(|contestant| {
+            let mut row = vec![Datum::Text(cut(&contestant.name, 60))];
+            for (_, cases) in groups.iter().take(MOST_GROUPS) {
+                let flights: Vec<&Flight> = contestant
+                    .designs
+                    .iter()
+                    .flat_map(|design| cases.iter().flat_map(|case| judged.flights(design, *case)))
+                    .collect();
+                let failed: Vec<&Flight> =
+                    flights.iter().copied().filter(|flight| flight.failed).collect();
+                any |= !failed.is_empty();
+                row.push(match failed.len() {
+                    0 => Datum::Met(format!("none of {}", flights.len())),
+                    some => {
+                        Datum::Unmet(format!("{some} of {}: {}", flights.len(), kinds(&failed)))
+                    }
+                });
             }
-            told.push(format!(
-                "{}, {}: {}, such as: {}",
-                cut(&contestant.name, 60),
-                cut(&case.name, 60),
-                counted(failed.len(), "flight", "flights"),
-                cut(&first.reasons.join("; "), 200)
-            ));
+            row
+        })
+        .collect();
+    let caption = format!(
+        "Failed flights of all flights of each group, over all seeds and draws, and the requirements that most of them break. The whole reason of every flight is in contest.parquet.{}",
+        left_out(groups.len())
+    );
+    any.then(|| grouped_table(caption, &groups, rows))
+}
+
+/// The kinds of reasons, the most frequent first: the measure or the words before the first number.
+fn kinds(failed: &[&Flight]) -> String {
+    let mut counted: Vec<(String, usize)> = Vec::new();
+    for reason in failed.iter().flat_map(|flight| &flight.reasons) {
+        let kind = kind(reason);
+        match counted.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((kind, 1)),
         }
     }
-    if more > 0 {
-        told.push(format!("and {more} more, in contest.parquet"));
+    counted.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let mut told: Vec<String> =
+        counted.iter().take(MOST_KINDS).map(|(kind, _)| kind.clone()).collect();
+    if counted.len() > MOST_KINDS {
+        told.push(format!("{} more", counted.len() - MOST_KINDS));
     }
-    told
+    told.join(", ")
+}
+
+/// A reason without its numbers.
+fn kind(reason: &str) -> String {
+    let end = reason.find(|c: char| c.is_ascii_digit() || ",;:(".contains(c));
+    let words = reason.get(..end.unwrap_or(reason.len())).unwrap_or(reason).trim();
+    let words = words.trim_end_matches(['-', '+', '.', ' ']);
+    cut(if words.is_empty() { reason } else { words }, 40)
+}
+
+/// How everyone differs from the one compared with, by group of cases; the first of each group is marked.
+pub(super) fn by_group(outcome: &Outcome) -> DataTable {
+    let judged = &outcome.judged;
+    let groups = judged.groups();
+    let firsts: Vec<First> =
+        (0..groups.len().min(MOST_GROUPS)).map(|place| outcome.first_of_group(place)).collect();
+    let rows = outcome.first().ranking.into_iter().map(|place| {
+        let mut row = vec![Datum::Text(cut(name(outcome, place), 60))];
+        for (group, first) in firsts.iter().enumerate() {
+            let change = match first.ratios.get(place).copied().flatten() {
+                _ if place == judged.against => "compared with".to_owned(),
+                Some(ratio) => signed(ratio),
+                None => DASH.to_owned(),
+            };
+            let lost = outcome.summaries[place].groups[group].count.lost;
+            let words = match lost {
+                0 => change,
+                lost => format!("{change}, {lost} lost"),
+            };
+            row.push(match first.ranking.first() == Some(&place) {
+                true => Datum::Met(words),
+                false => Datum::Text(words),
+            });
+        }
+        row
+    });
+    let caption = format!(
+        "Mean difference of IAE from {} over the cases of each group that neither lost; below 0 is better. The first of each group is marked, which is a rank and no significance.{}",
+        cut(name(outcome, judged.against), 60),
+        left_out(groups.len())
+    );
+    grouped_table(caption, &groups, rows.collect())
+}
+
+fn grouped_table(
+    caption: String,
+    groups: &[(String, Vec<usize>)],
+    rows: Vec<Vec<Datum>>,
+) -> DataTable {
+    let mut head = vec!["controller".to_owned()];
+    head.extend(groups.iter().take(MOST_GROUPS).map(|(name, cases)| {
+        format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
+    }));
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    table(caption, &head, rows)
+}
+
+/// A sentence about groups that a table has no room for.
+fn left_out(groups: usize) -> String {
+    match groups.saturating_sub(MOST_GROUPS) {
+        0 => String::new(),
+        more => format!(" {} left out.", counted(more, "group is", "groups are")),
+    }
 }
 
 /// The error of everyone on each case.

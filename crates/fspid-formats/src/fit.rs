@@ -11,14 +11,14 @@ const SAMPLES: u32 = 16;
 
 /// Points on a curve, and the largest difference of a grade that was found between them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// Places and grades, one after the other.
-    pub(super) points: Vec<f64>,
-    pub(super) error: f64,
+    pub(crate) points: Vec<f64>,
+    pub(crate) error: f64,
 }
 
 /// Fits a curve from `lower` to `upper`. `corners` are where it bends, in any order.
-pub(super) fn fit(
+pub(crate) fn fit(
     grade: impl Fn(f64) -> f64,
     lower: f64,
     upper: f64,

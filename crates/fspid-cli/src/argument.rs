@@ -1,0 +1,171 @@
+//! Arguments that name files: `-` is standard input or output everywhere, and an unknown ending is refused.
+
+use std::convert::Infallible;
+use std::ffi::OsString;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+
+use clap::builder::{OsStringValueParser, TypedValueParser, ValueParser, ValueParserFactory};
+
+/// What stands for standard input and output.
+pub(crate) const STANDARD: &str = "-";
+
+/// True for the name that stands for standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// A file that is read; `-` is standard input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct InFile(PathBuf);
+
+/// A file that is written; `-` is standard output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct OutFile(PathBuf);
+
+/// A folder, which standard output cannot be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Folder(PathBuf);
+
+/// A drawing, or a folder for several; `-` is standard output, for one of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Drawings(PathBuf);
+
+/// The name of something that the program carries, or a file; `-` is standard input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Source(String);
+
+macro_rules! path {
+    ($($name:ident)*) => {$(
+        impl Deref for $name {
+            type Target = Path;
+            fn deref(&self) -> &Path {
+                &self.0
+            }
+        }
+
+        impl AsRef<Path> for $name {
+            fn as_ref(&self) -> &Path {
+                &self.0
+            }
+        }
+    )*};
+}
+path!(InFile OutFile Folder Drawings);
+
+impl Deref for Source {
+    type Target = str;
+    fn deref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl ValueParserFactory for InFile {
+    type Parser = ValueParser;
+    fn value_parser() -> ValueParser {
+        let read = |text: OsString| Ok::<_, Infallible>(Self(text.into()));
+        OsStringValueParser::new().try_map(read).into()
+    }
+}
+
+impl ValueParserFactory for Source {
+    type Parser = ValueParser;
+    fn value_parser() -> ValueParser {
+        clap::builder::StringValueParser::new().map(Self).into()
+    }
+}
+
+impl ValueParserFactory for Folder {
+    type Parser = ValueParser;
+    fn value_parser() -> ValueParser {
+        OsStringValueParser::new().try_map(Self::named).into()
+    }
+}
+
+impl ValueParserFactory for Drawings {
+    type Parser = ValueParser;
+    fn value_parser() -> ValueParser {
+        OsStringValueParser::new().try_map(Self::named).into()
+    }
+}
+
+impl Folder {
+    fn named(text: OsString) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        match is_standard(&path) {
+            true => Err("a folder is needed, which standard output is not".to_owned()),
+            false => Ok(Self(path)),
+        }
+    }
+}
+
+impl Drawings {
+    const ENDING: &str = "svg";
+
+    fn named(text: OsString) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        if is_standard(&path) || path.is_dir() || has_ending(&path, &[Self::ENDING]) {
+            return Ok(Self(path));
+        }
+        match path.extension() {
+            None => Ok(Self(path)),
+            Some(_) => {
+                Err("unknown ending; known is .svg, and a name without an ending is a folder"
+                    .to_owned())
+            }
+        }
+    }
+
+    /// True for one file, and not a folder.
+    pub(crate) fn is_file(&self) -> bool {
+        !self.0.is_dir() && has_ending(&self.0, &[Self::ENDING])
+    }
+}
+
+/// A file that is written, with one of these endings.
+pub(crate) fn written(endings: &'static [&'static str]) -> ValueParser {
+    let named = move |text: OsString| {
+        let path = PathBuf::from(text);
+        // A device or a pipe has no ending.
+        let is_special = std::fs::metadata(&path).is_ok_and(|data| !data.is_file());
+        if is_standard(&path) || is_special || has_ending(&path, endings) {
+            return Ok(OutFile(path));
+        }
+        let what = match path.extension() {
+            Some(_) => "unknown ending",
+            None => "no ending",
+        };
+        let known: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+        let known = match known.as_slice() {
+            [one] => format!("known is {one}"),
+            several => format!("known are {}", several.join(", ")),
+        };
+        Err(format!("{what}; {known}, and `-` for standard output"))
+    };
+    OsStringValueParser::new().try_map(named).into()
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|it| endings.iter().any(|known| it.eq_ignore_ascii_case(known)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_in_an_unknown_format_is_refused_and_not_taken_for_a_folder() {
+        let named = |text: &str| Drawings::named(text.into());
+        assert!(named("tipper.png").is_err_and(|told| told.contains("known is .svg")));
+        assert!(named("a.SVG").is_ok_and(|it| it.is_file()));
+        assert!(named("figures").is_ok_and(|it| !it.is_file()));
+        assert!(named("-").is_ok_and(|it| is_standard(&it)));
+    }
+
+    #[test]
+    fn a_folder_is_not_standard_output() {
+        assert!(Folder::named("-".into()).is_err());
+        assert!(Folder::named("out".into()).is_ok());
+    }
+}

@@ -1,0 +1,227 @@
+//! The command line: what holds for the arguments of every command.
+
+use std::any::TypeId;
+use std::error::Error as _;
+use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
+
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+use clap::{Arg, ArgMatches, Command, Parser};
+
+use crate::argument::{Drawings, InFile, OutFile, STANDARD, Source};
+use crate::exit::{Failure, Output};
+
+/// The arguments of the program; `None` in place of a failure where only help was asked for.
+pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
+    let words: Vec<std::ffi::OsString> = std::env::args_os().collect();
+    // Told before anything is read, so that what is wrong with the line itself can be JSON too.
+    let as_json = words.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
+        || words.iter().any(|word| word == "--format=json");
+    let mut output = Output { as_json, is_file: false };
+    output.set();
+    let command = prepared(P::command());
+    let matches = command.clone().try_get_matches_from(words).map_err(failure)?;
+    let files = to_standard_output(&command, &matches);
+    match (files.as_slice(), as_json) {
+        ([], _) => {}
+        ([one], true) => {
+            return Err(Some(Failure::input(format_args!(
+                "standard output holds one thing: {one} -, or the answer as JSON"
+            ))));
+        }
+        ([_], false) => output.is_file = true,
+        (several, _) => {
+            return Err(Some(Failure::input(format_args!(
+                "standard output holds one thing, and {} - ask for it",
+                several.join(" - and ")
+            ))));
+        }
+    }
+    output.set();
+    P::from_arg_matches(&matches).map_err(failure)
+}
+
+/// The command with what every argument has: numbers may be negative, so that the mistake is told in words; and files
+/// say what `-` is.
+pub(crate) fn prepared(command: Command) -> Command {
+    command.mut_args(argument).mut_subcommands(prepared)
+}
+
+fn argument(argument: Arg) -> Arg {
+    if !argument.get_action().takes_values() {
+        return argument;
+    }
+    let argument = match argument.is_allow_hyphen_values_set() {
+        true => argument,
+        false => argument.allow_negative_numbers(true),
+    };
+    let Some(what) = standard(&argument) else {
+        return argument;
+    };
+    let with = |help: &StyledStr| {
+        let help = help.to_string();
+        match help.contains("`-`") {
+            true => help,
+            false => format!("{}; `-` is {what}", help.trim_end_matches('.')),
+        }
+    };
+    let (short, long) = (argument.get_help().map(with), argument.get_long_help().map(with));
+    let argument = short.into_iter().fold(argument, Arg::help);
+    long.into_iter().fold(argument, Arg::long_help)
+}
+
+/// What `-` stands for in an argument; `None` for one that names no file.
+pub(crate) fn standard(argument: &Arg) -> Option<&'static str> {
+    match () {
+        () if is::<InFile>(argument) || is::<Source>(argument) => Some("standard input"),
+        () if is::<OutFile>(argument) || is::<Drawings>(argument) => Some("standard output"),
+        () => None,
+    }
+}
+
+pub(crate) fn is<T: 'static>(argument: &Arg) -> bool {
+    argument.get_value_parser().type_id() == TypeId::of::<T>()
+}
+
+/// The arguments that write a file to standard output.
+fn to_standard_output(command: &Command, matches: &ArgMatches) -> Vec<String> {
+    if let Some((name, matches)) = matches.subcommand() {
+        let below = command.find_subcommand(name);
+        return below.map_or(Vec::new(), |command| to_standard_output(command, matches));
+    }
+    let arguments = command.get_arguments();
+    let written = arguments.filter(|it| is::<OutFile>(it) || is::<Drawings>(it));
+    let standard = written.filter(|argument| {
+        let values = matches.get_raw(argument.get_id().as_str());
+        values.is_some_and(|mut values| values.any(|value| value == STANDARD))
+    });
+    standard.map(name).collect()
+}
+
+/// An argument as it is written.
+fn name(argument: &Arg) -> String {
+    match argument.get_long() {
+        Some(long) => format!("--{long}"),
+        None => argument.to_string(),
+    }
+}
+
+/// What is wrong with the line, or that only help was asked for.
+fn failure(error: Error) -> Option<Failure> {
+    // Help and version are no mistakes; clap knows which stream is right.
+    if !error.use_stderr() {
+        return match error.print() {
+            Ok(()) => None,
+            Err(error) => Failure::of_writing(&error).err(),
+        };
+    }
+    if let Some(told) = wrong_value(&error) {
+        return Some(Failure::input(told));
+    }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return Some(Failure::plain(error.render()));
+    }
+    let told = error.render().to_string();
+    let told = told.strip_prefix("error: ").unwrap_or(&told).to_owned();
+    Some(Failure::usage(told))
+}
+
+/// "--runs is -5; allowed is a whole number, 0 or more".
+fn wrong_value(error: &Error) -> Option<String> {
+    if error.kind() != ErrorKind::ValueValidation {
+        return None;
+    }
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let argument = text(ContextKind::InvalidArg)?;
+    let value = text(ContextKind::InvalidValue).unwrap_or_default();
+    let argument = match argument.strip_prefix("--") {
+        Some(_) => argument.split(' ').next().unwrap_or(argument),
+        None => argument,
+    };
+    let reason = error.source()?;
+    if let Some(reason) = reason.downcast_ref::<ParseIntError>() {
+        return Some(match reason.kind() {
+            IntErrorKind::PosOverflow => format!("{argument} is {value}, which is too large"),
+            _ => format!("{argument} is {value}; allowed is a whole number, 0 or more"),
+        });
+    }
+    if reason.is::<ParseFloatError>() {
+        return Some(format!("{argument} is {value}; allowed is a number, such as 0.5"));
+    }
+    let reason = reason.to_string();
+    Some(match reason.strip_prefix(&format!("{value} is not in ")) {
+        Some(range) => format!("{argument} is {value}; allowed is {}", range_in_words(range)),
+        None => format!("{argument} {value}: {reason}"),
+    })
+}
+
+/// `1..=100` as "1 to 100".
+fn range_in_words(range: &str) -> String {
+    match range.split_once("..=") {
+        Some((first, last)) => format!("{first} to {last}"),
+        None => range.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::argument::Folder;
+
+    /// Every command with its path, such as `campaign run`; groups of commands are no commands themselves.
+    fn commands(command: &Command, path: &str) -> Vec<(String, Command)> {
+        let below: Vec<_> = command
+            .get_subcommands()
+            .filter(|it| it.get_name() != "help")
+            .flat_map(|it| commands(it, &format!("{path} {}", it.get_name())))
+            .collect();
+        match below.is_empty() {
+            true => vec![(path.trim().to_owned(), command.clone())],
+            false => below,
+        }
+    }
+
+    fn all() -> Vec<(String, Command)> {
+        commands(&prepared(crate::Arguments::command()), "")
+    }
+
+    /// `--trace -` wrote a file that was called `-`.
+    #[test]
+    fn every_argument_that_names_a_file_knows_standard_input_or_output_and_says_so() {
+        let commands = all();
+        assert!(commands.len() > 30, "{}", commands.len());
+        for (path, command) in &commands {
+            for argument in command.get_arguments() {
+                let place = format!("{path} {}", name(argument));
+                assert!(!is::<PathBuf>(argument), "{place} takes any path");
+                let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+                let long = argument.get_long_help().map_or(help.clone(), ToString::to_string);
+                if standard(argument).is_some() {
+                    assert!(help.contains("`-`") && long.contains("`-`"), "{place}: {help}");
+                    continue;
+                }
+                let values = argument.get_value_names().unwrap_or_default().join(" ");
+                let names_a_file = ["FILE", "OUT.", "DIR", "FOLDER", "SYSTEM"]
+                    .iter()
+                    .any(|word| values.contains(word));
+                assert!(!names_a_file || is::<Folder>(argument), "{place}: {values}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_command_answers_as_json_if_asked() {
+        for (path, command) in all() {
+            let format = command.get_arguments().find(|it| it.get_long() == Some("format"));
+            let values = format.map(|it| it.get_possible_values()).unwrap_or_default();
+            assert!(values.iter().any(|value| value.get_name() == "json"), "{path}");
+        }
+    }
+}

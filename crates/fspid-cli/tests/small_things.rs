@@ -1,0 +1,280 @@
+//! Small things that cost a user minutes, each once: what it did, and what it does.
+
+mod common;
+
+use std::process::{Command, Stdio};
+
+use common::{code, fspid, json, text};
+
+/// "rule \"amigo\"" gave gains without saying whose; for a self-tuner as if its supervisor were in them.
+#[test]
+fn a_rule_says_whose_gains_it_took_and_that_a_supervisor_is_not_used() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
+    let pid = text(&fspid(&["tune", "a.toml", "--rule", "amigo"], folder).stdout);
+    assert!(pid.contains("for \"PID\":") && pid.contains("\"FSPID\" stays"), "{pid}");
+    assert!(!pid.contains("supervisor"), "{pid}");
+    let words = ["tune", "a.toml", "--rule", "amigo", "--controller", "FSPID"];
+    let fspid_text = text(&fspid(&words, folder).stdout);
+    assert!(fspid_text.contains("its supervisor is not used"), "{fspid_text}");
+    let answer = json(&fspid(&[&words[..], &["--format", "json"]].concat(), folder));
+    assert_eq!(answer["controller"], "FSPID");
+    assert!(answer["supervisor"].as_str().is_some_and(|it| it.starts_with("not used")), "{answer}");
+}
+
+#[test]
+fn all_controllers_are_tuned_alike_and_stand_side_by_side() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "contest", "a.toml"], folder)), 0);
+    let words = ["tune", "a.toml", "--all", "--budget", "30", "--quiet", "--out", "d.toml"];
+    let tuned = fspid(&words, folder);
+    let told = text(&tuned.stdout);
+    let table = told.split_once("Side by side").map_or("", |(_, table)| table);
+    for words in ["PID         FSPID", "iae_deg_s", "cost", "names no winner"] {
+        assert!(table.contains(words), "{words}: {told}\n{}", text(&tuned.stderr));
+    }
+    for design in ["d-PID.toml", "d-FSPID.toml"] {
+        assert_eq!(code(&fspid(&["check", design], folder)), 0, "{design}");
+    }
+    // A controller alone finds the same.
+    let alone =
+        fspid(&["tune", "a.toml", "--controller", "PID", "--budget", "30", "--quiet"], folder);
+    assert!(told.starts_with(&text(&alone.stdout)), "{told}");
+    let left = std::fs::read_dir(folder).expect("a folder").count();
+    assert_eq!(left, 3, "no state stays when a search is over");
+}
+
+/// A search without a design kept nothing, and Ctrl-C said nothing.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_search_says_how_to_go_on_and_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "tuning", "a.toml"], folder)), 0);
+    let words = ["tune", "a.toml", "--budget", "100000000", "--quiet"];
+    let child = Command::new(env!("CARGO_BIN_EXE_fspid"))
+        .args(words)
+        .current_dir(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // The first generation is kept at once: from then on it can be interrupted.
+    let state = folder.join("a.toml.PID.state.json");
+    while !state.exists() {
+        std::thread::yield_now();
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.is_ok_and(|status| status.success()));
+    let output = child.wait_with_output().expect("it ends");
+    let told = text(&output.stderr);
+    assert_eq!(code(&output), 130, "{told}");
+    assert!(told.contains("the same command goes on from there: fspid tune a.toml"), "{told}");
+    assert!(state.exists(), "its state stays beside the scenario");
+}
+
+#[test]
+fn every_source_and_every_spelling_of_inputs_goes_with_infer_explain_and_surface() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for (template, file) in
+        [("pitch-hold", "a.toml"), ("fuzzy-system", "tip.toml"), ("rule-table", "rules.toml")]
+    {
+        assert_eq!(code(&fspid(&["init", "--template", template, file], folder)), 0);
+    }
+    let of_supervisor = ["--error 1 --change -2", "--input error=1 --input change=-2"];
+    let sources = [
+        "printed --range 5",
+        "--table mirrored --range 5",
+        "rules.toml --range 5",
+        "--table rules.toml --range 5",
+        "a.toml",
+    ];
+    for source in sources {
+        let mut answers = Vec::new();
+        for inputs in of_supervisor {
+            for command in ["infer", "explain"] {
+                let words = format!("{command} {source} {inputs} --format json");
+                let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+                assert_eq!(code(&output), 0, "{words}: {}", text(&output.stderr));
+                answers.push((command, text(&output.stdout)));
+            }
+        }
+        assert_eq!(answers[1], answers[3], "{source}: two spellings, one answer");
+        let words = format!("surface {source} --output delta_kp --nodes 3 --out s.svg");
+        let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+        assert_eq!(code(&output), 0, "{words}: {}", text(&output.stderr));
+    }
+    for words in [
+        "infer tip.toml --input service=7 --input food=8",
+        "explain tip.toml --input service=7 --input food=8",
+        "surface tip.toml --x service --input food=8 --out s.svg",
+    ] {
+        let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+        assert_eq!(code(&output), 0, "{words}: {}", text(&output.stderr));
+    }
+}
+
+/// The first example of its help was "not evaluated" 8 of 8: the command has a step of another size.
+#[test]
+fn a_ready_set_brings_its_own_step() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
+    let words = ["verify", "a.toml", "--set", "ctms", "--replay", "again", "--junit", "j.xml"];
+    let verified = fspid(&words, folder);
+    let told = text(&verified.stdout);
+    assert!(told.contains("8 of 8 requirements met; PASS"), "{told}");
+    assert!(told.contains("Judged on a flight of their own"), "{told}");
+    let answer = json(&fspid(&[&words[..], &["--format", "json"]].concat(), folder));
+    let line = &answer["requirements"][0];
+    assert!(line["own_flight"]["step_deg"].as_f64().is_some_and(|deg| (deg - 11.459).abs() < 1e-3));
+    // The replay of a line gives its number again, with the step in its own command.
+    let replay = line["replay"].as_str().expect("a file");
+    let again = json(&fspid(&["verify", replay, "--format", "json"], folder));
+    assert_eq!(again["requirements"][0]["value"], line["value"]);
+    assert!(again["requirements"][0]["own_flight"].is_null(), "{again}");
+    // JUnit has the number, its limit and how far it is from it.
+    let junit = std::fs::read_to_string(folder.join("j.xml")).expect("written");
+    let value = line["value"].as_f64().expect("a number");
+    for (name, value) in [
+        ("value", value),
+        ("most", 10.0),
+        ("margin", 10.0 - value),
+        ("own_flight_step_deg", 11.459155902616466),
+    ] {
+        let property = format!("<property name=\"{name}\" value=\"{value:?}\"/>");
+        assert!(junit.contains(&property), "{property}: {junit}");
+    }
+}
+
+/// `fspid: entry 0 of the matrix is -inf` named nothing of the file.
+#[test]
+fn a_number_that_overflows_is_told_by_its_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
+    for (command, set, key) in [
+        ("simulate", "controller.PID.kd=1e308", "controller.PID.kd is 1e308"),
+        ("analyse", "controller.PID.kd=1e308", "controller.PID.kd is 1e308"),
+        ("check", "actuator.time_constant_s=1e-310", "actuator.time_constant_s: so short"),
+    ] {
+        let output = fspid(&[command, "a.toml", "--set", set], folder);
+        let told = text(&output.stderr);
+        assert!(code(&output) == 2 && told.contains(key), "{command}: {told}");
+        assert!(!told.contains("matrix") && !told.contains("vector"), "{told}");
+    }
+}
+
+/// Least squares that were judged by rows beyond all numbers ended with code 0.
+#[test]
+fn an_error_of_validation_that_is_infinite_is_a_failure_with_words() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let rows = |answer: &str| {
+        let mut rows = String::from("error,change,delta_kp,delta_ki,delta_kd\n");
+        for i in 0..15 {
+            for j in 0..15 {
+                let (e, c) = (f64::from(i - 7) / 7.0, f64::from(j - 7) / 7.0);
+                let kp = if (i, j) == (3, 4) { answer.to_owned() } else { format!("{}", e * c) };
+                rows.push_str(&format!("{e},{c},{kp},0,0\n"));
+            }
+        }
+        rows
+    };
+    let learn = |seed: &str| {
+        let words = format!(
+            "learn sugeno-grid --range 1 --sets-stay --data d.csv --validate 0.3 --seed {seed} --out l.toml"
+        );
+        fspid(&words.split(' ').collect::<Vec<_>>(), folder)
+    };
+    std::fs::write(folder.join("d.csv"), rows("0")).expect("written");
+    assert_eq!(code(&learn("1")), 0);
+    std::fs::remove_file(folder.join("l.toml")).expect("it was written");
+    std::fs::write(folder.join("d.csv"), rows("1e200")).expect("written");
+    // The row judges with some seeds, and is learned from with others, where it overflows too.
+    let mut told = String::new();
+    for seed in 1..=8 {
+        let output = learn(&seed.to_string());
+        assert_eq!(code(&output), 2, "seed {seed}: {}", text(&output.stdout));
+        told.push_str(&text(&output.stderr));
+    }
+    assert!(told.contains("the error of the rows for validation is inf"), "{told}");
+    assert!(!folder.join("l.toml").exists());
+}
+
+/// The page of a flight in turbulence spoke of bands and tuners that it did not have.
+#[test]
+fn the_caption_of_a_report_names_what_is_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let caption = |template: &str, sets: &[&str]| {
+        let file = format!("{template}.toml");
+        assert_eq!(code(&fspid(&["init", "--template", template, &file], folder)), 0);
+        let mut words = vec!["simulate", &file, "--report", "r.html"];
+        sets.iter().for_each(|set| words.extend(["--set", set]));
+        assert!(code(&fspid(&words, folder)) < 2);
+        let page = std::fs::read_to_string(folder.join("r.html")).expect("written");
+        let (_, rest) = page.split_once("From above: ").expect("a caption");
+        rest.split_once('.').map_or(String::new(), |(caption, _)| caption.to_owned())
+    };
+    let gusts = caption("aircraft-in-turbulence", &["loop.duration_s=2"]);
+    assert!(gusts.contains("airspeed, altitude") && !gusts.contains("bands"), "{gusts}");
+    let step = caption("pitch-hold", &[]);
+    assert!(step.contains("bands of 2 %") && step.contains("gains of the self-tuning"), "{step}");
+    let alone = caption("tuning", &[]);
+    assert!(alone.contains("bands of 2") && !alone.contains("gains"), "{alone}");
+}
+
+#[test]
+fn every_path_is_listed_with_its_unit_value_and_range() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
+    let answer = json(&fspid(&["check", "a.toml", "--paths", "--format", "json"], folder));
+    let rows = answer["paths"].as_array().expect("rows");
+    let row = |path: &str| rows.iter().find(|row| row["path"] == path).expect(path);
+    let kp = row("controller.PID.kp");
+    assert_eq!((kp["dispersion"].as_bool(), kp["mark"].as_bool()), (Some(true), Some(true)));
+    let rate = row("actuator.rate_limit_deg_s");
+    assert!(rate["value"].is_null() && rate["unit"] == "deg/s", "{rate}");
+    assert_eq!(row("plant.preset.numerator[0]")["mark"], false, "no mark stands in a file");
+    assert!(rows.iter().all(|row| row["allowed"].as_str().is_some_and(|it| !it.is_empty())));
+    assert!(
+        !rows.iter().any(|row| row["path"].as_str().is_some_and(|it| it.starts_with("aircraft")))
+    );
+    // What the list says may be set can be set: to the value that it has.
+    for row in rows.iter().filter(|row| row["given"] == true) {
+        let (path, value) =
+            (row["path"].as_str().expect("a path"), row["value"].as_str().expect("a value"));
+        if value.contains('…') {
+            continue;
+        }
+        let set = format!("{path}={value}");
+        let output = fspid(&["check", "a.toml", "--set", &set], folder);
+        assert_eq!(code(&output), 0, "{set}: {}", text(&output.stderr));
+    }
+    let table = text(&fspid(&["check", "a.toml", "--paths"], folder).stdout);
+    assert!(table.lines().count() > 60 && table.contains("controller.FSPID.nominal.kp"), "{table}");
+}
+
+#[test]
+fn a_contest_says_how_long_it_takes_and_its_page_has_reasons_in_a_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "contest", "a.toml"], folder)), 0);
+    let words = "contest a.toml --budget 4 --seeds 1 --out who --set requirement[0].most=0.001";
+    let held = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+    let told = text(&held.stderr);
+    assert_eq!(code(&held), 0, "{told}");
+    assert!(told.contains("2 controller(s) tuned with 4 candidates each: about "), "{told}");
+    let page = std::fs::read_to_string(folder.join("who/contest.html")).expect("written");
+    let (_, reasons) = page.split_once("Why flights failed").expect("a heading");
+    let table = reasons.split_once("</table>").map_or("", |(table, _)| table);
+    for words in ["<table", "flight conditions", "commands", "FSPID", "overshoot_pct"] {
+        assert!(table.contains(words), "{words}: {table}");
+    }
+    assert!(!table.contains("<li>"), "{table}");
+}

@@ -1,0 +1,185 @@
+//! Numerator and denominator of a loop as polynomials whose coefficients are proved.
+
+use super::real::Real;
+use crate::balance::balance;
+use crate::ball::Ball;
+use crate::matrix::Matrix;
+use crate::wide::WideBall;
+
+/// A square array of numbers with bounds.
+struct Square {
+    size: usize,
+    data: Vec<WideBall>,
+}
+
+/// $L = N / D$ on the upper half of the unit circle, over a common factor.
+///
+/// In $s = (z - 1)/(z + 1) = j \tan (\omega T / 2)$ both are polynomials over $(1 - s)^n$, which cancels.
+#[derive(Debug, Clone)]
+pub(super) struct Parts {
+    /// D: 0 where L has a pole.
+    pub(super) under: Real,
+    /// N.
+    pub(super) over: Real,
+}
+
+impl Parts {
+    /// From $A - I$, b and c; `None` where the reduction meets a pivot that may be 0 and need not be.
+    ///
+    /// With the output turned into the last unit vector by an elimination whose every step carries its bounds, L is
+    ///
+    /// $$ D = \det(\zeta I - H), \quad N = \gamma \sum_j b_j \det(\zeta I - H)_{j+1..} \prod_{m \le j} h_{m,m-1} $$
+    ///
+    /// and the trailing minors follow from each other. They are kept in s, where $\zeta - h = (2 s - h (1 - s))/(1 -
+    /// s)$: slow poles keep their digits at $s = 0$, and those of a dead time, $h = -1$, are $1 + s$ and cancel nothing.
+    ///
+    /// # Source
+    /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
+    /// (1965), chapter 7.
+    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
+        let system = Square::bordered(change, b, c).reduced()?;
+        let order = b.len();
+        let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
+        // minors[k] is the determinant of the rows and columns from k on, over (1 - s) to the power that is left.
+        let mut minors: Vec<Vec<WideBall>> = vec![vec![WideBall::from(1.0)]];
+        let mut over: Vec<WideBall> = vec![WideBall::ZERO];
+        for row in (0..order).rev() {
+            let corner = h(row, row);
+            let lead = corner.plus(&WideBall::from(2.0));
+            let mut minor = times_linear(minors.last()?, corner.negative(), lead);
+            for minor in &mut minors {
+                *minor = times_one_less_s(minor);
+            }
+            let mut below = WideBall::from(1.0);
+            for column in row + 1..order {
+                below = below.times(&h(column, column - 1));
+                let factor = below.times(&h(row, column)).negative();
+                add(&mut minor, minors.get(order - 1 - column)?, factor);
+            }
+            minors.push(minor);
+        }
+        let under = minors.pop()?;
+        // minors[order - 1 - j] belongs to the rows after j, and has been brought to the full power.
+        let mut entry = system.at(1, 0);
+        for (place, minor) in minors.iter().rev().enumerate() {
+            if place > 0 {
+                entry = entry.times(&h(place, place - 1));
+            }
+            add(&mut over, minor, entry.times(&system.at(0, 1 + place)));
+        }
+        Some(Self { under: Real::of_s(&under, order), over: Real::of_s(&over, order) })
+    }
+
+    /// Denominator of S and T, $D + N$.
+    pub(super) fn closed(&self) -> Real {
+        self.under.plus(&self.over, Ball::from(1.0))
+    }
+}
+
+/// Times $a + b s$.
+fn times_linear(polynomial: &[WideBall], a: WideBall, b: WideBall) -> Vec<WideBall> {
+    let mut product = vec![WideBall::ZERO; polynomial.len() + 1];
+    for (power, value) in polynomial.iter().enumerate() {
+        product[power] = product[power].plus(&a.times(value));
+        product[power + 1] = b.times(value);
+    }
+    product
+}
+
+/// Times $1 - s$.
+fn times_one_less_s(polynomial: &[WideBall]) -> Vec<WideBall> {
+    let mut product = polynomial.to_vec();
+    product.push(WideBall::ZERO);
+    for (power, value) in polynomial.iter().enumerate() {
+        product[power + 1] = product[power + 1].minus(value);
+    }
+    product
+}
+
+fn add(sum: &mut Vec<WideBall>, polynomial: &[WideBall], factor: WideBall) {
+    if factor.is_zero() {
+        return;
+    }
+    if sum.len() < polynomial.len() {
+        sum.resize(polynomial.len(), WideBall::ZERO);
+    }
+    for (sum, value) in sum.iter_mut().zip(polynomial) {
+        *sum = sum.plus(&factor.times(value));
+    }
+}
+
+impl Square {
+    fn at(&self, row: usize, column: usize) -> WideBall {
+        self.data[row * self.size + column]
+    }
+
+    /// The loop with b as its first row and c as its first column, transposed about the other diagonal, balanced.
+    fn bordered(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Self {
+        let order = b.len();
+        let size = order + 1;
+        let entry = |row: usize, column: usize| match (row.checked_sub(1), column.checked_sub(1)) {
+            (Some(row), Some(column)) => change[(order - 1 - column) * order + order - 1 - row],
+            (Some(row), None) => c[order - 1 - row].into(),
+            (None, Some(column)) => b[order - 1 - column],
+            (None, None) => WideBall::ZERO,
+        };
+        let data: Vec<WideBall> =
+            (0..size * size).map(|index| entry(index / size, index % size)).collect();
+        let mut plain =
+            Matrix::from_function(size, size, |row, column| data[row * size + column].rounded());
+        let exponents = balance(&mut plain);
+        let scaled = data
+            .iter()
+            .enumerate()
+            .map(|(index, value)| value.scaled(exponents[index % size] - exponents[index / size]));
+        Self { size, data: scaled.collect() }
+    }
+
+    /// Zeros below the first subdiagonal, by elimination with exchanges of the states.
+    fn reduced(mut self) -> Option<Self> {
+        for column in 0..self.size.saturating_sub(2) {
+            let target = column + 1;
+            let size = |row: usize| self.at(row, column).rounded().abs();
+            let mut pivot = target;
+            for row in target + 1..self.size {
+                if size(row) > size(pivot) {
+                    pivot = row;
+                }
+            }
+            self.exchange(pivot, target);
+            let head = self.at(target, column);
+            for row in target + 1..self.size {
+                if !self.at(row, column).is_zero() {
+                    let factor = self.at(row, column).over(&head)?;
+                    self.eliminate(row, target, column, factor);
+                }
+            }
+        }
+        Some(self)
+    }
+
+    fn exchange(&mut self, one: usize, other: usize) {
+        if one != other {
+            for k in 0..self.size {
+                self.data.swap(one * self.size + k, other * self.size + k);
+            }
+            for k in 0..self.size {
+                self.data.swap(k * self.size + one, k * self.size + other);
+            }
+        }
+    }
+
+    /// Takes a multiple of the target's row from a row, and adds the multiple of its column to the target's.
+    fn eliminate(&mut self, row: usize, target: usize, column: usize, factor: WideBall) {
+        let size = self.size;
+        self.data[row * size + column] = WideBall::ZERO;
+        for k in column + 1..size {
+            let taken = factor.times(&self.at(target, k));
+            self.data[row * size + k] = self.at(row, k).minus(&taken);
+        }
+        for k in 0..size {
+            let added = factor.times(&self.at(k, row));
+            self.data[k * size + target] = self.at(k, target).plus(&added);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! From a scenario to what a certificate is asked for.
+//!
+//! Everything of a scenario is taken apart by name here and in [`LoopDescription`], without `..`: a new
+//! part does not compile until somebody has decided whether claims cover it, bound it, refuse it, or say
+//! beside the verdict that they leave it out.
+
+use fspid_sim::sensor::{Sensor, SensorModel};
+use fspid_sim::{LinearPlant, Plant, Scenario, Steady, Surroundings, Weather};
+
+use crate::description::LoopDescription;
+use crate::scope::{Asked, LeftOut, Range};
+
+impl Asked {
+    /// What is asked of one of a scenario's loops: its set-points and loads, all that stand still at some time
+    /// or are passed through.
+    #[must_use]
+    pub fn of(scenario: &Scenario, plant: &LinearPlant, description: &LoopDescription) -> Self {
+        // The bias of the actuator is the description's.
+        let steady = Steady { bias_rad: 0.0, ..scenario.steady() };
+        let range = Range {
+            setpoint_rad: steady.largest_setpoint_rad(),
+            load_rad: steady.load_with_offsets_rad(plant, description.controller.shell()),
+        };
+        Self { range, left_out: left_out_of(scenario) }
+    }
+}
+
+/// What of a scenario the claim of its loops does not speak of.
+#[must_use]
+pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
+    let Scenario {
+        // A name changes nothing.
+        name: _,
+        plant,
+        plant_changes,
+        // Covered: the description has it as an actuator.
+        servo: _,
+        // The period is the controller's, checked when the scenario is built; a claim holds for any length.
+        timing: _,
+        // Bounded: the range.
+        setpoint: _,
+        disturbances,
+        // Covered one by one.
+        controllers: _,
+        surroundings,
+    } = scenario;
+    let Surroundings {
+        weather,
+        // Covered: the description has it.
+        actuator: _,
+        pitch_sensor,
+        rate_sensor,
+    } = surroundings;
+    let sensors = || [pitch_sensor, rate_sensor].into_iter().flatten().map(Sensor::model);
+    let noisy = sensors().any(is_noisy) || disturbances.iter().any(|one| one.is_noise());
+    let present = |what: LeftOut| match what {
+        LeftOut::Rounding | LeftOut::MovingSetpoint => true,
+        LeftOut::NonlinearAircraft => matches!(plant, Plant::Aircraft(_)),
+        LeftOut::PlantChange => !plant_changes.is_empty(),
+        LeftOut::MovingAir => weather.as_ref().is_some_and(moves),
+        LeftOut::Noise => noisy,
+        LeftOut::Drift => sensors().any(|model| model.drift > 0.0),
+        LeftOut::Disturbances => disturbances.iter().any(|one| !one.is_noise()),
+        // Known to the study alone.
+        LeftOut::Dispersions => false,
+    };
+    LeftOut::ALL.into_iter().filter(|what| present(*what)).collect()
+}
+
+fn moves(weather: &Weather) -> bool {
+    let Weather {
+        // Where the air is met; without wind and turbulence it stands still.
+        course: _,
+        winds,
+        turbulence,
+    } = weather;
+    !winds.is_empty() || turbulence.is_some()
+}
+
+fn is_noisy(model: &SensorModel) -> bool {
+    let SensorModel {
+        noise_density,
+        // A constant bias is a load, see `Steady`; that it wanders is left out under its own name.
+        bias: _,
+        drift: _,
+        drift_time_s: _,
+        // Covered by the sensing of the description, or refused there.
+        scale_error: _,
+        resolution: _,
+        period_s: _,
+        delay_s: _,
+        erection_rad_s: _,
+    } = model;
+    *noise_density > 0.0
+}

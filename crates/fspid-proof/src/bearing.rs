@@ -1,0 +1,99 @@
+//! What a claim, once its inequalities are proved, says of the loop as it flies.
+
+use core::fmt;
+
+use fspid_sim::Controller;
+
+use crate::certificate::{Certificate, Claim};
+use crate::recheck::{Kept, Rechecked};
+
+/// What proved inequalities bear on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bearing {
+    /// The flown loop is stable, within the scope that the certificate states.
+    Stable,
+    /// The flown loop grows: its gains are fixed.
+    Grows,
+    /// Gains that stand still let the loop grow. In flight they move, and the loop may still settle.
+    GrowsStandingStill,
+    /// Gains in an order that no flight may bring about let the loop grow.
+    GrowsInSomeOrder,
+    /// Nothing: the gains are those of another output scale.
+    OtherScale {
+        /// Times the controller's own.
+        factor: f64,
+    },
+    /// Nothing: the proof asks for gains slower than the law is known to keep to.
+    RateNotKept,
+}
+
+impl Certificate {
+    /// What the claim says of the flown loop, of what its re-check found.
+    #[must_use]
+    pub fn bearing(&self, rechecked: &Rechecked) -> Bearing {
+        // Bit for bit: a factor next to 1 is another loop as well.
+        if self.output_factor.to_bits() != 1.0_f64.to_bits() {
+            return Bearing::OtherScale { factor: self.output_factor };
+        }
+        let is_fixed = matches!(self.description.controller, Controller::Fixed(_));
+        match (&self.claim, rechecked.kept) {
+            (Claim::AnySpeed { .. } | Claim::Tied { .. }, _) => Bearing::Stable,
+            (Claim::BoundedRate(_), Some(Kept::Everywhere | Kept::WithinLevel)) => Bearing::Stable,
+            (Claim::BoundedRate(_), None) => Bearing::RateNotKept,
+            (Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }, _) if is_fixed => {
+                Bearing::Grows
+            }
+            (Claim::FrozenGrowth { .. }, _) => Bearing::GrowsStandingStill,
+            (Claim::SequenceGrowth { .. }, _) => Bearing::GrowsInSomeOrder,
+        }
+    }
+}
+
+impl Bearing {
+    /// True if the flown loop is proved stable.
+    #[must_use]
+    pub const fn is_stability(self) -> bool {
+        matches!(self, Self::Stable)
+    }
+
+    /// True if the claim says something, if only of gains that stand still: it was proved to refute.
+    #[must_use]
+    pub const fn is_refutation(self) -> bool {
+        matches!(self, Self::Grows | Self::GrowsStandingStill | Self::GrowsInSomeOrder)
+    }
+
+    /// Name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "flown-loop-stable",
+            Self::Grows => "flown-loop-unstable",
+            Self::GrowsStandingStill => "unstable-with-gains-standing-still",
+            Self::GrowsInSomeOrder => "unstable-with-gains-in-some-order",
+            Self::OtherScale { .. } => "nothing-other-output-scale",
+            Self::RateNotKept => "nothing-rate-not-kept",
+        }
+    }
+}
+
+impl fmt::Display for Bearing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stable => f.write_str("the flown loop is stable"),
+            Self::Grows => f.write_str("the gains are fixed, so that the flown loop itself grows"),
+            Self::GrowsStandingStill => f.write_str(
+                "this refutes gains that stand still; in flight the gains move on, and the flown loop may still settle",
+            ),
+            Self::GrowsInSomeOrder => f.write_str(
+                "this refutes gains that move in any order; no flight need bring this order about, and the flown loop may still settle",
+            ),
+            Self::OtherScale { factor } => write!(
+                f,
+                "the claim is about {factor:?} times the controller's output scale, and so not about the flown loop"
+            ),
+            Self::RateNotKept => f.write_str(
+                "the claim asks for gains that move no faster than stated, and the law is not shown to keep to that: it is not about the flown loop",
+            ),
+        }
+    }
+}

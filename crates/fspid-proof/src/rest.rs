@@ -1,0 +1,215 @@
+//! Where a loop comes to rest while set-point and load stand still, and what its command does there.
+
+use fspid_core::{Fspid, IntegralForm, Law};
+use fspid_fuzzy::scalar::Interval;
+use fspid_sim::Controller;
+
+use crate::check::printed;
+use crate::description::LoopDescription;
+use crate::gain_set::{GainSet, HeldCommand};
+use crate::scope::Range;
+
+/// The loop at rest, for every set-point and load of a range: largest magnitudes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rest {
+    /// The constant part of the command that is multiplied by gains.
+    pub(crate) held: HeldCommand,
+    /// The command, rad; infinite where nothing bounds it.
+    pub(crate) command_rad: f64,
+    /// The integral's term, rad, whatever its gain has become since.
+    pub(crate) integral_rad: f64,
+    /// The set-point, rad: what the sensor then shows.
+    pub(crate) seen_rad: f64,
+    /// The error, rad; 0 with an integral.
+    pub(crate) error_rad: f64,
+    /// What rest depends on.
+    pub(crate) any_setpoint: bool,
+    pub(crate) any_load: bool,
+}
+
+/// Why nothing is said of rest at other set-points or loads than zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoRest {
+    /// An accumulating law moves a constant part of the command long after the error is gone.
+    #[error(
+        "an accumulating law with a set-point weight other than 1, or with the literal integral, moves the command that holds a set-point or a load by gains that remember: nothing is claimed but the return to rest with the set-point at zero and no load"
+    )]
+    Remembered,
+    /// No integral, and no bound of the error that is left.
+    #[error(
+        "without an integral an error stays, and nothing bounds it here: nothing is claimed but the return to rest with the set-point at zero and no load"
+    )]
+    NoIntegral,
+    /// The literal integral holds a command with a gain that may be zero at rest.
+    #[error("the literal integral holds a command with a gain that may be zero at rest")]
+    NoIntegralGain,
+    /// The plant has no pitch per elevator at rest, or one of zero.
+    #[error("the elevator that holds a set-point has no bound")]
+    NoSteadyGain,
+}
+
+impl Rest {
+    /// Rest of a loop with the gains of a set.
+    pub(crate) fn of(
+        description: &LoopDescription,
+        set: &GainSet,
+        range: Range,
+    ) -> Result<Self, NoRest> {
+        let holding = Holding::of(description, set, range);
+        match &description.controller {
+            Controller::Fixed(_) => Ok(holding.still()),
+            Controller::SelfTuning(fspid) => holding.tuned(fspid),
+        }
+    }
+}
+
+/// What there is to hold, enclosed.
+struct Holding<'a> {
+    description: &'a LoopDescription,
+    set: &'a GainSet,
+    range: Range,
+    /// Command per rad of seen pitch; none where the plant gives no pitch at rest.
+    per_pitch: Option<Interval>,
+    setpoint: Interval,
+    load: Interval,
+}
+
+impl<'a> Holding<'a> {
+    fn of(description: &'a LoopDescription, set: &'a GainSet, range: Range) -> Self {
+        let last = |values: &[f64]| printed(values.last().copied().unwrap_or(0.0));
+        let pitch = last(&description.numerator) * Interval::point(description.pitch.scale);
+        let per_pitch = Interval::point(description.elevator_sign.per_nose_up())
+            * last(&description.denominator)
+            / pitch;
+        let has_gain = !pitch.contains(0.0) && per_pitch.is_bounded();
+        Self {
+            description,
+            set,
+            range,
+            per_pitch: has_gain.then_some(per_pitch),
+            setpoint: Interval::point(range.setpoint_rad),
+            load: Interval::point(range.load_rad)
+                + Interval::point(description.actuator.bias_rad().abs()),
+        }
+    }
+
+    /// The largest command at rest where the error is zero.
+    fn command_rad(&self) -> f64 {
+        let of_setpoint = self.per_pitch.map_or(f64::INFINITY, |per| {
+            (Interval::point(per.magnitude()) * self.setpoint).upper()
+        });
+        let of_setpoint = if self.range.setpoint_rad == 0.0 { 0.0 } else { of_setpoint };
+        (Interval::point(of_setpoint) + self.load).upper()
+    }
+
+    /// Largest magnitude of (b - 1) r.
+    fn by_weight(&self) -> Interval {
+        let weight = self.description.controller.shell().setpoint_weights.proportional;
+        let off = (Interval::point(weight) - Interval::ONE).magnitude();
+        Interval::point(off) * self.setpoint
+    }
+
+    fn has_integral(&self) -> bool {
+        self.description.settings().memory.integral
+    }
+
+    /// Gains that stand still: all is linear, whatever is held.
+    fn still(&self) -> Rest {
+        let kp = Interval::point(self.set.rest[0].magnitude());
+        let command_rad = match self.has_integral() {
+            true => self.command_rad(),
+            false => self.proportional(kp).map_or(f64::INFINITY, |(command, _)| command),
+        };
+        Rest {
+            held: HeldCommand::NONE,
+            command_rad,
+            integral_rad: (Interval::point(command_rad) + kp * self.by_weight()).upper(),
+            seen_rad: self.range.setpoint_rad,
+            error_rad: 0.0,
+            any_setpoint: true,
+            any_load: true,
+        }
+    }
+
+    /// Command and error at rest without an integral, largest magnitudes:
+    ///
+    /// $$ k_p (b r - y) = y / G + d, \qquad b r - y = \frac{b r / G + d}{k_p + 1 / G} $$
+    ///
+    /// with G the pitch per command. Some rest there is, as kp is a continuous function of the error.
+    fn proportional(&self, kp: Interval) -> Option<(f64, f64)> {
+        let per = self.per_pitch?;
+        let sum = kp + per;
+        let weight = self.description.controller.shell().setpoint_weights.proportional;
+        let size = |value: Interval| Interval::point(value.magnitude());
+        let known = !sum.contains(0.0) && sum.is_bounded();
+        let beyond = size(per) * Interval::point(weight.abs()) * self.setpoint + self.load;
+        let driven = beyond / size_least(sum);
+        let command = size(kp) * driven;
+        known.then_some((command.upper(), driven.upper()))
+    }
+
+    fn tuned(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
+        let nothing = self.range == Range::REST && self.load == Interval::ZERO;
+        if !self.has_integral() {
+            return self.without_integral(fspid, nothing);
+        }
+        let literal = fspid.shell().integral == IntegralForm::Literal;
+        let command_rad = self.command_rad();
+        let kp = Interval::point(self.set.rest[0].magnitude());
+        let integral = Interval::point(command_rad) + kp * self.by_weight();
+        let mut rest = Rest {
+            held: HeldCommand { by_kp: self.by_weight().upper(), by_ki: 0.0, at_origin: true },
+            command_rad,
+            integral_rad: integral.upper(),
+            ..self.still()
+        };
+        rest.any_setpoint = self.plain() && !literal;
+        rest.any_load = !literal;
+        if literal && integral.upper() > 0.0 {
+            let [_, at_rest, _] = self.set.rest;
+            let least = size_least(at_rest);
+            if !(least.lower() > 0.0) {
+                return Err(NoRest::NoIntegralGain);
+            }
+            if !integral.upper().is_finite() {
+                return Err(NoRest::NoSteadyGain);
+            }
+            let per_gain = integral / least;
+            let [_, ki, _] = self.set.bounds();
+            rest.held.by_ki = per_gain.upper();
+            rest.integral_rad = (per_gain * Interval::point(ki.magnitude())).upper();
+        }
+        let remembers = fspid.tuner().settings().law != Law::Memoryless;
+        if remembers && !rest.held.is_none() {
+            return Err(NoRest::Remembered);
+        }
+        Ok(rest)
+    }
+
+    fn plain(&self) -> bool {
+        self.description.controller.shell().setpoint_weights.proportional == 1.0
+    }
+
+    fn without_integral(&self, fspid: &Fspid<f64>, nothing: bool) -> Result<Rest, NoRest> {
+        let mut rest = Rest { any_setpoint: false, any_load: false, ..self.still() };
+        if nothing {
+            return Ok(rest);
+        }
+        if fspid.tuner().settings().law != Law::Memoryless {
+            return Err(NoRest::Remembered);
+        }
+        let [kp, ..] = self.set.bounds();
+        let (command_rad, driven_rad) = self.proportional(kp).ok_or(NoRest::NoIntegral)?;
+        // e = (b r - y) - (b - 1) r.
+        let error_rad = (Interval::point(driven_rad) + self.by_weight()).upper();
+        let at_origin = error_rad == 0.0;
+        let held = HeldCommand { by_kp: driven_rad, by_ki: 0.0, at_origin };
+        rest = Rest { held, command_rad, integral_rad: 0.0, error_rad, ..rest };
+        Ok(rest)
+    }
+}
+
+/// The smallest magnitude in an interval, as a number that divides.
+fn size_least(value: Interval) -> Interval {
+    Interval::point(value.lower().max(-value.upper()).max(0.0))
+}

@@ -1,0 +1,191 @@
+//! How large a certificate may be, asked before anything is enclosed: a short text can name much.
+//!
+//! A delay of ten thousand samples is a loop of ten thousand states, whose one-sample matrix would fill
+//! 1.6 GB, and a thousand cells along each input are a million boxes of gains. Both used to be computed
+//! before the form was looked at.
+
+use core::fmt;
+
+use fspid_core::Law;
+use fspid_lti::Matrix;
+use fspid_sim::Controller;
+use fspid_sim::loop_model::{LoopModel, SampledPlant};
+
+use crate::certificate::{BoundedRate, Certificate, Claim};
+use crate::description::LoopDescription;
+
+/// Most states of a loop.
+pub const MOST_STATES: usize = 128;
+/// Most cells along each of the supervisor's inputs.
+pub const MOST_DIVISIONS: usize = 96;
+/// Most double cones of a claim.
+pub const MOST_CONES: usize = 96;
+/// Longest sequence of gains that is multiplied out.
+pub const MOST_SAMPLES: usize = 20_000;
+/// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
+pub const MOST_WORK: u64 = 4_000_000_000;
+
+/// Coefficients of a cell's fall in which the form moves with all gains.
+const BERNSTEIN: u64 = 64;
+
+/// A part of a certificate that is larger than allowed, or of another size than the loop asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongSize {
+    /// Where in the certificate, as in its file.
+    pub path: &'static str,
+    /// What is counted.
+    pub what: &'static str,
+    /// How many there are.
+    pub found: u64,
+    /// How many there may be.
+    pub least: u64,
+    /// The most; equal to the least where the loop leaves no choice.
+    pub most: u64,
+}
+
+impl fmt::Display for WrongSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, what, found, least, most } = self;
+        match (least, most) {
+            (least, most) if least == most => {
+                write!(f, "{path}: {found} {what}; the loop asks for {most}")
+            }
+            (0, most) => write!(f, "{path}: {found} {what}; allowed are up to {most}"),
+            (least, most) => write!(f, "{path}: {found} {what}; allowed are {least} to {most}"),
+        }
+    }
+}
+
+/// Everything whose size is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongSizes(pub Vec<WrongSize>);
+
+impl fmt::Display for WrongSizes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, wrong) in self.0.iter().enumerate() {
+            write!(f, "{}{wrong}", if place == 0 { "" } else { "; " })?;
+        }
+        Ok(())
+    }
+}
+
+impl LoopDescription {
+    /// How many states the loop has, without computing any.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        let order = self.denominator.len().saturating_sub(1);
+        // Without a lag the last command is a state.
+        let states = order + self.actuator.lag().order().max(1);
+        let plant = SampledPlant { states, rows: Vec::new(), rate: Vec::new() };
+        LoopModel::<f64>::new(plant, self.settings()).size()
+    }
+
+    /// The loop's size, where it is larger than a proof may speak of.
+    pub(crate) fn too_large(&self) -> Option<WrongSize> {
+        let found = self.states() as u64;
+        let most = MOST_STATES as u64;
+        let what = "states (plant, actuator, samples on their way, memory of the controller)";
+        (found > most).then_some(WrongSize { path: "loop", what, found, least: 0, most })
+    }
+}
+
+/// What is wrong with the sizes of a certificate; nothing is enclosed for that.
+pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
+    let mut wrong = Sizes::default();
+    let description = &certificate.description;
+    let states = description.states();
+    wrong.found.extend(description.too_large());
+    let divisions = ("divisions", "cells along an input");
+    wrong.within(divisions, certificate.divisions, [1, MOST_DIVISIONS]);
+    wrong.of_claim(&certificate.claim, states);
+    let inequalities = most_inequalities(certificate);
+    let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
+    wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);
+    if wrong.found.is_empty() { Ok(()) } else { Err(WrongSizes(wrong.found)) }
+}
+
+/// No fewer inequalities, or products of matrices, than the re-check looks at.
+fn most_inequalities(certificate: &Certificate) -> u64 {
+    let divisions = certificate.divisions as u64;
+    let cells = match &certificate.description.controller {
+        Controller::Fixed(_) => 1,
+        Controller::SelfTuning(fspid) => {
+            let settings = fspid.tuner().settings();
+            let along = |scale: f64| if scale == 0.0 { 1 } else { divisions };
+            match settings.law {
+                Law::Accumulating { .. } => 1,
+                Law::Memoryless => along(settings.input_scale.error_per_rad)
+                    .saturating_mul(along(settings.input_scale.change_per_rad))
+                    .saturating_add(4),
+            }
+        }
+    };
+    // Eight of a box, each with what is held either way.
+    let corners = cells.saturating_mul(16);
+    match &certificate.claim {
+        Claim::AnySpeed { .. } => corners,
+        Claim::Tied { multipliers, .. } => corners.saturating_mul(1 + multipliers.len() as u64),
+        Claim::BoundedRate(_) => BERNSTEIN.saturating_mul(8).saturating_add(corners),
+        Claim::FrozenGrowth { .. } => 1,
+        Claim::SequenceGrowth { inputs, .. } => inputs.len() as u64 + 1,
+    }
+}
+
+#[derive(Default)]
+struct Sizes {
+    found: Vec<WrongSize>,
+}
+
+impl Sizes {
+    fn push(
+        &mut self,
+        (path, what): (&'static str, &'static str),
+        found: u64,
+        [least, most]: [u64; 2],
+    ) {
+        if !(least..=most).contains(&found) {
+            self.found.push(WrongSize { path, what, found, least, most });
+        }
+    }
+
+    fn within(
+        &mut self,
+        place: (&'static str, &'static str),
+        found: usize,
+        [least, most]: [usize; 2],
+    ) {
+        self.push(place, found as u64, [least as u64, most as u64]);
+    }
+
+    fn of_claim(&mut self, claim: &Claim, states: usize) {
+        match claim {
+            Claim::AnySpeed { form, .. } => self.of_form("claim.form", form, states),
+            Claim::Tied { form, multipliers, .. } => {
+                self.of_form("claim.form", form, states);
+                let place = ("claim.multipliers", "double cones");
+                self.within(place, multipliers.len(), [1, MOST_CONES]);
+            }
+            Claim::BoundedRate(BoundedRate { forms, .. }) => {
+                let paths =
+                    ["claim.forms[0]", "claim.forms[1]", "claim.forms[2]", "claim.forms[3]"];
+                for (path, form) in paths.into_iter().zip(forms) {
+                    self.of_form(path, form, states);
+                }
+            }
+            Claim::FrozenGrowth { form, direction, .. } => {
+                self.of_form("claim.form", form, states);
+                self.within(("claim.direction", "numbers"), direction.len(), [states, states]);
+            }
+            Claim::SequenceGrowth { inputs, form, direction, .. } => {
+                self.of_form("claim.form", form, states);
+                self.within(("claim.direction", "numbers"), direction.len(), [states, states]);
+                self.within(("claim.inputs", "samples"), inputs.len(), [1, MOST_SAMPLES]);
+            }
+        }
+    }
+
+    fn of_form(&mut self, path: &'static str, form: &Matrix, states: usize) {
+        self.within((path, "rows"), form.rows(), [states, states]);
+        self.within((path, "columns"), form.columns(), [states, states]);
+    }
+}

@@ -1,0 +1,219 @@
+//! Proved claims, flown with the simulator.
+
+use std::ops::ControlFlow;
+
+use fspid_core::{AntiWindup, Fspid, Guard, Pid, Shell};
+use fspid_proof::{
+    Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify,
+};
+use fspid_sim::actuator::Actuator;
+use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
+use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly};
+
+/// Time constants of the proved rate that are flown, and the most samples of a flight.
+const TIME_CONSTANTS: f64 = 20.0;
+const MOST_SAMPLES: f64 = 60_000.0;
+/// Of the largest deviation so much may be left at the end: a form may be some 10⁶ times as long as it is
+/// wide, and 20 time constants are a factor of 10⁹.
+const LEFT: f64 = 0.02;
+/// Below this nothing is told from rounding, rad.
+const ROUNDING: f64 = 1e-9;
+
+/// What came of a drawn scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Answer {
+    /// No proof speaks of it.
+    NotProvable(String),
+    /// Neither proved nor refuted, not even for less.
+    Open,
+    Refuted,
+    /// Proved for all that the scenario has, or for less, and every flight settled.
+    Settled {
+        whole: bool,
+        flights: usize,
+        held: bool,
+    },
+    /// Proved, and a flight did not settle.
+    Contradicted(String),
+}
+
+/// A quick proof: what it misses is not claimed.
+pub(crate) fn quick() -> Effort {
+    Effort {
+        divisions: 12,
+        cones: 6,
+        halvings: 2,
+        largest_factor: 1.0,
+        frozen_points: 13,
+        changes: &[],
+    }
+}
+
+/// Certifies a scenario and flies what is proved.
+pub(crate) fn answer(scenario: &Scenario) -> Answer {
+    let plant = scenario.plant.linear().expect("linear");
+    let controller = &scenario.controllers[0].controller;
+    let described = LoopDescription::of(scenario, plant, controller);
+    let outcome = described.and_then(|description| {
+        let asked = Asked::of(scenario, plant, &description);
+        certify(&description, &asked, &quick())
+    });
+    let outcome = match outcome {
+        Err(reason) => return Answer::NotProvable(short(&reason)),
+        Ok(outcome) => outcome,
+    };
+    let (proved, whole) = match (outcome.verdict, outcome.instead) {
+        (Verdict::Proved(certificate, rechecked), _) => ((certificate, rechecked), true),
+        (Verdict::Refuted(..), _) => return Answer::Refuted,
+        (Verdict::Open, Some(found)) => (found, false),
+        (Verdict::Open, None) => return Answer::Open,
+    };
+    fly_all(scenario, &proved, whole)
+}
+
+fn short(reason: &NotProvable) -> String {
+    reason.to_string().chars().take(60).collect()
+}
+
+fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) -> Answer {
+    let (certificate, rechecked) = proved;
+    // A certificate that is read again has to say the same.
+    if certificate.check().as_ref() != Ok(rechecked) {
+        return Answer::Contradicted("checked anew it is another".to_owned());
+    }
+    let range = certificate.range;
+    // What no limit can keep from settling is flown without limits.
+    let free = without_limits(scenario);
+    let (far, load) = (range.setpoint_rad, range.load_rad);
+    // Beyond the range too, where the claim does not depend on it.
+    let any = if rechecked.any_setpoint { 40.0_f64.to_radians() } else { far };
+    let own_load = scenario.steady();
+    // A bias of the sensor counts as a load, and is there in every flight.
+    let room = (load
+        - (own_load.load_with_offsets_rad(
+            scenario.plant.linear().expect("linear"),
+            controller_shell(scenario),
+        ) - own_load.load_rad
+            - own_load.bias_rad))
+        .max(0.0);
+    let loads = if rechecked.any_load { [0.0, 5.0_f64.to_radians()] } else { [0.0, room] };
+    let mut flights = 0;
+    for (setpoint_rad, load_rad, kick_rad) in [
+        (any, 0.0, 0.0),
+        (-any, loads[1], 0.0),
+        (0.37 * any, -loads[1], 0.0),
+        (-any, -loads[1], 20.0_f64.to_radians()),
+        (any, loads[1], 1e-4),
+    ] {
+        let start = Start { setpoint_rad, load_rad, kick_rad, ramp: false };
+        if let Err(reason) = settles(&free, proved, start) {
+            return Answer::Contradicted(format!("{start:?}: {reason}"));
+        }
+        flights += 1;
+    }
+    if rechecked.pitch_within_rad.is_some() {
+        for (setpoint_rad, load_rad) in [(far, room), (-far, -room)] {
+            let start = Start { setpoint_rad, load_rad, kick_rad: 0.0, ramp: true };
+            if let Err(reason) = settles(scenario, proved, start) {
+                return Answer::Contradicted(format!("within limits, {start:?}: {reason}"));
+            }
+            flights += 1;
+        }
+    }
+    let held = far > 0.0 && !rechecked.any_setpoint;
+    Answer::Settled { whole, flights, held }
+}
+
+fn controller_shell(scenario: &Scenario) -> &Shell<f64> {
+    scenario.controllers[0].controller.shell()
+}
+
+/// How a flight begins.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    setpoint_rad: f64,
+    load_rad: f64,
+    /// At the servo for a second.
+    kick_rad: f64,
+    /// Slowly, so that no limit acts on the way.
+    ramp: bool,
+}
+
+fn settles(
+    scenario: &Scenario,
+    (certificate, rechecked): &(Certificate, Rechecked),
+    start: Start,
+) -> Result<(), String> {
+    let rate = certificate.claim.rate().expect("of stability");
+    let dt_s = scenario.timing.dt_s();
+    let samples = (TIME_CONSTANTS / -libm::log(rate)).clamp(1000.0, MOST_SAMPLES);
+    let enough = rate < 1.0 && samples * -libm::log(rate) > 0.6 * TIME_CONSTANTS;
+    let begin_s = if start.ramp { 200.0 } else { 1.0 };
+    let mut flown = scenario.clone();
+    flown.timing = Timing::new(dt_s, begin_s + samples * dt_s).expect("allowed");
+    let (profile, load) = if start.ramp {
+        let ramp = |width_s: f64| Shape::Ramp { at_s: 0.0, width_s };
+        (ramp(190.0), ramp(190.0))
+    } else {
+        (Shape::Step { at_s: 0.0 }, Shape::Step { at_s: 0.0 })
+    };
+    flown.setpoint = Profile::new(start.setpoint_rad, profile).expect("allowed");
+    flown.disturbances = vec![
+        Disturbance::new(Entry::Elevator, start.load_rad, load).expect("allowed"),
+        Disturbance::new(Entry::Servo, start.kick_rad, Shape::Pulse { at_s: 0.0, width_s: 1.0 })
+            .expect("allowed"),
+    ];
+    let prepared = flown.prepare().map_err(|error| error.to_string())?;
+    let mut theta = Vec::new();
+    let mut saturated = 0_usize;
+    let outcome = fly(&prepared, &flown.controllers[0].controller, |instant| {
+        theta.push(instant.theta_rad);
+        saturated += usize::from(instant.step.saturated);
+        ControlFlow::Continue(())
+    });
+    if let Outcome::Diverged { at_s } = outcome.map_err(|error| error.to_string())? {
+        return Err(format!("diverged at {at_s} s, rate {rate}"));
+    }
+    let held_from = (begin_s / dt_s) as usize;
+    let last = theta.len() - theta.len() / 10;
+    let spread = |part: &[f64]| {
+        let (least, most) = part
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        most - least
+    };
+    let (whole, end) = (spread(&theta), spread(&theta[last..]));
+    let left = if enough { LEFT } else { 0.5 };
+    let allowed = left * whole + 2.0 * rechecked.remains_rad + ROUNDING;
+    if !(end <= allowed) {
+        return Err(format!(
+            "from a spread of {whole:e} rad {end:e} rad is left, allowed {allowed:e}; rate {rate}, {} samples, {saturated} at limits, {}",
+            theta.len() - held_from,
+            certificate.claim.name()
+        ));
+    }
+    Ok(())
+}
+
+fn without_limits(scenario: &Scenario) -> Scenario {
+    let mut free = scenario.clone();
+    let actuator = scenario.actuator().expect("allowed");
+    let plain = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples());
+    let plain = plain.and_then(|plain| plain.with_bias(actuator.bias_rad())).expect("allowed");
+    free.surroundings.actuator = Some(plain);
+    let shell = Shell {
+        limits: None,
+        slew_rad_s: None,
+        anti_windup: AntiWindup::None,
+        guard: Guard::default(),
+        ..*controller_shell(scenario)
+    };
+    let controller = match &scenario.controllers[0].controller {
+        Controller::Fixed(pid) => Controller::Fixed(Pid::new(pid.gains(), shell).expect("allowed")),
+        Controller::SelfTuning(fspid) => {
+            Controller::SelfTuning(Fspid::new(*fspid.tuner(), shell).expect("allowed"))
+        }
+    };
+    free.controllers = vec![NamedController { name: "C".to_owned(), controller }];
+    free
+}

@@ -1,0 +1,190 @@
+//! For which set-points and loads something is proved, and what remains.
+
+use fspid_core::{
+    Derivative, Fspid, Gains, Guard, InputScale, IntegralForm, Law, Pid, SelfTuner,
+    SetpointWeights, Shell, TunerSettings,
+};
+use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_proof::{
+    Asked, Certificate, Effort, LoopDescription, Outcome, Range, Rechecked, Verdict, certify,
+};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::loop_model::Sensing;
+use fspid_sim::{Controller, ElevatorSign};
+
+const DEG: f64 = core::f64::consts::PI / 180.0;
+const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+/// Each gain rises with the error, and not with its change.
+const RISING: &str = "NB NB NB NB NB NB NB
+NM NM NM NM NM NM NM
+NS NS NS NS NS NS NS
+ZO ZO ZO ZO ZO ZO ZO
+PS PS PS PS PS PS PS
+PM PM PM PM PM PM PM
+PB PB PB PB PB PB PB";
+
+fn shell() -> Shell<f64> {
+    Shell { derivative: Derivative { filter_s: 0.05 }, ..Shell::sampled_every(0.01) }
+}
+
+fn weighted(weight: f64) -> Shell<f64> {
+    let setpoint_weights = SetpointWeights { proportional: weight, derivative: 1.0 };
+    Shell { setpoint_weights, ..shell() }
+}
+
+/// The paper's 747 behind its servo.
+fn loop_of(controller: Controller) -> LoopDescription {
+    LoopDescription {
+        numerator: vec![-1.69144, -0.84341, -0.0099096],
+        denominator: vec![1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller,
+    }
+}
+
+fn fixed(shell: Shell<f64>) -> LoopDescription {
+    loop_of(Controller::Fixed(Pid::new(NOMINAL, shell).expect("allowed")))
+}
+
+fn tuned(shell: Shell<f64>, law: Law<f64>, nominal: Gains<f64>) -> LoopDescription {
+    let table = RuleTable::parse([RISING; 3]).expect("a table");
+    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+    let settings = TunerSettings {
+        input_scale: InputScale { error_per_rad: 57.0, change_per_rad: 12.0 },
+        output_scale: Gains { kp: 0.09, ki: 0.02 * nominal.ki, kd: 0.045 },
+        law,
+        ..TunerSettings::literal()
+    };
+    let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), settings).expect("allowed");
+    loop_of(Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed")))
+}
+
+fn asked(setpoint_deg: f64, load_deg: f64) -> Asked {
+    Asked::within(Range { setpoint_rad: setpoint_deg * DEG, load_rad: load_deg * DEG })
+}
+
+fn answer(description: &LoopDescription, asked: &Asked) -> Outcome {
+    let effort = Effort {
+        divisions: 12,
+        halvings: 3,
+        largest_factor: 1.0,
+        changes: &[],
+        ..Effort::default()
+    };
+    certify(description, asked, &effort).expect("provable")
+}
+
+fn proved(outcome: Outcome) -> (Certificate, Rechecked) {
+    match outcome.verdict {
+        Verdict::Proved(certificate, rechecked) => (certificate, rechecked),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// It used to be proved at every set-point: the command that a weight other than 1 leaves beside the error was
+/// no part of the loop.
+#[test]
+fn with_a_setpoint_weight_of_zero_little_is_proved_and_much_is_not() {
+    let description = tuned(weighted(0.0), Law::Memoryless, NOMINAL);
+    let (certificate, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
+    assert!(!rechecked.any_setpoint && rechecked.any_load);
+    assert!(rechecked.remains_rad < 0.01 * DEG, "{}", rechecked.remains_rad / DEG);
+    let far = answer(&description, &asked(300.0, 0.0));
+    assert_eq!(far.verdict, Verdict::Open);
+    let (less, _) = far.instead.expect("some of it");
+    assert!(less.range.setpoint_rad < 300.0 * DEG);
+    // More than was proved is not believed.
+    let wide = Range { setpoint_rad: 300.0 * DEG, load_rad: 0.0 };
+    assert!(Certificate { range: wide, ..certificate.clone() }.check().is_err());
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let range = Range { setpoint_rad: bad, load_rad: 0.0 };
+        assert!(Certificate { range, ..certificate.clone() }.check().is_err());
+    }
+}
+
+#[test]
+fn with_a_weight_of_one_and_the_bumpless_integral_every_setpoint_and_load_is_proved() {
+    let description = tuned(shell(), Law::Memoryless, NOMINAL);
+    let (_, rechecked) = proved(answer(&description, &asked(300.0, 100.0)));
+    assert!(rechecked.any_setpoint && rechecked.any_load);
+    assert_eq!(rechecked.remains_rad.to_bits(), 0.0_f64.to_bits());
+    let (_, rechecked) = proved(answer(&fixed(weighted(0.0)), &asked(300.0, 100.0)));
+    assert!(rechecked.any_setpoint && rechecked.any_load);
+}
+
+/// It used to be proved for every load.
+#[test]
+fn the_literal_integral_is_proved_for_small_loads_and_not_for_large_ones() {
+    let literal = Shell { integral: IntegralForm::Literal, ..shell() };
+    let description = tuned(literal, Law::Memoryless, NOMINAL);
+    let (certificate, rechecked) = proved(answer(&description, &asked(0.3, 0.1)));
+    assert!(!rechecked.any_setpoint && !rechecked.any_load);
+    let load_rad = 1000.0 * DEG;
+    let heavy = Certificate { range: Range { load_rad, ..certificate.range }, ..certificate };
+    assert!(heavy.check().is_err());
+    assert_eq!(answer(&description, &asked(0.3, 1000.0)).verdict, Verdict::Open);
+}
+
+#[test]
+fn an_accumulating_law_with_a_weight_is_proved_to_return_to_rest_and_no_more() {
+    let law = Law::Accumulating { leakage_per_s: 1.0 };
+    let description = tuned(weighted(0.5), law, NOMINAL);
+    let outcome = answer(&description, &asked(1.0, 0.0));
+    assert_eq!(outcome.verdict, Verdict::Open);
+    let (certificate, _) = outcome.instead.expect("return to rest");
+    assert_eq!(certificate.range, Range::REST);
+    let (_, rechecked) = proved(answer(&tuned(shell(), law, NOMINAL), &asked(20.0, 5.0)));
+    assert!(rechecked.any_setpoint && rechecked.any_load);
+}
+
+#[test]
+fn without_an_integral_the_error_that_stays_is_stated() {
+    let nominal = Gains { ki: 0.0, ..NOMINAL };
+    let description = tuned(shell(), Law::Memoryless, nominal);
+    let (_, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
+    // 1 deg over 1 + kp G with a pitch of 1.36 per command.
+    assert!(rechecked.rest_error_rad > 0.2 * DEG && rechecked.rest_error_rad < 0.6 * DEG);
+    assert!(!rechecked.any_setpoint);
+}
+
+/// It used to be proved that every deviation falls, and a step of half the resolution left a command that
+/// swings.
+#[test]
+fn with_a_resolution_it_is_stated_what_remains() {
+    let mut description = fixed(shell());
+    description.pitch.resolution = 0.01 * DEG;
+    let (_, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
+    assert!(rechecked.remains_rad > 0.005 * DEG, "{}", rechecked.remains_rad / DEG);
+    // What remains grows with the resolution until a limit may act in it: then nothing is proved.
+    let limited = description.actuator.with_command_limits(-0.35, 0.35).expect("allowed");
+    description.actuator = limited;
+    description.pitch.resolution = 1e-4 * DEG;
+    proved(answer(&description, &asked(1.0, 0.0)));
+    description.pitch.resolution = 5.0 * DEG;
+    assert_eq!(answer(&description, &asked(1.0, 0.0)).verdict, Verdict::Open);
+}
+
+#[test]
+fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
+    let mut description = fixed(shell());
+    let actuator = description.actuator.with_command_limits(-0.35, 0.35).expect("allowed");
+    description.actuator = actuator;
+    let within = |description: &LoopDescription, setpoint_deg, load_deg| {
+        answer(description, &asked(setpoint_deg, load_deg)).pitch_within_rad
+    };
+    let rest = within(&description, 0.0, 0.0).expect("an ellipsoid");
+    let held = within(&description, 5.0, 0.0).expect("an ellipsoid");
+    let loaded = within(&description, 5.0, 5.0).expect("an ellipsoid");
+    assert!(rest > held && held > loaded, "{rest} {held} {loaded}");
+    // 747: 40 deg of pitch take more than 20 deg of elevator.
+    assert_eq!(within(&description, 40.0, 0.0), None);
+    let guard = Guard::new(10.0 * DEG).expect("allowed");
+    let guarded = fixed(Shell { guard, ..shell() });
+    assert_eq!(guarded.limits(), ["sample guard of the controller"]);
+    let pitch_rad = within(&guarded, 4.0, 0.0).expect("an ellipsoid");
+    assert!(pitch_rad < 6.0 * DEG, "{}", pitch_rad / DEG);
+    assert_eq!(within(&guarded, 11.0, 0.0), None);
+}

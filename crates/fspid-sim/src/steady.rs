@@ -1,0 +1,88 @@
+//! What of a scenario stands still: the set-points and loads around which its loop comes to rest.
+
+use fspid_core::Shell;
+
+use crate::plant::LinearPlant;
+use crate::scenario::Scenario;
+use crate::sensor::Sensor;
+use crate::signal::Entry;
+
+/// The set-points and loads that a scenario holds, each as far as it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steady {
+    /// Least and largest set-point, rad from the trim; the trim itself lies between them.
+    pub setpoint_rad: [f64; 2],
+    /// Largest load at servo and elevator, rad of elevator, without a sign: disturbances but for noise.
+    pub load_rad: f64,
+    /// Bias of the actuator, rad, without a sign.
+    pub bias_rad: f64,
+    /// Largest offset of the measured pitch, rad, without a sign: bias, and disturbances but for noise.
+    pub offset_rad: f64,
+    /// Largest offset of the measured rate, rad/s, without a sign.
+    pub rate_offset_rad_s: f64,
+}
+
+impl Scenario {
+    /// The set-points and loads of the scenario: where one of them moves, the furthest that it goes.
+    #[must_use]
+    pub fn steady(&self) -> Steady {
+        let (setpoint_rad, _) = self.setpoint.sampled(self.timing);
+        let ends = setpoint_rad
+            .iter()
+            .fold([0.0_f64; 2], |[least, most], &value| [least.min(value), most.max(value)]);
+        let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
+        let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
+        Steady {
+            setpoint_rad: ends,
+            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator]),
+            bias_rad: bias_rad.abs(),
+            offset_rad: self.furthest(&[Entry::Measurement])
+                + biased(&self.surroundings.pitch_sensor),
+            rate_offset_rad_s: biased(&self.surroundings.rate_sensor),
+        }
+    }
+
+    /// Largest magnitude of the disturbances that enter at some places, noise left out.
+    fn furthest(&self, entries: &[Entry]) -> f64 {
+        let mut sum = vec![0.0; self.timing.rows()];
+        let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
+        for disturbance in entering.filter(|one| !one.is_noise()) {
+            disturbance.add_to(&mut sum, self.timing, 0);
+        }
+        sum.iter().fold(0.0, |most, value| value.abs().max(most))
+    }
+}
+
+impl LinearPlant {
+    /// Pitch per elevator, nose up positive, where both stand still; infinite for a plant that integrates.
+    #[must_use]
+    pub fn steady_gain(&self) -> f64 {
+        let transfer_function = self.transfer_function();
+        let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        let by_elevator = last(transfer_function.numerator().coefficients())
+            / last(transfer_function.denominator().coefficients());
+        self.elevator_sign().per_nose_up() * by_elevator
+    }
+}
+
+impl Steady {
+    /// The largest command, rad, that holds the plant beside what the set-point alone asks for.
+    ///
+    /// An offset of what is seen is a pitch that is off by as much, and one of the seen rate a command.
+    #[must_use]
+    pub fn load_with_offsets_rad(&self, plant: &LinearPlant, shell: &Shell<f64>) -> f64 {
+        let of_offset = self.offset_rad / plant.steady_gain().abs();
+        let of_offset = if self.offset_rad == 0.0 { 0.0 } else { of_offset };
+        self.load_rad
+            + self.bias_rad
+            + of_offset
+            + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
+    }
+
+    /// The largest set-point in magnitude, rad.
+    #[must_use]
+    pub fn largest_setpoint_rad(&self) -> f64 {
+        let [least, most] = self.setpoint_rad;
+        (-least).max(most)
+    }
+}

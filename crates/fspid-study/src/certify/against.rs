@@ -1,0 +1,227 @@
+//! What is certified beside what a scenario flies, field by field.
+
+use fspid_proof::{Asked, LoopDescription};
+use fspid_sim::SimError;
+use serde_json::{Value, json};
+
+use super::asked;
+use super::checked::CheckedFile;
+use super::controller_file::ControllerFile;
+use super::loop_file::LoopFile;
+use crate::analysis::lasting_plants;
+use crate::file::Study;
+
+/// What stands in for something that is not there.
+const NOTHING: &str = "nothing";
+
+/// A certificate beside a scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Comparison {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Everything in which what flies is not what is certified.
+    pub differences: Vec<Difference>,
+    /// Digests of the scenario's text, certified and now, where they differ. The text may have changed where
+    /// nothing of the loop stands.
+    pub other_text: Option<[String; 2]>,
+}
+
+/// A field that differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Its path in the certificate.
+    pub path: String,
+    /// What is certified.
+    pub certified: String,
+    /// What flies.
+    pub flown: String,
+}
+
+impl Comparison {
+    /// True if what flies is what is certified.
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        self.differences.is_empty()
+    }
+}
+
+impl CheckedFile {
+    /// Compares with what a scenario flies: its controller of that name, with the lasting plant that is
+    /// nearest to the certified one.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model.
+    pub fn compare(&mut self, study: &Study) -> Result<(), SimError> {
+        let origin = &self.origin;
+        let mut differences = Vec::new();
+        tell(&mut differences, "origin.scenario", &origin.scenario, &study.scenario.name);
+        let certified = fields(&self.certificate.description);
+        match flown(study, &origin.controller)? {
+            Flown::Loops(loops) => {
+                let compared = loops.iter().map(|(flown, asked)| {
+                    let mut found = Vec::new();
+                    walk(&mut found, "", &certified, flown);
+                    self.beyond(&mut found, asked);
+                    found
+                });
+                differences.extend(compared.min_by_key(Vec::len).unwrap_or_default());
+            }
+            Flown::Without { path, flown } => {
+                let certified = match path {
+                    "origin.controller" => origin.controller.clone(),
+                    _ => "a loop that a proof can speak of".to_owned(),
+                };
+                differences.push(Difference { path: path.to_owned(), certified, flown });
+            }
+        }
+        let digests = [origin.digest.clone(), study.digest.clone()];
+        self.against = Some(Comparison {
+            scenario: study.scenario.name.clone(),
+            differences,
+            other_text: (digests[0] != digests[1]).then_some(digests),
+        });
+        Ok(())
+    }
+}
+
+impl CheckedFile {
+    /// What a scenario has that the claim does not cover and does not say that it leaves out.
+    fn beyond(&self, differences: &mut Vec<Difference>, asked: &Asked) {
+        let Ok(rechecked) = &self.result else { return };
+        if !self.certificate.claim.is_of_stability() {
+            return;
+        }
+        let scope = self.certificate.scope(rechecked);
+        let mut short = |path: &str, any: bool, certified: f64, flown: f64| {
+            if !any && !(certified >= flown) {
+                let path = path.to_owned();
+                let [certified, flown] = [certified, flown].map(|it| format!("{it:?}"));
+                differences.push(Difference { path, certified, flown });
+            }
+        };
+        let (range, flown) = (scope.range, asked.range);
+        short("range.setpoint_rad", scope.any_setpoint, range.setpoint_rad, flown.setpoint_rad);
+        short("range.load_rad", scope.any_load, range.load_rad, flown.load_rad);
+        for one in asked.left_out.iter().filter(|one| !scope.left_out.contains(one)) {
+            let path = "not_in_this_claim".to_owned();
+            let flown = format!("\"{}\"", one.name());
+            differences.push(Difference { path, certified: NOTHING.to_owned(), flown });
+        }
+    }
+}
+
+/// What a scenario flies under a controller's name.
+enum Flown {
+    /// The loop with each lasting plant, as in files, and what is asked of a claim about it.
+    Loops(Vec<(Value, Asked)>),
+    /// No such loop: what stands at a path instead.
+    Without { path: &'static str, flown: String },
+}
+
+fn flown(study: &Study, controller: &str) -> Result<Flown, SimError> {
+    let scenario = &study.scenario;
+    let Some(named) = scenario.controllers.iter().find(|named| named.name == controller) else {
+        let names: Vec<&str> = scenario.controllers.iter().map(|it| it.name.as_str()).collect();
+        return Ok(Flown::Without { path: "origin.controller", flown: names.join(", ") });
+    };
+    let mut loops = Vec::new();
+    let mut refused = None;
+    for (_, plant) in lasting_plants(scenario)? {
+        match LoopDescription::of(scenario, &plant, &named.controller) {
+            Ok(description) => {
+                loops.push((fields(&description), asked(study, &plant, &description)));
+            }
+            Err(reason) => refused = Some(reason.to_string()),
+        }
+    }
+    Ok(match refused {
+        Some(flown) if loops.is_empty() => Flown::Without { path: "loop", flown },
+        _ => Flown::Loops(loops),
+    })
+}
+
+/// Every field of a loop, as in files.
+fn fields(description: &LoopDescription) -> Value {
+    json!({
+        "loop": LoopFile::of(description),
+        "controller": ControllerFile::of(&description.controller),
+    })
+}
+
+fn tell(differences: &mut Vec<Difference>, path: &str, certified: &str, flown: &str) {
+    if certified != flown {
+        let [certified, flown] = [certified, flown].map(|text| format!("\"{text}\""));
+        differences.push(Difference { path: path.to_owned(), certified, flown });
+    }
+}
+
+fn walk(differences: &mut Vec<Difference>, path: &str, certified: &Value, flown: &Value) {
+    match (certified, flown) {
+        (Value::Object(one), Value::Object(other)) => {
+            let more = other.keys().filter(|key| !one.contains_key(*key));
+            for key in one.keys().chain(more) {
+                let dot = if path.is_empty() { "" } else { "." };
+                let [one, other] = [one, other].map(|map| map.get(key));
+                either(differences, &format!("{path}{dot}{key}"), one, other);
+            }
+        }
+        (Value::Array(one), Value::Array(other)) => {
+            for place in 0..one.len().max(other.len()) {
+                let [one, other] = [one, other].map(|values| values.get(place));
+                either(differences, &format!("{path}[{place}]"), one, other);
+            }
+        }
+        (one, other) if one == other => {}
+        (one, other) => differences.push(Difference {
+            path: path.to_owned(),
+            certified: said(one),
+            flown: said(other),
+        }),
+    }
+}
+
+fn either(
+    differences: &mut Vec<Difference>,
+    path: &str,
+    certified: Option<&Value>,
+    flown: Option<&Value>,
+) {
+    match (certified, flown) {
+        (Some(one), Some(other)) => walk(differences, path, one, other),
+        (one, other) => {
+            let [certified, flown] =
+                [one, other].map(|value| value.map_or(NOTHING.to_owned(), said));
+            differences.push(Difference { path: path.to_owned(), certified, flown });
+        }
+    }
+}
+
+fn said(value: &Value) -> String {
+    match value {
+        Value::Null => NOTHING.to_owned(),
+        _ => value.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_that_differs_is_told_with_its_path_and_both_values() {
+        let one = json!({"a": {"b": [1.0, 2.0, 3.0]}, "c": null, "d": "x", "e": 1.0});
+        let other = json!({"a": {"b": [1.0, 2.5]}, "c": {"f": 1.0}, "d": "x", "g": -0.0});
+        let mut found = Vec::new();
+        walk(&mut found, "", &one, &other);
+        let told: Vec<String> =
+            found.iter().map(|it| format!("{} {} {}", it.path, it.certified, it.flown)).collect();
+        let expected = [
+            "a.b[1] 2.0 2.5",
+            "a.b[2] 3.0 nothing",
+            "c nothing {\"f\":1.0}",
+            "e 1.0 nothing",
+            "g nothing -0.0",
+        ];
+        assert_eq!(told, expected);
+    }
+}

@@ -1,0 +1,124 @@
+//! A certificate read and proved anew, and what that comes to.
+
+use std::fmt;
+
+use fspid_proof::{Bearing, Certificate, Doubt, Rechecked};
+
+use super::against::Comparison;
+use super::file::{self, Origin, Seal};
+use super::shape::Wrong;
+
+/// A certificate that was checked.
+#[derive(Clone, Debug)]
+pub struct CheckedFile {
+    /// The certificate.
+    pub certificate: Certificate,
+    /// Where it says that it comes from.
+    pub origin: Origin,
+    /// Whether it is as it was written.
+    pub seal: Seal,
+    /// What the re-check found.
+    pub result: Result<Rechecked, Doubt>,
+    /// What flies, beside what is certified; none without a scenario.
+    pub against: Option<Comparison>,
+}
+
+/// What a check comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer {
+    /// The flown loop is stable within the scope of the certificate, and the scenario, if one was given, flies
+    /// that loop.
+    Holds,
+    /// What the certificate refutes is refuted, be it of gains that stand still.
+    Refutes(Bearing),
+    /// The inequalities are proved and say nothing of the flown loop.
+    SaysNothing(Bearing),
+    /// An inequality is not proved, or parts do not fit together.
+    NotProved,
+    /// It is not as it was written.
+    Edited,
+    /// The scenario flies another loop.
+    AnotherLoop,
+}
+
+impl Answer {
+    /// Name in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Refutes(_) => "refutes",
+            Self::SaysNothing(_) => "says nothing of the flown loop",
+            Self::NotProved => "not proved",
+            Self::Edited => "edited",
+            Self::AnotherLoop => "another loop",
+        }
+    }
+}
+
+impl CheckedFile {
+    /// What it all comes to.
+    #[must_use]
+    pub fn answer(&self) -> Answer {
+        let Some(bearing) = self.bearing() else { return Answer::NotProved };
+        if self.seal != Seal::Whole {
+            return Answer::Edited;
+        }
+        if self.against.as_ref().is_some_and(|against| !against.is_same()) {
+            return Answer::AnotherLoop;
+        }
+        match bearing {
+            Bearing::Stable => Answer::Holds,
+            Bearing::Grows | Bearing::GrowsStandingStill | Bearing::GrowsInSomeOrder => {
+                Answer::Refutes(bearing)
+            }
+            Bearing::OtherScale { .. } | Bearing::RateNotKept => Answer::SaysNothing(bearing),
+        }
+    }
+
+    /// True if the certificate proves the flown loop stable.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.answer() == Answer::Holds
+    }
+
+    /// What the claim bears on, if its inequalities are proved.
+    #[must_use]
+    pub fn bearing(&self) -> Option<Bearing> {
+        self.result.as_ref().ok().map(|rechecked| self.certificate.bearing(rechecked))
+    }
+}
+
+/// Why a text is no certificate: everything that is wrong with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoCertificate {
+    /// Each with its place; never empty.
+    pub problems: Vec<Wrong>,
+}
+
+impl NoCertificate {
+    pub(super) fn of(problem: Wrong) -> Self {
+        Self { problems: vec![problem] }
+    }
+}
+
+impl fmt::Display for NoCertificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, problem) in self.problems.iter().enumerate() {
+            write!(f, "{}{problem}", if place == 0 { "" } else { "\n" })?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for NoCertificate {}
+
+/// Proves the claim of a certificate anew.
+///
+/// # Errors
+/// [`NoCertificate`] for a text that is none; a claim that does not hold is a result.
+pub fn check_text(text: &str) -> Result<CheckedFile, NoCertificate> {
+    let file::Read { certificate, origin, seal } = file::read(text)?;
+    let result = certificate.check();
+    Ok(CheckedFile { certificate, origin, seal, result, against: None })
+}

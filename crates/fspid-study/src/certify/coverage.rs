@@ -1,0 +1,357 @@
+//! What a certificate makes of every key of a scenario: one list, that a test holds against the specification.
+
+/// What becomes of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Treatment {
+    /// In the model that is proved, as it is.
+    Covered,
+    /// In the claim over a range that is stated, or with a bound of what it leaves.
+    Bounded,
+    /// A scenario that uses it is refused by name; the row says when.
+    Refused,
+    /// No part of the claim; said beside the verdict where the scenario has it.
+    Beside,
+    /// Nothing between pitch and elevator: names, what is asked of flights, tunings and contests.
+    NoPart,
+}
+
+impl Treatment {
+    /// In a word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Covered => "covered",
+            Self::Bounded => "bounded",
+            Self::Refused => "refused",
+            Self::Beside => "said beside it",
+            Self::NoPart => "no part",
+        }
+    }
+}
+
+/// A row of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Path of a key, or of a table with `.*` for all that is in it.
+    pub keys: &'static str,
+    /// What becomes of it.
+    pub treatment: Treatment,
+    /// How, in a sentence without a stop.
+    pub how: &'static str,
+}
+
+const fn row(keys: &'static str, treatment: Treatment, how: &'static str) -> Row {
+    Row { keys, treatment, how }
+}
+
+use Treatment::{Beside, Bounded, Covered, NoPart, Refused};
+
+const SCALE: &str = "gains are enclosed over everything that the supervisor can answer";
+const MOVING_AIR: &str = "the air is calm in the claim";
+const NOISE: &str = "the claim is about sensors without noise";
+const DRIFT: &str = "a bias stands still in the claim";
+const LINEAR_AT_TRIM: &str =
+    "the linear model at the trim; that the aircraft is nonlinear is said beside the verdict";
+const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; the time while it moves is left out";
+const AIM: &str = "asked of flights, not of the loop";
+
+/// Every key of a scenario.
+pub const COVERAGE: &[Row] = &[
+    row("schema", NoPart, "version of the format"),
+    row("name", NoPart, "a name"),
+    row("set", Covered, "changes are made before anything is read"),
+    row("plant.*", Covered, "coefficients as printed, with all decimals that round to them"),
+    row("aircraft.name", Beside, LINEAR_AT_TRIM),
+    row("aircraft.file", Beside, LINEAR_AT_TRIM),
+    row("aircraft.model", Beside, LINEAR_AT_TRIM),
+    row("aircraft.airspeed_m_s", Beside, LINEAR_AT_TRIM),
+    row("aircraft.airspeed_kt", Beside, LINEAR_AT_TRIM),
+    row("aircraft.airspeed_ft_s", Beside, LINEAR_AT_TRIM),
+    row("aircraft.altitude_m", Beside, LINEAR_AT_TRIM),
+    row("aircraft.altitude_ft", Beside, LINEAR_AT_TRIM),
+    row("aircraft.climb_angle_deg", Beside, LINEAR_AT_TRIM),
+    row("aircraft.mass_kg", Beside, LINEAR_AT_TRIM),
+    row("aircraft.cg_mac", Beside, LINEAR_AT_TRIM),
+    row("aircraft.ix_kg_m2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.ix_slug_ft2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.ix_gyration_m", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iy_kg_m2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iy_slug_ft2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iy_gyration_m", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iz_kg_m2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iz_slug_ft2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.iz_gyration_m", Beside, LINEAR_AT_TRIM),
+    row("aircraft.ixz_kg_m2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.ixz_slug_ft2", Beside, LINEAR_AT_TRIM),
+    row("aircraft.atmosphere", Beside, LINEAR_AT_TRIM),
+    row("aircraft.drag", Beside, LINEAR_AT_TRIM),
+    row("aircraft.thrust", Beside, LINEAR_AT_TRIM),
+    row(
+        "aircraft.heading_deg",
+        Beside,
+        "it changes what wind is met, and the air is calm in the claim",
+    ),
+    row("aircraft.ground_m", Beside, LINEAR_AT_TRIM),
+    row("actuator.preset", Covered, "the parts that it stands for"),
+    row("actuator.time_constant_s", Covered, "exactly held between samples"),
+    row("actuator.natural_frequency_rad_s", Covered, "exactly held between samples"),
+    row("actuator.damping", Covered, "exactly held between samples"),
+    row("actuator.delay_samples", Covered, "a queue of commands in the state"),
+    row(
+        "actuator.position_limit_deg",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row(
+        "actuator.travel_deg",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row(
+        "actuator.rate_limit_deg_s",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row("actuator.bias_deg", Bounded, "a constant load; limits are then left out"),
+    row("actuator.deadband_deg", Refused, "above 0: around rest the loop is not linear"),
+    row("actuator.backlash_deg", Refused, "above 0: around rest the loop is not linear"),
+    row("loop.sample_period_s", Covered, "the period of plant and controller"),
+    row("loop.duration_s", NoPart, "a claim is about all time"),
+    row("setpoint.kind", Bounded, TERMS),
+    row("setpoint.amplitude_deg", Bounded, TERMS),
+    row("setpoint.at_s", Bounded, TERMS),
+    row("setpoint.width_s", Bounded, TERMS),
+    row("setpoint.half_period_s", Bounded, TERMS),
+    row("setpoint.bipolar", Bounded, TERMS),
+    row("setpoint.frequency_hz", Bounded, TERMS),
+    row("setpoint.time_s", Bounded, TERMS),
+    row("setpoint.value_deg", Bounded, TERMS),
+    row("setpoint.interpolation", Bounded, TERMS),
+    row("sensor.preset", Covered, "the parts that it stands for"),
+    row("sensor.seed", Beside, NOISE),
+    row("sensor.pitch.noise_deg_rt_hz", Beside, NOISE),
+    row("sensor.pitch.bias_deg", Bounded, "the bias of this seed counts as a load"),
+    row("sensor.pitch.drift_deg", Beside, DRIFT),
+    row("sensor.pitch.drift_time_s", Beside, DRIFT),
+    row("sensor.pitch.scale_error_pct", Covered, "a factor on what is seen"),
+    row(
+        "sensor.pitch.resolution_deg",
+        Bounded,
+        "a disturbance of half a step; what it leaves is stated",
+    ),
+    row(
+        "sensor.pitch.period_s",
+        Refused,
+        "where it is not that of the loop: the age of values changes",
+    ),
+    row("sensor.pitch.delay_s", Covered, "samples that are remembered, and a part of one"),
+    row(
+        "sensor.pitch.erection_deg_min",
+        Refused,
+        "above 0 with an aircraft: the gyro follows the apparent vertical at a bounded rate",
+    ),
+    row("sensor.rate.noise_deg_s_rt_hz", Beside, NOISE),
+    row("sensor.rate.bias_deg_s", Bounded, "the bias of this seed counts as a load"),
+    row("sensor.rate.drift_deg_s", Beside, DRIFT),
+    row("sensor.rate.drift_time_s", Beside, DRIFT),
+    row("sensor.rate.scale_error_pct", Covered, "a factor on what is seen"),
+    row(
+        "sensor.rate.resolution_deg_s",
+        Bounded,
+        "a disturbance of half a step; what it leaves is stated",
+    ),
+    row(
+        "sensor.rate.period_s",
+        Refused,
+        "where it is not that of the loop: the age of values changes",
+    ),
+    row("sensor.rate.delay_s", Covered, "samples that are remembered, and a part of one"),
+    row("wind.*", Beside, MOVING_AIR),
+    row("gust.*", Beside, MOVING_AIR),
+    row("turbulence.*", Beside, MOVING_AIR),
+    row("disturbance.kind", Bounded, TERMS),
+    row("disturbance.enters_at", Bounded, TERMS),
+    row("disturbance.amplitude_deg", Bounded, TERMS),
+    row("disturbance.at_s", Bounded, TERMS),
+    row("disturbance.width_s", Bounded, TERMS),
+    row("disturbance.frequency_hz", Bounded, TERMS),
+    row("disturbance.standard_deviation_deg", Beside, NOISE),
+    row("disturbance.seed", Beside, NOISE),
+    row(
+        "plant_change.*",
+        Beside,
+        "each plant that lasts is proved on its own; the passage is left out",
+    ),
+    row("controller.name", NoPart, "a name"),
+    row("controller.kind", Covered, "fixed gains and self-tuning ones, each as it is"),
+    row("controller.kp", Covered, "a gain"),
+    row("controller.ki", Covered, "a gain"),
+    row("controller.kd", Covered, "a gain"),
+    row("controller.isa.*", Covered, "as the gains and the filter that it stands for"),
+    row("controller.nominal.*", Covered, SCALE),
+    row("controller.nominal_isa.*", Covered, "as the gains and the filter that it stands for"),
+    row("controller.design.*", Covered, "as the gains that it makes"),
+    row("controller.weights.*", Covered, "as the gains that they make"),
+    row(
+        "controller.schedule.*",
+        Covered,
+        "as the gains that it makes at the airspeed of the scenario",
+    ),
+    row("controller.rate_gain", Covered, "the inner loop of pitch rate"),
+    row(
+        "controller.setpoint_weight",
+        Bounded,
+        "other than 1 with gains that move: over the range of set-points",
+    ),
+    row(
+        "controller.setpoint_weights.proportional",
+        Bounded,
+        "other than 1 with gains that move: over the range of set-points",
+    ),
+    row(
+        "controller.setpoint_weights.derivative",
+        Covered,
+        "it acts while the set-point moves, which is left out",
+    ),
+    row(
+        "controller.derivative_on",
+        Covered,
+        "it acts while the set-point moves, which is left out",
+    ),
+    row("controller.derivative_filter_s", Covered, "a state of the loop"),
+    row(
+        "controller.integral",
+        Bounded,
+        "the literal one with gains that move: over the range of set-points and loads",
+    ),
+    row(
+        "controller.anti_windup.kind",
+        Bounded,
+        "clamping is a limit; the others act at limits alone",
+    ),
+    row(
+        "controller.anti_windup.lower_deg",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row(
+        "controller.anti_windup.upper_deg",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row("controller.anti_windup.tracking_s", Bounded, "it acts at limits alone"),
+    row(
+        "controller.output_limits_deg",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row(
+        "controller.slew_limit_deg_s",
+        Bounded,
+        "an ellipsoid in which no limit acts, or said to be left out",
+    ),
+    row(
+        "controller.sample_guard_deg",
+        Bounded,
+        "below 10^6 deg a limit as the others; above, a flight is lost before",
+    ),
+    row("controller.law", Covered, SCALE),
+    row(
+        "controller.leakage_per_s",
+        Covered,
+        "what bounds the gains of the accumulating law; without bounds it is refused",
+    ),
+    row("controller.gain_limits.*", Covered, SCALE),
+    row("controller.dead_zone.*", Covered, SCALE),
+    row(
+        "controller.followers.*",
+        Refused,
+        "where something follows: the matrix is not affine in the gains",
+    ),
+    row("controller.supervisor.range", Covered, SCALE),
+    row("controller.supervisor.table", Covered, SCALE),
+    row("controller.supervisor.table.*", Covered, SCALE),
+    row("controller.supervisor.system", Covered, SCALE),
+    row("controller.supervisor.numbers.*", Refused, "rules that conclude numbers are not enclosed"),
+    row("controller.supervisor.defuzzifier", Covered, SCALE),
+    row("controller.supervisor.out_of_range", Covered, SCALE),
+    row("controller.supervisor.error_sign", Covered, SCALE),
+    row("controller.supervisor.error_scale", Covered, SCALE),
+    row("controller.supervisor.error_sets", Refused, "sets that are not even are not enclosed"),
+    row("controller.supervisor.change", Covered, SCALE),
+    row("controller.supervisor.change_scale", Covered, SCALE),
+    row("controller.supervisor.change_sets", Refused, "sets that are not even are not enclosed"),
+    row("controller.supervisor.sees", Refused, "what is not error and change"),
+    row("controller.supervisor.model.*", Refused, "the error of a reference model is not enclosed"),
+    row("controller.supervisor.output_scale.*", Covered, SCALE),
+    row("requirement.*", NoPart, AIM),
+    row("dispersion.*", Beside, "the claim is about the nominal numbers"),
+    row("tuning.*", NoPart, AIM),
+    row("contest.*", NoPart, AIM),
+];
+
+/// The list as a table of a document.
+#[must_use]
+pub fn coverage_table() -> String {
+    let mut out = String::from("| key | in a certificate | how |\n| --- | --- | --- |\n");
+    for Row { keys, treatment, how } in COVERAGE {
+        out.push_str(&format!("| `{keys}` | {} | {how} |\n", treatment.word()));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::file::spec::{Kind, SCENARIO, Table};
+
+    fn walk(table: &'static Table, before: &str, found: &mut BTreeSet<String>) {
+        let variants = table.variants.iter().flat_map(|variant| variant.table.keys());
+        for key in table.keys().chain(variants) {
+            let path = format!("{before}{}", key.name);
+            let inner = format!("{path}.");
+            match &key.kind {
+                Kind::Table(table) | Kind::Tables { table, .. } => walk(table, &inner, found),
+                Kind::Rules(table) => {
+                    found.insert(path);
+                    walk(table, &inner, found);
+                }
+                _ => {
+                    found.insert(path);
+                }
+            }
+        }
+        if !table.variants.is_empty() {
+            found.insert(format!("{before}kind"));
+        }
+    }
+
+    fn matches(row: &Row, path: &str) -> bool {
+        match row.keys.strip_suffix('*') {
+            Some(before) => path.starts_with(before),
+            None => row.keys == path,
+        }
+    }
+
+    #[test]
+    fn every_key_of_a_scenario_has_one_row_and_every_row_a_key() {
+        let mut paths = BTreeSet::new();
+        walk(&SCENARIO, "", &mut paths);
+        for path in &paths {
+            let rows = COVERAGE.iter().filter(|row| matches(row, path)).count();
+            assert_eq!(rows, 1, "{path}: decide what a certificate makes of it, in COVERAGE");
+        }
+        for row in COVERAGE {
+            assert!(paths.iter().any(|path| matches(row, path)), "{}: no such key", row.keys);
+        }
+    }
+
+    #[test]
+    fn the_document_shows_the_list() {
+        let document = include_str!("../../../../docs/certificates.md");
+        let table = coverage_table();
+        assert!(document.contains(&table), "docs/certificates.md should have this table:\n{table}");
+    }
+}

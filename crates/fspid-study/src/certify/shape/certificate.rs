@@ -1,0 +1,195 @@
+//! The keys of a certificate.
+//!
+//! Ranges are wide: they keep out what no loop has, and what would cost time or memory before a proof
+//! could refuse it. What a number may be beyond that is asked where the loop is built.
+
+use fspid_proof::sizes::{MOST_CONES, MOST_DIVISIONS, MOST_SAMPLES, MOST_STATES};
+
+use super::{Key, Shape, key, optional};
+use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Whole, Word};
+
+/// A whole certificate, but for the first two keys, which are asked before.
+pub(in super::super) const CERTIFICATE: Shape = Object(&[
+    key("kind", Text(64)),
+    key("schema", Whole(1, 1000)),
+    optional("content_digest", Digest),
+    key("origin", ORIGIN),
+    key("loop", LOOP),
+    key("controller", CONTROLLER),
+    key("output_factor", Number(0.0, 1e6)),
+    key("divisions", Whole(1, MOST_DIVISIONS as u64)),
+    key("range", RANGE),
+    key("not_in_this_claim", List(&Text(64), [0, 64])),
+    key("limits", Word(&["none-are-there", "none-acts-within-the-level", "left-out"])),
+    key("claim", CLAIM),
+    optional("level", Positive(LARGE)),
+]);
+
+/// Longest names.
+const NAME: usize = 1000;
+/// Entries of forms, and levels.
+const LARGE: f64 = 1e150;
+/// Gains, scales, coefficients.
+const FACTOR: f64 = 1e30;
+/// Angles and rates; a guard that is practically none is a billion degrees.
+const ANGLE: f64 = 1e12;
+/// Times, s.
+const TIME: f64 = 1e6;
+/// Most coefficients of a polynomial.
+const COEFFICIENTS: usize = 33;
+/// Most samples on their way: a loop of more states is refused.
+const SAMPLES: u64 = MOST_STATES as u64;
+
+const ENTRY: Shape = Number(-LARGE, LARGE);
+const REAL: Shape = Number(-FACTOR, FACTOR);
+const NOT_NEGATIVE: Shape = Number(0.0, FACTOR);
+const END: Shape = Number(-ANGLE, ANGLE);
+const DURATION: Shape = Number(0.0, TIME);
+/// Ends, `null` for an open one.
+const ENDS: Shape = List(&OrNull(&END), [2, 2]);
+const GAIN_ENDS: Shape = List(&OrNull(&REAL), [2, 2]);
+const GAINS: Shape = Object(&[key("kp", REAL), key("ki", REAL), key("kd", REAL)]);
+
+const ORIGIN: Shape = Object(&[
+    key("program", Text(64)),
+    key("scenario", Text(NAME)),
+    key("digest", Digest),
+    key("controller", Text(NAME)),
+]);
+
+const RANGE: Shape =
+    Object(&[key("setpoint_rad", Number(0.0, ANGLE)), key("load_rad", Number(0.0, ANGLE))]);
+
+const LOOP: Shape = Object(&[
+    key("sample_period_s", Positive(TIME)),
+    key("numerator", List(&REAL, [1, COEFFICIENTS])),
+    key("denominator", List(&REAL, [2, COEFFICIENTS])),
+    key("elevator_sign", Word(&["nose-up-positive", "nose-down-positive"])),
+    key("actuator", ACTUATOR),
+    key("pitch_sensing", SENSING),
+    key("rate_sensing", SENSING),
+]);
+
+const ACTUATOR: Shape = Object(&[
+    key("lag", LAG),
+    key("delay_samples", Whole(0, SAMPLES)),
+    key("command_limits_rad", OrNull(&List(&END, [2, 2]))),
+    key("travel_rad", OrNull(&List(&END, [2, 2]))),
+    key("rate_limit_rad_s", OrNull(&Positive(ANGLE))),
+    key("bias_rad", END),
+]);
+
+const LAG: Shape = Kinds(
+    "order",
+    &[
+        ("none", &[]),
+        ("first", &[key("time_constant_s", Positive(TIME))]),
+        (
+            "second",
+            &[key("natural_frequency_rad_s", Positive(FACTOR)), key("damping", Positive(FACTOR))],
+        ),
+    ],
+);
+
+const SENSING: Shape = Object(&[
+    key("scale", REAL),
+    key("samples", Whole(0, SAMPLES)),
+    key("part", Number(0.0, 1.0)),
+    key("resolution", Number(0.0, ANGLE)),
+]);
+
+const CONTROLLER: Shape = Object(&[
+    key("gains", GAINS),
+    key("rate_gain_s", REAL),
+    key("setpoint_weights", List(&REAL, [2, 2])),
+    key("derivative_filter_s", DURATION),
+    key("integral", Word(&["bumpless", "literal"])),
+    key("anti_windup", ANTI_WINDUP),
+    key("output_limits_rad", OrNull(&ENDS)),
+    key("slew_limit_rad_s", OrNull(&Positive(ANGLE))),
+    key("sample_guard_rad", Positive(ANGLE)),
+    key("tuner", OrNull(&TUNER)),
+]);
+
+const ANTI_WINDUP: Shape = Kinds(
+    "kind",
+    &[
+        ("none", &[]),
+        ("clamping", &[key("limits_rad", ENDS)]),
+        ("conditional", &[]),
+        ("back-calculation", &[key("tracking_s", Positive(TIME))]),
+    ],
+);
+
+const TUNER: Shape = Object(&[
+    key("error_sign", Word(&["setpoint-minus-measurement", "measurement-minus-setpoint"])),
+    key("change", Word(&["rate", "delta"])),
+    key("error_per_rad", REAL),
+    key("change_per_rad", REAL),
+    key("output_scale", GAINS),
+    key("law", LAW),
+    key("gain_limits", OrNull(&List(&GAIN_ENDS, [3, 3]))),
+    key("dead_zone", OrNull(&List(&NOT_NEGATIVE, [2, 2]))),
+    key("range", Positive(FACTOR)),
+    key("defuzzifier", Text(32)),
+    key("out_of_range", Text(32)),
+    key("rules", OrNull(&RULES)),
+]);
+
+const LAW: Shape = Kinds(
+    "kind",
+    &[("memoryless", &[]), ("accumulating", &[key("leakage_per_s", Number(0.0, FACTOR))])],
+);
+
+/// Seven rows of seven labels of two letters.
+const GRID: Shape = List(&Text(20), [7, 7]);
+const RULES: Shape = Object(&[key("delta_kp", GRID), key("delta_ki", GRID), key("delta_kd", GRID)]);
+
+const FORM: Shape = List(&List(&ENTRY, [1, MOST_STATES]), [1, MOST_STATES]);
+const RATE: Shape = Positive(1.0);
+const GROWTH: Shape = Number(1.0, LARGE);
+const DIRECTION: Shape = List(&ENTRY, [1, MOST_STATES]);
+/// An input of the supervisor.
+const INPUT: Shape = List(&REAL, [2, 2]);
+
+const CLAIM: Shape = Kinds(
+    "kind",
+    &[
+        ("stable-at-any-speed", &[key("rate", RATE), key("form", FORM)]),
+        (
+            "stable-as-tied-to-the-error",
+            &[
+                key("rate", RATE),
+                key("form", FORM),
+                key("multipliers", List(&Number(0.0, LARGE), [1, MOST_CONES])),
+            ],
+        ),
+        ("stable-at-bounded-rate", BOUNDED_RATE),
+        (
+            "unstable-with-frozen-gains",
+            &[
+                key("input", INPUT),
+                key("factor", GROWTH),
+                key("form", FORM),
+                key("direction", DIRECTION),
+            ],
+        ),
+        (
+            "unstable-with-a-sequence-of-gains",
+            &[
+                key("inputs", List(&INPUT, [1, MOST_SAMPLES])),
+                key("factor", GROWTH),
+                key("form", FORM),
+                key("direction", DIRECTION),
+            ],
+        ),
+    ],
+);
+
+const BOUNDED_RATE: &[Key] = &[
+    key("rate", RATE),
+    key("ends", List(&List(&REAL, [2, 2]), [3, 3])),
+    key("changes", List(&NOT_NEGATIVE, [3, 3])),
+    key("forms", List(&FORM, [4, 4])),
+    optional("inputs", List(&NOT_NEGATIVE, [2, 2])),
+];

@@ -1,0 +1,427 @@
+//! Certificates that are edited, hostile, of another loop, or about nothing that flies.
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use fspid_proof::{Bearing, Claim};
+use serde_json::{Value, json};
+
+use super::{
+    Answer, Certification, CheckedFile, Effort, Seal, check_text, file::resealed, from_text,
+    to_text,
+};
+use crate::file::{self, Study};
+
+/// No largest output scale is asked for: the verdict alone.
+fn effort() -> Effort {
+    Effort { halvings: 0, largest_factor: 1.0, ..Effort::default() }
+}
+
+fn load(path: &str, overrides: &[&str]) -> Study {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path);
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    file::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn design(overrides: &[&str]) -> Study {
+    load("data/designs/b747-paper.toml", overrides)
+}
+
+fn certified(study: &Study) -> Certification {
+    Certification::of(study, Some("FSPID"), &effort()).expect("certified")
+}
+
+fn written(certification: &Certification) -> String {
+    let [one] = certification.results.as_slice() else { panic!("one loop") };
+    to_text(one.certificate().expect("a certificate"), &one.origin)
+}
+
+/// The certificate of a shipped design, written now.
+fn good() -> &'static str {
+    static TEXT: OnceLock<String> = OnceLock::new();
+    TEXT.get_or_init(|| written(&certified(&design(&[]))))
+}
+
+fn good_value() -> Value {
+    serde_json::from_str(good()).expect("JSON")
+}
+
+fn checked(text: &str) -> CheckedFile {
+    check_text(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A refutation of gains that stand still: the 747 at 2.4 times the output scale.
+fn refuted() -> &'static Certification {
+    static FOUND: OnceLock<Certification> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let scaled = [
+            "controller.FSPID.supervisor.output_scale.kp=0.48",
+            "controller.FSPID.supervisor.output_scale.ki=0.12",
+            "controller.FSPID.supervisor.output_scale.kd=0.24",
+        ];
+        certified(&load("scenarios/747-pitch-step.toml", &scaled))
+    })
+}
+
+/// Paths of everything in a value, itself first; of long lists the first two.
+fn places(value: &Value) -> Vec<String> {
+    let mut places = vec![String::new()];
+    let below = |places: &mut Vec<String>, step: &str, value: &Value| {
+        places.extend(self::places(value).into_iter().map(|rest| format!("/{step}{rest}")));
+    };
+    match value {
+        Value::Object(map) => {
+            map.iter().for_each(|(key, value)| below(&mut places, key, value));
+        }
+        Value::Array(values) => {
+            let some = values.iter().enumerate().take(2);
+            some.for_each(|(place, value)| below(&mut places, &place.to_string(), value));
+        }
+        _ => {}
+    }
+    places
+}
+
+fn hostile() -> Vec<Value> {
+    let mut nested = json!([]);
+    for _ in 0..100 {
+        nested = json!([nested]);
+    }
+    vec![
+        json!(null),
+        json!(true),
+        json!(""),
+        json!("NaN"),
+        json!("none"),
+        json!("exact"),
+        json!("x".repeat(100_000)),
+        json!("\u{0}\u{202e}"),
+        json!("midpoint:4000000000"),
+        json!("midpoint:1000000"),
+        json!(0),
+        json!(-0.0),
+        json!(-1),
+        json!(0.5),
+        json!(1),
+        json!(95),
+        json!(10_000),
+        json!(u64::MAX),
+        json!(i64::MIN),
+        json!(5e-324),
+        json!(1e-30),
+        json!(1e30),
+        json!(f64::MAX),
+        json!([]),
+        json!([0.0, 0.0]),
+        json!(vec![1.0; 33]),
+        json!(vec![0.5; 100_000]),
+        json!(vec![vec![0.0; 300]; 300]),
+        json!({}),
+        nested,
+    ]
+}
+
+#[test]
+fn a_delay_of_ten_thousand_samples_is_refused_before_anything_is_computed() {
+    // It used to take 6.6 GB: the loop was enclosed before the form was looked at.
+    for (pointer, large) in [("/loop/actuator/delay_samples", 10_000), ("/divisions", 1000)] {
+        let mut value = good_value();
+        *value.pointer_mut(pointer).expect("there") = json!(large);
+        let text = value.to_string();
+        let used = allocation_counter::measure(|| {
+            let refused = check_text(&text).expect_err("too large").to_string();
+            let path = pointer.trim_start_matches('/').replace('/', ".");
+            assert!(refused.starts_with(&format!("{path}: found {large}; allowed")), "{refused}");
+        });
+        assert!(used.bytes_max < 1 << 20, "{used:?}");
+    }
+}
+
+#[test]
+fn a_form_of_another_size_is_refused_before_the_loop_is_enclosed() {
+    let mut value = good_value();
+    value["loop"]["actuator"]["delay_samples"] = json!(60);
+    let text = resealed(&value).expect("a shape");
+    let used = allocation_counter::measure(|| {
+        let told = checked(&text).text();
+        assert!(told.contains("DOES NOT HOLD: claim.form: 8 rows; the loop asks for 68"), "{told}");
+        assert!(told.contains("claim.form: 8 columns; the loop asks for 68"), "{told}");
+    });
+    assert!(used.count_total < 5000 && used.bytes_max < 1 << 20, "{used:?}");
+}
+
+/// Checks a certificate with every hostile value at a place: with so many allocations and so much memory.
+fn attack(whole: &Value, pointer: &str, most_count: u64) {
+    for value in hostile() {
+        let mut edited = whole.clone();
+        *edited.pointer_mut(pointer).expect("there") = value.clone();
+        let text = resealed(&edited).unwrap_or_else(|| edited.to_string());
+        let used = allocation_counter::measure(|| {
+            let _ = check_text(&text).map(|checked| (checked.text(), checked.json()));
+        });
+        let most_bytes = (64 << 20) + 20 * text.len() as u64;
+        let found = value.to_string();
+        let found = found.get(..40).unwrap_or(&found);
+        assert!(used.bytes_max < most_bytes, "{pointer} = {found}: {used:?}");
+        assert!(used.count_total < most_count, "{pointer} = {found}: {used:?}");
+    }
+}
+
+#[test]
+fn no_value_anywhere_makes_a_check_large() {
+    let honest = allocation_counter::measure(|| assert!(checked(good()).holds()));
+    let most_count = 40 * honest.count_total;
+    for pointer in [
+        "/divisions",
+        "/output_factor",
+        "/loop/sample_period_s",
+        "/loop/actuator/delay_samples",
+        "/loop/rate_sensing/samples",
+        "/controller/tuner/defuzzifier",
+        "/controller/tuner/range",
+        "/claim/rate",
+    ] {
+        attack(&good_value(), pointer, most_count);
+    }
+    // Everywhere, of a claim that is lost at its first inequality, so that the test is over soon.
+    let mut lost = good_value();
+    lost["claim"]["rate"] = json!(1e-3);
+    for pointer in places(&lost).iter().filter(|pointer| *pointer != "/claim/rate") {
+        attack(&lost, pointer, most_count);
+    }
+}
+
+#[test]
+fn every_edit_is_told_names_and_digests_too() {
+    let whole = good_value();
+    for pointer in places(&whole).into_iter().filter(|pointer| !pointer.is_empty()) {
+        let mut removed = whole.clone();
+        let (parent, key) = pointer.rsplit_once('/').expect("a path");
+        match removed.pointer_mut(parent).expect("there") {
+            Value::Object(map) => drop(map.remove(key)),
+            Value::Array(values) => drop(values.remove(key.parse::<usize>().expect("a place"))),
+            _ => continue,
+        }
+        let mut changed = vec![removed];
+        let other = match whole.pointer(&pointer).expect("there") {
+            Value::Number(number) => json!(number.as_f64().expect("a float") * 0.75 + 0.25),
+            Value::String(text) => json!(format!("{text} ")),
+            Value::Null => json!(1.0),
+            _ => json!(null),
+        };
+        let mut edited = whole.clone();
+        *edited.pointer_mut(&pointer).expect("there") = other.clone();
+        if whole.pointer(&pointer) != Some(&other) {
+            changed.push(edited);
+        }
+        for value in changed {
+            let holds = check_text(&value.to_string()).is_ok_and(|checked| checked.holds());
+            assert!(!holds, "{pointer} was edited and the certificate holds");
+        }
+    }
+    let named = good().replace("747 pitch hold, proved", "A320 pitch hold, proved");
+    assert_eq!(checked(&named).answer(), Answer::Edited);
+    let told = checked(&named).text();
+    assert!(told.contains("content_digest is") && !told.contains("\nHOLDS"), "{told}");
+    let mut zero = good_value();
+    zero["origin"]["digest"] = json!("0".repeat(64));
+    let refused = check_text(&resealed(&zero).expect("a shape")).expect_err("no digest");
+    assert!(
+        refused.to_string().starts_with("origin.digest: found a text of 64 characters; allowed"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn all_problems_are_told_at_once_with_their_paths() {
+    let mut value = good_value();
+    value["loop"]["actuator"]["delay_samples"] = json!(10_000);
+    value["claim"]["rate"] = json!(1.5);
+    value["claim"]["form"][2][3] = json!("NaN");
+    value["controller"]["gain"] = json!(1.0);
+    value["origin"].as_object_mut().expect("keys").remove("scenario");
+    let text =
+        value.to_string().replacen("\"rate_gain_s\"", "\"kd\":1,\"kd\":2,\"rate_gain_s\"", 1);
+    let refused = check_text(&text).expect_err("wrong").to_string();
+    let expected = [
+        "controller.kd: stands more than once",
+        "origin.scenario: is missing",
+        "loop.actuator.delay_samples: found 10000; allowed are whole numbers from 0 to 128",
+        "controller.kd: is not a key of a certificate",
+        "controller.gain: is not a key of a certificate",
+        "claim.rate: found 1.5; allowed are numbers above 0, up to 1.0",
+        "claim.form[2][3]: found \"NaN\"; allowed are finite numbers up to 1e150 in magnitude",
+    ];
+    assert_eq!(refused.lines().collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn a_claim_about_another_output_scale_is_no_proof_of_the_flown_loop() {
+    // `output_factor: 0` used to make every certificate hold: of gains that stand still.
+    for factor in [0.0, 0.5, 1.0_f64.next_up(), 1.0_f64.next_down()] {
+        let mut value = good_value();
+        value["output_factor"] = json!(factor);
+        let checked = checked(&resealed(&value).expect("a shape"));
+        if checked.result.is_err() {
+            continue;
+        }
+        assert_eq!(checked.answer(), Answer::SaysNothing(Bearing::OtherScale { factor }));
+        assert!(!checked.holds());
+        let (told, json) = (checked.text(), checked.json());
+        assert!(told.contains("NO PROOF OF THE FLOWN LOOP") && !told.contains("HOLDS"), "{told}");
+        assert_eq!(json["holds"], false, "{json}");
+        assert_eq!(json["bearing"], "nothing-other-output-scale", "{json}");
+    }
+}
+
+#[test]
+fn a_frozen_refutation_says_that_the_flown_loop_may_still_settle() {
+    let certification = refuted();
+    let [one] = certification.results.as_slice() else { panic!("one loop") };
+    let certificate = one.certificate().expect("a refutation");
+    assert!(matches!(certificate.claim, Claim::FrozenGrowth { .. }), "{:?}", certificate.claim);
+    let sentence = "this refutes gains that stand still; in flight the gains move on, and the flown loop may still settle";
+    let told = certification.text();
+    assert!(
+        told.contains("REFUTED FOR GAINS THAT STAND STILL") && told.contains(sentence),
+        "{told}"
+    );
+    let json = certification.json();
+    assert_eq!(json["controllers"][0]["bearing_in_words"], sentence, "{json}");
+    let checked = checked(&written(certification));
+    assert_eq!(checked.answer(), Answer::Refutes(Bearing::GrowsStandingStill));
+    let told = checked.text();
+    assert!(told.contains(sentence) && !told.contains("HOLDS"), "{told}");
+    assert_eq!(checked.json()["holds"], false);
+}
+
+#[test]
+fn the_loop_that_is_refuted_standing_still_settles_in_flight() {
+    let scaled = [
+        "controller.FSPID.supervisor.output_scale.kp=0.48",
+        "controller.FSPID.supervisor.output_scale.ki=0.12",
+        "controller.FSPID.supervisor.output_scale.kd=0.24",
+        "loop.duration_s=400",
+    ];
+    for amplitude in ["setpoint.amplitude_deg=1", "setpoint.amplitude_deg=60"] {
+        let study = load("scenarios/747-pitch-step.toml", &[&scaled[..], &[amplitude]].concat());
+        let simulation = crate::simulation::Simulation::of(&study).expect("it flies");
+        let result = simulation.result("FSPID").expect("it was flown");
+        assert!(result.metrics.first_step().settling_time_s.is_ok(), "{amplitude}");
+    }
+}
+
+#[test]
+fn a_check_says_what_the_proof_said_of_its_scope() {
+    let study = design(&[]);
+    let certification = certified(&study);
+    let [proof, check] = [certification.text(), checked(good()).text()];
+    let about = ["holds for", "remains", "limits", "not in this claim", ""];
+    let scope = |text: &str| -> Vec<String> {
+        let heads: Vec<String> = about.iter().map(|it| format!("  {it:<18} ")).collect();
+        let is_one = |line: &&str| heads.iter().any(|head| line.starts_with(head.as_str()));
+        text.lines().filter(is_one).map(str::to_owned).collect()
+    };
+    assert_eq!(scope(&proof), scope(&check), "{proof}\n{check}");
+    assert!(scope(&check).len() >= 5, "{check}");
+    for word in ["set-point", "none acts", "Rounding"] {
+        assert!(check.contains(word), "{check}");
+    }
+    let [proof, check] = [certification.json()["controllers"][0].clone(), checked(good()).json()];
+    assert_eq!(proof["scope"], check["scope"]);
+    let sentences = check["scope"]["sentences"].as_array().expect("sentences");
+    let told = checked(good()).text();
+    assert!(sentences.iter().all(|it| told.contains(it.as_str().expect("text"))), "{told}");
+}
+
+#[test]
+fn what_a_certificate_says_of_its_scope_cannot_be_taken_away() {
+    for key in ["range", "not_in_this_claim", "limits", "level", "content_digest"] {
+        let mut value = good_value();
+        value.as_object_mut().expect("keys").remove(key);
+        assert!(!check_text(&value.to_string()).is_ok_and(|it| it.holds()), "{key}");
+    }
+    // Taken away with care, it says so in words.
+    let mut value = good_value();
+    value.as_object_mut().expect("keys").remove("level");
+    let text = resealed(&value).expect("a shape");
+    let refused = check_text(&text).expect_err("limits and level do not fit").to_string();
+    assert!(refused.starts_with("limits: says \"none-acts-within-the-level\""), "{refused}");
+    value["limits"] = json!("left-out");
+    let told = checked(&resealed(&value).expect("a shape")).text();
+    assert!(told.contains("SATURATION IS NOT COVERED"), "{told}");
+}
+
+#[test]
+fn a_dispersion_is_said_to_be_left_out() {
+    let text = std::fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/designs/b747-paper.toml"),
+    );
+    let text = text.expect("readable")
+        + "\n[[dispersion]]\npath = \"controller.FSPID.nominal.kp\"\ndistribution = \"uniform\"\nlower = 3.9\nupper = 4.1\n";
+    let study = file::parse(&text, "dispersed.toml", None, &[]).unwrap_or_else(|it| panic!("{it}"));
+    let certification = certified(&study);
+    let nominal = "nominal";
+    assert!(certification.text().contains(nominal), "{}", certification.text());
+    let written = written(&certification);
+    assert!(written.contains("\"dispersions\""), "{written}");
+    let checked = checked(&written);
+    assert!(checked.holds() && checked.text().contains(nominal), "{}", checked.text());
+    let said = checked.json()["scope"]["not_in_this_claim"].to_string();
+    assert!(said.contains("\"dispersions\""), "{said}");
+    // A certificate of the scenario without it does not speak for the one with it.
+    let mut plain = self::checked(good());
+    plain.compare(&study).expect("comparable");
+    let told = plain.text();
+    assert!(told.contains("not_in_this_claim: certified nothing, flown \"dispersions\""), "{told}");
+    assert_eq!(plain.answer(), Answer::AnotherLoop);
+}
+
+#[test]
+fn every_field_that_flies_otherwise_is_told_with_both_values() {
+    let mut same = checked(good());
+    same.compare(&design(&[])).expect("comparable");
+    assert!(same.holds(), "{}", same.text());
+    assert!(same.text().ends_with("HOLDS, AND IS WHAT FLIES\n"), "{}", same.text());
+    let changes = [
+        "controller.FSPID.nominal.kp=4.5",
+        "actuator.time_constant_s=0.2",
+        "name=\"another\"",
+        "setpoint.amplitude_deg=170",
+    ];
+    let mut other = checked(good());
+    other.compare(&design(&changes)).expect("comparable");
+    let told = other.text();
+    for expected in [
+        "origin.scenario: certified \"747 pitch hold, proved\", flown \"another\"",
+        "controller.gains.kp: certified 4.0, flown 4.5",
+        "loop.actuator.lag.time_constant_s: certified 0.1, flown 0.2",
+        "the scenario's text has changed: digest certified",
+        "DOES NOT HOLD FOR THIS SCENARIO",
+    ] {
+        assert!(told.contains(expected), "{expected}\n{told}");
+    }
+    assert_eq!(other.json()["against"]["same"], false);
+    assert!(other.json()["against"]["differences"].as_array().is_some_and(|it| it.len() >= 3));
+}
+
+#[test]
+fn a_scenario_without_the_certified_controller_is_told() {
+    let mut value = good_value();
+    value["origin"]["controller"] = json!("Autopilot");
+    let mut checked = checked(&resealed(&value).expect("a shape"));
+    checked.compare(&design(&[])).expect("comparable");
+    let told = checked.text();
+    assert!(told.contains("origin.controller: certified Autopilot, flown "), "{told}");
+    assert_eq!(checked.answer(), Answer::AnotherLoop);
+}
+
+#[test]
+fn layout_and_digits_of_a_certificate_do_not_matter() {
+    let compact = good_value().to_string();
+    assert!(checked(&compact).holds());
+    let digits = good().replace("\"output_factor\": 1.0", "\"output_factor\": 1.000");
+    assert_eq!(checked(&digits).seal, Seal::Whole);
+    let (certificate, origin) = from_text(good()).expect("a certificate");
+    assert_eq!(to_text(&certificate, &origin), good());
+}
