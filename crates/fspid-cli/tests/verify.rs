@@ -179,8 +179,8 @@ fn simulate_judges_margins_by_the_same_numbers() {
 #[test]
 fn a_flight_into_the_ground_fails_whatever_is_required() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = include_str!("../../../scenarios/gallery/navion-step.toml");
-    let (flight, _) = text.split_once("[[requirement]]").expect("it asks for an overshoot");
+    let step = include_str!("../../../scenarios/gallery/navion-step.toml");
+    let (flight, _) = step.split_once("[[requirement]]").expect("it asks for an overshoot");
     let scenario = format!("{flight}[[requirement]]\nmeasure = \"stable\"\n");
     std::fs::write(folder.path().join("low.toml"), scenario).expect("written");
     let down = ["aircraft.altitude_ft=300", "setpoint.amplitude_deg=-10", "loop.duration_s=60"];
