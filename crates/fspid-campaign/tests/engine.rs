@@ -236,7 +236,8 @@ fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {
 fn a_self_tuning_loop_that_is_unstable_at_rest_fails_without_measures() {
     let turned = STEP.replace("preset = \"b747-paper\"", TURNED);
     let studies = [template(&turned).study().clone()];
-    for flight in engine::fly(&studies)[0].as_ref().expect("it flies") {
+    let flown = engine::fly(&studies);
+    for flight in flown[0].as_ref().expect("it flies") {
         let reasons = flight.reasons();
         assert!(flight.is_failed() && flight.metrics.effort.is_err(), "{}", flight.controller);
         assert!(reasons[0].starts_with("unstable at rest (doubles every"), "{reasons:?}");

@@ -174,3 +174,37 @@ fn simulate_judges_margins_by_the_same_numbers() {
     assert_eq!(numbers(&flown).len(), 4);
     assert_eq!(numbers(&flown), numbers(&verified));
 }
+
+/// A Navion at 300 ft with a step of -10 deg flew on to -276 m and passed every requirement of its loop.
+#[test]
+fn a_flight_into_the_ground_fails_whatever_is_required() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let step = include_str!("../../../scenarios/gallery/navion-step.toml");
+    let (flight, _) = step.split_once("[[requirement]]").expect("it asks for an overshoot");
+    let scenario = format!("{flight}[[requirement]]\nmeasure = \"stable\"\n");
+    std::fs::write(folder.path().join("low.toml"), scenario).expect("written");
+    let down = ["aircraft.altitude_ft=300", "setpoint.amplitude_deg=-10", "loop.duration_s=60"];
+    let set = down.map(|change| ["--set", change]).concat();
+    let ask = |more: &[&str]| {
+        let arguments = [&["verify", "low.toml"], more, &set[..]].concat();
+        fspid(&arguments, folder.path())
+    };
+    let output = ask(&["--junit", "out.xml"]);
+    assert_eq!(code(&output), 1, "{}", text_of(&output));
+    let out = text(&output.stdout);
+    assert!(out.contains("- PID: hit the ground at t = 11.66 s."), "{out}");
+    assert!(out.ends_with("\n1 of 1 requirement met; 1 flight failed; FAIL\n"), "{out}");
+    let junit = std::fs::read_to_string(folder.path().join("out.xml")).expect("written");
+    assert!(junit.contains("tests=\"2\" failures=\"1\""), "{junit}");
+    assert!(junit.contains("<failure type=\"failed flight\" message=\"hit the ground"), "{junit}");
+    let answer: Value = serde_json::from_slice(&ask(&["--format", "json"]).stdout).expect("JSON");
+    assert_eq!(answer["all_met"], false);
+    assert_eq!(answer["failed_flights"][0]["controller"], "PID");
+    let flown = fspid(&[&["simulate", "low.toml"], &set[..]].concat(), folder.path());
+    assert_eq!(code(&flown), 1);
+    assert!(text(&flown.stderr).contains("1 flight(s) failed"), "{}", text(&flown.stderr));
+}
+
+fn text_of(output: &Output) -> String {
+    format!("{}{}", text(&output.stdout), text(&output.stderr))
+}

@@ -239,7 +239,7 @@ fn an_event_after_the_end_and_a_sine_too_fast_for_the_samples_are_warned_of() {
     let late = file::starter().replace("at_s = 0.0", "at_s = 11.0");
     let warnings = parse(&late).expect("it is allowed").warnings;
     assert!(warnings.len() == 1 && warnings[0].contains("setpoint.at_s is 11.0 s"), "{warnings:?}");
-    let fast = file::starter().replace("kind = \"step\"", "kind = \"sine\"\nfrequency_hz = 51");
+    let fast = file::starter().replacen("kind = \"step\"", "kind = \"sine\"\nfrequency_hz = 51", 1);
     let warnings = parse(&fast).expect("it is allowed").warnings;
     assert!(warnings.len() == 1 && warnings[0].contains("at most 50.0 Hz"), "{warnings:?}");
 }

@@ -187,7 +187,7 @@ fn rules_in_the_file_and_long_tables_stay_one_line() {
     let text = file::starter()
         .replace("table = \"mirrored\"", "")
         .replace("[controller.gain_limits]", &format!("{own}[controller.gain_limits]"))
-        .replace("kind = \"step\"", "kind = \"table\"")
+        .replacen("kind = \"step\"", "kind = \"table\"", 1)
         .replace(
             "amplitude_deg = 5.0\nat_s = 0.0",
             &format!("time_s = [{times}]\nvalue_deg = [{times}]"),
