@@ -56,6 +56,8 @@ fn main() -> ExitCode {
     for (name, count) in &answers {
         println!("{count:6}  {name}");
     }
-    println!("{flights} flights; {held_in_all} claims over a range of set-points that matters; {contradicted} contradicted");
+    println!(
+        "{flights} flights; {held_in_all} claims over a range of set-points that matters; {contradicted} contradicted"
+    );
     ExitCode::from(u8::from(contradicted > 0))
 }

@@ -5,8 +5,8 @@ use core::fmt;
 use fspid_core::{AntiWindup, Followers, Sees, SelfTuner, Shell, TunerSettings};
 use fspid_fuzzy::scalar::Interval;
 use fspid_sim::actuator::{Actuator, ActuatorParts};
-use fspid_sim::sensor::Sensor;
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
+use fspid_sim::sensor::Sensor;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
@@ -274,7 +274,9 @@ impl LoopDescription {
         let clamps = match anti_windup {
             AntiWindup::Clamping(_) => true,
             // These act at limits alone.
-            AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => false,
+            AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => {
+                false
+            }
         };
         [
             (limits.is_some(), "output limits of the controller"),

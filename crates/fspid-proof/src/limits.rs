@@ -134,11 +134,7 @@ impl LoopDescription {
     }
 
     /// How far it may take the command off at once, rad.
-    fn blur_of_command<T: Scalar + Magnitude>(
-        &self,
-        model: &LoopModel<T>,
-        gains: Gains<T>,
-    ) -> f64 {
+    fn blur_of_command<T: Scalar + Magnitude>(&self, model: &LoopModel<T>, gains: Gains<T>) -> f64 {
         let sizes = model.command_by_seen(gains).map(|entry| Interval::point(entry.largest()));
         let [by_pitch, by_rate] = sizes;
         let [pitch, rate] = self.blurs().map(Interval::point);

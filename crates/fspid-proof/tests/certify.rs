@@ -7,7 +7,9 @@ use fspid_core::{
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
-use fspid_proof::{Asked, Certificate, Claim, Effort, LoopDescription, NotProvable, Range, Verdict, certify};
+use fspid_proof::{
+    Asked, Certificate, Claim, Effort, LoopDescription, NotProvable, Range, Verdict, certify,
+};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, ElevatorSign};

@@ -27,9 +27,9 @@ impl Scenario {
     #[must_use]
     pub fn steady(&self) -> Steady {
         let (setpoint_rad, _) = self.setpoint.sampled(self.timing);
-        let ends = setpoint_rad.iter().fold([0.0_f64; 2], |[least, most], &value| {
-            [least.min(value), most.max(value)]
-        });
+        let ends = setpoint_rad
+            .iter()
+            .fold([0.0_f64; 2], |[least, most], &value| [least.min(value), most.max(value)]);
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
         let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
         Steady {
@@ -73,7 +73,10 @@ impl Steady {
     pub fn load_with_offsets_rad(&self, plant: &LinearPlant, shell: &Shell<f64>) -> f64 {
         let of_offset = self.offset_rad / plant.steady_gain().abs();
         let of_offset = if self.offset_rad == 0.0 { 0.0 } else { of_offset };
-        self.load_rad + self.bias_rad + of_offset + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
+        self.load_rad
+            + self.bias_rad
+            + of_offset
+            + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
     }
 
     /// The largest set-point in magnitude, rad.

@@ -151,7 +151,9 @@ pub fn reach(p: &Matrix, level: f64, row: &[Interval]) -> Result<f64, NotProved>
     let own = symmetric("Lyapunov matrix", p)?;
     let size = own.rows();
     if row.len() != size {
-        return Err(LtiError::Shape { what: "row", found: (1, row.len()), allowed: (1, size) }.into());
+        return Err(
+            LtiError::Shape { what: "row", found: (1, row.len()), allowed: (1, size) }.into()
+        );
     }
     let basis = basis("Lyapunov matrix", &own.middle, size)?;
     let turned_form = form(&own, &basis)?;

@@ -130,10 +130,7 @@ impl<'a> Held<'a> {
             let side = |scale: f64, side: f64| {
                 if scale == 0.0 { f64::INFINITY } else { (scale * side).abs() }
             };
-            [
-                side(scale.error_per_rad, zone.error_rad),
-                side(scale.change_per_rad, zone.change_rad),
-            ]
+            [side(scale.error_per_rad, zone.error_rad), side(scale.change_per_rad, zone.change_rad)]
         });
         let mut over = Self {
             fspid,

@@ -96,7 +96,8 @@ impl GainSet {
     #[must_use]
     pub fn fixed(gains: Gains<f64>) -> Self {
         let point = array(gains).map(Interval::point);
-        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point, change_gain: 0.0 };
+        let cell =
+            GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point, change_gain: 0.0 };
         Self { nominal: gains, rest: point, cells: vec![cell], rate_per_s: Some([0.0; 3]) }
     }
 
@@ -149,9 +150,8 @@ impl GainSet {
         };
         let still = part(false).into_iter().map(|gains| HeldGains { gains, change_gain: 0.0 });
         let held = part(true).into_iter();
-        let held = held.flat_map(|gains| {
-            [-most, most].map(|change_gain| HeldGains { gains, change_gain })
-        });
+        let held = held
+            .flat_map(|gains| [-most, most].map(|change_gain| HeldGains { gains, change_gain }));
         still.chain(held).collect()
     }
 

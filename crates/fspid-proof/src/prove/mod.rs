@@ -150,7 +150,16 @@ impl<'a> Prover<'a> {
                 Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
             }
         };
-        Ok(Self { description, asked, effort, range: asked.range, enclosed, model, increments, slopes: KnownSlopes::default() })
+        Ok(Self {
+            description,
+            asked,
+            effort,
+            range: asked.range,
+            enclosed,
+            model,
+            increments,
+            slopes: KnownSlopes::default(),
+        })
     }
 
     fn set(&self, factor: f64) -> GainSet {
@@ -246,7 +255,9 @@ impl<'a> Prover<'a> {
     fn held(&self, set: &GainSet, factor: f64, rest: &Rest) -> Result<GainSet, NoSlopes> {
         match self.tuned() {
             None => Ok(set.clone()),
-            Some(fspid) => set.holding(fspid, factor, rest.held, &self.slopes).map(|(held, _)| held),
+            Some(fspid) => {
+                set.holding(fspid, factor, rest.held, &self.slopes).map(|(held, _)| held)
+            }
         }
     }
 
@@ -284,8 +295,7 @@ impl<'a> Prover<'a> {
             level,
         };
         let set = self.set(factor);
-        let recheck =
-            Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
+        let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
         let rechecked = recheck.run().ok()?;
         Some((certificate, rechecked))
     }

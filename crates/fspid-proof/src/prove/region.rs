@@ -49,7 +49,9 @@ impl<'a> Region<'a> {
             claim: Claim::BoundedRate(claim.clone()),
             level: None,
         };
-        let recheck = Recheck::with(&certificate, prover.enclosed.clone(), set.clone(), &prover.slopes).ok()?;
+        let recheck =
+            Recheck::with(&certificate, prover.enclosed.clone(), set.clone(), &prover.slopes)
+                .ok()?;
         let rest = prover.rest(set).ok()?;
         let fall = recheck.moving_fall(claim).ok()?;
         let inputs = input_rows(&prover.model, fspid);

@@ -96,7 +96,8 @@ impl Prover<'_> {
             self.rechecked(claim, factor, level.filter(|_| self.covers_limits()))
         };
         // What remains of a motion is known where there is a rate.
-        let at_best = if best_rate || self.needs_a_rate() { best().and_then(rechecked) } else { None };
+        let at_best =
+            if best_rate || self.needs_a_rate() { best().and_then(rechecked) } else { None };
         at_best.or_else(|| plain().and_then(rechecked))
     }
 }

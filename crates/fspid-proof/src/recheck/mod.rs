@@ -317,10 +317,14 @@ impl<'a> Recheck<'a> {
             return Err(malformed("the double cones are not 1 to 1000"));
         }
         if self.rest.error_rad > 0.0 {
-            return Err(malformed("where an error stays, gains are not tied to how far rest is off"));
+            return Err(malformed(
+                "where an error stays, gains are not tied to how far rest is off",
+            ));
         }
         if self.is_blurred() {
-            return Err(malformed("with a resolution the supervisor sees another error than the loop's"));
+            return Err(malformed(
+                "with a resolution the supervisor sees another error than the loop's",
+            ));
         }
         let corners: Vec<(usize, HeldGains)> = self.held.held_corners().collect();
         let mut proved = 1;

@@ -277,12 +277,8 @@ impl Recheck<'_> {
     fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, Doubt> {
         let mut proved = 0;
         for corner in corners {
-            let rows = limits::rows(
-                &self.certificate.description,
-                &self.model,
-                corner.gains,
-                &self.rest,
-            );
+            let rows =
+                limits::rows(&self.certificate.description, &self.model, corner.gains, &self.rest);
             proved += rows.len();
             let gains = Some(middles(corner.gains));
             inside_limits(&corner.form, level, &rows)

@@ -39,7 +39,9 @@ impl Recheck<'_> {
         if self.is_blurred() && !self.certificate.description.limits().is_empty() {
             let covered = self.certificate.level.is_some_and(|claimed| level <= claimed);
             if !covered {
-                return Err(malformed("limits may act in what the resolution of the sensors leaves"));
+                return Err(malformed(
+                    "limits may act in what the resolution of the sensors leaves",
+                ));
             }
         }
         let mut pitch = vec![Interval::ZERO; self.model.size()];

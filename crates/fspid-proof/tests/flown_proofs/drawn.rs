@@ -17,11 +17,7 @@ const DEG: f64 = core::f64::consts::PI / 180.0;
 const LABELS: [&str; 7] = ["NB", "NM", "NS", "ZO", "PS", "PM", "PB"];
 /// Plants of the books: numerator, denominator, size of the gains that hold them.
 const PLANTS: [(&[f64], &[f64], f64); 4] = [
-    (
-        &[-1.69144, -0.84341, -0.0099096],
-        &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
-        1.0,
-    ),
+    (&[-1.69144, -0.84341, -0.0099096], &[1.0, 1.17103, 1.55405, 0.012538, 0.0072771], 1.0),
     // Short periods beside a free integrator.
     (&[-1.1573, -0.435], &[1.0, 0.740, 0.9272, 0.0], 1.0),
     (&[-11.304, -23.616], &[1.0, 5.05, 13.2, 0.0], 0.4),
@@ -78,11 +74,8 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
     let plant = LinearPlant::new(&numerator, &denominator, ElevatorSign::NoseDownPositive);
     let shell = shell(dice, dt_s, size);
     let controller = controller(dice, shell, size);
-    let load = Disturbance::new(
-        Entry::Elevator,
-        dice.between(0.0, 5.0) * DEG,
-        Shape::Step { at_s: 1.0 },
-    );
+    let load =
+        Disturbance::new(Entry::Elevator, dice.between(0.0, 5.0) * DEG, Shape::Step { at_s: 1.0 });
     let setpoint_rad = dice.sized(0.3, 30.0) * DEG;
     Scenario {
         name: "drawn".to_owned(),
@@ -132,7 +125,8 @@ fn sensor(dice: &mut Dice) -> Option<Sensor> {
     if dice.happens(0.6) {
         return None;
     }
-    let pick = |dice: &mut Dice, most: f64| if dice.happens(0.5) { dice.between(0.0, most) } else { 0.0 };
+    let pick =
+        |dice: &mut Dice, most: f64| if dice.happens(0.5) { dice.between(0.0, most) } else { 0.0 };
     let model = SensorModel {
         scale_error: pick(dice, 0.2),
         delay_s: pick(dice, 0.03),
@@ -163,7 +157,11 @@ fn shell(dice: &mut Dice, dt_s: f64, size: f64) -> Shell<f64> {
             derivative: dice.one_of(&[0.0, 0.5, 1.0]),
         },
         derivative: Derivative { filter_s: dice.one_of(&[0.0, 0.05, 0.1]) },
-        integral: dice.one_of(&[IntegralForm::Bumpless, IntegralForm::Bumpless, IntegralForm::Literal]),
+        integral: dice.one_of(&[
+            IntegralForm::Bumpless,
+            IntegralForm::Bumpless,
+            IntegralForm::Literal,
+        ]),
         anti_windup,
         limits,
         slew_rad_s,
@@ -186,13 +184,15 @@ fn controller(dice: &mut Dice, shell: Shell<f64>, size: f64) -> Controller {
     if dice.happens(0.1) {
         return Controller::Fixed(Pid::new(nominal, shell).expect("allowed"));
     }
-    let tuner = SelfTuner::new(nominal, supervisor(dice), settings(dice, nominal)).expect("allowed");
+    let tuner =
+        SelfTuner::new(nominal, supervisor(dice), settings(dice, nominal)).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"))
 }
 
 fn settings(dice: &mut Dice, nominal: Gains<f64>) -> TunerSettings<f64> {
     // With labels of five units at most, so much of the nominal gains.
-    let mut share = |most: f64| if dice.happens(0.8) { dice.between(-most, most) / 5.0 } else { 0.0 };
+    let mut share =
+        |most: f64| if dice.happens(0.8) { dice.between(-most, most) / 5.0 } else { 0.0 };
     let output_scale = Gains {
         kp: nominal.kp * share(0.8),
         ki: nominal.ki * share(0.8),
@@ -205,7 +205,8 @@ fn settings(dice: &mut Dice, nominal: Gains<f64>) -> TunerSettings<f64> {
     };
     let around = |dice: &mut Dice, gain: f64| {
         let share = dice.between(0.1, 0.6);
-        Limits::new("gain limits", gain * (1.0 - share), gain * (1.0 + share) + 1e-9).expect("allowed")
+        Limits::new("gain limits", gain * (1.0 - share), gain * (1.0 + share) + 1e-9)
+            .expect("allowed")
     };
     let gain_limits = if dice.happens(0.2) {
         Some(GainLimits {
@@ -263,6 +264,11 @@ fn supervisor(dice: &mut Dice) -> Supervisor<f64> {
         Defuzzifier::Endpoints(101),
         Defuzzifier::Midpoint(60),
     ]);
-    let policy = dice.one_of(&[OutOfRange::Clamp, OutOfRange::Clamp, OutOfRange::Error, OutOfRange::Evaluate]);
+    let policy = dice.one_of(&[
+        OutOfRange::Clamp,
+        OutOfRange::Clamp,
+        OutOfRange::Error,
+        OutOfRange::Evaluate,
+    ]);
     Supervisor::new(&table, 5.0, rule, policy).expect("allowed")
 }

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 
 use fspid_core::{AntiWindup, Fspid, Guard, Pid, Shell};
-use fspid_proof::{Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify};
+use fspid_proof::{
+    Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify,
+};
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly};
@@ -26,14 +28,25 @@ pub(crate) enum Answer {
     Open,
     Refuted,
     /// Proved for all that the scenario has, or for less, and every flight settled.
-    Settled { whole: bool, flights: usize, held: bool },
+    Settled {
+        whole: bool,
+        flights: usize,
+        held: bool,
+    },
     /// Proved, and a flight did not settle.
     Contradicted(String),
 }
 
 /// A quick proof: what it misses is not claimed.
 pub(crate) fn quick() -> Effort {
-    Effort { divisions: 12, cones: 6, halvings: 2, largest_factor: 1.0, frozen_points: 13, changes: &[] }
+    Effort {
+        divisions: 12,
+        cones: 6,
+        halvings: 2,
+        largest_factor: 1.0,
+        frozen_points: 13,
+        changes: &[],
+    }
 }
 
 /// Certifies a scenario and flies what is proved.
@@ -76,7 +89,13 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
     let any = if rechecked.any_setpoint { 40.0_f64.to_radians() } else { far };
     let own_load = scenario.steady();
     // A bias of the sensor counts as a load, and is there in every flight.
-    let room = (load - (own_load.load_with_offsets_rad(scenario.plant.linear().expect("linear"), controller_shell(scenario)) - own_load.load_rad - own_load.bias_rad)).max(0.0);
+    let room = (load
+        - (own_load.load_with_offsets_rad(
+            scenario.plant.linear().expect("linear"),
+            controller_shell(scenario),
+        ) - own_load.load_rad
+            - own_load.bias_rad))
+        .max(0.0);
     let loads = if rechecked.any_load { [0.0, 5.0_f64.to_radians()] } else { [0.0, room] };
     let mut flights = 0;
     for (setpoint_rad, load_rad, kick_rad) in [
@@ -120,7 +139,11 @@ struct Start {
     ramp: bool,
 }
 
-fn settles(scenario: &Scenario, (certificate, rechecked): &(Certificate, Rechecked), start: Start) -> Result<(), String> {
+fn settles(
+    scenario: &Scenario,
+    (certificate, rechecked): &(Certificate, Rechecked),
+    start: Start,
+) -> Result<(), String> {
     let rate = certificate.claim.rate().expect("of stability");
     let dt_s = scenario.timing.dt_s();
     let samples = (TIME_CONSTANTS / -libm::log(rate)).clamp(1000.0, MOST_SAMPLES);
@@ -154,7 +177,9 @@ fn settles(scenario: &Scenario, (certificate, rechecked): &(Certificate, Recheck
     let held_from = (begin_s / dt_s) as usize;
     let last = theta.len() - theta.len() / 10;
     let spread = |part: &[f64]| {
-        let (least, most) = part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        let (least, most) = part
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
         most - least
     };
     let (whole, end) = (spread(&theta), spread(&theta[last..]));

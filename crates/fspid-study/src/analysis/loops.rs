@@ -2,7 +2,9 @@
 
 use fspid_lti::{Complex, LtiError, SampledLoop, Stability};
 use fspid_sim::loop_model::BreakPoint;
-use fspid_sim::{AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError};
+use fspid_sim::{
+    AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError,
+};
 
 use super::Question;
 use super::answer::Margins;

@@ -23,9 +23,10 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
         None => !scenario.servo.is_linear(),
     };
     say(limited, "Limits of the actuator are left out; they act beyond small motions.");
-    let widths = surroundings.actuator.as_ref().is_some_and(|actuator| {
-        actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0
-    });
+    let widths = surroundings
+        .actuator
+        .as_ref()
+        .is_some_and(|actuator| actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0);
     say(
         widths,
         "Deadband and play of the actuator are left out: a loop that is called stable may keep a small oscillation.",

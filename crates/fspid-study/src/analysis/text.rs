@@ -56,7 +56,9 @@ fn verdict(found: &AnalysedLoop) -> String {
 pub(crate) fn at_setpoint(setpoint_rad: f64) -> String {
     match degrees(setpoint_rad) {
         0.0 => String::new(),
-        setpoint_deg => format!("; worst while the set-point is held at {} deg", short(setpoint_deg)),
+        setpoint_deg => {
+            format!("; worst while the set-point is held at {} deg", short(setpoint_deg))
+        }
     }
 }
 

@@ -128,7 +128,9 @@ pub fn from_text(text: &str) -> Result<(Certificate, Origin), String> {
     }
     if value.get("schema").and_then(Value::as_u64) != Some(u64::from(SCHEMA)) {
         let old = match value.get("schema").and_then(Value::as_u64) {
-            Some(1) => ": a certificate of schema 1 does not say for which set-points it is made; certify anew",
+            Some(1) => {
+                ": a certificate of schema 1 does not say for which set-points it is made; certify anew"
+            }
             _ => "",
         };
         return Err(format!("`schema` is {}; this program reads {SCHEMA}{old}", value["schema"]));
@@ -141,7 +143,11 @@ pub fn from_text(text: &str) -> Result<(Certificate, Origin), String> {
         output_factor: file.output_factor,
         divisions: file.divisions,
         range: Range { setpoint_rad: file.range.setpoint_rad, load_rad: file.range.load_rad },
-        left_out: file.not_in_this_claim.iter().map(|name| left_out(name)).collect::<Result<_, _>>()?,
+        left_out: file
+            .not_in_this_claim
+            .iter()
+            .map(|name| left_out(name))
+            .collect::<Result<_, _>>()?,
         claim: file.claim.build()?,
         level: file.level,
     };

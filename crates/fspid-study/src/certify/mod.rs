@@ -98,9 +98,8 @@ impl Certification {
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
-                    outcome: described.and_then(|loop_| {
-                        certify(&loop_, &asked(study, plant, &loop_), effort)
-                    }),
+                    outcome: described
+                        .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     limits,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),

@@ -105,7 +105,9 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
 fn push_scope(out: &mut String, scope: &Scope) {
     let text = match (scope.any_setpoint, scope.any_load) {
         (true, true) => "any constant set-point, any constant load".to_owned(),
-        (true, false) => format!("any constant set-point; loads within ±{} deg", deg(scope.range.load_rad)),
+        (true, false) => {
+            format!("any constant set-point; loads within ±{} deg", deg(scope.range.load_rad))
+        }
         (false, true) => format!(
             "constant set-points within ±{} deg, any constant load",
             deg(scope.range.setpoint_rad)
@@ -115,11 +117,17 @@ fn push_scope(out: &mut String, scope: &Scope) {
     line(out, format_args!("  set-points         {text}"));
     if scope.rest_error_rad > 0.0 {
         let error = deg(scope.rest_error_rad);
-        line(out, format_args!("  error at rest      up to {error} deg stay: there is no integral"));
+        line(
+            out,
+            format_args!("  error at rest      up to {error} deg stay: there is no integral"),
+        );
     }
     if scope.remains_rad > 0.0 {
         let remains = deg(scope.remains_rad);
-        line(out, format_args!("  remains            the pitch angle ends within {remains} deg of rest"));
+        line(
+            out,
+            format_args!("  remains            the pitch angle ends within {remains} deg of rest"),
+        );
     }
 }
 
