@@ -187,7 +187,7 @@ impl<'a> Holding<'a> {
     }
 
     fn plain(&self) -> bool {
-        self.description.controller.shell().setpoint_weights.proportional == 1.0
+        self.description.controller.shell().setpoint_weights.proportional - 1.0 == 0.0
     }
 
     fn without_integral(&self, fspid: &Fspid<f64>, nothing: bool) -> Result<Rest, NoRest> {

@@ -124,7 +124,7 @@ impl AtRest {
 /// True where no constant is multiplied by a gain, and there is an integral that brings the error to zero.
 fn is_the_same_everywhere(fspid: &Fspid<f64>) -> bool {
     let (shell, settings) = (fspid.shell(), fspid.tuner().settings());
-    let plain = shell.setpoint_weights.proportional == 1.0
+    let plain = (shell.setpoint_weights.proportional - 1.0) == 0.0
         && settings.followers.setpoint_weight == 0.0
         && shell.integral == IntegralForm::Bumpless;
     plain && integrates(fspid)

@@ -90,3 +90,14 @@ fn a_certificate_of_another_loop_does_not_hold() {
         assert!(checked.result.is_err(), "{path:?}");
     }
 }
+
+/// Schema 1 did not say for which set-points a certificate is made, and its loop left out what gains that move
+/// make of the command.
+#[test]
+fn a_certificate_of_schema_1_is_refused_with_the_reason() {
+    for (path, _, text) in designs() {
+        let old = text.replace("\"schema\": 2", "\"schema\": 1");
+        let told = from_text(&old).expect_err("an old certificate");
+        assert!(told.contains("certify anew"), "{path:?}: {told}");
+    }
+}

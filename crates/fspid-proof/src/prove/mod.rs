@@ -104,11 +104,7 @@ pub fn certify(
 ) -> Result<Outcome, NotProvable> {
     let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
-    let verdict = prover.verdict(&set);
-    let instead = match verdict {
-        Verdict::Open => prover.smaller(&set),
-        Verdict::Proved(..) | Verdict::Refuted(..) => None,
-    };
+    let (verdict, instead) = prover.verdict(&set);
     let largest = prover.largest(&verdict);
     let (pitch_within_rad, limits_left_out) = prover.limits(&verdict);
     Ok(Outcome {
@@ -121,6 +117,9 @@ pub fn certify(
         limits_left_out,
     })
 }
+
+/// Halvings in which the largest part of a range is looked for.
+const SHARES: u32 = 4;
 
 struct Prover<'a> {
     description: &'a LoopDescription,
@@ -177,20 +176,28 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn verdict(&self, set: &GainSet) -> Verdict {
+    /// The answer, and what is proved for less where it is neither.
+    fn verdict(&self, set: &GainSet) -> (Verdict, Option<(Certificate, Rechecked)>) {
         if let Some(found) = self.frozen_growth() {
-            return found;
+            return (found, None);
         }
-        if let Some((certificate, rechecked)) = self.proved(set, 1.0, true) {
-            return Verdict::Proved(certificate, rechecked);
+        if let Some((certificate, rechecked)) = self.stable(set) {
+            return (Verdict::Proved(certificate, rechecked), None);
+        }
+        match self.smaller(set) {
+            None => (self.sequence_growth().unwrap_or(Verdict::Open), None),
+            smaller => (Verdict::Open, smaller),
+        }
+    }
+
+    /// A proof for the range, if there is one.
+    fn stable(&self, set: &GainSet) -> Option<(Certificate, Rechecked)> {
+        if let Some(found) = self.proved(set, 1.0, true) {
+            return Some(found);
         }
         // A claim about gains of bounded rate is one about this loop only if its law keeps to the rate.
         let bounded = set.rate_per_s.and_then(|_| self.bounded(set, 1.0));
-        let kept = bounded.filter(|(_, rechecked)| rechecked.kept == Some(Kept::Everywhere));
-        if let Some((certificate, rechecked)) = kept {
-            return Verdict::Proved(certificate, rechecked);
-        }
-        self.sequence_growth().unwrap_or(Verdict::Open)
+        bounded.filter(|(_, rechecked)| rechecked.kept == Some(Kept::Everywhere))
     }
 
     /// What can be proved for less than the range that is asked for: the largest part of it, by halving, down
@@ -199,18 +206,12 @@ impl<'a> Prover<'a> {
         if self.range == Range::REST {
             return None;
         }
-        let proved = |share: f64| {
-            let prover = self.within(self.range.scaled(share));
-            match prover.verdict(set) {
-                Verdict::Proved(certificate, rechecked) => Some((certificate, rechecked)),
-                Verdict::Refuted(..) | Verdict::Open => None,
-            }
-        };
+        let proved = |share: f64| self.within(self.range.scaled(share)).stable(set);
         // Found once, for all parts of the range.
         let _ = self.rest(set).map(|rest| self.held(set, 1.0, &rest).is_ok());
         let mut best = proved(0.0)?;
         let (mut within, mut beyond) = (0.0, 1.0);
-        for _ in 0..self.effort.halvings {
+        for _ in 0..self.effort.halvings.min(SHARES) {
             let share = 0.5 * (within + beyond);
             match proved(share) {
                 Some(found) => (best, within) = (found, share),
