@@ -230,7 +230,7 @@ fn an_unknown_ending_is_refused_and_the_known_ones_are_named() {
         ("surface printed --range 5 --out a.png", "known is .svg"),
         ("explain printed --range 5 --error 1 --change 0 --svg a.png", "known is .svg"),
         ("surface printed --range 5 --csv a.txt", "known is .csv"),
-        ("convert printed --range 5 a.txt", "known are .toml, .fis, .fcl, .fll"),
+        ("convert printed --range 5 a.txt", "known are .toml, .fis, .t2fis, .fcl, .fll, .xml"),
         ("init a.json", "known is .toml"),
         ("campaign merge --to a.csv --out x", "known is .parquet"),
         ("aircraft import a.dml --out a.json", "known is .toml"),

@@ -288,7 +288,7 @@ fn convert_tells_losses_and_writes_nothing_where_they_are_not_allowed() {
     for (arguments, part) in [
         (
             &["convert", "tip.toml", "tip.txt"][..],
-            "unknown ending; known are .toml, .fis, .fcl, .fll",
+            "unknown ending; known are .toml, .fis, .t2fis, .fcl, .fll, .xml",
         ),
         (&["convert", "tip.toml", "tip.fis", "--to", "iec"], "goes with an .fcl file"),
         (&["convert", "nowhere.fcl", "tip.toml"], "there is no such file"),

@@ -126,7 +126,9 @@ fn a_ready_set_brings_its_own_step() {
     let words = ["verify", "a.toml", "--set", "ctms", "--replay", "again", "--junit", "j.xml"];
     let verified = fspid(&words, folder);
     let told = text(&verified.stdout);
-    assert!(told.contains("8 of 8 requirements met; PASS"), "{told}");
+    // The starter has a load in its flight, which the overshoot of the PID and of the FSPID does not bear.
+    assert!(told.contains("6 of 8 requirements met; FAIL"), "{told}");
+    assert!(!told.contains("not evaluated"), "{told}");
     assert!(told.contains("Judged on a flight of their own"), "{told}");
     let answer = json(&fspid(&[&words[..], &["--format", "json"]].concat(), folder));
     let line = &answer["requirements"][0];

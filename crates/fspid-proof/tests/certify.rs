@@ -238,12 +238,12 @@ fn a_rate_that_the_law_is_not_known_to_keep_says_nothing_of_the_flown_loop() {
     let rechecked = good.check().expect("it holds");
     assert_eq!(good.bearing(&rechecked), Bearing::Stable);
     let Claim::AnySpeed { form, .. } = &good.claim else { panic!("{:?}", good.claim) };
-    // A form that moves with kp by a thousandth of itself falls as long as kp moves slowly.
+    // A form that moves with kp by a hundred thousandth of itself falls as long as kp moves slowly.
     let none = Matrix::zeros(form.rows(), form.columns());
     let claim = BoundedRate {
         ends: rechecked.bounds.map(|bounds| [bounds.lower(), bounds.upper()]),
         changes: [0.01, 2.0, 2.0],
-        forms: [form.clone(), form.scaled(1e-3), none.clone(), none],
+        forms: [form.clone(), form.scaled(1e-5), none.clone(), none],
         rate: 1.0,
         inputs: None,
     };
