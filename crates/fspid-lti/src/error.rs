@@ -184,6 +184,14 @@ pub enum LtiError {
         /// The largest share accepted.
         allowed: f64,
     },
+    /// Peaks that nothing bounds from above.
+    #[error(
+        "no bound of the peaks is proved for a loop of {order} states, samples of dead time included; a longer sample period or a shorter dead time has fewer"
+    )]
+    Unproved {
+        /// Number of states.
+        order: usize,
+    },
     /// A question about the peaks of a continuous loop that has none.
     #[error(
         "the closed loop has {unstable_poles} unstable poles; peaks and disks exist for stable loops only"

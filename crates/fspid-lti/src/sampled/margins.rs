@@ -100,7 +100,7 @@ impl SampledLoop {
     ///
     /// # Errors
     /// Poles that rounding may carry across the unit circle, as in states that are nearly dependent; eigenvalues that
-    /// do not converge.
+    /// do not converge; peaks that nothing bounds, as in loops of many hundred states.
     pub fn margins(&self) -> Result<Stability, LtiError> {
         let (poles, spectral_radius, stable) = self.verdict()?;
         if !stable {

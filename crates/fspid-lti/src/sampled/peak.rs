@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use super::bracket::{Bracket, Proof, Top};
+use super::bracket::{Bracket, Proof};
 use super::level_set::Mapped;
 use super::{DiskMargin, SampledLoop, poles, scan, zeta};
 use crate::complex::{Complex, modulus};
@@ -38,7 +38,8 @@ impl SampledLoop {
     /// transfer function matrix, Systems & Control Letters 14 (1990) 287.
     ///
     /// # Errors
-    /// A closed loop that is not stable, or of which rounding hides whether it is; eigenvalues that do not converge.
+    /// A closed loop that is not stable, or of which rounding hides whether it is; eigenvalues that do not converge; a
+    /// loop of so many states, of a long dead time for example, that nothing is proved.
     pub fn peak_sensitivity(&self) -> Result<Peak, LtiError> {
         self.search()?.peak(1.0).map(|(peak, _)| peak)
     }
@@ -98,13 +99,11 @@ impl Search<'_> {
     /// Largest distance of T from a real value, and what is proved of it.
     pub(super) fn peak(&self, centre: f64) -> Result<(Peak, Bracket), LtiError> {
         let found = match self.found(centre) {
-            Err(LtiError::NotConverged { .. }) if self.proof.is_some() => (0.0, 0.0),
+            Err(LtiError::NotConverged { .. }) => (0.0, 0.0),
             found => found?,
         };
-        let top = match &self.proof {
-            Some(proof) => proof.top(centre, found),
-            None => Top::unproved(found),
-        };
+        let top = self.proof.as_ref().and_then(|proof| proof.top(centre, found));
+        let top = top.ok_or(LtiError::Unproved { order: self.open.order() })?;
         let omega_rad_s = top.angle_rad / self.open.dt_s;
         Ok((Peak { value: top.value, omega_rad_s }, top.bracket))
     }

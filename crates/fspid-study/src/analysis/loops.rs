@@ -1,6 +1,6 @@
 //! One controller with every plant that it has to hold.
 
-use fspid_lti::{Complex, LtiError, SampledLoop, Stability};
+use fspid_lti::{Complex, LtiError, SampledLoop, Stability, modulus};
 use fspid_sim::loop_model::BreakPoint;
 use fspid_sim::{
     AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError,
@@ -161,6 +161,13 @@ pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, A
             let poles = open.closed_poles()?;
             let stability = Stability::Unstable { poles, spectral_radius };
             Ok((stability, Err(Absent::Undecided { spectral_radius })))
+        }
+        // Stable perhaps, but nothing good can be said of it.
+        Err(LtiError::Unproved { order }) => {
+            let poles = open.closed_poles()?;
+            let spectral_radius = poles.iter().map(|&pole| modulus(pole)).fold(0.0, f64::max);
+            let stability = Stability::Unstable { poles, spectral_radius };
+            Ok((stability, Err(Absent::NotProved { order })))
         }
         Err(error) => Err(error.into()),
     }

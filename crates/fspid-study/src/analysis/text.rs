@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
+use crate::metrics::Absent;
+
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 use crate::metrics::short;
 use crate::units::degrees;
@@ -80,6 +82,9 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
 fn push_plant(out: &mut String, plant: &PlantLoop) {
     match &plant.margins {
         Ok(margins) => push_margins(out, margins),
+        Err(reason @ (Absent::Undecided { .. } | Absent::NotProved { .. })) => {
+            line(out, format_args!("  no margins         {reason}"));
+        }
         Err(_) => push_unstable(out, plant),
     }
     let oscillating = plant.closed_poles.iter().filter(|pole| pole.im > 0.0);

@@ -51,6 +51,11 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop as computed.
         spectral_radius: f64,
     },
+    /// The loop has so many states that nothing bounds its peaks from above.
+    NotProved {
+        /// Number of states, samples of dead time included.
+        order: usize,
+    },
     /// The controller has no rate loop that could be broken.
     NoRateLoop,
     /// The gains move at rest, and nothing stops them.
@@ -76,6 +81,10 @@ impl fmt::Display for Absent {
             Self::Undecided { spectral_radius } => write!(
                 f,
                 "undecided: rounding may carry poles across the unit circle (spectral radius {spectral_radius:.9} as computed)"
+            ),
+            Self::NotProved { order } => write!(
+                f,
+                "no bound of its peaks is proved: {order} states, samples of dead time included"
             ),
             Self::NoRateLoop => f.write_str("the controller has no rate loop to break"),
             Self::GainsDrift => f.write_str(

@@ -76,13 +76,6 @@ pub(super) struct Top {
     pub(super) bracket: Bracket,
 }
 
-impl Top {
-    /// A peak of which nothing is proved.
-    pub(super) fn unproved((value, angle_rad): (f64, f64)) -> Self {
-        Self { angle_rad, value, bracket: Bracket::unknown() }
-    }
-}
-
 /// A loop whose coefficients are proved.
 #[derive(Debug, Clone)]
 pub(super) struct Proof {
@@ -101,11 +94,12 @@ impl Proof {
     /// The highest point of $|T - t_0|$, from one that was found by other means and its angle.
     ///
     /// The given one comes back as it is if nothing is proved to be higher by more than 10⁻⁹ of it.
-    pub(super) fn top(&self, centre: f64, (value, angle_rad): (f64, f64)) -> Top {
+    /// `None` where no level is proved to be above.
+    pub(super) fn top(&self, centre: f64, (value, angle_rad): (f64, f64)) -> Option<Top> {
         let numerator = self.numerator(centre);
         if numerator.iter().all(|coefficient| coefficient.is_zero()) {
             let bracket = Bracket { at_least: 0.0, at_most: 0.0 };
-            return answer(0.0, bracket, (value, angle_rad));
+            return Some(answer(0.0, bracket, (value, angle_rad)));
         }
         let heights = Heights { over: &numerator, under: &self.closed };
         let given = heights.at(place_of(angle_rad));
@@ -120,7 +114,7 @@ impl Proof {
             match sign::sign(&difference(square, heights.under, heights.over)) {
                 Sign::Positive => {
                     let bracket = Bracket { at_most: level * UP, ..best.bracket };
-                    return answer(best.place, bracket, (value, angle_rad));
+                    return Some(answer(best.place, bracket, (value, angle_rad)));
                 }
                 Sign::Negative(place) => best = heights.climb(place, best),
                 Sign::Hidden(place) => {
@@ -132,20 +126,13 @@ impl Proof {
                 }
             }
         }
-        let bracket = Bracket { at_most: f64::INFINITY, ..best.bracket };
-        answer(best.place, bracket, (value, angle_rad))
+        None
     }
 
     /// Numerator of $T - t_0$, squared.
     fn numerator(&self, centre: f64) -> Vec<Ball> {
         // T − t₀ = ((1 − t₀) N − t₀ D) / (N + D).
-        let scaled = |part: &Real, factor: f64| part.plus(part, Ball::from(factor - 1.0));
-        let over = match (1.0 - centre, centre) {
-            (over, 0.0) if over == 1.0 => return self.parts.over.squared(),
-            (0.0, under) if under == 1.0 => return self.parts.under.squared(),
-            (over, _) => scaled(&self.parts.over, over),
-        };
-        over.plus(&self.parts.under, Ball::from(-centre)).squared()
+        self.parts.over.combined(1.0 - centre, &self.parts.under, -centre).squared()
     }
 
     /// L at an angle: the response that was computed, if it is proved to 10⁻⁹, or else the proved one.

@@ -2,7 +2,6 @@
 
 use super::real::Real;
 use crate::balance::balance;
-use crate::ball::Ball;
 use crate::matrix::Matrix;
 use crate::wide::WideBall;
 
@@ -26,6 +25,65 @@ pub(super) struct Parts {
 impl Parts {
     /// From $A - I$, b and c; `None` where the reduction meets a pivot that may be 0 and need not be.
     ///
+    /// Whole samples of dead time in front are taken out first, and come back exactly.
+    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
+        let mut states = States { change: change.to_vec(), b: b.to_vec(), c: c.to_vec() };
+        let mut dead_samples = 0;
+        while let Some(rest) = states.after_a_dead_sample() {
+            (states, dead_samples) = (rest, dead_samples + 1);
+        }
+        let (mut under, mut over) = states.polynomials()?;
+        // z⁻¹ = (1 − s)/(1 + s), exactly.
+        for _ in 0..dead_samples {
+            under = times_linear(&under, WideBall::from(1.0), WideBall::from(1.0));
+            over = times_one_less_s(&over);
+        }
+        let order = b.len();
+        Some(Self { under: Real::of_s(&under, order), over: Real::of_s(&over, order) })
+    }
+
+    /// Denominator of S and T, $D + N$.
+    pub(super) fn closed(&self) -> Real {
+        self.under.combined(1.0, &self.over, 1.0)
+    }
+}
+
+/// $A - I$ row after row, b and c.
+struct States {
+    change: Vec<WideBall>,
+    b: Vec<WideBall>,
+    c: Vec<f64>,
+}
+
+impl States {
+    /// The loop behind a state that only keeps its input for a sample, if there is one.
+    fn after_a_dead_sample(&self) -> Option<Self> {
+        let order = self.b.len();
+        let mut inputs = (0..order).filter(|&place| !self.b[place].is_zero());
+        let (Some(first), None) = (inputs.next(), inputs.next()) else { return None };
+        let row = &self.change[first * order..(first + 1) * order];
+        let forgets = row.iter().enumerate().all(|(column, entry)| {
+            if column == first {
+                entry.plus(&WideBall::from(1.0)).is_zero()
+            } else {
+                entry.is_zero()
+            }
+        });
+        if !forgets || self.c[first] != 0.0 || order < 2 {
+            return None;
+        }
+        let others = || (0..order).filter(move |&place| place != first);
+        let entries = others().flat_map(|row| others().map(move |column| (row, column)));
+        let input = |row: usize| self.b[first].times(&self.change[row * order + first]);
+        Some(Self {
+            change: entries.map(|(row, column)| self.change[row * order + column]).collect(),
+            b: others().map(input).collect(),
+            c: others().map(|place| self.c[place]).collect(),
+        })
+    }
+
+    /// D and N over s, lowest power first.
+    ///
     /// With the output turned into the last unit vector by an elimination whose every step carries its bounds, L is
     ///
     /// $$ D = \det(\zeta I - H), \quad N = \gamma \sum_j b_j \det(\zeta I - H)_{j+1..} \prod_{m \le j} h_{m,m-1} $$
@@ -36,9 +94,9 @@ impl Parts {
     /// # Source
     /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
     /// (1965), chapter 7.
-    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
-        let system = Square::bordered(change, b, c).reduced()?;
-        let order = b.len();
+    fn polynomials(&self) -> Option<(Vec<WideBall>, Vec<WideBall>)> {
+        let system = Square::bordered(&self.change, &self.b, &self.c).reduced()?;
+        let order = self.b.len();
         let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
         // minors[k] is the determinant of the rows and columns from k on, over (1 - s) to the power that is left.
         let mut minors: Vec<Vec<WideBall>> = vec![vec![WideBall::from(1.0)]];
@@ -67,12 +125,7 @@ impl Parts {
             }
             add(&mut over, minor, entry.times(&system.at(0, 1 + place)));
         }
-        Some(Self { under: Real::of_s(&under, order), over: Real::of_s(&over, order) })
-    }
-
-    /// Denominator of S and T, $D + N$.
-    pub(super) fn closed(&self) -> Real {
-        self.under.plus(&self.over, Ball::from(1.0))
+        Some((under, over))
     }
 }
 

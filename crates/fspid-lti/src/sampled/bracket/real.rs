@@ -5,10 +5,13 @@ use crate::complex::Complex;
 use crate::wide::WideBall;
 
 /// $R(w) + j t\, I(w)$, $w = t^2$: a polynomial in $s = j t$.
+///
+/// With 256 bits: where all modes are fast, as those of a long dead time, the coefficients are far larger than what they
+/// sum up to.
 #[derive(Debug, Clone)]
 pub(super) struct Real {
-    pub(super) even: Vec<Ball>,
-    pub(super) odd: Vec<Ball>,
+    even: Vec<WideBall>,
+    odd: Vec<WideBall>,
 }
 
 impl Real {
@@ -17,7 +20,7 @@ impl Real {
         let every_second = |first: usize| {
             let places = (first..=degree).step_by(2).enumerate();
             let signed = places.map(|(index, power)| {
-                let value = coefficients.get(power).map_or(Ball::ZERO, WideBall::ball);
+                let value = coefficients.get(power).copied().unwrap_or(WideBall::ZERO);
                 if index % 2 == 0 { value } else { value.negative() }
             });
             signed.collect()
@@ -31,47 +34,58 @@ impl Real {
         let tangent = sin / cos;
         let place = tangent * tangent;
         if place <= 1.0 {
-            let part = |part: &[Ball]| value(part.iter().rev(), place).rounded();
+            let part = |part: &[WideBall]| rounded_value(part.iter().rev(), place);
             return Complex::new(part(&self.even), tangent * part(&self.odd));
         }
-        let part = |part: &[Ball]| value(part.iter(), 1.0 / place).rounded();
+        let part = |part: &[WideBall]| rounded_value(part.iter(), 1.0 / place);
         // An even degree is that of the even part alone.
         let factor = if self.even.len() > self.odd.len() { 1.0 / tangent } else { tangent };
         Complex::new(part(&self.even), factor * part(&self.odd))
     }
 
-    /// The sum with a multiple of another.
-    pub(super) fn plus(&self, other: &Self, factor: Ball) -> Self {
-        let sum = |own: &[Ball], others: &[Ball]| {
-            own.iter().zip(others).map(|(own, other)| own.plus(factor.times(*other))).collect()
+    /// The sum with another, with factors on both.
+    pub(super) fn combined(&self, factor: f64, other: &Self, others: f64) -> Self {
+        let (own_factor, other_factor) = (WideBall::from(factor), WideBall::from(others));
+        let sum = |own: &[WideBall], other: &[WideBall]| {
+            let terms = own.iter().zip(other);
+            terms
+                .map(|(own, other)| own_factor.times(own).plus(&other_factor.times(other)))
+                .collect()
         };
         Self { even: sum(&self.even, &other.even), odd: sum(&self.odd, &other.odd) }
     }
 
     /// $|R + j t I|^2 = R^2 + w I^2$.
     pub(super) fn squared(&self) -> Vec<Ball> {
-        let mut sum = vec![Ball::ZERO; self.even.len() + self.odd.len()];
+        let mut sum = vec![WideBall::ZERO; self.even.len() + self.odd.len()];
         add_product(&mut sum, &self.even, &self.even);
         add_product(&mut sum[1..], &self.odd, &self.odd);
-        sum
+        sum.iter().map(WideBall::ball).collect()
     }
 
     /// Imaginary part of the product with the conjugate of another, over t.
     pub(super) fn across(&self, other: &Self) -> Vec<Ball> {
-        let mut sum = vec![Ball::ZERO; (self.even.len() + self.odd.len()).saturating_sub(1).max(1)];
+        let count = (self.even.len() + self.odd.len()).saturating_sub(1).max(1);
+        let mut sum = vec![WideBall::ZERO; count];
         add_product(&mut sum, &self.odd, &other.even);
-        let negative: Vec<Ball> = self.even.iter().map(|value| value.negative()).collect();
+        let negative: Vec<WideBall> = self.even.iter().map(|value| value.negative()).collect();
         add_product(&mut sum, &negative, &other.odd);
-        sum
+        sum.iter().map(WideBall::ball).collect()
     }
 }
 
-fn add_product(sum: &mut [Ball], left: &[Ball], right: &[Ball]) {
-    for (i, &left) in left.iter().enumerate() {
-        for (sum, &right) in sum[i..].iter_mut().zip(right) {
-            *sum = sum.plus(left.times(right));
+fn add_product(sum: &mut [WideBall], left: &[WideBall], right: &[WideBall]) {
+    for (i, left) in left.iter().enumerate() {
+        for (sum, right) in sum[i..].iter_mut().zip(right) {
+            *sum = sum.plus(&left.times(right));
         }
     }
+}
+
+fn rounded_value<'a>(coefficients: impl Iterator<Item = &'a WideBall>, place: f64) -> f64 {
+    let place = WideBall::from(place);
+    let sum = |sum: WideBall, coefficient: &WideBall| sum.times(&place).plus(coefficient);
+    coefficients.fold(WideBall::ZERO, sum).rounded()
 }
 
 /// A multiple of one polynomial less another of the same length.
