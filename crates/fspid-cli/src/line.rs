@@ -21,7 +21,16 @@ pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
     output.set();
     let command = prepared(P::command());
     let matches = command.clone().try_get_matches_from(words).map_err(failure)?;
-    let files = to_standard_output(&command, &matches);
+    let is_read = |it: &Arg| is::<InFile>(it) || is::<Source>(it);
+    let read = standard_files(&command, &matches, &is_read);
+    if read.len() > 1 {
+        return Err(Some(Failure::input(format_args!(
+            "standard input is one file, and {} - ask for it",
+            read.join(" - and ")
+        ))));
+    }
+    let is_written = |it: &Arg| is::<OutFile>(it) || is::<Drawings>(it);
+    let files = standard_files(&command, &matches, &is_written);
     match (files.as_slice(), as_json) {
         ([], _) => {}
         ([one], true) => {
@@ -83,19 +92,22 @@ pub(crate) fn is<T: 'static>(argument: &Arg) -> bool {
     argument.get_value_parser().type_id() == TypeId::of::<T>()
 }
 
-/// The arguments that write a file to standard output.
-fn to_standard_output(command: &Command, matches: &ArgMatches) -> Vec<String> {
+/// The arguments of a kind that are given as `-`; one that is given so twice stands twice.
+fn standard_files(
+    command: &Command,
+    matches: &ArgMatches,
+    is_kind: &dyn Fn(&Arg) -> bool,
+) -> Vec<String> {
     if let Some((name, matches)) = matches.subcommand() {
         let below = command.find_subcommand(name);
-        return below.map_or(Vec::new(), |command| to_standard_output(command, matches));
+        return below.map_or(Vec::new(), |command| standard_files(command, matches, is_kind));
     }
-    let arguments = command.get_arguments();
-    let written = arguments.filter(|it| is::<OutFile>(it) || is::<Drawings>(it));
-    let standard = written.filter(|argument| {
-        let values = matches.get_raw(argument.get_id().as_str());
-        values.is_some_and(|mut values| values.any(|value| value == STANDARD))
-    });
-    standard.map(name).collect()
+    let standard = |argument: &Arg| {
+        let values = matches.get_raw(argument.get_id().as_str()).into_iter().flatten();
+        let name = name(argument);
+        values.filter(|value| *value == STANDARD).map(move |_| name.clone()).collect::<Vec<_>>()
+    };
+    command.get_arguments().filter(|it| is_kind(it)).flat_map(standard).collect()
 }
 
 /// An argument as it is written.

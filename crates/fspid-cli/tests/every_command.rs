@@ -212,6 +212,8 @@ fn a_hyphen_is_standard_input_and_output() {
     assert!(!folder.join("-").exists(), "no file of that name was written");
     let both = with_input(&["simulate", "-", "--trace", "-", "--report", "-"], folder, &scenario);
     assert!(code(&both) == 2 && text(&both.stderr).contains("standard output holds one thing"));
+    let both = with_input(&["verify", "-", "--requirements", "-"], folder, &scenario);
+    assert!(code(&both) == 2 && text(&both.stderr).contains("standard input is one file"));
 }
 
 /// `surface x.fis --out tipper.png` made a folder of that name.
