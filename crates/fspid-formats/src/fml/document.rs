@@ -190,9 +190,9 @@ impl<'i> Context<'i> {
         for attribute in element.0.attributes().filter(|found| found.namespace().is_none()) {
             let is = |name: &&str| attribute.name().eq_ignore_ascii_case(name);
             let start = attribute.range().start;
-            if ["networkAddress", "ip"].iter().any(|name| is(&name)) {
+            if ["networkAddress", "ip"].iter().any(is) {
                 self.note_once(start, "a network address is not used");
-            } else if !names.iter().any(|name| is(name)) {
+            } else if !names.iter().any(is) {
                 let message = format!("not an attribute of <{}>", element.name());
                 let expected = known(names.iter().copied(), attribute.name());
                 self.problem(start, attribute.name(), message, expected);
