@@ -5,9 +5,7 @@ mod support;
 use fspid_aircraft::data::{DerivativeData, Laws, Loading, Moment};
 use fspid_aircraft::linearise::VelocityForm;
 use fspid_aircraft::modes::longitudinal_modes;
-use fspid_aircraft::{
-    AirMotion, AircraftError, Controls, Environment, Flow, ForceModel, TrimTarget, Vector3,
-};
+use fspid_aircraft::{AircraftError, Controls, Environment, Flow, ForceModel, TrimTarget, Vector3};
 use proptest::prelude::*;
 use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, derivative_data};
 

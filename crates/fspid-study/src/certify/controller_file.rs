@@ -9,6 +9,9 @@ use fspid_sim::Controller;
 use serde::{Deserialize, Serialize};
 
 /// A controller as written.
+/// Most samples of a defuzzifier: its surface is enclosed, and a million of them took 800 MB.
+const MOST_SAMPLED: u32 = 10_000;
+
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ControllerFile {
@@ -266,9 +269,27 @@ impl TunerFile {
             format!("out_of_range: \"{}\"; allowed are {}", self.out_of_range, known.join(", "))
         })?;
         let defuzzifier: Defuzzifier = self.defuzzifier.parse().map_err(said("defuzzifier"))?;
+        if samples(defuzzifier).is_some_and(|samples| samples > MOST_SAMPLED) {
+            return Err(format!(
+                "defuzzifier: \"{}\"; allowed are up to {MOST_SAMPLED} samples",
+                self.defuzzifier
+            ));
+        }
         let rules = self.rules.as_ref().ok_or("rules: none; no proof speaks of numbers")?;
         let table = rules.build()?;
         Supervisor::new(&table, self.range, defuzzifier, policy).map_err(said("supervisor"))
+    }
+}
+
+/// How many samples a defuzzifier takes; `None` for the exact one.
+fn samples(defuzzifier: Defuzzifier) -> Option<u32> {
+    match defuzzifier {
+        Defuzzifier::Exact => None,
+        Defuzzifier::Endpoints(count)
+        | Defuzzifier::Midpoint(count)
+        | Defuzzifier::Trapezoid(count)
+        | Defuzzifier::LeftEnd(count)
+        | Defuzzifier::Vertices(count) => Some(count),
     }
 }
 

@@ -92,6 +92,7 @@ pub const COVERAGE: &[Row] = &[
         "it changes what wind is met, and the air is calm in the claim",
     ),
     row("aircraft.ground_m", Beside, LINEAR_AT_TRIM),
+    row("aircraft.validity", NoPart, AIM),
     row("actuator.preset", Covered, "the parts that it stands for"),
     row("actuator.time_constant_s", Covered, "exactly held between samples"),
     row("actuator.natural_frequency_rad_s", Covered, "exactly held between samples"),

@@ -76,7 +76,7 @@ const MISTAKES: [(&str, &str, &str); 36] = [
     ("a set at the end of the range", "range = 5.0", "range = 5.0\nerror_sets = [0.3, 1.0]"),
     ("an unknown defuzzifier", "range = 5.0", "range = 5.0\ndefuzzifier = \"centroid\""),
     ("a rule file that is not there", "table = \"mirrored\"", "table = \"my-rules.toml\""),
-    ("a table for a list of tables", "[setpoint]", "[disturbance]\nkind = \"step\"\n\n[setpoint]"),
+    ("a table for a list of tables", "[[disturbance]]", "[disturbance]"),
     ("no TOML", "duration_s = 10.0", "duration_s = 10,0"),
 ];
 

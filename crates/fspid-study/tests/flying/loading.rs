@@ -5,7 +5,9 @@ use fspid_study::file;
 
 use crate::{NAVION, apart, column, flown, study};
 
-const AT_THE_REFERENCE: [&str; 2] = ["aircraft.airspeed_ft_s=176", "aircraft.altitude_ft=0"];
+/// At sea level, over ground that is lower: a flight begins above it.
+const AT_THE_REFERENCE: [&str; 3] =
+    ["aircraft.airspeed_ft_s=176", "aircraft.altitude_ft=0", "aircraft.ground_m=-1000"];
 /// 2000 lbf by the 32.2 ft/s² of the Navion's source.
 const LIGHT: &str = "aircraft.mass_kg=906.4536";
 
@@ -85,7 +87,9 @@ fn a_climbing_aircraft_answers_small_commands_as_its_linear_model() {
     let nonlinear = flown(NAVION, &climb);
     let linear = flown(NAVION, &[&climb[..], &["aircraft.model=linear"]].concat());
     let most = linear.theta_rad.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    assert!(apart(&nonlinear.theta_rad, &linear.theta_rad) < 0.01 * most);
+    let apart = apart(&nonlinear.theta_rad, &linear.theta_rad);
+    // In 5 s it climbs 14 m, into air that is 0.13 % thinner, which the linear model does not know.
+    assert!(apart < 0.03 * most, "{apart} of {most}");
 }
 
 /// Down through the layer near the ground the same seed is rougher along and shorter: not that of the start.

@@ -169,7 +169,10 @@ fn a_slice_is_drawn_with_its_names_and_refuses_what_is_not_there() {
         ..SliceQuestion::default()
     };
     let told = slice(&system, &question).expect_err("wrong").to_string();
-    assert!(told.contains("did you mean food?") && told.contains("did you mean tip?"), "{told}");
+    assert!(
+        told.contains("did you mean `food`?") && told.contains("did you mean `tip`?"),
+        "{told}"
+    );
     assert!(slice(&system, &SliceQuestion { nodes: Some(1), ..SliceQuestion::default() }).is_err());
     let question = SliceQuestion { x: Some("food"), y: Some("food"), ..SliceQuestion::default() };
     assert!(slice(&system, &question).is_err());

@@ -90,5 +90,5 @@ fn numbers_are_proved_bounds_by_name_and_the_page_stands_alone() {
     let wrong = values(&["fod=1..2", "food=2..1"]);
     let question = AuditQuestion { spans: &wrong, ..QUICK };
     let told = audit(&system, &question).expect_err("wrong").to_string();
-    assert!(told.contains("did you mean food?") && told.contains("NAME=LOWER..UPPER"), "{told}");
+    assert!(told.contains("did you mean `food`?") && told.contains("NAME=LOWER..UPPER"), "{told}");
 }

@@ -86,7 +86,7 @@ fn a_conclusion_that_was_not_drawn_names_the_statement_that_held_it_down() {
     let text = found.text();
     assert!(text.contains("0.250000  food is very delicious  <- holds it down"), "{text}");
     let told = explain(&system, &inputs, Some("tip=generos")).expect_err("wrong").to_string();
-    assert!(told.contains("did you mean generous?"), "{told}");
+    assert!(told.contains("did you mean `generous`?"), "{told}");
 }
 
 #[test]
