@@ -36,6 +36,8 @@ const MORE_ROOM: f64 = 30.0;
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// Up to this order twice the working precision is enough.
 const ORDER_SHORT: usize = 40;
+/// And up to this one 512 bits.
+const ORDER_LONG: usize = 110;
 
 /// What is proved of a number: it lies between these two.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,8 +86,10 @@ pub(super) struct Top {
 pub(super) enum Proof {
     /// Coefficients of 256 bits, proofs with twice the working precision.
     Short(Proved<4>),
-    /// Each sample of a dead time takes a binary digit: 512 bits throughout.
+    /// Each sample of a dead time takes a binary digit or two: 512 bits throughout.
     Long(Proved<8>),
+    /// And 1024.
+    Longest(Proved<16>),
 }
 
 /// The same with so many words of 64 bits.
@@ -101,8 +105,10 @@ impl Proof {
     pub(super) fn new(change: &[[f64; 2]], b: &[[f64; 2]], c: &[f64]) -> Option<Self> {
         if b.len() <= ORDER_SHORT {
             Proved::new(change, b, c).map(Self::Short)
-        } else {
+        } else if b.len() <= ORDER_LONG {
             Proved::new(change, b, c).map(Self::Long)
+        } else {
+            Proved::new(change, b, c).map(Self::Longest)
         }
     }
 
@@ -114,6 +120,7 @@ impl Proof {
         match self {
             Self::Short(it) => top(&balls(&it.numerator(centre)), &balls(&it.closed), found),
             Self::Long(it) => top(&it.numerator(centre), &it.closed, found),
+            Self::Longest(it) => top(&it.numerator(centre), &it.closed, found),
         }
     }
 
@@ -122,6 +129,7 @@ impl Proof {
         let proved = match self {
             Self::Short(it) => it.response(angle_rad),
             Self::Long(it) => it.response(angle_rad),
+            Self::Longest(it) => it.response(angle_rad),
         };
         let (cross, other) = (computed.over * proved.under, proved.over * computed.under);
         if modulus(cross - other) <= ABOVE * modulus(other) { computed } else { proved }
@@ -135,6 +143,7 @@ impl Proof {
         match self {
             Self::Short(it) => changes_around(&it.across(), angle_rad),
             Self::Long(it) => changes_around(&it.across(), angle_rad),
+            Self::Longest(it) => changes_around(&it.across(), angle_rad),
         }
     }
 
@@ -143,6 +152,7 @@ impl Proof {
         match self {
             Self::Short(it) => completed(given, ends, &balls(&it.above_one())),
             Self::Long(it) => completed(given, ends, &it.above_one()),
+            Self::Longest(it) => completed(given, ends, &it.above_one()),
         }
     }
 
@@ -151,6 +161,7 @@ impl Proof {
         match self {
             Self::Short(it) => completed(given, ends, &balls(&it.across())),
             Self::Long(it) => completed(given, ends, &it.across()),
+            Self::Longest(it) => completed(given, ends, &it.across()),
         }
     }
 }
