@@ -27,7 +27,6 @@ use crate::complex::{Complex, modulus};
 use crate::error::LtiError;
 use crate::fine::FineMatrix;
 use crate::matrix::Matrix;
-use crate::wide::WideBall;
 use bracket::Proof;
 use reduced::{Reduced, Response};
 
@@ -117,18 +116,16 @@ impl SampledLoop {
 
     /// The same with a factor on its gain.
     fn proof_scaled(&self, factor: f64) -> Option<Proof> {
-        let sum = |(&high, &low): (&f64, &f64)| WideBall::sum([high, low]);
-        let [change, b]: [Vec<WideBall>; 2] = match &self.change {
-            Some(parts) => parts
-                .each_ref()
-                .map(|part| part.high().data().iter().zip(part.low().data()).map(sum).collect()),
+        let [change, b]: [Vec<[f64; 2]>; 2] = match &self.change {
+            Some(parts) => parts.each_ref().map(|part| {
+                part.high().data().iter().zip(part.low().data()).map(|(&h, &l)| [h, l]).collect()
+            }),
             None => {
+                let one =
+                    |index: usize| if index.is_multiple_of(self.order() + 1) { 1.0 } else { 0.0 };
                 let entries = self.a.data().iter().enumerate();
-                let less_one = entries.map(|(index, &entry)| {
-                    let one = if index.is_multiple_of(self.order() + 1) { 1.0 } else { 0.0 };
-                    WideBall::sum([entry, -one])
-                });
-                [less_one.collect(), self.b.iter().map(|&b| b.into()).collect()]
+                let less_one = entries.map(|(index, &entry)| [entry, -one(index)]).collect();
+                [less_one, self.b.iter().map(|&b| [b, 0.0]).collect()]
             }
         };
         let c: Vec<f64> = self.c.iter().map(|c| factor * c).collect();

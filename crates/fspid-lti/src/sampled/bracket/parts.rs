@@ -6,28 +6,29 @@ use crate::matrix::Matrix;
 use crate::wide::WideBall;
 
 /// A square array of numbers with bounds.
-struct Square {
+struct Square<const W: usize> {
     size: usize,
-    data: Vec<WideBall>,
+    data: Vec<WideBall<W>>,
 }
 
 /// $L = N / D$ on the upper half of the unit circle, over a common factor.
 ///
 /// In $s = (z - 1)/(z + 1) = j \tan (\omega T / 2)$ both are polynomials over $(1 - s)^n$, which cancels.
 #[derive(Debug, Clone)]
-pub(super) struct Parts {
+pub(super) struct Parts<const W: usize> {
     /// D: 0 where L has a pole.
-    pub(super) under: Real,
+    pub(super) under: Real<W>,
     /// N.
-    pub(super) over: Real,
+    pub(super) over: Real<W>,
 }
 
-impl Parts {
+impl<const W: usize> Parts<W> {
     /// From $A - I$, b and c; `None` where the reduction meets a pivot that may be 0 and need not be.
     ///
     /// Whole samples of dead time in front are taken out first, and come back exactly.
-    pub(super) fn new(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Option<Self> {
-        let mut states = States { change: change.to_vec(), b: b.to_vec(), c: c.to_vec() };
+    pub(super) fn new(change: Vec<WideBall<W>>, b: Vec<WideBall<W>>, c: &[f64]) -> Option<Self> {
+        let order = b.len();
+        let mut states = States { change, b, c: c.to_vec() };
         let mut dead_samples = 0;
         while let Some(rest) = states.after_a_dead_sample() {
             (states, dead_samples) = (rest, dead_samples + 1);
@@ -38,24 +39,23 @@ impl Parts {
             under = times_linear(&under, WideBall::from(1.0), WideBall::from(1.0));
             over = times_one_less_s(&over);
         }
-        let order = b.len();
         Some(Self { under: Real::of_s(&under, order), over: Real::of_s(&over, order) })
     }
 
     /// Denominator of S and T, $D + N$.
-    pub(super) fn closed(&self) -> Real {
+    pub(super) fn closed(&self) -> Real<W> {
         self.under.combined(1.0, &self.over, 1.0)
     }
 }
 
 /// $A - I$ row after row, b and c.
-struct States {
-    change: Vec<WideBall>,
-    b: Vec<WideBall>,
+struct States<const W: usize> {
+    change: Vec<WideBall<W>>,
+    b: Vec<WideBall<W>>,
     c: Vec<f64>,
 }
 
-impl States {
+impl<const W: usize> States<W> {
     /// The loop behind a state that only keeps its input for a sample, if there is one.
     fn after_a_dead_sample(&self) -> Option<Self> {
         let order = self.b.len();
@@ -94,13 +94,13 @@ impl States {
     /// # Source
     /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
     /// (1965), chapter 7.
-    fn polynomials(&self) -> Option<(Vec<WideBall>, Vec<WideBall>)> {
+    fn polynomials(&self) -> Option<(Vec<WideBall<W>>, Vec<WideBall<W>>)> {
         let system = Square::bordered(&self.change, &self.b, &self.c).reduced()?;
         let order = self.b.len();
         let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
         // minors[k] is the determinant of the rows and columns from k on, over (1 - s) to the power that is left.
-        let mut minors: Vec<Vec<WideBall>> = vec![vec![WideBall::from(1.0)]];
-        let mut over: Vec<WideBall> = vec![WideBall::ZERO];
+        let mut minors: Vec<Vec<WideBall<W>>> = vec![vec![WideBall::from(1.0)]];
+        let mut over: Vec<WideBall<W>> = vec![WideBall::ZERO];
         for row in (0..order).rev() {
             let corner = h(row, row);
             let lead = corner.plus(&WideBall::from(2.0));
@@ -130,7 +130,11 @@ impl States {
 }
 
 /// Times $a + b s$.
-fn times_linear(polynomial: &[WideBall], a: WideBall, b: WideBall) -> Vec<WideBall> {
+fn times_linear<const W: usize>(
+    polynomial: &[WideBall<W>],
+    a: WideBall<W>,
+    b: WideBall<W>,
+) -> Vec<WideBall<W>> {
     let mut product = vec![WideBall::ZERO; polynomial.len() + 1];
     for (power, value) in polynomial.iter().enumerate() {
         product[power] = product[power].plus(&a.times(value));
@@ -140,7 +144,7 @@ fn times_linear(polynomial: &[WideBall], a: WideBall, b: WideBall) -> Vec<WideBa
 }
 
 /// Times $1 - s$.
-fn times_one_less_s(polynomial: &[WideBall]) -> Vec<WideBall> {
+fn times_one_less_s<const W: usize>(polynomial: &[WideBall<W>]) -> Vec<WideBall<W>> {
     let mut product = polynomial.to_vec();
     product.push(WideBall::ZERO);
     for (power, value) in polynomial.iter().enumerate() {
@@ -149,7 +153,11 @@ fn times_one_less_s(polynomial: &[WideBall]) -> Vec<WideBall> {
     product
 }
 
-fn add(sum: &mut Vec<WideBall>, polynomial: &[WideBall], factor: WideBall) {
+fn add<const W: usize>(
+    sum: &mut Vec<WideBall<W>>,
+    polynomial: &[WideBall<W>],
+    factor: WideBall<W>,
+) {
     if factor.is_zero() {
         return;
     }
@@ -161,13 +169,13 @@ fn add(sum: &mut Vec<WideBall>, polynomial: &[WideBall], factor: WideBall) {
     }
 }
 
-impl Square {
-    fn at(&self, row: usize, column: usize) -> WideBall {
+impl<const W: usize> Square<W> {
+    fn at(&self, row: usize, column: usize) -> WideBall<W> {
         self.data[row * self.size + column]
     }
 
     /// The loop with b as its first row and c as its first column, transposed about the other diagonal, balanced.
-    fn bordered(change: &[WideBall], b: &[WideBall], c: &[f64]) -> Self {
+    fn bordered(change: &[WideBall<W>], b: &[WideBall<W>], c: &[f64]) -> Self {
         let order = b.len();
         let size = order + 1;
         let entry = |row: usize, column: usize| match (row.checked_sub(1), column.checked_sub(1)) {
@@ -176,7 +184,7 @@ impl Square {
             (None, Some(column)) => b[order - 1 - column],
             (None, None) => WideBall::ZERO,
         };
-        let data: Vec<WideBall> =
+        let data: Vec<WideBall<W>> =
             (0..size * size).map(|index| entry(index / size, index % size)).collect();
         let mut plain =
             Matrix::from_function(size, size, |row, column| data[row * size + column].rounded());
@@ -223,7 +231,7 @@ impl Square {
     }
 
     /// Takes a multiple of the target's row from a row, and adds the multiple of its column to the target's.
-    fn eliminate(&mut self, row: usize, target: usize, column: usize, factor: WideBall) {
+    fn eliminate(&mut self, row: usize, target: usize, column: usize, factor: WideBall<W>) {
         let size = self.size;
         self.data[row * size + column] = WideBall::ZERO;
         for k in column + 1..size {

@@ -1,22 +1,22 @@
 //! Real polynomials in $w = \tan^2(\omega T / 2)$ that are proved.
 
-use crate::ball::Ball;
+use super::number::Number;
 use crate::complex::Complex;
 use crate::wide::WideBall;
 
 /// $R(w) + j t\, I(w)$, $w = t^2$: a polynomial in $s = j t$.
 ///
-/// With 256 bits: where all modes are fast, as those of a long dead time, the coefficients are far larger than what they
+/// With 256 bits and more: where all modes are fast, as those of a long dead time, the coefficients are far larger than what they
 /// sum up to.
 #[derive(Debug, Clone)]
-pub(super) struct Real {
-    even: Vec<WideBall>,
-    odd: Vec<WideBall>,
+pub(super) struct Real<const W: usize> {
+    even: Vec<WideBall<W>>,
+    odd: Vec<WideBall<W>>,
 }
 
-impl Real {
+impl<const W: usize> Real<W> {
     /// From coefficients over s, lowest power first, of at most this degree.
-    pub(super) fn of_s(coefficients: &[WideBall], degree: usize) -> Self {
+    pub(super) fn of_s(coefficients: &[WideBall<W>], degree: usize) -> Self {
         let every_second = |first: usize| {
             let places = (first..=degree).step_by(2).enumerate();
             let signed = places.map(|(index, power)| {
@@ -34,10 +34,10 @@ impl Real {
         let tangent = sin / cos;
         let place = tangent * tangent;
         if place <= 1.0 {
-            let part = |part: &[WideBall]| rounded_value(part.iter().rev(), place);
+            let part = |part: &[WideBall<W>]| value(part.iter().rev(), place).rounded();
             return Complex::new(part(&self.even), tangent * part(&self.odd));
         }
-        let part = |part: &[WideBall]| rounded_value(part.iter(), 1.0 / place);
+        let part = |part: &[WideBall<W>]| value(part.iter(), 1.0 / place).rounded();
         // An even degree is that of the even part alone.
         let factor = if self.even.len() > self.odd.len() { 1.0 / tangent } else { tangent };
         Complex::new(part(&self.even), factor * part(&self.odd))
@@ -46,7 +46,7 @@ impl Real {
     /// The sum with another, with factors on both.
     pub(super) fn combined(&self, factor: f64, other: &Self, others: f64) -> Self {
         let (own_factor, other_factor) = (WideBall::from(factor), WideBall::from(others));
-        let sum = |own: &[WideBall], other: &[WideBall]| {
+        let sum = |own: &[WideBall<W>], other: &[WideBall<W>]| {
             let terms = own.iter().zip(other);
             terms
                 .map(|(own, other)| own_factor.times(own).plus(&other_factor.times(other)))
@@ -56,25 +56,29 @@ impl Real {
     }
 
     /// $|R + j t I|^2 = R^2 + w I^2$.
-    pub(super) fn squared(&self) -> Vec<Ball> {
+    pub(super) fn squared(&self) -> Vec<WideBall<W>> {
         let mut sum = vec![WideBall::ZERO; self.even.len() + self.odd.len()];
         add_product(&mut sum, &self.even, &self.even);
         add_product(&mut sum[1..], &self.odd, &self.odd);
-        sum.iter().map(WideBall::ball).collect()
+        sum
     }
 
     /// Imaginary part of the product with the conjugate of another, over t.
-    pub(super) fn across(&self, other: &Self) -> Vec<Ball> {
+    pub(super) fn across(&self, other: &Self) -> Vec<WideBall<W>> {
         let count = (self.even.len() + self.odd.len()).saturating_sub(1).max(1);
         let mut sum = vec![WideBall::ZERO; count];
         add_product(&mut sum, &self.odd, &other.even);
-        let negative: Vec<WideBall> = self.even.iter().map(|value| value.negative()).collect();
+        let negative: Vec<WideBall<W>> = self.even.iter().map(|value| value.negative()).collect();
         add_product(&mut sum, &negative, &other.odd);
-        sum.iter().map(WideBall::ball).collect()
+        sum
     }
 }
 
-fn add_product(sum: &mut [WideBall], left: &[WideBall], right: &[WideBall]) {
+fn add_product<const W: usize>(
+    sum: &mut [WideBall<W>],
+    left: &[WideBall<W>],
+    right: &[WideBall<W>],
+) {
     for (i, left) in left.iter().enumerate() {
         for (sum, right) in sum[i..].iter_mut().zip(right) {
             *sum = sum.plus(&left.times(right));
@@ -82,19 +86,22 @@ fn add_product(sum: &mut [WideBall], left: &[WideBall], right: &[WideBall]) {
     }
 }
 
-fn rounded_value<'a>(coefficients: impl Iterator<Item = &'a WideBall>, place: f64) -> f64 {
-    let place = WideBall::from(place);
-    let sum = |sum: WideBall, coefficient: &WideBall| sum.times(&place).plus(coefficient);
-    coefficients.fold(WideBall::ZERO, sum).rounded()
+/// A multiple of one polynomial less another of the same length.
+pub(super) fn difference<T: Number>(factor: T, left: &[T], right: &[T]) -> Vec<T> {
+    left.iter().zip(right).map(|(&left, &right)| factor.product(left).less(right)).collect()
 }
 
-/// A multiple of one polynomial less another of the same length.
-pub(super) fn difference(factor: Ball, left: &[Ball], right: &[Ball]) -> Vec<Ball> {
-    left.iter().zip(right).map(|(left, right)| factor.times(*left).minus(*right)).collect()
+/// Value at a place, over a power of it where it is beyond 1.
+pub(super) fn value_at<T: Number>(polynomial: &[T], place: f64) -> T {
+    if place <= 1.0 {
+        value(polynomial.iter().rev(), place)
+    } else {
+        value(polynomial.iter(), 1.0 / place)
+    }
 }
 
 /// Sum of coefficients, the last power first, times powers of a place.
-pub(super) fn value<'a>(coefficients: impl Iterator<Item = &'a Ball>, place: f64) -> Ball {
-    let place = Ball::from(place);
-    coefficients.fold(Ball::ZERO, |sum, &coefficient| sum.times(place).plus(coefficient))
+fn value<'a, T: Number + 'a>(coefficients: impl Iterator<Item = &'a T>, place: f64) -> T {
+    let place = T::from(place);
+    coefficients.fold(T::ZERO, |sum, &coefficient| sum.product(place).sum(coefficient))
 }

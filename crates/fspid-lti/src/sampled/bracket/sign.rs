@@ -9,7 +9,7 @@
 //! Design 4 (1987) 191; the rule of signs on an interval: A. Eigenwillig, Real root isolation for exact and
 //! approximate polynomials using Descartes' rule of signs, Saarbrücken (2008), section 2.
 
-use crate::ball::Ball;
+use super::number::Number;
 use crate::wide::power_of_two;
 
 /// Stretches end at powers of this, by its exponent of 2.
@@ -42,7 +42,7 @@ pub(super) struct Between {
 }
 
 /// The sign of a polynomial over $w \geq 0$.
-pub(super) fn sign(polynomial: &[Ball]) -> Sign {
+pub(super) fn sign<T: Number>(polynomial: &[T]) -> Sign {
     let mut found = Sign::Positive;
     stretches(polynomial, Plain::is_positive, &mut |stretch| {
         found = stretch.sign(0);
@@ -52,7 +52,7 @@ pub(super) fn sign(polynomial: &[Ball]) -> Sign {
 }
 
 /// Where a polynomial has its zeros, for $w > 0$.
-pub(super) fn zeros(polynomial: &[Ball]) -> Vec<Between> {
+pub(super) fn zeros<T: Number>(polynomial: &[T]) -> Vec<Between> {
     let mut found = Vec::new();
     stretches(polynomial, Plain::has_one_sign, &mut |stretch| {
         stretch.zeros(0, &mut found);
@@ -63,13 +63,13 @@ pub(super) fn zeros(polynomial: &[Ball]) -> Vec<Between> {
 }
 
 /// Hands over the stretches that plain numbers leave open, until told to stop.
-fn stretches(
-    polynomial: &[Ball],
+fn stretches<T: Number>(
+    polynomial: &[T],
     closed: impl Fn(&Plain) -> bool,
-    look: &mut impl FnMut(Stretch) -> bool,
+    look: &mut impl FnMut(Stretch<T>) -> bool,
 ) {
-    let reversed: Vec<Ball> = polynomial.iter().rev().copied().collect();
-    let shares = shares(polynomial.len());
+    let reversed: Vec<T> = polynomial.iter().rev().copied().collect();
+    let shares: Vec<T> = shares(polynomial.len());
     for (coefficients, inverse) in [(polynomial, false), (&reversed, true)] {
         for index in 0..=STRETCHES {
             let exponent = -STRETCH * index;
@@ -92,13 +92,13 @@ fn stretches(
 }
 
 /// One over each binomial coefficient of a degree, which is one less than their number.
-fn shares(count: usize) -> Vec<Ball> {
-    let mut share = Ball::from(1.0);
+fn shares<T: Number>(count: usize) -> Vec<T> {
+    let mut share = T::from(1.0);
     let mut shares = Vec::with_capacity(count);
     for power in 1..=count {
         shares.push(share);
-        let factor = Ball::from(power as f64).over(Ball::from((count - power) as f64));
-        share = factor.map_or(Ball::ZERO, |factor| share.times(factor));
+        let factor = T::from(power as f64).quotient(T::from((count - power) as f64));
+        share = factor.map_or(T::ZERO, |factor| share.product(factor));
     }
     shares
 }
@@ -111,15 +111,16 @@ struct Plain {
 
 impl Plain {
     /// From 0 to a power of 2.
-    fn new(coefficients: &[Ball], shares: &[Ball], exponent: i32) -> Self {
+    fn new<T: Number>(coefficients: &[T], shares: &[T], exponent: i32) -> Self {
         let unit = power_of_two(exponent);
         let (mut power, mut size, mut error) = (1.0, 0.0, 0.0);
         let mut beta = Vec::with_capacity(coefficients.len());
         for (coefficient, share) in coefficients.iter().zip(shares) {
-            let value = coefficient.rounded() * power;
+            let (value, radius) = coefficient.plain();
+            let value = value * power;
             size += value.abs();
-            error += coefficient.radius() * power + f64::MIN_POSITIVE;
-            beta.push(value * share.rounded());
+            error += radius * power + f64::MIN_POSITIVE;
+            beta.push(value * share.plain().0);
             power *= unit;
         }
         accumulate(&mut beta, |one, other| one + other);
@@ -157,22 +158,22 @@ fn accumulate<T: Copy>(values: &mut [T], add: impl Fn(T, T) -> T) {
 }
 
 /// A stretch of places with the polynomial on it.
-struct Stretch {
+struct Stretch<T> {
     /// Ends in w, or in 1/w.
     from: f64,
     to: f64,
     inverse: bool,
-    beta: Vec<Ball>,
+    beta: Vec<T>,
 }
 
-impl Stretch {
+impl<T: Number> Stretch<T> {
     /// From 0 to a power of 2.
-    fn new(coefficients: &[Ball], shares: &[Ball], (exponent, inverse): (i32, bool)) -> Self {
+    fn new(coefficients: &[T], shares: &[T], (exponent, inverse): (i32, bool)) -> Self {
         let terms = (0_i32..).zip(coefficients.iter().zip(shares));
         let scaled =
-            terms.map(|(power, (value, share))| value.scaled(exponent * power).times(*share));
-        let mut beta: Vec<Ball> = scaled.collect();
-        accumulate(&mut beta, Ball::plus);
+            terms.map(|(power, (value, share))| value.shifted(exponent * power).product(*share));
+        let mut beta: Vec<T> = scaled.collect();
+        accumulate(&mut beta, T::sum);
         Self { from: 0.0, to: power_of_two(exponent), inverse, beta }
     }
 
@@ -181,7 +182,7 @@ impl Stretch {
         for end in (1..self.beta.len()).rev() {
             for index in 0..end {
                 let (here, next) = (self.beta[index], self.beta[index + 1]);
-                self.beta[index] = here.plus(next.minus(here).scaled(-STRETCH));
+                self.beta[index] = here.sum(next.less(here).shifted(-STRETCH));
             }
         }
         self.from = FIRST * self.to;
@@ -193,7 +194,7 @@ impl Stretch {
         for end in (0..right.len()).rev() {
             left.push(right[0]);
             for index in 0..end {
-                right[index] = right[index].middle(right[index + 1]);
+                right[index] = right[index].between(right[index + 1]);
             }
         }
         let middle = 0.5 * (self.from + self.to);
@@ -207,13 +208,13 @@ impl Stretch {
     }
 
     fn sign(&self, halvings: u32) -> Sign {
-        if self.beta.iter().all(|value| value.is_positive()) {
+        if self.beta.iter().all(|value| value.positive()) {
             return Sign::Positive;
         }
         for (value, at) in [(self.beta.first(), self.from), (self.beta.last(), self.to)] {
             match value {
-                Some(value) if value.is_positive() => {}
-                Some(value) if value.is_negative() => return Sign::Negative(self.place(at)),
+                Some(value) if value.positive() => {}
+                Some(value) if value.negative() => return Sign::Negative(self.place(at)),
                 _ => return Sign::Hidden(self.place(at)),
             }
         }
@@ -233,8 +234,7 @@ impl Stretch {
             return;
         }
         // Between two ends whose signs are hidden rounding decides everything.
-        let told =
-            |value: Option<&Ball>| value.is_some_and(|it| it.is_positive() || it.is_negative());
+        let told = |value: Option<&T>| value.is_some_and(|it| it.positive() || it.negative());
         let hidden = !told(self.beta.first()) && !told(self.beta.last());
         if changes == Some(1) || hidden || halvings >= HALVINGS {
             let (one, other) = (self.place(self.from), self.place(self.to));
@@ -249,7 +249,7 @@ impl Stretch {
     /// Changes of sign from coefficient to coefficient; `None` if there may be more than one, or if the sign at an end
     /// is hidden.
     fn changes(&self) -> Option<usize> {
-        let told = |value: &Ball| match (value.is_positive(), value.is_negative()) {
+        let told = |value: &T| match (value.positive(), value.negative()) {
             (true, _) => Some(1),
             (_, true) => Some(-1),
             _ => None,
@@ -273,6 +273,7 @@ impl Stretch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ball::Ball;
 
     /// Product of $w - r$ and of $(w - a)^2 + b$.
     fn polynomial(roots: &[f64], pairs: &[(f64, f64)]) -> Vec<Ball> {
