@@ -8,10 +8,10 @@ use fspid_fuzzy::{Defuzzifier, Label, OutOfRange, Output, RuleTable, Supervisor}
 use fspid_sim::Controller;
 use serde::{Deserialize, Serialize};
 
-/// A controller as written.
 /// Most samples of a defuzzifier: its surface is enclosed, and a million of them took 800 MB.
 const MOST_SAMPLED: u32 = 10_000;
 
+/// A controller as written.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ControllerFile {
