@@ -233,7 +233,8 @@ fn a_tuner_of_another_structure_is_refused_by_name() {
 
 #[test]
 fn a_rate_that_the_law_is_not_known_to_keep_says_nothing_of_the_flown_loop() {
-    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    // Gains that the form does not move with are anywhere at once: here only kp moves.
+    let scale = Gains { kp: 0.09, ki: 0.0, kd: 0.0 };
     let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
     let rechecked = good.check().expect("it holds");
     assert_eq!(good.bearing(&rechecked), Bearing::Stable);

@@ -147,13 +147,24 @@ fn remains(scope: &Scope) -> String {
 }
 
 impl Stable {
+    /// The set-points and loads that limits are covered for, where the claim itself is about more.
+    fn held(&self) -> String {
+        let Scope { range, any_setpoint, any_load, .. } = &self.scope;
+        if !(*any_setpoint || *any_load) {
+            return String::new();
+        }
+        let [setpoint, load] = [range.setpoint_rad, range.load_rad].map(|it| short(degrees(it)));
+        format!(" at set-points up to {setpoint} deg and loads up to {load} deg")
+    }
+
     fn limits(&self) -> String {
         let limits = self.scope.limits.join(", ");
         match (limits.as_str(), self.scope.pitch_within_rad, self.reason) {
             ("", ..) => "there are none in this loop".to_owned(),
             (_, Some(pitch_rad), _) => format!(
-                "with a pitch angle off by up to {:.3} deg, all else at rest, none acts: {limits}",
-                degrees(pitch_rad)
+                "with a pitch angle off by up to {:.3} deg, all else at rest{}, none acts: {limits}",
+                degrees(pitch_rad),
+                self.held()
             ),
             (_, None, Some(reason)) => format!("SATURATION IS NOT COVERED: {limits}; {reason}"),
             (_, None, None) if self.has_level => {
