@@ -1,5 +1,7 @@
 //! Loading is not aerodynamics: mass, centre of gravity and inertia change, and the wing stays.
 
+#![allow(clippy::float_cmp, reason = "what is given comes back bit by bit")]
+
 mod support;
 
 use fspid_aircraft::data::{DerivativeData, Laws, Loading, Moment};

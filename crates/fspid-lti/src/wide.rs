@@ -148,11 +148,10 @@ fn low_word(value: u128) -> u64 {
 fn shifted_right<const W: usize>(words: [u64; W], bits: u32) -> [u64; W] {
     let mut shifted = [0; W];
     let (whole, bits) = ((bits / 64) as usize, bits % 64);
-    for place in whole..W {
-        let from = place - whole;
-        shifted[place] = words[from] >> bits;
+    for (from, shifted) in shifted.iter_mut().skip(whole).enumerate() {
+        *shifted = words[from] >> bits;
         if bits > 0 && from > 0 {
-            shifted[place] |= words[from - 1] << (64 - bits);
+            *shifted |= words[from - 1] << (64 - bits);
         }
     }
     shifted

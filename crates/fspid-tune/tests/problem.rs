@@ -276,5 +276,5 @@ fn a_candidate_that_keeps_a_constant_load_is_refused_unless_the_file_ignores_loa
     )]);
     assert!(ignored.scores(&[lost])[0].is_allowed() && !ignored.removes_constant_load());
     assert_ne!(asked.digest(), ignored.digest());
-    assert_eq!(asked.scores(&[well.clone()]), ignored.scores(&[well]));
+    assert_eq!(asked.scores(std::slice::from_ref(&well)), ignored.scores(&[well]));
 }

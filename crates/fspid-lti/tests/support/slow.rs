@@ -65,6 +65,7 @@ impl Slow {
         let (n, order) = (plant.rows(), plant.rows() + self.delay + 3);
         let mut rows = vec![vec![0.0; order]; order];
         let mut b = vec![0.0; order];
+        #[allow(clippy::needless_range_loop, reason = "rows and columns of two matrices at once")]
         for row in 0..n {
             for column in 0..n {
                 rows[row][column] = plant.get(row, column).unwrap_or(0.0);

@@ -60,7 +60,7 @@ impl Grid {
         let (begin_s, first) = (self.time_s(k), self.tick(k));
         let start_of = move |tick: usize| {
             let since_s = tick as f64 * GRID_S - begin_s;
-            (tick > first).then_some(since_s).unwrap_or(0.0)
+            if tick > first { since_s } else { 0.0 }
         };
         let inside = move |tick: &usize| start_of(*tick) < self.dt_s - SAME * GRID_S;
         (first..).take_while(inside).map(move |tick| {

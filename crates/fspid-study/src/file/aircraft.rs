@@ -157,7 +157,7 @@ fn derivatives(report: &mut Report, section: &Section, given: Given) -> Option<D
     let flown_n = quantity(part("mass")?, "weight")?;
     let weight_n = given.weight_n.unwrap_or(flown_n);
     // A scenario that changes the weight loads the aircraft; its wing carries what the file says.
-    let mass_kg = (flown_n != weight_n).then_some(flown_n / reference.gravity_m_s2);
+    let mass_kg = flown_n.total_cmp(&weight_n).is_ne().then_some(flown_n / reference.gravity_m_s2);
     let data = DerivativeData {
         reference,
         geometry: geometry(part("geometry")?)?,

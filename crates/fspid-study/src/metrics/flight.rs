@@ -181,7 +181,7 @@ fn moves_away(trace: &Trace, edge: &Edge, lost: bool) -> bool {
         return false;
     };
     let mut way = response.iter().map(|theta_rad| (theta_rad - start_rad) / step_rad);
-    let ends_away = way.clone().last().is_some_and(|way| way <= -AWAY);
+    let ends_away = way.clone().next_back().is_some_and(|way| way <= -AWAY);
     let first = way.find(|way| *way >= TOWARDS || *way <= -AWAY);
     first.is_some_and(|way| way < 0.0) && (lost || ends_away)
 }

@@ -7,7 +7,7 @@ use fspid_study::file;
 /// The scenario that comes of the starter with these changes, in the words of the debugger, which leave nothing out.
 fn built(set: &[&str]) -> String {
     let set: Vec<String> = set.iter().map(|it| (*it).to_owned()).collect();
-    let study = file::parse(&file::starter(), "mine.toml", None, &set).expect("a scenario");
+    let study = file::parse(file::starter(), "mine.toml", None, &set).expect("a scenario");
     format!("{:?}", study.scenario)
 }
 

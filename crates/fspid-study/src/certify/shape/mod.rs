@@ -216,7 +216,7 @@ fn is_digest(text: &str) -> bool {
 
 fn allowed(shape: &Shape) -> String {
     match shape {
-        Shape::Number(least, most) if -least == *most => {
+        Shape::Number(least, most) if (-least).total_cmp(most).is_eq() => {
             format!("finite numbers up to {most:?} in magnitude")
         }
         Shape::Number(least, most) => format!("numbers from {least:?} to {most:?}"),
