@@ -109,7 +109,7 @@ pub struct FlightMetrics {
     /// Effort of the command over the whole flight.
     pub effort: Result<CommandEffort, Absent>,
     /// True for a flight that is not good and whose first movement after its first step is steadily away from the
-    /// new set-point: see [`moves_away`].
+    /// new set-point: see `moves_away`.
     pub wrong_way: bool,
 }
 
