@@ -74,6 +74,8 @@ fn a_complement_is_one_minus_the_set_wherever_a_rule_names_it() {
         })
         .collect();
     assert_eq!(hedges, [vec![Hedge::Not], vec![Hedge::Not]]);
+    // The set is that of the other temperatures: under the file's name the rule would read the other way round.
+    assert_eq!(parts.inputs[0].terms[2].name, "complement of off");
 }
 
 #[test]

@@ -108,3 +108,49 @@ fn loops_without_the_digits_of_their_slow_modes_have_nearly_the_same_margins() -
     }
     Ok(())
 }
+
+/// Two further states, which the output does not see, hidden among the others by a change of coordinates with whole
+/// numbers: an elimination then divides by differences of which nobody can tell whether they are 0.
+#[test]
+fn states_that_the_output_does_not_see_leave_the_margins_what_they_are() -> Outcome {
+    let seen = [[0.75, 0.125, 0.0], [-0.25, 0.5, 0.25], [0.0, 0.125, 0.9375]];
+    let plain = Matrix::from_rows(&seen)?;
+    let (b, c) = ([0.0, 0.5, 0.25], [1.0, 0.25, 0.5]);
+    let least = SampledLoop::new(plain, b.to_vec(), c.to_vec(), 0.01)?;
+    // What is seen drives the others.
+    let whole = Matrix::from_rows(&[
+        [0.75, 0.125, 0.0, 0.0, 0.0],
+        [-0.25, 0.5, 0.25, 0.0, 0.0],
+        [0.0, 0.125, 0.9375, 0.0, 0.0],
+        [0.5, -0.25, 0.125, 0.5, 0.25],
+        [0.25, 0.375, -0.5, -0.125, 0.75],
+    ])?;
+    let mixing = |sign: f64| {
+        let mut upper = Matrix::identity(5);
+        let mut lower = Matrix::identity(5);
+        for (seen, entries) in [[2.0, -3.0], [1.0, 2.0], [-1.0, 1.0]].iter().enumerate() {
+            for (hidden, entry) in (3..).zip(entries) {
+                upper.set(seen, hidden, sign * entry)?;
+                lower.set(hidden, seen, sign * entry)?;
+            }
+        }
+        if sign > 0.0 { upper.product(&lower) } else { lower.product(&upper) }
+    };
+    let (into, out_of) = (mixing(1.0)?, mixing(-1.0)?);
+    let hidden = out_of.product(&whole)?.product(&into)?;
+    let input = Matrix::from_rows(&[[b[0]], [b[1]], [b[2]], [0.25], [-0.5]])?;
+    let input = out_of.product(&input)?;
+    let output = Matrix::from_rows(&[[c[0], c[1], c[2], 0.0, 0.0]])?.product(&into)?;
+    let open = SampledLoop::new(hidden, input.data().to_vec(), output.data().to_vec(), 0.01)?;
+    let (found, expected) = (stable(&open)?, stable(&least)?);
+    let pairs = [
+        (found.sensitivity_peak.value, expected.sensitivity_peak.value),
+        (found.complementary_peak.value, expected.complementary_peak.value),
+        (found.disk.size, expected.disk.size),
+    ];
+    for (found, expected) in pairs {
+        assert!((found - expected).abs() <= 1e-9 * expected, "{found} {expected}");
+    }
+    assert!(found.proved.is_tight(), "{:?}", found.proved);
+    Ok(())
+}

@@ -438,14 +438,14 @@ fn an_unstable_plant_that_a_gain_holds_is_tuned_with_a_warning() {
     assert!(close(point.lowest_gain.expect("a lower end"), 0.5, 1e-6), "{point:?}");
     assert!(found.warnings.iter().any(|it| it.contains("unstable without control")));
     let lqr = made(&study, Rule::Lqr, &Options::default());
-    assert!(lqr.outcome.is_stable());
+    assert!(lqr.outcome.is_held());
 }
 
 #[test]
 fn a_plant_that_no_proportional_gain_holds_is_held_by_the_quadratic_cost() {
     let double = study(&coefficients("1.0", "1.0, 0.0, 0.0"), SERVO);
     let found = made(&double, Rule::Lqr, &Options::default());
-    assert!(found.outcome.is_stable() && found.identified.ultimate.is_none(), "{}", found.text());
+    assert!(found.outcome.is_held() && found.identified.ultimate.is_none(), "{}", found.text());
     assert!(found.shell.rate_gain_s > 0.0);
 }
 

@@ -40,6 +40,19 @@ impl Knowledge {
         }
         names
     }
+
+    /// The inputs, with each complemented set under the name of what it holds: the file's term is *not* it, and a rule
+    /// that names the term has that `not` before it.
+    pub(super) fn named_inputs(&mut self) -> Vec<Input> {
+        let mut inputs = std::mem::take(&mut self.inputs);
+        for &(input, term) in &self.complements {
+            let Some(term) = inputs.get_mut(input).and_then(|it| it.terms.get_mut(term)) else {
+                continue;
+            };
+            term.name = format!("complement of {}", term.name);
+        }
+        inputs
+    }
 }
 
 /// Reads the knowledge base.

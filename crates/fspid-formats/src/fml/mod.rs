@@ -5,7 +5,7 @@
 //! | `fuzzySystem`, `fuzzyController`; names in any case | a system |
 //! | `fuzzyVariable`, `tskVariable`, `tsukamotoVariable` | inputs and outputs |
 //! | `mamdaniRuleBase`, `tskRuleBase`, `tsukamotoRuleBase`, `RuleBase` with a `type` | rule blocks |
-//! | `complement="true"` | one minus the set |
+//! | `complement="true"` | `not` before the set, which is named "complement of …" |
 //! | `modifier` of a clause | a hedge; in a conclusion a set of its own |
 //! | a rule's own `andMethod`, `orMethod` | a rule block of its own |
 //! | `anYaRuleBase`, `aggregatedFuzzyVariable`, `circularDefinition`, `else`, `custom…` | refused by name |

@@ -67,7 +67,8 @@ fn system(root: Element<'_, '_>, context: &mut Context<'_>) -> Parts {
         Reader { names: &names, knowledge: &mut knowledge, context, made: BTreeMap::new() };
     let blocks = bases.into_iter().flat_map(|base| reader.base(base)).collect();
     let name = root.attribute("name").unwrap_or_default().to_owned();
-    let Knowledge { inputs, outputs, .. } = knowledge;
+    let inputs = knowledge.named_inputs();
+    let Knowledge { outputs, .. } = knowledge;
     Parts { name, description: String::new(), inputs, outputs, blocks }
 }
 

@@ -1,8 +1,7 @@
 //! Margins as they are answered: in dB, degrees and seconds.
 
-use fspid_lti::{Bracket, Proved, SampledMargins, Stability};
+use fspid_lti::{Bracket, Proved, SampledMargins};
 
-use crate::metrics::Absent;
 use crate::units::degrees;
 
 /// Margins of a loop that is stable. A margin without an end is infinite.
@@ -47,19 +46,8 @@ pub fn decibels(factor: f64) -> f64 {
 
 impl Margins {
     /// The margins of a stable loop.
-    ///
-    /// # Errors
-    /// [`Absent::Unstable`].
-    pub fn of(stability: &Stability) -> Result<Self, Absent> {
-        match stability {
-            Stability::Unstable { spectral_radius, .. } => {
-                Err(Absent::Unstable { spectral_radius: *spectral_radius })
-            }
-            Stability::Stable(found) => Ok(Self::of_stable(found)),
-        }
-    }
-
-    pub(super) fn of_stable(found: &SampledMargins) -> Self {
+    #[must_use]
+    pub fn of(found: &SampledMargins) -> Self {
         let low = found.gain_low.as_ref();
         let high = found.gain_high.as_ref();
         let phase = found.phase_margin.as_ref();

@@ -1,6 +1,6 @@
 //! The figures of an analysis: frequency responses, root locus, poles, frozen gains.
 
-use fspid_lti::{Complex, SampledLoop, Stability};
+use fspid_lti::{Complex, SampledLoop, SampledMargins};
 use fspid_sim::SimError;
 use fspid_sim::flown::trajectory::{TrajectoryLinearisation, TrajectoryPoint};
 
@@ -158,7 +158,7 @@ fn pairs(values: &[Complex]) -> Vec<(f64, f64)> {
 /// Eigenvalues that are not found.
 pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, SimError> {
     let open = &plant.open;
-    let crossings = crossings(open, &plant.stability);
+    let crossings = crossings(open, plant.sampled.as_deref());
     let [low, high] = decades(&crossings);
     let sample = |index: usize| {
         let share = index as f64 / (FACTORS - 1) as f64;
@@ -185,11 +185,8 @@ fn decades(crossings: &[Crossing]) -> [f64; 2] {
     })
 }
 
-fn crossings(open: &SampledLoop, stability: &Stability) -> Vec<Crossing> {
-    let Stability::Stable(margins) = stability else {
-        return Vec::new();
-    };
-    let limits = [&margins.gain_low, &margins.gain_high].into_iter().flatten();
+fn crossings(open: &SampledLoop, margins: Option<&SampledMargins>) -> Vec<Crossing> {
+    let limits = margins.into_iter().flat_map(|it| [&it.gain_low, &it.gain_high]).flatten();
     limits
         .map(|limit| {
             let (sine, cosine) = libm::sincos(limit.omega_rad_s * open.dt_s());

@@ -186,7 +186,7 @@ impl<'a> Mapper<'a> {
             return None;
         }
         let found = self.family.as_ref()?.margins(&[gains.kp, gains.ki, gains.kd])?;
-        Some(Margins::of_stable(&found))
+        Some(Margins::of(&found))
     }
 
     /// Whether the loop at these gains is the model's but for the gains: nothing follows them, or they are
@@ -206,7 +206,7 @@ impl<'a> Mapper<'a> {
                 .sharpened(self.scenario, self.plant)?;
             own.open(gains, self.question.point)?
         };
-        let (_, margins) = judged(&open)?;
+        let margins = judged(&open)?.as_deref().map(Margins::of).map_err(|reason| *reason);
         Ok(margins)
     }
 }

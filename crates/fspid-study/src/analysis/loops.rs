@@ -1,6 +1,6 @@
 //! One controller with every plant that it has to hold.
 
-use fspid_lti::{Complex, LtiError, SampledLoop, Stability, modulus};
+use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins, Stability};
 use fspid_sim::loop_model::BreakPoint;
 use fspid_sim::{
     AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError,
@@ -23,8 +23,8 @@ pub struct PlantLoop {
     pub setpoint_rad: f64,
     /// The open loop.
     pub open: SampledLoop,
-    /// Stable with margins, or unstable with poles.
-    pub stability: Stability,
+    /// All that is known of a stable loop whose margins are proved.
+    pub sampled: Option<Box<SampledMargins>>,
     /// Poles of the closed loop in the z-plane.
     pub closed_poles: Vec<Complex>,
     /// Margins in the units of answers.
@@ -124,16 +124,16 @@ impl AnalysedLoop {
         }
     }
 
-    /// True for a loop that is stable with every plant, and whose margins are poor with one of them.
+    /// True for a loop that is held with every plant, and whose margins are poor with one of them.
     #[must_use]
     pub fn has_poor_margins(&self) -> bool {
         let mut margins = self.plants.iter().map(|plant| plant.margins);
-        self.is_stable() && margins.any(|margins| margins.is_ok_and(|it| it.are_poor()))
+        self.is_held() && margins.any(|margins| margins.is_ok_and(|it| it.are_poor()))
     }
 
-    /// True if every plant is held, at rest and at every gain of the map.
+    /// True if every plant is held with margins that are proved, at rest and at every gain of the map.
     #[must_use]
-    pub fn is_stable(&self) -> bool {
+    pub fn is_held(&self) -> bool {
         let held = |plant: &PlantLoop| {
             plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_stable)
         };
@@ -144,31 +144,37 @@ impl AnalysedLoop {
 impl PlantLoop {
     fn of(from_s: f64, rest: &AtRest, open: SampledLoop) -> Result<Self, SimError> {
         let closed_poles = open.closed_poles()?;
-        let (stability, margins) = judged(&open)?;
+        let judged = judged(&open)?;
+        let margins = judged.as_deref().map(Margins::of).map_err(|reason| *reason);
         let setpoint_rad = rest.setpoint_rad;
-        Ok(Self { from_s, setpoint_rad, open, stability, closed_poles, margins, map: None })
+        let sampled = judged.ok();
+        Ok(Self { from_s, setpoint_rad, open, sampled, closed_poles, margins, map: None })
+    }
+
+    /// Whether the loop is stable; `None` where rounding hides it.
+    #[must_use]
+    pub fn is_stable(&self) -> Option<bool> {
+        match self.margins {
+            // Its poles tell; only how far it is from unstable is not proved.
+            Ok(_) | Err(Absent::NotProved { .. }) => Some(true),
+            Err(Absent::Undecided { .. }) => None,
+            Err(_) => Some(false),
+        }
     }
 }
 
-/// Stability and margins of a loop. A loop of which rounding hides the answer is not called stable.
-pub(super) fn judged(open: &SampledLoop) -> Result<(Stability, Result<Margins, Absent>), SimError> {
+/// Margins of a loop. One of which rounding hides whether it is stable has none, and neither has one whose peaks nothing
+/// bounds.
+pub(super) fn judged(open: &SampledLoop) -> Result<Result<Box<SampledMargins>, Absent>, SimError> {
     match open.margins() {
-        Ok(stability) => {
-            let margins = Margins::of(&stability);
-            Ok((stability, margins))
+        Ok(Stability::Stable(margins)) => Ok(Ok(margins)),
+        Ok(Stability::Unstable { spectral_radius, .. }) => {
+            Ok(Err(Absent::Unstable { spectral_radius }))
         }
         Err(LtiError::Blurred { spectral_radius, .. }) => {
-            let poles = open.closed_poles()?;
-            let stability = Stability::Unstable { poles, spectral_radius };
-            Ok((stability, Err(Absent::Undecided { spectral_radius })))
+            Ok(Err(Absent::Undecided { spectral_radius }))
         }
-        // Stable perhaps, but nothing good can be said of it.
-        Err(LtiError::Unproved { order }) => {
-            let poles = open.closed_poles()?;
-            let spectral_radius = poles.iter().map(|&pole| modulus(pole)).fold(0.0, f64::max);
-            let stability = Stability::Unstable { poles, spectral_radius };
-            Ok((stability, Err(Absent::NotProved { order })))
-        }
+        Err(LtiError::Unproved { order }) => Ok(Err(Absent::NotProved { order })),
         Err(error) => Err(error.into()),
     }
 }

@@ -96,9 +96,19 @@ impl Analysis {
         Ok(Self { scenario: scenario.name.clone(), question, loops, left_out })
     }
 
-    /// True if every loop is stable, at every gain of its map too.
+    /// True if no loop is known to be unstable, or to have no gains at rest, with margins or without.
     #[must_use]
     pub fn all_stable(&self) -> bool {
-        self.loops.iter().all(AnalysedLoop::is_stable)
+        let stable = |plant: &PlantLoop| {
+            let frozen = plant.map.as_ref().is_none_or(FrozenMap::is_stable);
+            plant.is_stable() == Some(true) && frozen
+        };
+        self.loops.iter().all(|found| found.plants.iter().all(stable))
+    }
+
+    /// True if every loop is held with margins that are proved, at every gain of its map too.
+    #[must_use]
+    pub fn all_held(&self) -> bool {
+        self.loops.iter().all(AnalysedLoop::is_held)
     }
 }

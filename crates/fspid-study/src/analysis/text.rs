@@ -45,13 +45,24 @@ fn verdict(found: &AnalysedLoop) -> String {
         return format!("no margins: {reason}");
     }
     let held = found.worst().map(|plant| at_setpoint(plant.setpoint_rad)).unwrap_or_default();
-    let unstable = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
-    match (unstable, found.plants.len()) {
-        (0, _) if found.has_poor_margins() => format!("stable {gains}; {POOR_MARGINS}{held}"),
-        (0, _) => format!("stable {gains}{held}"),
-        (_, 1) => format!("UNSTABLE {gains}{held}"),
-        (bad, all) => format!("UNSTABLE for {bad} of {all} plants {gains}{held}"),
+    let count = |answer| found.plants.iter().filter(|it| it.is_stable() == answer).count();
+    let (unstable, undecided) = (count(Some(false)), count(None));
+    let plants = |bad| match found.plants.len() {
+        1 => String::new(),
+        all => format!(" for {bad} of {all} plants"),
+    };
+    if unstable > 0 {
+        return format!("UNSTABLE{} {gains}{held}", plants(unstable));
     }
+    if undecided > 0 {
+        return format!("UNDECIDED{} {gains}{held}", plants(undecided));
+    }
+    let unproved = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
+    if unproved > 0 {
+        return format!("stable {gains}; NO MARGINS PROVED{}{held}", plants(unproved));
+    }
+    let poor = if found.has_poor_margins() { format!("; {POOR_MARGINS}") } else { String::new() };
+    format!("stable {gains}{poor}{held}")
 }
 
 /// Where the loop at rest is worst, if not at the trim.

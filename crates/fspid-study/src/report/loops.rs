@@ -12,6 +12,7 @@ use crate::analysis::figures::{
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::file::Study;
+use crate::metrics::Absent;
 
 /// Beyond this a step response has run away.
 const RUN_AWAY: f64 = 10.0;
@@ -50,11 +51,13 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
 }
 
 fn verdict(found: &AnalysedLoop) -> Verdict {
-    let (standing, word) = match (found.absent.is_some(), found.is_stable()) {
-        (true, _) => (Standing::Fair, "No margins"),
-        (false, true) if found.has_poor_margins() => (Standing::Fair, "Stable, poor margins"),
-        (false, true) => (Standing::Good, "Stable"),
-        (false, false) => (Standing::Bad, "UNSTABLE"),
+    let (standing, word) = match (found.absent, found.margins()) {
+        (Some(_), _) => (Standing::Fair, "No margins"),
+        (None, Err(Absent::NotProved { .. })) => (Standing::Fair, "Stable, no margins proved"),
+        (None, Err(Absent::Undecided { .. })) => (Standing::Bad, "UNDECIDED"),
+        (None, Ok(_)) if found.has_poor_margins() => (Standing::Fair, "Stable, poor margins"),
+        (None, Ok(_)) if found.is_held() => (Standing::Good, "Stable"),
+        (None, _) => (Standing::Bad, "UNSTABLE"),
     };
     let detail = match found.margins() {
         Err(reason) => format!("{reason}."),

@@ -42,7 +42,7 @@ fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
     let drifting = analysed(TUNED, &[accumulating]);
     assert!(matches!(drifting.loops[0].equilibrium, Equilibrium::Drifts { .. }));
     assert_eq!(drifting.loops[0].margins(), Err(Absent::GainsDrift));
-    assert!(!drifting.all_stable());
+    assert!(!drifting.all_held());
     let leaking = analysed(TUNED, &[accumulating, "controller.C.leakage_per_s=0.5"]);
     let Equilibrium::AtRest(gains) = leaking.loops[0].equilibrium else { panic!("gains at rest") };
     assert!((gains.kp - 2.0 - 0.2 * 0.2165 / 0.5).abs() < 1e-4, "{gains:?}");
@@ -93,7 +93,7 @@ fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     let analysis = analysed(TUNED, &["controller.C.supervisor.output_scale.kp=3.0"]);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
     assert!(analysis.loops[0].plants[0].margins.is_ok(), "the equilibrium holds");
-    assert!(!map.is_stable() && map.unstable() > 0 && !analysis.all_stable());
+    assert!(!map.is_stable() && map.unstable() > 0 && !analysis.all_held());
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
 }
 
@@ -151,7 +151,7 @@ fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
     let analysis = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &set);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
     assert_eq!((map.unstable(), map.unstable_nodes()), (0, 1), "{:?}", map.worst);
-    assert!(!map.is_stable() && !analysis.all_stable());
+    assert!(!map.is_stable() && !analysis.all_held());
     let text = analysis.text();
     assert!(text.contains("1 of 49 cells DOES NOT HOLD; the worst: unstable"), "{text}");
     let frozen = &analysis.json()["controllers"][0]["frozen_gains"];
@@ -179,7 +179,7 @@ fn a_setpoint_weight_of_zero_makes_the_747_unstable_at_rest_at_20_deg_and_not_at
     assert!(radius > 1.003, "{radius}");
     assert!((at_deg + 20.0).abs() < 1e-9, "{at_deg}");
     let steep = analysed(TUNED, &[weight, "setpoint.amplitude_deg=-20"]);
-    assert!(!steep.all_stable());
+    assert!(!steep.all_held());
     assert!(steep.text().contains("UNSTABLE") && steep.text().contains("at -20 deg"));
     assert!(steep.json()["controllers"][0]["setpoint_deg"].as_f64().is_some_and(|deg| deg < -19.0));
     assert!(analysed(TUNED, &[weight]).loops[0].margins().is_ok());

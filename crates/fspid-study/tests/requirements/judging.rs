@@ -119,17 +119,11 @@ fn every_crossing_is_judged_in_the_band_of_its_frequency() {
     assert!(low.is_finite(), "the phugoid crosses at some 0.011 Hz");
     assert_eq!(all, low.min(high));
     let analysis = Analysis::of(&study(JUMBO, &weak), Question::default()).expect("analysed");
-    let fspid_lti_stability = &analysis.loops[0].plants[0].stability;
-    let margins: Vec<(f64, f64)> = match fspid_lti_stability {
-        fspid_lti::Stability::Stable(found) => found
-            .crossovers
-            .iter()
-            .map(|at| {
-                (at.omega_rad_s / std::f64::consts::TAU, at.phase_margin_rad.abs().to_degrees())
-            })
-            .collect(),
-        fspid_lti::Stability::Unstable { .. } => panic!("it is stable"),
+    let found = analysis.loops[0].plants[0].sampled.as_ref().expect("it is stable");
+    let crossover = |at: &fspid_lti::SampledCrossover| {
+        (at.omega_rad_s / std::f64::consts::TAU, at.phase_margin_rad.abs().to_degrees())
     };
+    let margins: Vec<(f64, f64)> = found.crossovers.iter().map(crossover).collect();
     assert!(margins.len() >= 2, "{margins:?}");
     let least = |low_hz: f64, high_hz: f64| {
         let inside = margins.iter().filter(|(hz, _)| (low_hz..high_hz).contains(hz));

@@ -23,7 +23,7 @@ impl Verdict {
         match outcome.margins() {
             Err(reason) => Self::NotHeld(reason),
             // One plant with poor margins is enough, also where it is not the one of the smallest disk margin.
-            Ok(_) if outcome.has_poor_margins() || !outcome.is_stable() => Self::Poor,
+            Ok(_) if outcome.has_poor_margins() || !outcome.is_held() => Self::Poor,
             Ok(_) => Self::WithMargins,
         }
     }

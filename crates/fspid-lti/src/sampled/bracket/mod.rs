@@ -20,7 +20,7 @@ use crate::wide::WideBall;
 use crossing::{changes_around, completed};
 use heights::Heights;
 use number::Number;
-use parts::Parts;
+use parts::{Parts, States};
 use real::{Real, difference};
 use sign::Sign;
 
@@ -38,6 +38,8 @@ const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 const ORDER_SHORT: usize = 40;
 /// And up to this one 512 bits.
 const ORDER_LONG: usize = 110;
+/// And up to this one it does not take seconds to do without pivots.
+const ORDER_WITHOUT_PIVOTS: usize = 64;
 
 /// What is proved of a number: it lies between these two.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,13 +105,18 @@ pub(super) struct Proved<const W: usize> {
 impl Proof {
     /// From $A - I$ and b, as sums of two, and c; `None` where nothing can be proved.
     pub(super) fn new(change: &[[f64; 2]], b: &[[f64; 2]], c: &[f64]) -> Option<Self> {
-        if b.len() <= ORDER_SHORT {
-            Proved::new(change, b, c).map(Self::Short)
-        } else if b.len() <= ORDER_LONG {
-            Proved::new(change, b, c).map(Self::Long)
+        let order = b.len();
+        let found = if order <= ORDER_SHORT {
+            Parts::new(States::new(change, b, c)).map(|parts| Self::Short(parts.into()))
+        } else if order <= ORDER_LONG {
+            Parts::new(States::new(change, b, c)).map(|parts| Self::Long(parts.into()))
         } else {
-            Proved::new(change, b, c).map(Self::Longest)
-        }
+            Parts::new(States::new(change, b, c)).map(|parts| Self::Longest(parts.into()))
+        };
+        found.or_else(|| {
+            let states = (order <= ORDER_WITHOUT_PIVOTS).then(|| States::new(change, b, c));
+            Parts::without_pivots(states?).map(|parts| Self::Long(parts.into()))
+        })
     }
 
     /// The highest point of $|T - t_0|$, from one that was found by other means and its angle.
@@ -166,14 +173,14 @@ impl Proof {
     }
 }
 
-impl<const W: usize> Proved<W> {
-    fn new(change: &[[f64; 2]], b: &[[f64; 2]], c: &[f64]) -> Option<Self> {
-        let wide = |values: &[[f64; 2]]| values.iter().copied().map(WideBall::sum).collect();
-        let parts = Parts::new(wide(change), wide(b), c)?;
+impl<const W: usize> From<Parts<W>> for Proved<W> {
+    fn from(parts: Parts<W>) -> Self {
         let closed = parts.closed().squared();
-        Some(Self { parts, closed })
+        Self { parts, closed }
     }
+}
 
+impl<const W: usize> Proved<W> {
     /// Numerator of $T - t_0$, squared.
     fn numerator(&self, centre: f64) -> Vec<WideBall<W>> {
         // T − t₀ = ((1 − t₀) N − t₀ D) / (N + D).

@@ -26,14 +26,22 @@ impl<const W: usize> Parts<W> {
     /// From $A - I$, b and c; `None` where the reduction meets a pivot that may be 0 and need not be.
     ///
     /// Whole samples of dead time in front are taken out first, and come back exactly.
-    pub(super) fn new(change: Vec<WideBall<W>>, b: Vec<WideBall<W>>, c: &[f64]) -> Option<Self> {
-        let order = b.len();
-        let mut states = States { change, b, c: c.to_vec() };
+    pub(super) fn new(states: States<W>) -> Option<Self> {
+        Self::by(states, States::polynomials)
+    }
+
+    /// The same without a pivot, for loops with states that the output does not see: slower by the order.
+    pub(super) fn without_pivots(states: States<W>) -> Option<Self> {
+        Self::by(states, States::polynomials_without_pivots)
+    }
+
+    fn by(mut states: States<W>, polynomials: impl Fn(&States<W>) -> Found<W>) -> Option<Self> {
+        let order = states.b.len();
         let mut dead_samples = 0;
         while let Some(rest) = states.after_a_dead_sample() {
             (states, dead_samples) = (rest, dead_samples + 1);
         }
-        let (mut under, mut over) = states.polynomials()?;
+        let (mut under, mut over) = polynomials(&states)?;
         // z⁻¹ = (1 − s)/(1 + s), exactly.
         for _ in 0..dead_samples {
             under = times_linear(&under, WideBall::from(1.0), WideBall::from(1.0));
@@ -48,14 +56,23 @@ impl<const W: usize> Parts<W> {
     }
 }
 
+/// D and N over s, lowest power first.
+type Found<const W: usize> = Option<(Vec<WideBall<W>>, Vec<WideBall<W>>)>;
+
 /// $A - I$ row after row, b and c.
-struct States<const W: usize> {
+pub(super) struct States<const W: usize> {
     change: Vec<WideBall<W>>,
     b: Vec<WideBall<W>>,
     c: Vec<f64>,
 }
 
 impl<const W: usize> States<W> {
+    /// Of entries that are sums of two.
+    pub(super) fn new(change: &[[f64; 2]], b: &[[f64; 2]], c: &[f64]) -> Self {
+        let wide = |values: &[[f64; 2]]| values.iter().copied().map(WideBall::sum).collect();
+        Self { change: wide(change), b: wide(b), c: c.to_vec() }
+    }
+
     /// The loop behind a state that only keeps its input for a sample, if there is one.
     fn after_a_dead_sample(&self) -> Option<Self> {
         let order = self.b.len();
@@ -82,8 +99,6 @@ impl<const W: usize> States<W> {
         })
     }
 
-    /// D and N over s, lowest power first.
-    ///
     /// With the output turned into the last unit vector by an elimination whose every step carries its bounds, L is
     ///
     /// $$ D = \det(\zeta I - H), \quad N = \gamma \sum_j b_j \det(\zeta I - H)_{j+1..} \prod_{m \le j} h_{m,m-1} $$
@@ -94,7 +109,7 @@ impl<const W: usize> States<W> {
     /// # Source
     /// The recurrence of minors of a Hessenberg matrix: J. H. Wilkinson, The Algebraic Eigenvalue Problem, Oxford
     /// (1965), chapter 7.
-    fn polynomials(&self) -> Option<(Vec<WideBall<W>>, Vec<WideBall<W>>)> {
+    fn polynomials(&self) -> Found<W> {
         let system = Square::bordered(&self.change, &self.b, &self.c).reduced()?;
         let order = self.b.len();
         let h = |row: usize, column: usize| system.at(1 + row, 1 + column);
@@ -127,6 +142,59 @@ impl<const W: usize> States<W> {
         }
         Some((under, over))
     }
+
+    /// By sums of products alone: states that the output does not see leave an elimination with pivots of which nobody
+    /// can tell whether they are 0. What such states have in common stays in D and N.
+    ///
+    /// $$ M_1 = I, \quad d_{n-k} = -\tfrac{1}{k} \operatorname{tr}(H M_k), \quad M_{k+1} = H M_k + d_{n-k} I, \quad N =
+    /// \sum_k c\, M_k\, b\, \zeta^{n-k} $$
+    ///
+    /// # Source
+    /// Faddeev and LeVerrier's recurrence: F. R. Gantmacher, The Theory of Matrices I, Chelsea (1959), chapter IV, § 5.
+    fn polynomials_without_pivots(&self) -> Found<W> {
+        let system = Square::bordered(&self.change, &self.b, &self.c);
+        let order = self.b.len();
+        let mut adjugate = Square::unit(order);
+        let (mut under, mut over) = (vec![WideBall::from(1.0)], vec![WideBall::ZERO]);
+        for k in 1..=order {
+            // Row 0 and column 0 of the bordered matrix are the output and the input.
+            let mut value = WideBall::ZERO;
+            for (row, column) in pairs(order) {
+                let seen = system.at(0, 1 + row).times(&adjugate.at(row, column));
+                value = value.plus(&seen.times(&system.at(1 + column, 0)));
+            }
+            over.push(value);
+            let product = Square::from_function(order, |row, column| {
+                let terms =
+                    (0..order).map(|k| system.at(1 + row, 1 + k).times(&adjugate.at(k, column)));
+                terms.fold(WideBall::ZERO, |sum, term| sum.plus(&term))
+            });
+            let trace = (0..order).fold(WideBall::ZERO, |sum, k| sum.plus(&product.at(k, k)));
+            let coefficient = trace.negative().over(&WideBall::from(k as f64))?;
+            under.push(coefficient);
+            adjugate = Square::from_function(order, |row, column| {
+                let entry = product.at(row, column);
+                if row == column { entry.plus(&coefficient) } else { entry }
+            });
+        }
+        Some((over_s(&under), over_s(&over)))
+    }
+}
+
+fn pairs(order: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..order).flat_map(move |row| (0..order).map(move |column| (row, column)))
+}
+
+/// From a polynomial in $\zeta = 2 s / (1 - s)$, highest power first, to one in s, lowest first, over $(1 - s)^n$.
+fn over_s<const W: usize>(coefficients: &[WideBall<W>]) -> Vec<WideBall<W>> {
+    let mut sum = Vec::new();
+    let mut power = vec![WideBall::from(1.0)];
+    for &coefficient in coefficients {
+        sum = times_linear(&sum, WideBall::ZERO, WideBall::from(2.0));
+        add(&mut sum, &power, coefficient);
+        power = times_one_less_s(&power);
+    }
+    sum
 }
 
 /// Times $a + b s$.
@@ -170,6 +238,15 @@ fn add<const W: usize>(
 }
 
 impl<const W: usize> Square<W> {
+    fn from_function(size: usize, entry: impl Fn(usize, usize) -> WideBall<W>) -> Self {
+        Self { size, data: pairs(size).map(|(row, column)| entry(row, column)).collect() }
+    }
+
+    fn unit(size: usize) -> Self {
+        let one = |row, column| if row == column { WideBall::from(1.0) } else { WideBall::ZERO };
+        Self::from_function(size, one)
+    }
+
     fn at(&self, row: usize, column: usize) -> WideBall<W> {
         self.data[row * self.size + column]
     }

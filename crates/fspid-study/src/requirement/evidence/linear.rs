@@ -1,6 +1,6 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
-use fspid_lti::{Mode, Stability};
+use fspid_lti::Mode;
 use fspid_sim::{NamedController, Scenario, SimError};
 
 use crate::analysis::{Analysis, Margins, PlantLoop, Question, decibels, held_at_rest};
@@ -108,7 +108,7 @@ fn of_plant(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, No
     match requirement.measure {
         Measure::ModeDamping => mode_damping(plant, requirement),
         Measure::PhaseMargin if requirement.conditions.has_band() => {
-            Ok(phase_margin_in_band(plant, requirement))
+            phase_margin_in_band(plant, requirement)
         }
         Measure::GainMargin | Measure::GainMarginLow | Measure::GainMarginHigh
             if requirement.conditions.has_band() =>
@@ -128,7 +128,8 @@ fn of_plant(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, No
 
 fn stable(plant: &PlantEvidence) -> Result<Case, NotEvaluated> {
     match plant.at_rest.margins {
-        Ok(_) => Ok(Case { value: 1.0, place: plant.place() }),
+        // Whether it is stable is known without margins.
+        Ok(_) | Err(Absent::NotProved { .. }) => Ok(Case { value: 1.0, place: plant.place() }),
         Err(Absent::Unstable { spectral_radius }) => {
             let place = Place { spectral_radius: Some(spectral_radius), ..plant.place() };
             Ok(Case { value: 0.0, place })
@@ -161,18 +162,20 @@ pub(super) fn of_margins(measure: Measure, margins: &Margins) -> (f64, Option<f6
 }
 
 /// The least phase margin of the crossovers whose frequency counts; infinite where there is none.
-fn phase_margin_in_band(plant: &PlantEvidence, requirement: &Requirement) -> Case {
+fn phase_margin_in_band(
+    plant: &PlantEvidence,
+    requirement: &Requirement,
+) -> Result<Case, NotEvaluated> {
+    let found = plant.at_rest.sampled.as_ref();
+    let found = found.ok_or(NotEvaluated::Absent(Absent::NotFinite))?;
     let without_end = Case { value: f64::INFINITY, place: plant.place() };
-    let Stability::Stable(found) = &plant.at_rest.stability else {
-        return without_end;
-    };
     let counted =
         found.crossovers.iter().filter(|at| requirement.conditions.in_band(at.omega_rad_s));
     let cases = counted.map(|at| {
         let place = Place { frequency_rad_s: Some(at.omega_rad_s), ..plant.place() };
         Case { value: degrees(at.phase_margin_rad.abs()), place }
     });
-    cases.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(without_end)
+    Ok(cases.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(without_end))
 }
 
 /// Of a factor: how much nearer to 1 than the limit it may be and still be the limit itself.
