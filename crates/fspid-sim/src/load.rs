@@ -164,6 +164,7 @@ mod tests {
     use fspid_core::{Gains, Shell};
 
     use super::*;
+    use crate::controller::Controller;
     use crate::plant::{ElevatorSign, Plant};
     use crate::servo::Servo;
     use crate::signal::Profile;
@@ -217,8 +218,10 @@ mod tests {
     fn a_pole_on_the_circle_grows_nothing_and_one_outside_does() {
         let asked = |kp| {
             let gains = Gains { kp, ki: 0.0, kd: 0.0 };
-            growth_at_rest(&integrator(5.0), gains, &Shell::sampled_every(DT_S))
+            let pid = fspid_core::Pid::new(gains, Shell::sampled_every(DT_S)).expect("allowed");
+            growth_at_rest(&integrator(5.0), &Controller::Fixed(pid), gains)
                 .expect("eigenvalues")
+                .certain
         };
         assert_eq!(asked(0.0), None);
         assert_eq!(asked(-1e-9), None);

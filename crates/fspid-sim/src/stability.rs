@@ -9,8 +9,9 @@ use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{LoopModel, Memory};
+use crate::loop_model::{LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
+use crate::rest::{Rest, Stand};
 use crate::scenario::Scenario;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
@@ -25,6 +26,8 @@ pub struct Unstable {
     pub from_s: f64,
     /// Time in which what grows becomes twice as large, s; infinite where nothing grows.
     pub doubling_s: f64,
+    /// The set-point that is held meanwhile, rad from the trim.
+    pub setpoint_rad: f64,
 }
 
 /// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
@@ -50,12 +53,32 @@ pub fn instability(
     if !pid.shell().is_linear() {
         return Ok(None);
     }
-    // What cannot be told from the edge counts as unstable here.
-    at_gains(scenario, (pid.gains(), pid.shell()), 1.0 - MARGIN)
+    let (gains, shell) = (pid.gains(), pid.shell());
+    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
+    let around_trim = trimmed.iter().map(|plant| (0.0, plant));
+    for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
+        let spectral_radius = spectral_radius(&closed_loop(scenario, plant, gains, shell)?)?;
+        // What cannot be told from the edge counts as unstable here, and so does NaN.
+        if !(spectral_radius < 1.0 - MARGIN) {
+            let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
+            return Ok(Some(Unstable { spectral_radius, from_s, doubling_s, setpoint_rad: 0.0 }));
+        }
+    }
+    Ok(None)
 }
 
-/// The instability of a loop around rest, whoever's gains they are and whatever limits act elsewhere: the first plant
-/// around which something grows for certain. As [`instability`] in all else.
+/// Whether a loop grows around rest, whoever's gains they are and whatever limits act elsewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GrowthAtRest {
+    /// The first plant and set-point around which something grows for certain.
+    pub certain: Option<Unstable>,
+    /// Where nothing grows for certain: the first at which one side of a kink of the rules is unstable and another is
+    /// not, so that it is not decided.
+    pub on_one_side: Option<Unstable>,
+}
+
+/// Asks each plant that lasts at every rest of the scenario, with the gains that the controller has with everything at
+/// zero. As [`instability`] in all else.
 ///
 /// A pole on the unit circle grows nothing. One within 10⁻⁹ of it cannot be told from such a one after rounding and is
 /// not called unstable: at 100 Hz it would double in 80 days, at 10 kHz in 19 hours.
@@ -64,29 +87,34 @@ pub fn instability(
 /// As [`instability`].
 pub fn growth_at_rest(
     scenario: &Scenario,
+    controller: &Controller,
     gains: Gains<f64>,
-    shell: &Shell<f64>,
-) -> Result<Option<Unstable>, SimError> {
-    at_gains(scenario, (gains, shell), 1.0 + MARGIN)
-}
-
-/// The first plant whose loop has a spectral radius that is not below a limit.
-fn at_gains(
-    scenario: &Scenario,
-    (gains, shell): (Gains<f64>, &Shell<f64>),
-    limit: f64,
-) -> Result<Option<Unstable>, SimError> {
+) -> Result<GrowthAtRest, SimError> {
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
+    let mut found = GrowthAtRest::default();
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
-        let radius = spectral_radius(&closed_loop(scenario, plant, gains, shell)?)?;
-        // Written so that NaN counts as unstable.
-        if !(radius < limit) {
-            let doubling_s = doubling_s(radius, scenario.timing.dt_s());
-            return Ok(Some(Unstable { spectral_radius: radius, from_s, doubling_s }));
+        let sampled = SampledPlant::of(scenario, plant)?;
+        for rest in Rest::all(scenario, plant, controller, gains) {
+            let unstable = |spectral_radius| Unstable {
+                doubling_s: doubling_s(spectral_radius, scenario.timing.dt_s()),
+                setpoint_rad: rest.setpoint_rad,
+                spectral_radius,
+                from_s,
+            };
+            match rest.stand(scenario, &sampled, controller, 1.0 + MARGIN)? {
+                Stand::Holds => {}
+                Stand::OneSide { spectral_radius } => {
+                    found.on_one_side.get_or_insert(unstable(spectral_radius));
+                }
+                Stand::Grows { spectral_radius } => {
+                    let certain = Some(unstable(spectral_radius));
+                    return Ok(GrowthAtRest { certain, on_one_side: None });
+                }
+            }
         }
     }
-    Ok(None)
+    Ok(found)
 }
 
 fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {

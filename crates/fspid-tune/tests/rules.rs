@@ -146,7 +146,7 @@ fn placed_poles_need_the_gains_of_forty_digits_and_are_poles_of_the_closed_loop(
         {
             assert_close(gain, wanted, 1e-9, plant);
         }
-        let closed = &found.outcome.plants[0].closed_poles;
+        let closed = &found.outcome.plants[0].worst.closed_poles;
         for placed in &found.identified.poles.as_ref().expect("poles").z {
             let nearest =
                 closed.iter().map(|pole| fspid_lti::modulus(*pole - placed)).fold(1.0, f64::min);

@@ -86,6 +86,17 @@ impl From<LinearStep> for SampledPlant<f64> {
     }
 }
 
+impl SampledPlant<f64> {
+    /// One of a scenario's plants, with its actuator, over a sample of the scenario.
+    ///
+    /// # Errors
+    /// [`SimError`] where it cannot be sampled.
+    pub fn of(scenario: &Scenario, plant: &LinearPlant) -> Result<Self, SimError> {
+        let step = scenario.propagation(plant, scenario.timing.dt_s())?.linear_step();
+        step.map(Self::from).ok_or(SimError::NotLinear)
+    }
+}
+
 /// A sampled loop around rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopModel<T> {
@@ -222,9 +233,8 @@ impl LoopModel<f64> {
         shell: &Shell<f64>,
         memory: Memory,
     ) -> Result<Self, SimError> {
-        let step = scenario.propagation(plant, shell.dt_s)?.linear_step();
-        let step = step.ok_or(SimError::NotLinear)?;
-        Ok(Self::new(step.into(), LoopSettings::of(scenario, shell, memory)))
+        let plant = SampledPlant::of(scenario, plant)?;
+        Ok(Self::new(plant, LoopSettings::of(scenario, shell, memory)))
     }
 
     /// The same loop with the digits of its slow modes, which the matrix of a sample has not beside its ones: for

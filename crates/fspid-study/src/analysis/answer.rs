@@ -73,6 +73,43 @@ impl Margins {
         }
     }
 
+    /// Of each margin the worse of two, with its frequency.
+    #[must_use]
+    pub(super) fn or_worse(mut self, other: &Self) -> Self {
+        let [low, high] = other.gain_margin_db;
+        if low > self.gain_margin_db[0] {
+            self.gain_margin_db[0] = low;
+            self.phase_crossover_rad_s[0] = other.phase_crossover_rad_s[0];
+        }
+        if high < self.gain_margin_db[1] {
+            self.gain_margin_db[1] = high;
+            self.phase_crossover_rad_s[1] = other.phase_crossover_rad_s[1];
+        }
+        if other.phase_margin_deg < self.phase_margin_deg {
+            self.phase_margin_deg = other.phase_margin_deg;
+            self.gain_crossover_rad_s = other.gain_crossover_rad_s;
+        }
+        self.delay_margin_s = self.delay_margin_s.min(other.delay_margin_s);
+        if other.disk_margin < self.disk_margin {
+            self.disk_margin = other.disk_margin;
+            self.disk_gain_db = other.disk_gain_db;
+            self.disk_phase_deg = other.disk_phase_deg;
+            self.disk_rad_s = other.disk_rad_s;
+            self.proved.disk = other.proved.disk;
+        }
+        if other.sensitivity_peak > self.sensitivity_peak {
+            self.sensitivity_peak = other.sensitivity_peak;
+            self.sensitivity_peak_rad_s = other.sensitivity_peak_rad_s;
+            self.proved.sensitivity = other.proved.sensitivity;
+        }
+        if other.complementary_peak > self.complementary_peak {
+            self.complementary_peak = other.complementary_peak;
+            self.proved.complementary = other.proved.complementary;
+        }
+        self.spectral_radius = self.spectral_radius.max(other.spectral_radius);
+        self
+    }
+
     /// The smaller distance of the two ends of the gain margin from 0 dB, dB.
     #[must_use]
     pub fn smaller_gain_margin_db(&self) -> f64 {

@@ -3,7 +3,7 @@
 
 use fspid_core::{Gains, Law};
 use fspid_sim::load::{ConstantLoad, constant_load};
-use fspid_sim::stability::{Unstable, growth_at_rest};
+use fspid_sim::stability::{GrowthAtRest, Unstable, growth_at_rest};
 use fspid_sim::{Controller, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
@@ -66,8 +66,11 @@ pub struct AtRest {
     pub nominal: Gains<f64>,
     /// The gains at rest.
     pub gains: RestGains,
-    /// The first plant around which the loop grows; none for a stable loop and where there are no gains to ask with.
+    /// The first plant and set-point around which the loop grows; none for a stable loop and where there are no gains
+    /// to ask with.
     pub unstable: Option<Unstable>,
+    /// Where that is not decided, because one side of a kink of the rules is unstable and no motion was seen to grow.
+    pub on_one_side: Option<Unstable>,
     /// What a constant load at the servo does; none for a loop that is unstable or has no gains at rest, and where it
     /// was not asked.
     pub load: Option<ConstantLoad>,
@@ -80,15 +83,14 @@ impl AtRest {
     #[must_use]
     pub fn stability(scenario: &Scenario, controller: &Controller) -> Self {
         let (nominal, gains) = (controller.nominal(), RestGains::of(controller));
-        let found = gains
-            .gains()
-            .map(|gains| growth_at_rest(scenario, gains, &controller.shell_at(gains)))
-            .transpose();
-        let (unstable, not_asked) = match found {
-            Ok(found) => (found.flatten(), None),
-            Err(reason) => (None, Some(reason)),
+        let found =
+            gains.gains().map(|gains| growth_at_rest(scenario, controller, gains)).transpose();
+        let (found, not_asked) = match found {
+            Ok(found) => (found.unwrap_or_default(), None),
+            Err(reason) => (GrowthAtRest::default(), Some(reason)),
         };
-        Self { nominal, gains, unstable, load: None, not_asked }
+        let GrowthAtRest { certain: unstable, on_one_side } = found;
+        Self { nominal, gains, unstable, on_one_side, load: None, not_asked }
     }
 
     /// The same, and what a constant load does.

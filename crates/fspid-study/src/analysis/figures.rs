@@ -53,13 +53,14 @@ impl<'a> LoopFigures<'a> {
     }
 
     fn nyquist_rad_s(&self) -> Option<f64> {
-        self.shown.first().map(|shown| shown.plant.open.nyquist_rad_s())
+        self.shown.first().map(|shown| shown.plant.worst.open.nyquist_rad_s())
     }
 
     /// Margins of the loops that have some, with the number of their curves.
     fn margins(&self) -> impl Iterator<Item = (usize, &Margins)> {
         let numbered = self.shown.iter().enumerate();
-        numbered.filter_map(|(number, shown)| Some((number, shown.plant.margins.as_ref().ok()?)))
+        numbered
+            .filter_map(|(number, shown)| Some((number, shown.plant.worst.margins.as_ref().ok()?)))
     }
 
     pub(crate) fn bode(&self) -> BodeFigure {
@@ -132,7 +133,7 @@ fn factor(db: f64) -> f64 {
 }
 
 fn curve(number: usize, shown: &Shown<'_>) -> LoopCurve {
-    let open = &shown.plant.open;
+    let open = &shown.plant.worst.open;
     let last = open.nyquist_rad_s();
     let place =
         |index: usize| last * libm::pow(10.0, DECADES * (index as f64 / (POINTS - 1) as f64 - 1.0));
@@ -157,8 +158,8 @@ fn pairs(values: &[Complex]) -> Vec<(f64, f64)> {
 /// # Errors
 /// Eigenvalues that are not found.
 pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, SimError> {
-    let open = &plant.open;
-    let crossings = crossings(open, plant.sampled.as_deref());
+    let open = &plant.worst.open;
+    let crossings = crossings(open, plant.worst.sampled.as_deref());
     let [low, high] = decades(&crossings);
     let sample = |index: usize| {
         let share = index as f64 / (FACTORS - 1) as f64;
@@ -169,7 +170,7 @@ pub(crate) fn root_locus(name: &str, plant: &PlantLoop) -> Result<RootLocus, Sim
         title: format!("{name}: closed-loop poles while the loop gain grows"),
         dt_s: open.dt_s(),
         samples: (0..FACTORS).map(sample).collect::<Result<_, _>>()?,
-        poles_at_one: pairs(&plant.closed_poles),
+        poles_at_one: pairs(&plant.worst.closed_poles),
         open_poles: pairs(&open.open_poles()?),
         open_zeros: pairs(&open.zeros()?),
         crossings,
@@ -202,10 +203,10 @@ fn crossings(open: &SampledLoop, margins: Option<&SampledMargins>) -> Vec<Crossi
 pub(crate) fn pole_zero(name: &str, plant: &PlantLoop) -> Result<PoleZeroMap, SimError> {
     Ok(PoleZeroMap {
         title: format!("{name}: poles and zeros of the sampled loop"),
-        dt_s: plant.open.dt_s(),
-        open_poles: pairs(&plant.open.open_poles()?),
-        open_zeros: pairs(&plant.open.zeros()?),
-        closed_poles: pairs(&plant.closed_poles),
+        dt_s: plant.worst.open.dt_s(),
+        open_poles: pairs(&plant.worst.open.open_poles()?),
+        open_zeros: pairs(&plant.worst.open.zeros()?),
+        closed_poles: pairs(&plant.worst.closed_poles),
     })
 }
 

@@ -61,13 +61,13 @@ fn controller(found: &AnalysedLoop) -> Value {
 }
 
 fn plant_into(answer: &mut Map<String, Value>, plant: &PlantLoop) {
-    let unstable = plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
+    let unstable = plant.worst.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
     answer.insert("stable".into(), json!(plant.is_stable()));
     // Where gains that move make a constant command part of the loop, at the set-point at which it is worst.
-    if plant.setpoint_rad != 0.0 {
-        answer.insert("setpoint_deg".into(), json!(degrees(plant.setpoint_rad)));
+    if !plant.others.is_empty() {
+        answer.insert("setpoint_deg".into(), json!(degrees(plant.worst.setpoint_rad)));
     }
-    let shown = |pole: &Complex| pole_of(*pole, plant.open.dt_s());
+    let shown = |pole: &Complex| pole_of(*pole, plant.worst.open.dt_s());
     answer.insert("unstable_poles".into(), unstable.map(shown).collect());
     if let Ok(margins) = &plant.margins {
         margins_into(answer, margins);

@@ -1,9 +1,10 @@
 //! One controller with every plant that it has to hold.
 
+use fspid_core::Gains;
 use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins, Stability};
-use fspid_sim::loop_model::BreakPoint;
+use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::{
-    AircraftPlant, AtRest, Controller, LinearPlant, NamedController, Scenario, SimError,
+    AircraftPlant, Controller, LinearPlant, NamedController, Rest, Scenario, Side, SimError, Stand,
 };
 
 use super::Question;
@@ -13,14 +14,13 @@ use super::flights::Flights;
 use super::frozen::{FrozenMap, FrozenPoint};
 use crate::metrics::Absent;
 
-/// A controller's loop with one plant.
+/// A controller's loop with a plant, at one rest of the scenario and on one side of the kinks that the rules have there.
 #[derive(Clone, Debug)]
-pub struct PlantLoop {
-    /// From when the plant is that one, s.
-    pub from_s: f64,
-    /// The set-point at which the loop rests, rad from the trim: of those that the scenario holds the one with
-    /// the smallest disk margin, where they differ.
+pub struct RestLoop {
+    /// The set-point at which the loop rests, rad from the trim.
     pub setpoint_rad: f64,
+    /// The gains, and with them what a held command adds to the gain on the error.
+    pub gains: Gains<f64>,
     /// The open loop.
     pub open: SampledLoop,
     /// All that is known of a stable loop whose margins are proved.
@@ -28,6 +28,19 @@ pub struct PlantLoop {
     /// Poles of the closed loop in the z-plane.
     pub closed_poles: Vec<Complex>,
     /// Margins in the units of answers.
+    pub margins: Result<Margins, Absent>,
+}
+
+/// A controller's loop with one plant.
+#[derive(Clone, Debug)]
+pub struct PlantLoop {
+    /// From when the plant is that one, s.
+    pub from_s: f64,
+    /// Of the rests that the scenario holds the one with the smallest disk margin.
+    pub worst: RestLoop,
+    /// The other rests, where they differ: those of gains that multiply a constant and move.
+    pub others: Vec<RestLoop>,
+    /// Of each margin the worst of all rests.
     pub margins: Result<Margins, Absent>,
     /// Every gain of a self-tuning controller, standing still.
     pub map: Option<FrozenMap>,
@@ -73,24 +86,15 @@ impl AnalysedLoop {
         }
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
-            let rests = AtRest::all(scenario, plant, controller, gains);
-            let found = rests.iter().map(|rest| {
-                let model = rest.model(scenario, plant, controller)?;
-                let open = model.sharpened(scenario, plant)?.open(rest.gains, question.point)?;
-                PlantLoop::of(*from_s, rest, open)
-            });
-            let found = found.collect::<Result<Vec<PlantLoop>, SimError>>()?;
-            let worst = found.into_iter().reduce(|one, other| {
-                if rank(&other.margins) < rank(&one.margins) { other } else { one }
-            });
-            let Some(worst) = worst else { continue };
+            let found =
+                PlantLoop::of(scenario, (*from_s, plant), controller, (gains, question.point))?;
             let map = match controller {
                 Controller::SelfTuning(fspid) if question.map_points > 0 => {
                     FrozenMap::of(scenario, plant, fspid, question)?
                 }
                 _ => None,
             };
-            plants.push(PlantLoop { map, ..worst });
+            plants.push(PlantLoop { map, ..found });
         }
         Ok(Self { name, equilibrium, plants, absent: None, flights })
     }
@@ -141,23 +145,90 @@ impl AnalysedLoop {
     }
 }
 
-impl PlantLoop {
-    fn of(from_s: f64, rest: &AtRest, open: SampledLoop) -> Result<Self, SimError> {
+impl RestLoop {
+    fn of(setpoint_rad: f64, gains: Gains<f64>, open: SampledLoop) -> Result<Self, SimError> {
         let closed_poles = open.closed_poles()?;
         let judged = judged(&open)?;
         let margins = judged.as_deref().map(Margins::of).map_err(|reason| *reason);
-        let setpoint_rad = rest.setpoint_rad;
-        let sampled = judged.ok();
-        Ok(Self { from_s, setpoint_rad, open, sampled, closed_poles, margins, map: None })
+        Ok(Self { setpoint_rad, gains, open, sampled: judged.ok(), closed_poles, margins })
     }
 
-    /// Whether the loop is stable; `None` where rounding hides it.
+    /// The loops of a rest, one for each side of its kinks.
+    fn all(
+        scenario: &Scenario,
+        (plant, rest): (&LinearPlant, &Rest),
+        controller: &Controller,
+        point: BreakPoint,
+    ) -> Result<Vec<Self>, SimError> {
+        let of_side = |side: &Side| {
+            let model = side.model(scenario, plant, controller)?;
+            let open = model.sharpened(scenario, plant)?.open(side.gains, point)?;
+            Self::of(rest.setpoint_rad, side.gains, open)
+        };
+        let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
+        for side in &mut sides {
+            if let Err(reason) = side.margins {
+                side.margins = Err(of_all_sides(reason, scenario, (plant, rest), controller)?);
+            }
+        }
+        Ok(sides)
+    }
+}
+
+/// What the instability of one side says of a rest: where there are several sides, motions decide.
+fn of_all_sides(
+    reason: Absent,
+    scenario: &Scenario,
+    (plant, rest): (&LinearPlant, &Rest),
+    controller: &Controller,
+) -> Result<Absent, SimError> {
+    let Absent::Unstable { .. } = reason else { return Ok(reason) };
+    if rest.sides.len() == 1 {
+        return Ok(reason);
+    }
+    // A limit of 0: that a side is unstable is known already.
+    let sampled = SampledPlant::of(scenario, plant)?;
+    Ok(match rest.stand(scenario, &sampled, controller, 0.0)? {
+        Stand::Grows { spectral_radius } => Absent::Unstable { spectral_radius },
+        Stand::Holds | Stand::OneSide { .. } => Absent::OneSide,
+    })
+}
+
+impl PlantLoop {
+    fn of(
+        scenario: &Scenario,
+        (from_s, plant): (f64, &LinearPlant),
+        controller: &Controller,
+        (gains, point): (Gains<f64>, BreakPoint),
+    ) -> Result<Self, SimError> {
+        let mut found = Vec::new();
+        for rest in Rest::all(scenario, plant, controller, gains) {
+            found.extend(RestLoop::all(scenario, (plant, &rest), controller, point)?);
+        }
+        found.sort_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)));
+        let mut rests = found.into_iter();
+        let worst = rests.next().ok_or(SimError::NotLinear)?;
+        let others: Vec<RestLoop> = rests.collect();
+        let margins =
+            others.iter().fold(worst.margins, |worst, rest| match (worst, rest.margins) {
+                (Ok(worst), Ok(other)) => Ok(worst.or_worse(&other)),
+                (reason @ Err(_), _) | (Ok(_), reason) => reason,
+            });
+        Ok(Self { from_s, worst, others, margins, map: None })
+    }
+
+    /// Every rest, the worst first.
+    pub fn rests(&self) -> impl Iterator<Item = &RestLoop> {
+        core::iter::once(&self.worst).chain(&self.others)
+    }
+
+    /// Whether the loop is stable; `None` where rounding or a kink of the rules hides it.
     #[must_use]
     pub fn is_stable(&self) -> Option<bool> {
         match self.margins {
             // Its poles tell; only how far it is from unstable is not proved.
             Ok(_) | Err(Absent::NotProved { .. }) => Some(true),
-            Err(Absent::Undecided { .. }) => None,
+            Err(Absent::Undecided { .. } | Absent::OneSide) => None,
             Err(_) => Some(false),
         }
     }
@@ -214,18 +285,32 @@ pub(crate) fn held_at_rest(
     };
     let plants = lasting_plants(scenario)?;
     let held = plants.iter().map(|(from_s, plant)| {
-        let mut worst = None;
-        for rest in AtRest::all(scenario, plant, controller, gains) {
-            let model = rest.model(scenario, plant, controller)?;
-            let verdict = verdict(&model.open(rest.gains, BreakPoint::default())?)?;
+        let mut worst: Option<Held> = None;
+        for rest in Rest::all(scenario, plant, controller, gains) {
+            let verdict = verdict_of(scenario, (plant, &rest), controller)?;
             let found = Held { from_s: *from_s, setpoint_rad: rest.setpoint_rad, verdict };
-            if worst.as_ref().is_none_or(|worst: &Held| found.rank() < worst.rank()) {
+            if worst.is_none_or(|worst| found.rank() < worst.rank()) {
                 worst = Some(found);
             }
         }
         worst.ok_or(SimError::NotLinear)
     });
     held.collect()
+}
+
+/// Whether a rest is stable on all its sides.
+fn verdict_of(
+    scenario: &Scenario,
+    (plant, rest): (&LinearPlant, &Rest),
+    controller: &Controller,
+) -> Result<Result<(), Absent>, SimError> {
+    for side in &rest.sides {
+        let model = side.model(scenario, plant, controller)?;
+        if let Err(reason) = verdict(&model.open(side.gains, BreakPoint::default())?)? {
+            return of_all_sides(reason, scenario, (plant, rest), controller).map(Err);
+        }
+    }
+    Ok(Ok(()))
 }
 
 /// Whether a loop is stable; one of which rounding hides the answer is not called so.
@@ -287,7 +372,7 @@ mod tests {
                         AnalysedLoop::of(&study.scenario, named, question).expect("a loop");
                     let plants = analysed.plants.iter().map(|plant| Held {
                         from_s: plant.from_s,
-                        setpoint_rad: plant.setpoint_rad,
+                        setpoint_rad: plant.worst.setpoint_rad,
                         verdict: plant.margins.map(|_| ()),
                     });
                     let held = held_at_rest(&study.scenario, &named.controller).expect("a loop");

@@ -33,7 +33,7 @@ pub use flights::Flights;
 pub(crate) use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
-pub use loops::{AnalysedLoop, PlantLoop};
+pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
 pub(crate) use loops::{held_at_rest, lasting_plants};
 pub use nonlinear_parts::not_in_the_linear_loop;
 pub(crate) use step::step_responses;

@@ -50,7 +50,7 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
         |named: &fspid_sim::NamedController| matches!(named.controller, Controller::SelfTuning(_));
     say(
         scenario.controllers.iter().any(tuning),
-        "Self-tuning gains are taken as standing still; only a certificate speaks of gains that move.",
+        "Of gains that move only what they add to a held command is in these numbers; for all else they stand still. Only a certificate speaks of gains that move.",
     );
     let accumulates = |named: &fspid_sim::NamedController| match &named.controller {
         Controller::SelfTuning(fspid) => fspid.tuner().settings().law != Law::Memoryless,

@@ -44,7 +44,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     if let Some(reason) = found.absent {
         return format!("no margins: {reason}");
     }
-    let held = found.worst().map(|plant| at_setpoint(plant.setpoint_rad)).unwrap_or_default();
+    let held = found.worst().map(|plant| at_setpoint(plant)).unwrap_or_default();
     let count = |answer| found.plants.iter().filter(|it| it.is_stable() == answer).count();
     let (unstable, undecided) = (count(Some(false)), count(None));
     let plants = |bad| match found.plants.len() {
@@ -65,14 +65,13 @@ fn verdict(found: &AnalysedLoop) -> String {
     format!("stable {gains}{poor}{held}")
 }
 
-/// Where the loop at rest is worst, if not at the trim.
-pub(crate) fn at_setpoint(setpoint_rad: f64) -> String {
-    match degrees(setpoint_rad) {
-        0.0 => String::new(),
-        setpoint_deg => {
-            format!("; worst while the set-point is held at {} deg", short(setpoint_deg))
-        }
+/// Where the loop at rest is worst, if it differs from set-point to set-point.
+pub(crate) fn at_setpoint(plant: &PlantLoop) -> String {
+    if plant.others.is_empty() {
+        return String::new();
     }
+    let held = short(degrees(plant.worst.setpoint_rad));
+    format!("; worst while the set-point is held at {held} deg")
 }
 
 fn push_loop(out: &mut String, found: &AnalysedLoop) {
@@ -93,13 +92,13 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
 fn push_plant(out: &mut String, plant: &PlantLoop) {
     match &plant.margins {
         Ok(margins) => push_margins(out, margins),
-        Err(reason @ (Absent::Undecided { .. } | Absent::NotProved { .. })) => {
+        Err(reason @ (Absent::Undecided { .. } | Absent::OneSide | Absent::NotProved { .. })) => {
             line(out, format_args!("  no margins         {reason}"));
         }
         Err(_) => push_unstable(out, plant),
     }
-    let oscillating = plant.closed_poles.iter().filter(|pole| pole.im > 0.0);
-    let modes = oscillating.map(|pole| mode(*pole, plant.open.dt_s()));
+    let oscillating = plant.worst.closed_poles.iter().filter(|pole| pole.im > 0.0);
+    let modes = oscillating.map(|pole| mode(*pole, plant.worst.open.dt_s()));
     let least = modes.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
     if let Some(mode) = least {
         line(
@@ -120,9 +119,11 @@ pub(super) fn mode(pole: Complex, dt_s: f64) -> Mode {
 }
 
 fn push_unstable(out: &mut String, plant: &PlantLoop) {
-    for pole in plant.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0 && pole.im >= 0.0) {
+    for pole in
+        plant.worst.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0 && pole.im >= 0.0)
+    {
         let sign = if pole.im > 0.0 { format!(" ± {:.6}j", pole.im) } else { String::new() };
-        let mode = mode(*pole, plant.open.dt_s());
+        let mode = mode(*pole, plant.worst.open.dt_s());
         line(
             out,
             format_args!(

@@ -51,6 +51,9 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop as computed.
         spectral_radius: f64,
     },
+    /// The rules have a kink where the loop rests; on one side of it the loop is unstable, and no motion was seen to
+    /// grow.
+    OneSide,
     /// The loop has so many states that nothing bounds its peaks from above.
     NotProved {
         /// Number of states, samples of dead time included.
@@ -81,6 +84,9 @@ impl fmt::Display for Absent {
             Self::Undecided { spectral_radius } => write!(
                 f,
                 "undecided: rounding may carry poles across the unit circle (spectral radius {spectral_radius:.9} as computed)"
+            ),
+            Self::OneSide => f.write_str(
+                "undecided: unstable on one side of a kink that the rules have where the loop rests, and no motion was seen to grow",
             ),
             Self::NotProved { order } => write!(
                 f,

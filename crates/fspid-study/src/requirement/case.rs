@@ -47,6 +47,8 @@ pub struct Place {
     pub at_s: Option<f64>,
     /// The plant, where there are several.
     pub plant: Option<PlantAt>,
+    /// The set-point that is held, deg from the trim, where the loop at rest differs from one to the next.
+    pub setpoint_deg: Option<f64>,
     /// The frozen gains.
     pub frozen: Option<FrozenAt>,
     /// The frequency, rad/s.
@@ -91,6 +93,7 @@ impl Place {
             "plant",
             self.plant.map(|plant| json!({ "index": plant.index, "from_s": plant.from_s })),
         );
+        put("setpoint_deg", self.setpoint_deg.map(|setpoint_deg| json!(setpoint_deg)));
         put("frozen_gains", self.frozen.map(|frozen| frozen_json(&frozen)));
         put("frequency_rad_s", self.frequency_rad_s.map(|omega| json!(omega)));
         put("spectral_radius", self.spectral_radius.map(|radius| json!(radius)));
@@ -125,6 +128,8 @@ impl fmt::Display for Place {
             0 => "the first plant".to_owned(),
             _ => format!("the plant after the change at {} s", shortest(plant.from_s)),
         }));
+        let held = |deg| format!("while the set-point is held at {} deg", shortest(deg));
+        parts.extend(self.setpoint_deg.map(held));
         parts.extend(self.frozen.map(frozen_in_words));
         parts.extend(self.frequency_rad_s.map(|omega| format!("at {} rad/s", shortest(omega))));
         parts.extend(self.spectral_radius.map(|radius| format!("spectral radius {radius:.6}")));

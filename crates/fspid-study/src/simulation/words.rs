@@ -4,6 +4,7 @@ use fspid_aircraft::Departure;
 use fspid_core::Gains;
 use fspid_sim::Exit;
 use fspid_sim::load::ConstantLoad;
+use fspid_sim::stability::Unstable;
 
 use crate::analysis::{AtRest, RestGains};
 use crate::file::RangeRule;
@@ -76,7 +77,27 @@ impl AtRest {
     /// All that is said of the loop at rest beside a verdict.
     pub(crate) fn words(&self, duration_s: f64) -> impl Iterator<Item = String> {
         let load = self.load_in_words(duration_s);
-        self.gains_in_words().into_iter().chain(load).chain(self.not_asked_in_words())
+        let held = self.held_in_words().into_iter().chain(self.one_side_in_words());
+        self.gains_in_words().into_iter().chain(held).chain(load).chain(self.not_asked_in_words())
+    }
+
+    /// At which set-point the loop is unstable, where it is not at the trim.
+    fn held_in_words(&self) -> Option<String> {
+        let setpoint_deg = degrees(self.unstable?.setpoint_rad);
+        let held = short(setpoint_deg);
+        (setpoint_deg != 0.0).then(|| {
+            format!("unstable while the set-point is held at {held} deg: gains that move multiply the command that holds it")
+        })
+    }
+
+    /// That stability is not decided, and where; none where it is.
+    #[must_use]
+    pub fn one_side_in_words(&self) -> Option<String> {
+        let Unstable { spectral_radius, setpoint_rad, .. } = self.on_one_side?;
+        let held = short(degrees(setpoint_rad));
+        Some(format!(
+            "whether the loop is stable while the set-point is held at {held} deg is not decided: its rules have a kink there, on one side of it the spectral radius is {spectral_radius:.6}, and no motion around it was seen to grow"
+        ))
     }
 
     /// What is said of a constant load that is not removed within the flight; none where it is, or nobody can tell.

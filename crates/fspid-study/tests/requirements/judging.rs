@@ -119,7 +119,7 @@ fn every_crossing_is_judged_in_the_band_of_its_frequency() {
     assert!(low.is_finite(), "the phugoid crosses at some 0.011 Hz");
     assert_eq!(all, low.min(high));
     let analysis = Analysis::of(&study(JUMBO, &weak), Question::default()).expect("analysed");
-    let found = analysis.loops[0].plants[0].sampled.as_ref().expect("it is stable");
+    let found = analysis.loops[0].plants[0].worst.sampled.as_ref().expect("it is stable");
     let crossover = |at: &fspid_lti::SampledCrossover| {
         (at.omega_rad_s / std::f64::consts::TAU, at.phase_margin_rad.abs().to_degrees())
     };
@@ -153,7 +153,7 @@ fn the_damping_is_that_of_the_least_damped_closed_loop_pole() {
     let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("analysed");
     let ours = values(JUMBO, Measure::ModeDamping, "", &[]);
     for (analysed, ours) in analysis.loops.iter().zip(ours) {
-        let poles = &analysed.plants[0].closed_poles;
+        let poles = &analysed.plants[0].worst.closed_poles;
         let damping = poles.iter().map(|pole| (pole.re.hypot(pole.im), pole.im.atan2(pole.re)));
         let damping = damping.filter(|(size, _)| *size > 0.0).map(|(size, angle)| {
             let decay = -size.ln();

@@ -54,8 +54,8 @@ const DAMPING_MIN: f64 = 0.3;
 
 /// The oscillating mode of a closed loop with the least damping.
 pub(super) fn least_damped(plant: &PlantLoop) -> Option<Mode> {
-    let dt_s = plant.open.dt_s();
-    let oscillating = plant.closed_poles.iter().filter(|pole| pole.im > 0.0);
+    let dt_s = plant.worst.open.dt_s();
+    let oscillating = plant.worst.closed_poles.iter().filter(|pole| pole.im > 0.0);
     let modes = oscillating.filter_map(|pole| Mode::of_sampled_pole(*pole, dt_s).ok());
     modes.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio))
 }
@@ -80,7 +80,7 @@ pub(super) fn warnings(
         ));
     }
     if let (Some(poles), Some(plant)) = (poles, outcome.plants.first()) {
-        warnings.extend(poles.warnings(&plant.closed_poles));
+        warnings.extend(poles.warnings(&plant.worst.closed_poles));
     }
     warnings
 }

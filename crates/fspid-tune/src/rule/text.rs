@@ -200,7 +200,7 @@ fn push_loop(out: &mut String, plant: &PlantLoop) {
         Ok(margins) => push_margins(out, margins),
         Err(reason) => line(out, format_args!("  no margins         {reason}")),
     }
-    let dt_s = plant.open.dt_s();
+    let dt_s = plant.worst.open.dt_s();
     if let Some(mode) = least_damped(plant) {
         line(
             out,
@@ -210,7 +210,7 @@ fn push_loop(out: &mut String, plant: &PlantLoop) {
             ),
         );
     }
-    let radius = plant.closed_poles.iter().map(|pole| modulus(*pole)).fold(0.0, f64::max);
+    let radius = plant.worst.closed_poles.iter().map(|pole| modulus(*pole)).fold(0.0, f64::max);
     if radius < 1.0 {
         let slowest_s = -dt_s / libm::log(radius);
         line(out, format_args!("  slowest mode       time constant {slowest_s:.3} s"));

@@ -3,7 +3,7 @@
 use fspid_lti::Mode;
 use fspid_sim::{NamedController, Scenario, SimError};
 
-use crate::analysis::{Analysis, Margins, PlantLoop, Question, decibels, held_at_rest};
+use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
 use crate::metrics::{Absent, Measure};
 use crate::requirement::{Case, NotEvaluated, Place, PlantAt, Requirement};
 use crate::simulation::ControllerResult;
@@ -19,13 +19,17 @@ pub(super) struct PlantEvidence {
 }
 
 impl PlantEvidence {
-    /// Margins of the loop at rest.
-    pub(super) fn require_stability(&self) -> Result<Margins, NotEvaluated> {
-        self.at_rest.margins.map_err(|reason| with_place(reason, self.place()))
-    }
-
     pub(super) fn place(&self) -> Place {
         Place { plant: self.at, ..Place::default() }
+    }
+
+    /// The loops of all rests, each with its place.
+    fn rests(&self) -> impl Iterator<Item = (&RestLoop, Place)> {
+        let several = !self.at_rest.others.is_empty();
+        self.at_rest.rests().map(move |rest| {
+            let setpoint_deg = several.then(|| degrees(rest.setpoint_rad));
+            (rest, Place { setpoint_deg, ..self.place() })
+        })
     }
 }
 
@@ -51,7 +55,11 @@ pub(super) fn require_stability(
     let several = held.len() > 1;
     for (index, held) in held.into_iter().enumerate() {
         let plant = several.then_some(PlantAt { index, from_s: held.from_s });
-        held.verdict.map_err(|reason| with_place(reason, Place { plant, ..Place::default() }))?;
+        match held.verdict {
+            // Not decided by the loop: the flight tells.
+            Ok(()) | Err(Absent::OneSide) => {}
+            Err(reason) => return Err(with_place(reason, Place { plant, ..Place::default() })),
+        }
     }
     Ok(())
 }
@@ -78,15 +86,16 @@ pub(super) fn loops(
     Ok((0..).zip(analysed.plants).map(evidence).collect())
 }
 
-/// A measure of the loops at rest: a case for each plant.
+/// A measure of the loops at rest: a case for each plant and each rest.
 pub(super) fn cases(
     loops: &[PlantEvidence],
     result: &ControllerResult,
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
     let of_flight = diverged(result).filter(|_| requirement.measure == Measure::Stable);
-    let of_plants = loops.iter().map(|plant| of_plant(plant, requirement));
-    of_flight.map(Ok).into_iter().chain(of_plants).collect()
+    let rests = loops.iter().flat_map(PlantEvidence::rests);
+    let of_rests = rests.map(|(rest, place)| of_rest(rest, place, requirement));
+    of_flight.map(Ok).into_iter().chain(of_rests).collect()
 }
 
 /// A flight that diverged is no flight of a stable loop.
@@ -100,38 +109,38 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
     }
 }
 
-fn of_plant(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, NotEvaluated> {
+fn of_rest(rest: &RestLoop, place: Place, requirement: &Requirement) -> Result<Case, NotEvaluated> {
     if requirement.measure == Measure::Stable {
-        return stable(plant);
+        return stable(rest, place);
     }
-    let margins = plant.require_stability()?;
+    let margins = rest.margins.map_err(|reason| with_place(reason, place))?;
     match requirement.measure {
-        Measure::ModeDamping => mode_damping(plant, requirement),
+        Measure::ModeDamping => mode_damping(rest, place, requirement),
         Measure::PhaseMargin if requirement.conditions.has_band() => {
-            phase_margin_in_band(plant, requirement)
+            phase_margin_in_band(rest, place, requirement)
         }
         Measure::GainMargin | Measure::GainMarginLow | Measure::GainMarginHigh
             if requirement.conditions.has_band() =>
         {
-            gain_margin_in_band(plant, &margins, requirement)
+            gain_margin_in_band((rest, place), &margins, requirement)
         }
         Measure::GainCrossover => {
             let value = margins.gain_crossover_rad_s.ok_or(NotEvaluated::NoCrossover)?;
-            Ok(Case { value, place: plant.place() })
+            Ok(Case { value, place })
         }
         measure => {
             let (value, frequency_rad_s) = of_margins(measure, &margins);
-            Ok(Case { value, place: Place { frequency_rad_s, ..plant.place() } })
+            Ok(Case { value, place: Place { frequency_rad_s, ..place } })
         }
     }
 }
 
-fn stable(plant: &PlantEvidence) -> Result<Case, NotEvaluated> {
-    match plant.at_rest.margins {
+fn stable(rest: &RestLoop, place: Place) -> Result<Case, NotEvaluated> {
+    match rest.margins {
         // Whether it is stable is known without margins.
-        Ok(_) | Err(Absent::NotProved { .. }) => Ok(Case { value: 1.0, place: plant.place() }),
+        Ok(_) | Err(Absent::NotProved { .. }) => Ok(Case { value: 1.0, place }),
         Err(Absent::Unstable { spectral_radius }) => {
-            let place = Place { spectral_radius: Some(spectral_radius), ..plant.place() };
+            let place = Place { spectral_radius: Some(spectral_radius), ..place };
             Ok(Case { value: 0.0, place })
         }
         Err(reason) => Err(NotEvaluated::Absent(reason)),
@@ -163,16 +172,16 @@ pub(super) fn of_margins(measure: Measure, margins: &Margins) -> (f64, Option<f6
 
 /// The least phase margin of the crossovers whose frequency counts; infinite where there is none.
 fn phase_margin_in_band(
-    plant: &PlantEvidence,
+    rest: &RestLoop,
+    place: Place,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
-    let found = plant.at_rest.sampled.as_ref();
-    let found = found.ok_or(NotEvaluated::Absent(Absent::NotFinite))?;
-    let without_end = Case { value: f64::INFINITY, place: plant.place() };
+    let found = rest.sampled.as_ref().ok_or(NotEvaluated::Absent(Absent::NotFinite))?;
+    let without_end = Case { value: f64::INFINITY, place };
     let counted =
         found.crossovers.iter().filter(|at| requirement.conditions.in_band(at.omega_rad_s));
     let cases = counted.map(|at| {
-        let place = Place { frequency_rad_s: Some(at.omega_rad_s), ..plant.place() };
+        let place = Place { frequency_rad_s: Some(at.omega_rad_s), ..place };
         Case { value: degrees(at.phase_margin_rad.abs()), place }
     });
     Ok(cases.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(without_end))
@@ -186,14 +195,14 @@ const SAME_FACTOR: f64 = 1e-9;
 ///
 /// Between the two ends of the gain margin poles may touch the limit of stability and turn back; these are no limits.
 fn gain_margin_in_band(
-    plant: &PlantEvidence,
+    (rest, place): (&RestLoop, Place),
     margins: &Margins,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
     let [low_db, high_db] = margins.gain_margin_db;
-    let open = &plant.at_rest.open;
+    let open = &rest.open;
     let crossings = open.real_crossings().map_err(|error| NotEvaluated::Linear(error.into()))?;
-    let mut least = Case { value: f64::INFINITY, place: plant.place() };
+    let mut least = Case { value: f64::INFINITY, place };
     for omega_rad_s in crossings {
         let factor_db = decibels(-1.0 / open.at(omega_rad_s).re);
         // NaN for a positive value of the loop, where no factor above 0 makes an oscillation.
@@ -206,7 +215,7 @@ fn gain_margin_in_band(
         };
         let is_less = factor_db.abs() < least.value;
         if counts && is_less && requirement.conditions.in_band(omega_rad_s) {
-            let place = Place { frequency_rad_s: Some(omega_rad_s), ..plant.place() };
+            let place = Place { frequency_rad_s: Some(omega_rad_s), ..place };
             least = Case { value: factor_db.abs(), place };
         }
     }
@@ -214,13 +223,17 @@ fn gain_margin_in_band(
 }
 
 /// Damping of the least damped mode whose frequency counts; poles at 0 die at once and are none.
-fn mode_damping(plant: &PlantEvidence, requirement: &Requirement) -> Result<Case, NotEvaluated> {
-    let dt_s = plant.at_rest.open.dt_s();
-    let poles = plant.at_rest.closed_poles.iter();
+fn mode_damping(
+    rest: &RestLoop,
+    place: Place,
+    requirement: &Requirement,
+) -> Result<Case, NotEvaluated> {
+    let dt_s = rest.open.dt_s();
+    let poles = rest.closed_poles.iter();
     let modes = poles.filter_map(|&pole| Mode::of_sampled_pole(pole, dt_s).ok());
     let counted = modes.filter(|mode| requirement.conditions.in_band(mode.natural_frequency_rad_s));
     let least = counted.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
     let mode = least.ok_or(NotEvaluated::NoMode)?;
     let frequency_rad_s = Some(mode.natural_frequency_rad_s);
-    Ok(Case { value: mode.damping_ratio, place: Place { frequency_rad_s, ..plant.place() } })
+    Ok(Case { value: mode.damping_ratio, place: Place { frequency_rad_s, ..place } })
 }

@@ -1,0 +1,363 @@
+//! The loop at rest while a set-point is held, with what gains that move make of the command there.
+//!
+//! At rest the command is not zero: it holds the plant. Of that command a part is the product of a gain
+//! and a constant. With a set-point weight b other than 1, $k_p (b r - y)$ is $k_p e + k_p (b - 1) r$; the
+//! literal integral is $k_i T \sum e$ with a sum that stands still. Where a gain moves with the error, so does
+//! that part of the command:
+//!
+//! $$ \delta u = k_p e + \dots + A \frac{\partial k_p}{\partial x} \cdot \delta x
+//!  + C \frac{\partial k_i}{\partial x} \cdot \delta x, \qquad A = (b - 1) r, \quad C = \frac{I}{k_i} $$
+//!
+//! with the supervisor's inputs x and the integral's term I at rest. With b = 1 and the bumpless integral
+//! both are zero, and the loop at rest is the same at every set-point.
+//!
+//! A rate sensor with a bias shows a rate at rest. Where the gain of the rate loop follows kd, that adds
+//! $-s_r q\, \partial k_d / \partial x$ in the same way.
+//!
+//! The surfaces of rules have kinks, often right at rest: there the loop is another one on each side, see [`Stand`].
+//!
+//! Not here: accumulating laws, whose gains do not follow the inputs of the moment, and the size of a motion
+//! for which this is a good approximation.
+
+mod slopes;
+mod stand;
+
+use fspid_core::{ErrorSign, Fspid, Gains, IntegralForm, Law, Sees, Shell};
+
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant};
+use crate::plant::LinearPlant;
+use crate::scenario::Scenario;
+use crate::steady::Steady;
+use slopes::{DIRECTIONS, Slopes};
+
+pub use stand::Stand;
+
+/// Halvings in which the pitch at rest is looked for, and doublings of how far from the set-point.
+const HALVINGS: usize = 60;
+/// Steps over the supervisor's range in which errors at rest are told apart.
+const STEPS: u32 = 128;
+/// Where there is no integral the error at rest moves through the rules as the set-point grows: it is looked at in
+/// this many steps to the furthest one.
+const LADDER: u32 = 4;
+
+/// A controller at rest while a set-point and a load are held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// The set-point that is held, rad from the trim.
+    pub setpoint_rad: f64,
+    /// The loops there: one, or one for each side of the kinks that the rules have there.
+    pub sides: Vec<Side>,
+    /// Which of them a motion in each direction is on.
+    of_direction: [usize; DIRECTIONS],
+    /// What the supervisor sees of a unit of error, and of what stands beside it.
+    seen_per_unit: [f64; 2],
+    /// What stands beside it.
+    sees: Sees<f64>,
+}
+
+/// The loop at rest for motions to one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// The gains, and with them what a held command adds to the gain on the error.
+    pub gains: Gains<f64>,
+    /// What it adds on the change of the error, rad per rad and sample.
+    pub change_gain: f64,
+    /// What it adds to the gain of the rate loop, s.
+    pub rate_gain_s: f64,
+}
+
+impl Side {
+    /// For gains that do not move.
+    const fn still(gains: Gains<f64>) -> Self {
+        Self { gains, change_gain: 0.0, rate_gain_s: 0.0 }
+    }
+
+    /// The loop of one of a scenario's plants at rest on this side.
+    ///
+    /// # Errors
+    /// [`SimError`] where the plant cannot be sampled.
+    pub fn model(
+        &self,
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        controller: &Controller,
+    ) -> Result<LoopModel<f64>, SimError> {
+        Ok(self.around(scenario, &SampledPlant::of(scenario, plant)?, controller, false))
+    }
+
+    fn shell(&self, controller: &Controller) -> Shell<f64> {
+        let shell = controller.shell_at(self.gains);
+        Shell { rate_gain_s: shell.rate_gain_s + self.rate_gain_s, ..shell }
+    }
+
+    fn memory(&self, controller: &Controller) -> Memory {
+        let memory = Memory::of_gains(self.gains, &self.shell(controller));
+        if self.change_gain == 0.0 { memory } else { memory.with_previous() }
+    }
+
+    /// The same with a plant that is sampled already; beside other sides it remembers the last sample, as they do.
+    fn around(
+        &self,
+        scenario: &Scenario,
+        plant: &SampledPlant<f64>,
+        controller: &Controller,
+        beside_others: bool,
+    ) -> LoopModel<f64> {
+        let memory = self.memory(controller);
+        let memory = if beside_others { memory.with_previous() } else { memory };
+        let settings = LoopSettings::of(scenario, &self.shell(controller), memory);
+        LoopModel::new(plant.clone(), settings).with_change_gain(self.change_gain)
+    }
+}
+
+impl Rest {
+    /// Rest for gains that do not move: the same at every set-point.
+    #[must_use]
+    pub fn still(gains: Gains<f64>) -> Self {
+        Self {
+            setpoint_rad: 0.0,
+            sides: vec![Side::still(gains)],
+            of_direction: [0; DIRECTIONS],
+            seen_per_unit: [1.0; 2],
+            sees: Sees::ErrorAndChange,
+        }
+    }
+
+    /// All ways in which a controller with `gains` at rest holds one of a scenario's plants at the trim and at
+    /// the furthest set-points of the scenario, without a load and under the largest ones; one where they do not
+    /// differ.
+    #[must_use]
+    pub fn all(
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        controller: &Controller,
+        gains: Gains<f64>,
+    ) -> Vec<Self> {
+        let still = vec![Self::still(gains)];
+        let Controller::SelfTuning(fspid) = controller else { return still };
+        let steady = scenario.steady();
+        let is_same = is_the_same_everywhere(fspid, &steady);
+        if fspid.tuner().settings().law != Law::Memoryless || is_same {
+            return still;
+        }
+        let scale = scenario.surroundings.pitch_sensor.map_or(1.0, |s| 1.0 + s.model().scale_error);
+        let held = Holding {
+            fspid,
+            // What the command has to be per rad of seen pitch.
+            command_per_pitch: 1.0 / (scale * plant.steady_gain()),
+            gains,
+        };
+        // A seen rate is no load here: it has its own place in the controller.
+        let shell = Shell { rate_gain_s: 0.0, ..*fspid.shell() };
+        let loads = either_way(steady.load_with_offsets_rad(plant, &shell));
+        let rates = either_way(steady.rate_offset_rad_s);
+        let mut found: Vec<Self> = Vec::new();
+        for setpoint_rad in held.setpoints(&steady) {
+            for &load_rad in &loads {
+                for &rate_rad_s in &rates {
+                    for rest in held.at(setpoint_rad, load_rad, rate_rad_s) {
+                        if !found.contains(&rest) {
+                            found.push(rest);
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Nothing, and so much to either side, where it is more than nothing.
+fn either_way(size: f64) -> Vec<f64> {
+    if size > 0.0 { vec![0.0, -size, size] } else { vec![0.0] }
+}
+
+/// True where no constant is multiplied by a gain that moves, and there is an integral that brings the error to zero.
+fn is_the_same_everywhere(fspid: &Fspid<f64>, steady: &Steady) -> bool {
+    let (shell, settings) = (fspid.shell(), fspid.tuner().settings());
+    let followers = settings.followers;
+    let shows_rate = followers.rate_gain != 0.0 || settings.sees == Sees::ErrorAndRate;
+    let plain = (shell.setpoint_weights.proportional - 1.0) == 0.0
+        && followers.setpoint_weight == 0.0
+        && shell.integral == IntegralForm::Bumpless
+        && !(shows_rate && steady.rate_offset_rad_s > 0.0);
+    plain && integrates(fspid)
+}
+
+fn integrates(fspid: &Fspid<f64>) -> bool {
+    fspid.tuner().nominal().ki != 0.0 || fspid.tuner().settings().output_scale.ki != 0.0
+}
+
+/// A self-tuning controller that holds a plant.
+struct Holding<'a> {
+    fspid: &'a Fspid<f64>,
+    command_per_pitch: f64,
+    /// At rest with everything at zero.
+    gains: Gains<f64>,
+}
+
+/// Constants that gains multiply at rest: derivatives of the command by kp, ki, kd.
+#[derive(Clone, Copy)]
+struct Held {
+    by_kp: f64,
+    by_ki: f64,
+    by_kd: f64,
+}
+
+impl Holding<'_> {
+    /// Set-points at which rest is looked at.
+    fn setpoints(&self, steady: &Steady) -> Vec<f64> {
+        let steps = if integrates(self.fspid) { 1 } else { LADDER };
+        let towards =
+            |end: f64| (1..=steps).map(move |step| end * f64::from(step) / f64::from(steps));
+        let [least, most] = steady.setpoint_rad;
+        let mut setpoints = vec![0.0];
+        for setpoint_rad in towards(least).chain(towards(most)).filter(|it| *it != 0.0) {
+            setpoints.push(setpoint_rad);
+        }
+        setpoints
+    }
+
+    /// Rest at a set-point under a load with a rate that is seen and not there: one, or several without an integral.
+    fn at(&self, setpoint_rad: f64, load_rad: f64, rate_rad_s: f64) -> Vec<Rest> {
+        let outside = (setpoint_rad, load_rad, rate_rad_s);
+        let errors = if integrates(self.fspid) { vec![0.0] } else { self.errors_at_rest(outside) };
+        errors.into_iter().map(|error_rad| self.with_error(outside, error_rad)).collect()
+    }
+
+    fn with_error(
+        &self,
+        (setpoint_rad, load_rad, rate_rad_s): (f64, f64, f64),
+        error_rad: f64,
+    ) -> Rest {
+        let centre = self.seen(error_rad, rate_rad_s);
+        let is_zero = centre.iter().all(|seen| *seen == 0.0);
+        let gains = if is_zero { self.gains } else { self.gains_at(centre) };
+        let shell = self.fspid.shell_at(gains);
+        let followers = self.fspid.tuner().settings().followers;
+        let pitch_rad = setpoint_rad - error_rad;
+        let by_kp = shell.setpoint_weights.proportional * setpoint_rad - pitch_rad;
+        let integral_rad = self.command_per_pitch * pitch_rad + load_rad - gains.kp * by_kp
+            + shell.rate_gain_s * rate_rad_s;
+        let held = Held {
+            // The error's own part of kp e is in the gains.
+            by_kp: by_kp + followers.setpoint_weight * gains.kp * setpoint_rad,
+            by_ki: match shell.integral {
+                IntegralForm::Literal if gains.ki != 0.0 => integral_rad / gains.ki,
+                _ => 0.0,
+            },
+            by_kd: -followers.rate_gain * rate_rad_s,
+        };
+        let (mut sides, mut known): (Vec<Side>, Vec<Slopes>) = (Vec::new(), Vec::new());
+        let around = self.slopes_around(centre, error_rad);
+        let of_direction = around.map(|slopes| {
+            let place = known.iter().position(|it| it.is_near(&slopes));
+            place.unwrap_or_else(|| {
+                known.push(slopes);
+                sides.push(self.side(gains, slopes, held));
+                known.len() - 1
+            })
+        });
+        let sees = self.fspid.tuner().settings().sees;
+        let seen_per_unit = self.seen_per_unit();
+        let mut rest = Rest { setpoint_rad, sides, of_direction, seen_per_unit, sees };
+        rest.join_equal_sides();
+        rest
+    }
+
+    fn side(&self, gains: Gains<f64>, slopes: Slopes, held: Held) -> Side {
+        let along = |input: usize| {
+            held.by_kp * slopes.kp[input]
+                + held.by_ki * slopes.ki[input]
+                + held.by_kd * slopes.kd[input]
+        };
+        let (of_error, beside) = (along(0), along(1));
+        let mut side = Side::still(gains);
+        side.gains.kp += of_error;
+        match self.fspid.tuner().settings().sees {
+            Sees::ErrorAndChange => side.change_gain = beside,
+            // What is seen is the rate with its sign turned, as the rate loop takes it off.
+            Sees::ErrorAndRate => side.rate_gain_s = beside,
+            // The model has come to rest at the set-point.
+            Sees::ErrorAndModelError(_) => side.gains.kp += beside,
+        }
+        side
+    }
+
+    /// The errors at rest without an integral: where rules weaken the gain as the error grows there may be several.
+    fn errors_at_rest(&self, (setpoint_rad, load_rad, rate_rad_s): (f64, f64, f64)) -> Vec<f64> {
+        let missing = |error_rad: f64| {
+            let gains = self.gains_at(self.seen(error_rad, rate_rad_s));
+            let shell = self.fspid.shell_at(gains);
+            let pitch_rad = setpoint_rad - error_rad;
+            gains.kp * (shell.setpoint_weights.proportional * setpoint_rad - pitch_rad)
+                - self.command_per_pitch * pitch_rad
+                - load_rad
+                - shell.rate_gain_s * rate_rad_s
+        };
+        let range = self.fspid.tuner().supervisor().range();
+        let range_rad = (range / self.seen_per_unit()[0]).abs();
+        let inside = (0..=STEPS).map(|step| (f64::from(step) / f64::from(STEPS) - 0.5) * 2.0);
+        let mut places: Vec<f64> = inside.map(|share| share * range_rad).collect();
+        let mut far_rad = range_rad;
+        for _ in 0..HALVINGS {
+            far_rad *= 2.0;
+            places.extend([-far_rad, far_rad]);
+        }
+        places.sort_by(f64::total_cmp);
+        let mut found: Vec<f64> = Vec::new();
+        for ends in places.windows(2) {
+            let (mut near, mut far) = (ends[0], ends[1]);
+            if !(missing(near) * missing(far) <= 0.0) {
+                continue;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (near + far);
+                if missing(near) * missing(middle) <= 0.0 { far = middle } else { near = middle }
+            }
+            // A root at a place itself is found on both sides of it.
+            let known = found.last().is_some_and(|last| (near - last).abs() <= 1e-12 * range_rad);
+            if !known {
+                found.push(near);
+            }
+        }
+        found
+    }
+
+    fn sign(&self) -> f64 {
+        match self.fspid.tuner().settings().error_sign {
+            ErrorSign::SetpointMinusMeasurement => 1.0,
+            ErrorSign::MeasurementMinusSetpoint => -1.0,
+        }
+    }
+
+    /// What the supervisor sees of a constant error and a constant rate.
+    fn seen(&self, error_rad: f64, rate_rad_s: f64) -> [f64; 2] {
+        let [per_error, beside] = self.seen_per_unit();
+        let second = match self.fspid.tuner().settings().sees {
+            Sees::ErrorAndChange => 0.0,
+            Sees::ErrorAndRate => -beside * rate_rad_s,
+            Sees::ErrorAndModelError(_) => beside * error_rad,
+        };
+        [per_error * error_rad, second]
+    }
+
+    /// The gains where the supervisor sees this; the nominal ones where it refuses to answer.
+    fn gains_at(&self, [error, beside]: [f64; 2]) -> Gains<f64> {
+        let tuner = self.fspid.tuner();
+        let nominal = tuner.nominal();
+        let Some(added) = tuner.increments_where_seen(error, beside) else { return nominal };
+        let free = Gains {
+            kp: nominal.kp + added.kp,
+            ki: nominal.ki + added.ki,
+            kd: nominal.kd + added.kd,
+        };
+        tuner.settings().gain_limits.map_or(free, |limits| Gains {
+            kp: limits.kp.clamp(free.kp),
+            ki: limits.ki.clamp(free.ki),
+            kd: limits.kd.clamp(free.kd),
+        })
+    }
+}

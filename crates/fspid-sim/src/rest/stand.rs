@@ -1,0 +1,149 @@
+//! Whether a rest holds where the rules have a kink.
+
+use fspid_core::Sees;
+use fspid_lti::{Matrix, spectral_radius};
+
+use super::{Rest, Side, slopes};
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::loop_model::SampledPlant;
+use crate::scenario::Scenario;
+
+/// Motions that are followed around a kink, and for how many samples. A motion that grows does so by itself after a
+/// while, wherever it starts; several starts are for loops with several ways to move.
+const MOTIONS: u64 = 6;
+const SAMPLES: usize = 12_000;
+/// By so much a motion has to grow over the second half, as a logarithm, to be called growing: twice.
+const GROWN: f64 = core::f64::consts::LN_2;
+
+/// Whether something grows around a rest.
+///
+/// With a kink at rest the loop is linear on each of its sides, and a motion may go around through several. One side
+/// that alone would grow then proves nothing: motions may leave it faster than they grow. So motions are followed
+/// through the sides as they come; the rest is [`Stand::Grows`] if one of them does, and if none is seen to,
+/// [`Stand::OneSide`] says that it is not decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stand {
+    /// Every side is stable.
+    Holds,
+    /// Something grows.
+    Grows {
+        /// By what, a sample: the spectral radius of the one loop there is, or what a motion was seen to grow by.
+        spectral_radius: f64,
+    },
+    /// A side of a kink is unstable, and no motion was seen to grow.
+    OneSide {
+        /// Largest spectral radius of the sides.
+        spectral_radius: f64,
+    },
+}
+
+impl Rest {
+    /// Whether something grows: a side whose spectral radius is not below `limit` counts as unstable.
+    ///
+    /// # Errors
+    /// Eigenvalues that are not found.
+    pub fn stand(
+        &self,
+        scenario: &Scenario,
+        plant: &SampledPlant<f64>,
+        controller: &Controller,
+        limit: f64,
+    ) -> Result<Stand, SimError> {
+        let several = self.sides.len() > 1;
+        let model =
+            |side: &Side| side.around(scenario, plant, controller, several).without_changing_ages();
+        let models: Vec<_> = self.sides.iter().map(|side| (model(side), side.gains)).collect();
+        let mut closed = Vec::new();
+        let mut largest = 0.0_f64;
+        for (model, gains) in &models {
+            let rows = model.closed(*gains);
+            let radius = spectral_radius(&Matrix::from_rows(&rows)?)?;
+            largest = if radius.is_nan() { f64::INFINITY } else { largest.max(radius) };
+            closed.push(rows);
+        }
+        if largest < limit {
+            return Ok(Stand::Holds);
+        }
+        let same_states = closed.iter().all(|rows| rows.len() == closed[0].len());
+        if closed.len() == 1 || !largest.is_finite() {
+            return Ok(Stand::Grows { spectral_radius: largest });
+        }
+        let grown = models.first().filter(|_| same_states).and_then(|(model, _)| {
+            let [error, change] = model.error_rows();
+            let second = match self.sees {
+                Sees::ErrorAndChange => change,
+                Sees::ErrorAndRate => model.seen_rows()[1].iter().map(|rate| -rate).collect(),
+                Sees::ErrorAndModelError(_) => error.clone(),
+            };
+            self.largest_growth(&closed, [error, second])
+        });
+        Ok(match grown {
+            Some(spectral_radius) => Stand::Grows { spectral_radius },
+            None => Stand::OneSide { spectral_radius: largest },
+        })
+    }
+
+    /// The growth a sample of the motion that grows most, if one is seen to grow.
+    fn largest_growth(&self, closed: &[Vec<Vec<f64>>], seen: [Vec<f64>; 2]) -> Option<f64> {
+        let grown = (0..MOTIONS).map(|motion| self.growth(closed, &seen, motion));
+        let largest = grown.fold(f64::NEG_INFINITY, f64::max);
+        let samples = (SAMPLES - SAMPLES / 2) as f64;
+        (largest > GROWN).then(|| libm::exp(largest / samples))
+    }
+
+    /// Logarithm of the growth of one motion over the second half of the samples.
+    fn growth(&self, closed: &[Vec<Vec<f64>>], seen: &[Vec<f64>; 2], motion: u64) -> f64 {
+        let order = seen[0].len();
+        let mut state: Vec<f64> = (0..order as u64).map(|place| scattered(motion, place)).collect();
+        let mut next = vec![0.0; order];
+        let mut grown = 0.0;
+        for sample in 0..SAMPLES {
+            let units =
+                [0, 1].map(|input| self.seen_per_unit[input] * product(&seen[input], &state));
+            let rows = &closed[self.of_direction[slopes::direction(units)]];
+            for (next, row) in next.iter_mut().zip(rows) {
+                *next = product(row, &state);
+            }
+            let size = next.iter().fold(0.0, |size, value| f64::max(size, value.abs()));
+            if size == 0.0 {
+                return f64::NEG_INFINITY;
+            }
+            // Sides are cones: only the direction of a state matters.
+            for (state, next) in state.iter_mut().zip(&next) {
+                *state = next / size;
+            }
+            if sample >= SAMPLES / 2 {
+                grown += libm::log(size);
+            }
+        }
+        grown
+    }
+
+    /// Joins sides whose loops do not differ, as where no constant is held.
+    pub(super) fn join_equal_sides(&mut self) {
+        let mut sides: Vec<Side> = Vec::new();
+        let mut new_places = Vec::new();
+        for side in &self.sides {
+            let known = sides.iter().position(|it| it == side);
+            new_places.push(known.unwrap_or_else(|| {
+                sides.push(*side);
+                sides.len() - 1
+            }));
+        }
+        self.of_direction = self.of_direction.map(|place| new_places[place]);
+        self.sides = sides;
+    }
+}
+
+fn product(row: &[f64], state: &[f64]) -> f64 {
+    row.iter().zip(state).map(|(by, value)| by * value).sum()
+}
+
+/// A number between -1 and 1, the same each time: splitmix64.
+fn scattered(motion: u64, place: u64) -> f64 {
+    let mut bits = (motion << 32 | place).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (bits ^ bits >> 31) as f64 / 2.0_f64.powi(63) - 1.0
+}
