@@ -21,6 +21,8 @@
 
 mod slopes;
 mod stand;
+#[cfg(test)]
+mod tests;
 
 use fspid_core::{ErrorSign, Fspid, Gains, IntegralForm, Law, Sees, Shell};
 
@@ -29,6 +31,7 @@ use crate::error::SimError;
 use crate::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
+use crate::sensor::Sensor;
 use crate::steady::Steady;
 use slopes::{DIRECTIONS, Slopes};
 
@@ -138,7 +141,9 @@ impl Rest {
         let still = vec![Self::still(gains)];
         let Controller::SelfTuning(fspid) = controller else { return still };
         let steady = scenario.steady();
-        let is_same = is_the_same_everywhere(fspid, &steady);
+        // A bias is drawn once: with its sign.
+        let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
+        let is_same = is_the_same_everywhere(fspid, rate_rad_s);
         if fspid.tuner().settings().law != Law::Memoryless || is_same {
             return still;
         }
@@ -152,15 +157,12 @@ impl Rest {
         // A seen rate is no load here: it has its own place in the controller.
         let shell = Shell { rate_gain_s: 0.0, ..*fspid.shell() };
         let loads = either_way(steady.load_with_offsets_rad(plant, &shell));
-        let rates = either_way(steady.rate_offset_rad_s);
         let mut found: Vec<Self> = Vec::new();
         for setpoint_rad in held.setpoints(&steady) {
             for &load_rad in &loads {
-                for &rate_rad_s in &rates {
-                    for rest in held.at(setpoint_rad, load_rad, rate_rad_s) {
-                        if !found.contains(&rest) {
-                            found.push(rest);
-                        }
+                for rest in held.at(setpoint_rad, load_rad, rate_rad_s) {
+                    if !found.contains(&rest) {
+                        found.push(rest);
                     }
                 }
             }
@@ -175,14 +177,14 @@ fn either_way(size: f64) -> Vec<f64> {
 }
 
 /// True where no constant is multiplied by a gain that moves, and there is an integral that brings the error to zero.
-fn is_the_same_everywhere(fspid: &Fspid<f64>, steady: &Steady) -> bool {
+fn is_the_same_everywhere(fspid: &Fspid<f64>, rate_rad_s: f64) -> bool {
     let (shell, settings) = (fspid.shell(), fspid.tuner().settings());
     let followers = settings.followers;
     let shows_rate = followers.rate_gain != 0.0 || settings.sees == Sees::ErrorAndRate;
     let plain = (shell.setpoint_weights.proportional - 1.0) == 0.0
         && followers.setpoint_weight == 0.0
         && shell.integral == IntegralForm::Bumpless
-        && !(shows_rate && steady.rate_offset_rad_s > 0.0);
+        && !(shows_rate && rate_rad_s != 0.0);
     plain && integrates(fspid)
 }
 
