@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 
 use fspid_core::{
-    Change, ErrorSign, Followers, Fspid, Gains, InputScale, IntegralForm, ReferenceModel,
-    Sample, Sees, SelfTuner, Shell, State, TunerSettings,
+    Change, ErrorSign, Followers, Fspid, Gains, InputScale, IntegralForm, ReferenceModel, Sample,
+    Sees, SelfTuner, Shell, State, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 

@@ -145,3 +145,24 @@ fn gains_that_stay_where_they_have_come_to_are_asked_nothing_at_rest() {
         RestGains::Tuned(_) | RestGains::Fixed(_) => assert!(result.at_rest.load.is_some()),
     }
 }
+
+/// It used to be asked with no error alone: "settled" where `analyse` said unstable, and not settled where one side of a
+/// kink of the rules would grow and no motion does.
+#[test]
+fn a_flight_is_asked_whether_its_loop_is_stable_at_the_set_point_that_it_holds() {
+    const STEP: &str = include_str!("../../../../scenarios/747-pitch-step.toml");
+    let weight = "controller.FSPID.setpoint_weights.proportional=0.0";
+    let of = |amplitude: &str| {
+        let simulation = Simulation::of(&study(STEP, &[weight, amplitude])).expect("it flies");
+        let fspid = simulation.results.iter().find(|it| it.name == "FSPID").expect("a flight");
+        (fspid.metrics.verdict, fspid.at_rest.on_one_side.is_some(), simulation.text())
+    };
+    let (steep, _, text) = of("setpoint.amplitude_deg=-20");
+    assert!(matches!(steep, Verdict::Unstable { .. }), "{steep:?}");
+    assert!(text.contains("unstable while the set-point is held at -20 deg"), "{text}");
+    let (kinked, on_one_side, text) = of("setpoint.amplitude_deg=-12");
+    assert!(on_one_side && !kinked.is_failure(), "{kinked:?}");
+    assert!(text.contains("held at -12 deg is not decided"), "{text}");
+    let (plain, on_one_side, _) = of("setpoint.amplitude_deg=-8");
+    assert!(!on_one_side && !plain.is_failure(), "{plain:?}");
+}
