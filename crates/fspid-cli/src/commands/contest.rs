@@ -9,6 +9,7 @@ use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
+use fspid_study::digits::counted;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::{Source, TuneError};
 
@@ -105,8 +106,8 @@ fn expected(contest: &Contest) -> Vec<(String, f64)> {
     let seconds: f64 = contest.searches().zip(&expected).map(|((_, n), (_, s))| n as f64 * s).sum();
     if let Some((_, candidates)) = contest.searches().next() {
         note(format_args!(
-            "{} controller(s) tuned with {} candidates each: about {} on this machine, what is there already and the judging not counted",
-            expected.len(),
+            "{} tuned with {} candidates each: about {} on this machine, what is there already and the judging not counted",
+            counted(expected.len(), "controller"),
             grouped(candidates as u64),
             duration(seconds)
         ));

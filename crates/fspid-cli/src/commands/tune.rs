@@ -134,9 +134,9 @@ fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tun
         design::check_place(source, out).map_err(failure)?;
     }
     let effort = effort(arguments, &problem);
-    let kept = Kept::of(arguments, out.as_deref(), problem.controller());
+    let mut kept = Kept::of(arguments, out.as_deref(), problem.controller());
     let tuned =
-        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &kept)));
+        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &mut kept)));
     let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
     if let Some(out) = &out {
         let heading = tuned.heading(&effort.command(source, name));
@@ -161,7 +161,13 @@ fn place(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
 fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Failure> {
     if name == "list" {
         let row = |rule: &Rule| format!("{:<18}{}\n", rule.name(), rule.about());
-        return print(&Rule::ALL.iter().map(row).collect::<String>());
+        return arguments.format.print(
+            || Rule::ALL.iter().map(row).collect(),
+            || {
+                let one = |rule: &Rule| json!({ "name": rule.name(), "about": rule.about() });
+                json!({ "rules": Rule::ALL.iter().map(one).collect::<Vec<_>>() })
+            },
+        );
     }
     let rule = Rule::from_name(name).ok_or_else(|| unknown("rule", name, &Rule::NAMES))?;
     let form = match arguments.form.as_deref() {
@@ -224,7 +230,7 @@ fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
 fn search(
     arguments: &Arguments,
     problem: &Problem,
-    (effort, place): (&Effort, &Kept),
+    (effort, place): (&Effort, &mut Kept),
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
     let mut search = place.begun(problem, effort)?;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
@@ -262,7 +268,7 @@ fn search(
 
 /// Where the state of a search is kept while it goes on, so that it can be interrupted.
 struct Kept {
-    /// None for a scenario that is no file and a design that is none.
+    /// None for a scenario that is no file and a design that is none, and where the state of another search is kept.
     path: Option<PathBuf>,
     /// Whether it stands for a design that was asked for: then a state that does not fit is told, and one that cannot
     /// be written ends the search.
@@ -286,13 +292,23 @@ impl Kept {
     }
 
     /// The search where it was, or from the start.
-    fn begun<'a>(&self, problem: &'a Problem, effort: &Effort) -> Result<Search<'a>, TuneError> {
+    fn begun<'a>(
+        &mut self,
+        problem: &'a Problem,
+        effort: &Effort,
+    ) -> Result<Search<'a>, TuneError> {
         let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
             return Search::begin(problem, effort.clone());
         };
         match Self::resumed(path, problem, effort) {
-            // Of another search, or another scenario of that name.
-            Err(_) if !self.is_asked => Search::begin(problem, effort.clone()),
+            // Of another search, or another scenario of that name. Hours of somebody's work may be in it.
+            Err(TuneError::State { path, reason }) if !self.is_asked => {
+                note(format_args!(
+                    "warning: {path}: {reason}; it stays as it is, and this search keeps no state"
+                ));
+                self.path = None;
+                Search::begin(problem, effort.clone())
+            }
             found => found,
         }
     }

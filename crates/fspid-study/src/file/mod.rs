@@ -50,7 +50,8 @@ use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::tuning::{Contest, Mark, Tuning};
 
-pub use crate::requirement::Requirement;
+pub use crate::fuzzy_system::other_kind;
+use crate::requirement::Requirement;
 pub(crate) use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
@@ -269,6 +270,13 @@ fn changed_document(
         let source = report.add_source(None, "");
         let place = report::Place { source, start: 0, end: 0 };
         report.missing(place, "", "the file is too large", "up to 10 MiB");
+        return None;
+    }
+    if let Some(what) = other_kind(text) {
+        let source = report.add_source(None, "");
+        let place = report::Place { source, start: 0, end: 0 };
+        let allowed = "a scenario; `check` and `infer` read fuzzy systems and rule tables";
+        report.missing(place, "", format!("this is {what}, and not a scenario"), allowed);
         return None;
     }
     let mut document = document::read(report, None, text)?;

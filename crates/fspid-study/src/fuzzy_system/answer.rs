@@ -197,7 +197,7 @@ impl<'a> Asked<'a> {
             self.outside().filter(|found| found.1 == clamped).map(|found| found.0).collect()
         };
         let mut whole = json!({
-            "schema": 1, "system": self.system.parts().name, "inputs": inputs, "outputs": outputs,
+            "system": self.system.parts().name, "inputs": inputs, "outputs": outputs,
         });
         if !names(true).is_empty() {
             whole["clamped"] = json!(names(true));
