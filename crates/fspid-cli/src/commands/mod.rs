@@ -85,7 +85,7 @@ impl Which {
 #[derive(Debug, Args)]
 pub(crate) struct Inputs {
     /// The value of an input; once for each input.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(long, alias = "fix", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) input: Vec<String>,
     /// The error, in the units of a supervisor: short for `--input error=…`.
     #[arg(long, allow_negative_numbers = true)]

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::progress::{Telling, answer_after, duration, grouped, tell};
 use super::{Format, drawings, interrupt, json_text};
-use crate::argument::{InFile, OutFile, is_standard, written};
+use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
 use fspid_study::file::{known_words, unread_in_words};
@@ -43,13 +43,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     optimiser: Option<String>,
     /// How many candidates to fly; by default as the scenario says.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(1, u64::MAX))]
     budget: Option<usize>,
     /// Seed of the search; by default as the scenario says.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
     /// Candidates of a generation; by default what serves the optimiser.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
     population: Option<usize>,
     /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history"])]

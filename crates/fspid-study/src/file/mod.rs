@@ -48,10 +48,10 @@ use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::file::report::Report;
+use crate::fuzzy_system::other_kind;
 use crate::tuning::{Contest, Mark, Tuning};
 
-pub use crate::fuzzy_system::other_kind;
-use crate::requirement::Requirement;
+pub use crate::requirement::Requirement;
 pub(crate) use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
