@@ -49,8 +49,13 @@ impl Replay {
         for (name, drawn) in names(campaign).zip(&self.drawn) {
             out.push_str(&format!("  {name} = {}\n", shown(drawn)));
         }
+        // A campaign of standard input has a scenario, but no file.
+        let alone = match campaign.plan().scenario_path.as_str() {
+            "-" => "alone, with the scenario on standard input",
+            _ => "alone",
+        };
         out.push_str(&format!(
-            "  alone: {}\n\n{}",
+            "  {alone}: {}\n\n{}",
             command(campaign, &self.changes),
             self.simulation.text()
         ));

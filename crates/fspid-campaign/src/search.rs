@@ -126,6 +126,8 @@ impl<'a> Target<'a> {
         let ids: Vec<&str> = study.requirements.iter().map(|it| it.id.as_str()).collect();
         let is_requirement = ids.contains(&question.measure.as_str());
         if !is_requirement && !measure_names().any(|(name, _)| name == question.measure) {
+            // A requirement may be called as its measure is.
+            let ids = ids.into_iter().filter(|id| !measure_names().any(|(name, _)| name == *id));
             let known = measure_names().map(|(name, _)| name).chain(ids).collect();
             return Err(unknown("measure", &question.measure, known));
         }

@@ -5,7 +5,9 @@ use std::ffi::OsString;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
-use clap::builder::{OsStringValueParser, TypedValueParser, ValueParser, ValueParserFactory};
+use clap::builder::{
+    OsStringValueParser, StringValueParser, TypedValueParser, ValueParser, ValueParserFactory,
+};
 
 /// What stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -18,6 +20,10 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 /// A file that is read; `-` is standard input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct InFile(PathBuf);
+
+/// A file that is read and cannot be standard input: one that is read here and there, or beside a stream.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct NamedFile(PathBuf);
 
 /// A file that is written; `-` is standard output.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +57,7 @@ macro_rules! path {
         }
     )*};
 }
-path!(InFile OutFile Folder Drawings);
+path!(InFile NamedFile OutFile Folder Drawings);
 
 impl Deref for Source {
     type Target = str;
@@ -68,10 +74,17 @@ impl ValueParserFactory for InFile {
     }
 }
 
+impl ValueParserFactory for NamedFile {
+    type Parser = ValueParser;
+    fn value_parser() -> ValueParser {
+        OsStringValueParser::new().try_map(Self::named).into()
+    }
+}
+
 impl ValueParserFactory for Source {
     type Parser = ValueParser;
     fn value_parser() -> ValueParser {
-        clap::builder::StringValueParser::new().map(Self).into()
+        StringValueParser::new().map(Self).into()
     }
 }
 
@@ -86,6 +99,16 @@ impl ValueParserFactory for Drawings {
     type Parser = ValueParser;
     fn value_parser() -> ValueParser {
         OsStringValueParser::new().try_map(Self::named).into()
+    }
+}
+
+impl NamedFile {
+    fn named(text: OsString) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        match is_standard(&path) {
+            true => Err("a file with a name is needed, which standard input is not".to_owned()),
+            false => Ok(Self(path)),
+        }
     }
 }
 
@@ -145,6 +168,21 @@ pub(crate) fn written(endings: &'static [&'static str]) -> ValueParser {
     OsStringValueParser::new().try_map(named).into()
 }
 
+/// A whole number with its least and most.
+pub(crate) fn count<N>(least: u64, most: u64) -> ValueParser
+where
+    N: TryFrom<u64> + Clone + Send + Sync + 'static,
+{
+    let counted = move |text: String| {
+        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+        number.and_then(|number| N::try_from(number).ok()).ok_or_else(|| match most {
+            u64::MAX => format!("allowed is a whole number, {least} or more"),
+            most => format!("allowed is a whole number from {least} to {most}"),
+        })
+    };
+    StringValueParser::new().try_map(counted).into()
+}
+
 fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|it| endings.iter().any(|known| it.eq_ignore_ascii_case(known)))
@@ -161,6 +199,20 @@ mod tests {
         assert!(named("a.SVG").is_ok_and(|it| it.is_file()));
         assert!(named("figures").is_ok_and(|it| !it.is_file()));
         assert!(named("-").is_ok_and(|it| is_standard(&it)));
+    }
+
+    #[test]
+    fn a_count_says_its_least_and_most() {
+        let parser = count::<u64>(1, 9);
+        let command = clap::Command::new("it").arg(clap::Arg::new("n").value_parser(parser));
+        let told = |text: &str| {
+            let parsed = command.clone().no_binary_name(true).try_get_matches_from([text]);
+            parsed.err().map(|error| error.to_string()).unwrap_or_default()
+        };
+        assert_eq!(told("9"), "");
+        for wrong in ["0", "10", "x", "1.5"] {
+            assert!(told(wrong).contains("a whole number from 1 to 9"), "{}", told(wrong));
+        }
     }
 
     #[test]

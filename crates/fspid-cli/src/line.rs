@@ -13,7 +13,11 @@ use crate::exit::{Failure, Output};
 
 /// The arguments of the program; `None` in place of a failure where only help was asked for.
 pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
-    let words: Vec<std::ffi::OsString> = std::env::args_os().collect();
+    let mut words: Vec<std::ffi::OsString> = std::env::args_os().collect();
+    // `fspid help --help` asks for help, and that is what `help` gives.
+    if words.iter().skip(1).take(2).any(|word| word == "help") {
+        words.retain(|word| word != "--help" && word != "-h");
+    }
     // Told before anything is read, so that what is wrong with the line itself can be JSON too.
     let as_json = words.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
         || words.iter().any(|word| word == "--format=json");
@@ -164,9 +168,14 @@ fn wrong_value(error: &Error) -> Option<String> {
         return Some(format!("{argument} is {value}; allowed is a number, such as 0.5"));
     }
     let reason = reason.to_string();
-    Some(match reason.strip_prefix(&format!("{value} is not in ")) {
-        Some(range) => format!("{argument} is {value}; allowed is {}", range_in_words(range)),
-        None => format!("{argument} {value}: {reason}"),
+    if let Some(range) = reason.strip_prefix(&format!("{value} is not in ")) {
+        return Some(format!("{argument} is {value}; allowed is {}", range_in_words(range)));
+    }
+    Some(match (reason.starts_with("allowed is "), argument.starts_with("--")) {
+        (true, _) => format!("{argument} is {value}; {reason}"),
+        (false, true) => format!("{argument} {value}: {reason}"),
+        // Where an argument has no name, its value says which it is.
+        (false, false) => format!("{value}: {reason}"),
     })
 }
 
@@ -185,7 +194,7 @@ mod tests {
     use clap::CommandFactory as _;
 
     use super::*;
-    use crate::argument::Folder;
+    use crate::argument::{Folder, NamedFile};
 
     /// Every command with its path, such as `campaign run`; groups of commands are no commands themselves.
     fn commands(command: &Command, path: &str) -> Vec<(String, Command)> {
@@ -220,10 +229,12 @@ mod tests {
                     continue;
                 }
                 let values = argument.get_value_names().unwrap_or_default().join(" ");
+                let is_named = is::<Folder>(argument) || is::<NamedFile>(argument);
                 let names_a_file = ["FILE", "OUT.", "DIR", "FOLDER", "SYSTEM"]
                     .iter()
                     .any(|word| values.contains(word));
-                assert!(!names_a_file || is::<Folder>(argument), "{place}: {values}");
+                assert!(!names_a_file || is_named, "{place}: {values}");
+                assert!(!is_named || !help.contains("`-`"), "{place}: {help}");
             }
         }
     }

@@ -52,6 +52,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    commands::interrupt::listen();
     let done = match line::parsed::<Arguments>() {
         Ok(arguments) => run(arguments.command),
         Err(end) => end.map_or(Ok(()), Err),

@@ -70,7 +70,7 @@ fn the_list_says_which_aircraft_can_be_trimmed() {
     assert!(list.contains("navion") && list.contains("derivatives"));
     let list = json(&["list"]);
     let kind = |name: &str| {
-        let list = list.as_array().expect("a list");
+        let list = list["aircraft"].as_array().expect("a list");
         let found = list.iter().find(|aircraft| aircraft["name"] == name).expect("it is there");
         found["known_by"].clone()
     };

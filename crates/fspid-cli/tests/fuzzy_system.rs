@@ -375,7 +375,7 @@ fn check_and_schema_know_fuzzy_systems() {
     let folder = folder();
     let good = fspid(&["check", "tip.toml"], folder.path());
     assert_eq!(code(&good), 0, "{}", stderr(&good));
-    assert!(stdout(&good).contains("2 input(s), 1 output(s), 3 rule(s)"), "{}", stdout(&good));
+    assert!(stdout(&good).contains("2 inputs, 1 output, 3 rules"), "{}", stdout(&good));
     let schema = json(&fspid(&["schema", "fuzzy-system"], folder.path()));
     assert_eq!(schema["properties"]["kind"]["enum"][0], "fuzzy-system");
 }

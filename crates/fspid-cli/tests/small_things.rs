@@ -73,6 +73,58 @@ fn an_interrupted_search_says_how_to_go_on_and_does() {
     assert_eq!(code(&output), 130, "{told}");
     assert!(told.contains("the same command goes on from there: fspid tune a.toml"), "{told}");
     assert!(state.exists(), "its state stays beside the scenario");
+    // Another search took its place, and removed it when it was over.
+    let kept = std::fs::read(&state).expect("a state");
+    let other = fspid(&["tune", "a.toml", "--budget", "12", "--seed", "2", "--quiet"], folder);
+    let told = text(&other.stderr);
+    assert!(code(&other) < 2 && told.contains("another search; it stays as it is"), "{told}");
+    assert_eq!(std::fs::read(&state).expect("it is still there"), kept);
+}
+
+/// Only `tune` said so as JSON, and `learn` died without a word.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_says_so_as_json_too() {
+    use std::io::Write as _;
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "campaign", "a.toml"], folder)), 0);
+    let more = "# A line that says nothing.\n".repeat(10_000);
+    for words in [
+        "campaign run a.toml --runs 100000000 --quiet --out c",
+        "campaign search - --measure overshoot_pct",
+        "learn - --teacher mirrored --range 1 --out l.toml",
+        "simulate -",
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
+            .args(words.split(' ').chain(["--format", "json"]))
+            .current_dir(folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        // Kept open: the program waits for the rest. More than a pipe holds has gone when it listens.
+        let mut input = child.stdin.take().expect("standard input");
+        match words.contains(" - ") || words.ends_with(" -") {
+            true => input.write_all(more.as_bytes()).expect("it reads"),
+            false => {
+                while !folder.join("c/campaign.json").exists() {
+                    std::thread::yield_now();
+                }
+            }
+        }
+        let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(killed.is_ok_and(|status| status.success()));
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(code(&output), 130, "{words}: {}", text(&output.stderr));
+        let error = &json(&output)["error"];
+        assert_eq!(
+            (error["code"].as_i64(), error["kind"].as_str()),
+            (Some(130), Some("interrupted"))
+        );
+        assert!(text(&output.stderr).contains("fspid: interrupted"), "{words}");
+    }
 }
 
 #[test]
@@ -247,19 +299,45 @@ fn every_path_is_listed_with_its_unit_value_and_range() {
     assert!(
         !rows.iter().any(|row| row["path"].as_str().is_some_and(|it| it.starts_with("aircraft")))
     );
-    // What the list says may be set can be set: to the value that it has.
-    for row in rows.iter().filter(|row| row["given"] == true) {
-        let (path, value) =
-            (row["path"].as_str().expect("a path"), row["value"].as_str().expect("a value"));
-        if value.contains('…') {
-            continue;
-        }
-        let set = format!("{path}={value}");
-        let output = fspid(&["check", "a.toml", "--set", &set], folder);
+    // What the list says may be set can be set: to the value that it has, default or not.
+    let sets: Vec<String> = rows
+        .iter()
+        .filter(|row| !row["value"].is_null())
+        .map(|row| format!("{}={}", row["path"].as_str().expect("a path"), row["value"]))
+        .collect();
+    assert!(sets.len() > 70, "{sets:?}");
+    for set in &sets {
+        let output = fspid(&["check", "a.toml", "--set", set], folder);
         assert_eq!(code(&output), 0, "{set}: {}", text(&output.stderr));
     }
+    // Numbers are numbers, with their limits; kinds and what belongs to them stand there too.
+    assert_eq!((kp["value"].as_f64(), &kp["schema"]["type"]), (Some(1.0), &"number".into()));
+    assert_eq!(row("loop.sample_period_s")["schema"]["exclusiveMinimum"], 0);
+    assert_eq!(row("disturbance[0].kind")["value"], "step");
+    for absent in ["wind.speed_m_s", "controller.PID.anti_windup.tracking_s", "sensor.seed"] {
+        assert!(row(absent)["value"].is_null() && row(absent)["dispersion"] == false, "{absent}");
+    }
+    assert_eq!(row("controller.PID.name")["dispersion"], false);
     let table = text(&fspid(&["check", "a.toml", "--paths"], folder).stdout);
+    assert!(table.starts_with("--set takes every path"), "{table}");
     assert!(table.lines().count() > 60 && table.contains("controller.FSPID.nominal.kp"), "{table}");
+}
+
+/// Nine problems of a scenario were told of a rule table.
+#[test]
+fn a_file_that_is_no_scenario_is_called_what_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for (template, what) in [("rule-table", "a rule table"), ("fuzzy-system", "a fuzzy system")] {
+        assert_eq!(code(&fspid(&["init", "--template", template, "x.toml"], folder)), 0);
+        for words in ["check x.toml --paths", "simulate x.toml", "verify x.toml", "tune x.toml"] {
+            let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+            let told = text(&output.stderr);
+            assert!(code(&output) == 2 && told.lines().count() < 4, "{words}: {told}");
+            assert!(told.contains(&format!("this is {what}, and not a scenario")), "{told}");
+        }
+        std::fs::remove_file(folder.join("x.toml")).expect("it is there");
+    }
 }
 
 #[test]
@@ -271,7 +349,7 @@ fn a_contest_says_how_long_it_takes_and_its_page_has_reasons_in_a_table() {
     let held = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
     let told = text(&held.stderr);
     assert_eq!(code(&held), 0, "{told}");
-    assert!(told.contains("2 controller(s) tuned with 4 candidates each: about "), "{told}");
+    assert!(told.contains("2 controllers tuned with 4 candidates each: about "), "{told}");
     let page = std::fs::read_to_string(folder.join("who/contest.html")).expect("written");
     let (_, reasons) = page.split_once("Why flights failed").expect("a heading");
     let table = reasons.split_once("</table>").map_or("", |(table, _)| table);

@@ -217,8 +217,8 @@ fn what_is_wrong_is_told_before_anything_runs() {
         assert!(told.contains(message), "{from} -> {to}: {told}");
     }
     for (arguments, message) in [
-        (["--budget", "0"], "the budget is 0; allowed is 1 candidate or more"),
-        (["--optimiser", "cmaes"], "the optimiser is \"cmaes\"; allowed is cma-es"),
+        (["--budget", "0"], "--budget is 0; allowed is a whole number, 1 or more"),
+        (["--optimiser", "cmaes"], "there is no optimiser `cmaes`; did you mean `cma-es`?"),
         (["--controller", "FSPID"], "the controller is \"FSPID\"; allowed is PID"),
         (["--set", "controller.PID.kq=1"], "did you mean"),
     ] {

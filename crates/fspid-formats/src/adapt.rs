@@ -1,10 +1,9 @@
 //! Steps towards the nearest system that a format can say.
 
 use fspid_fuzzy::Formula;
-use fspid_fuzzy::system::{FallbackValue, Output, Parts, Sampling};
+use fspid_fuzzy::system::{FallbackValue, Input, Membership, Output, Parts, Sampling, Universe};
 
 use crate::loss::Loss;
-use crate::number::written as number;
 
 /// Advice for interval type-2 systems.
 pub(crate) const TYPE_1: &str = "a type-1 system";
@@ -34,14 +33,24 @@ pub(crate) fn without_rule_names(parts: &mut Parts, loss: &mut Loss) {
 }
 
 /// For formats that know no default but a number: the middle of the universe as a number.
-pub(crate) fn numbered_fallback(output: &mut Output, loss: &mut Loss) {
-    if output.fallback.value != FallbackValue::Middle {
-        return;
+/// Nothing is lost by that.
+pub(crate) fn numbered_fallback(output: &mut Output) {
+    if output.fallback.value == FallbackValue::Middle {
+        let middle = output.universe.map(|universe| universe.middle());
+        output.fallback.value = middle.map_or(FallbackValue::Nothing, FallbackValue::Number);
     }
-    let middle = output.universe.map(|universe| universe.middle());
-    output.fallback.value = middle.map_or(FallbackValue::Nothing, FallbackValue::Number);
-    let written = middle.map_or("nothing".into(), number);
-    loss.note(format!("`{}`: the default is its middle; written: {written}", output.name));
+}
+
+/// From the first to the last corner or parameter of an input's sets: for formats that ask for a range.
+pub(crate) fn reach(input: &Input) -> Universe {
+    let (mut lower, mut upper) = (f64::INFINITY, f64::NEG_INFINITY);
+    for term in &input.terms {
+        if let Membership::Shape { kind, params, .. } = &term.membership {
+            kind.corners(params, &mut |x| (lower, upper) = (lower.min(x), upper.max(x)));
+        }
+    }
+    let usable = lower < upper && (upper - lower).is_finite();
+    if usable { Universe { lower, upper } } else { Universe { lower: -1.0, upper: 1.0 } }
 }
 
 /// For formats that know only some ways to compute integrals.

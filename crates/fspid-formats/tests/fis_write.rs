@@ -362,3 +362,18 @@ fn a_system_that_cannot_be_built_is_not_written() {
     parts.blocks[0].rules[0].weight = 2.0;
     assert_eq!(never(&parts), "rule 1: the weight is 2.0; allowed is a number from 0 to 1");
 }
+
+/// One line said that it cannot be written, and another what would be written.
+#[test]
+fn a_set_by_a_formula_of_other_inputs_is_refused_once() {
+    let mut parts = heater();
+    let names: Vec<String> = std::iter::once("x".to_owned())
+        .chain(parts.inputs.iter().map(|input| input.name.clone()))
+        .collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let formula = fspid_fuzzy::Formula::parse(&format!("0.1 * x + {}", names[1]), &names);
+    parts.inputs[0].terms[0].membership =
+        Membership::Formula { formula: formula.expect("a formula"), height: 1.0 };
+    let told = never(&parts);
+    assert_eq!(told.lines().count(), 1, "{told}");
+}

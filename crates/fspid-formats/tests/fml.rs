@@ -359,3 +359,22 @@ fn nothing_is_too_strange_to_be_answered() {
         }
     }
 }
+
+/// It was written without one, and called lost; a default that is the middle was called lost, though nothing was.
+#[test]
+fn a_missing_range_is_a_loss_and_a_default_in_the_middle_is_none() {
+    let mut parts = read(BEFORE);
+    parts.inputs[0].universe = None;
+    let refused = fml::write(&parts, EXACT).expect_err("the standard asks for one").to_string();
+    assert!(refused.contains("has no range, which the standard asks for"), "{refused}");
+    let writing = fml::write(&parts, LOSSY).expect("allowed");
+    let again = read(&writing.text);
+    assert!(again.inputs[0].universe.is_some(), "{}", writing.text);
+    assert_eq!(answers(&again, &[0.3]), answers(&parts, &[0.3]));
+    let mut parts = read(HEATER);
+    parts.blocks.clear();
+    parts.outputs[0].fallback.value = FallbackValue::Middle;
+    let writing = fml::write(&parts, EXACT).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(writing.notes, [], "nothing is lost");
+    assert!(matches!(read(&writing.text).outputs[0].fallback.value, FallbackValue::Number(_)));
+}

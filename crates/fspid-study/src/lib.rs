@@ -15,6 +15,7 @@
 pub mod aircraft;
 pub mod analysis;
 pub mod certify;
+pub mod digits;
 pub mod dispersion;
 pub mod figure;
 pub mod file;

@@ -48,6 +48,16 @@ pub enum TuneError {
         /// Their names.
         names: Vec<String>,
     },
+    /// A name that is not known.
+    #[error("there is no {what} `{found}`{known}")]
+    Unknown {
+        /// What it is.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// What was probably meant, and what is known.
+        known: String,
+    },
     /// A word or number that is not allowed.
     #[error("{what} is {found}; allowed is {allowed}")]
     Value {

@@ -1,6 +1,7 @@
 //! A search, generation by generation: it can be stopped, written and gone on with, with the same bits.
 
 use fspid_campaign::Plan as Campaign;
+use fspid_study::file::known_words;
 use fspid_study::shell::word;
 use fspid_study::tune::optimiser::{
     Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
@@ -70,8 +71,9 @@ impl Effort {
             return wrong("the budget", "0".to_owned(), "1 candidate or more");
         }
         if !Self::optimisers().contains(&self.optimiser.as_str()) {
-            let found = format!("\"{}\"", self.optimiser);
-            return wrong("the optimiser", found, &Self::optimisers().join(", "));
+            let found = self.optimiser.clone();
+            let known = known_words(&found, &Self::optimisers());
+            return Err(TuneError::Unknown { what: "optimiser", found, known });
         }
         if self.optimiser == NsgaII::NAME && objectives < 2 {
             let found = format!("\"{}\" with one objective", NsgaII::NAME);

@@ -1,5 +1,6 @@
 //! What a search found, for people and programs.
 
+use fspid_study::digits::to_digits;
 use fspid_study::requirement::Requirement;
 use fspid_study::tune::optimiser::Stop;
 use fspid_study::tuning::{Free, Over};
@@ -364,16 +365,5 @@ fn short(path: &str, controller: &str) -> String {
 
 /// A number in five digits.
 fn shown(value: Option<f64>) -> String {
-    let Some(value) = value else {
-        return "none".to_owned();
-    };
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let digits = (4.0 - libm::floor(libm::log10(value.abs().max(1e-3)))).clamp(0.0, 7.0);
-        let text = format!("{value:.*}", digits as usize);
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        };
-    }
-    format!("{value:.4e}")
+    value.map_or("none".to_owned(), |value| to_digits(value, 5))
 }

@@ -9,6 +9,7 @@ use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
 use fspid_study::certify::CheckedFile;
+use fspid_study::digits::counted;
 use fspid_study::file::{self, Study, Template};
 use fspid_study::fuzzy_system;
 
@@ -60,9 +61,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let certificate = beside(&arguments.file, &study)?;
     let text = || {
         let mut text = format!(
-            "{file}: good; {} with {} controller(s), {} samples of {} s, digest {}\n",
+            "{file}: good; {} with {}, {} samples of {} s, digest {}\n",
             scenario.name,
-            scenario.controllers.len(),
+            counted(scenario.controllers.len(), "controller"),
             timing.rows(),
             timing.dt_s(),
             study.digest,
@@ -127,12 +128,11 @@ fn system(path: &Path, format: Format) -> Result<(), Failure> {
     }
     let parts = loaded.system.parts();
     let rules = parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>();
-    let (inputs, outputs) = (parts.inputs.len(), parts.outputs.len());
+    let inputs = counted(parts.inputs.len(), "input");
+    let outputs = counted(parts.outputs.len(), "output");
     let text = || {
         let called = if parts.name.is_empty() { "a fuzzy system" } else { &parts.name };
-        format!(
-            "{name}: good; {called} with {inputs} input(s), {outputs} output(s), {rules} rule(s)\n"
-        )
+        format!("{name}: good; {called} with {inputs}, {outputs}, {}\n", counted(rules, "rule"))
     };
     let json = || {
         json!({

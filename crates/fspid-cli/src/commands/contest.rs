@@ -6,9 +6,10 @@ use clap::Args;
 
 use super::progress::{Telling, answer_after, duration, grouped, tell};
 use super::{Format, interrupt, json_text};
-use crate::argument::{Folder, InFile};
+use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
+use fspid_study::digits::counted;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::{Source, TuneError};
 
@@ -33,10 +34,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Folder,
     /// How many seeds each controller is tuned with; by default as the scenario says.
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = count::<u64>(1, u64::MAX))]
     seeds: Option<u64>,
     /// How many candidates each tuning flies; by default as the scenario says.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(1, u64::MAX))]
     budget: Option<usize>,
     /// Set a value before anything is read, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -105,8 +106,8 @@ fn expected(contest: &Contest) -> Vec<(String, f64)> {
     let seconds: f64 = contest.searches().zip(&expected).map(|((_, n), (_, s))| n as f64 * s).sum();
     if let Some((_, candidates)) = contest.searches().next() {
         note(format_args!(
-            "{} controller(s) tuned with {} candidates each: about {} on this machine, what is there already and the judging not counted",
-            expected.len(),
+            "{} tuned with {} candidates each: about {} on this machine, what is there already and the judging not counted",
+            counted(expected.len(), "controller"),
             grouped(candidates as u64),
             duration(seconds)
         ));

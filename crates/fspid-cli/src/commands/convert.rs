@@ -1,13 +1,12 @@
 //! `fspid convert`: the same system in another format.
 
-use std::path::Path;
-
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
 use super::{Format, Loading, Tool, json_text};
 use crate::argument::{OutFile, Source, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
+use fspid_study::file::known_words;
 use fspid_study::fuzzy_system::{self, Dialect, Target};
 use fspid_study::output;
 
@@ -22,8 +21,8 @@ pub(crate) struct Arguments {
     system: Source,
     #[command(flatten)]
     loading: Loading,
-    /// The new file: .toml (everything can be said), .fis, .t2fis, .fcl, .fll or .xml.
-    #[arg(value_parser = written(&["toml", "fis", "t2fis", "fcl", "fll", "xml"]), value_name = "OUT")]
+    /// The new file: .toml (everything can be said), .fis, .t2fis (interval sets in Sugeno systems), .fcl, .fll or .xml.
+    #[arg(value_parser = written(&fuzzy_system::Format::ENDINGS), value_name = "OUT")]
     out: OutFile,
     /// The tool that shall read an .fcl file; IEC 61131-7 if left out.
     #[arg(long, value_enum, value_name = "TOOL")]
@@ -31,45 +30,31 @@ pub(crate) struct Arguments {
     /// Approximate or leave out what the format cannot say, and tell the error.
     #[arg(long)]
     lossy: bool,
-    /// The format of standard output, where OUT is `-`.
-    #[arg(long = "as", value_enum, value_name = "FORMAT", default_value_t = Written::Toml)]
-    written: Written,
+    /// The format of standard output, where OUT is `-`, as an ending: toml, fis, t2fis, fcl, fll or xml.
+    #[arg(long = "as", value_name = "FORMAT", default_value = "toml", value_parser = format)]
+    written: fuzzy_system::Format,
     /// How it is told what was assumed and lost: as words, or as JSON on standard output.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
 
-/// A format of fuzzy systems.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Written {
-    /// Our own.
-    Toml,
-    /// MATLAB.
-    Fis,
-    /// IEC 61131-7.
-    Fcl,
-    /// fuzzylite.
-    Fll,
-}
-
-impl Written {
-    /// A name with the ending that says the format.
-    fn file(self) -> &'static Path {
-        Path::new(match self {
-            Self::Toml => "standard-output.toml",
-            Self::Fis => "standard-output.fis",
-            Self::Fcl => "standard-output.fcl",
-            Self::Fll => "standard-output.fll",
-        })
-    }
+/// The format that is called by an ending.
+fn format(ending: &str) -> Result<fuzzy_system::Format, String> {
+    fuzzy_system::Format::of_ending(ending).ok_or_else(|| {
+        let known = fuzzy_system::Format::ENDINGS;
+        format!("unknown format{}", known_words(ending, &known))
+    })
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let target = Target { dialect: arguments.to.map(Dialect::from), lossy: arguments.lossy };
     let (name, options) = (&arguments.system, arguments.loading.options());
     let out = &arguments.out;
-    let named = if is_standard(out) { arguments.written.file() } else { out.as_ref() };
-    let converted = fuzzy_system::convert(name, options, named, target).map_err(Failure::input)?;
+    let target = Target {
+        dialect: arguments.to.map(Dialect::from),
+        lossy: arguments.lossy,
+        format: is_standard(out).then_some(arguments.written),
+    };
+    let converted = fuzzy_system::convert(name, options, out, target).map_err(Failure::input)?;
     for assumed in &converted.assumed {
         note(format_args!("warning: {assumed}"));
     }

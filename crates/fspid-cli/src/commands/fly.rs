@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::io::{self, IsTerminal as _};
 
 use super::Format;
-use crate::argument::{InFile, is_standard};
+use crate::argument::NamedFile;
 use crate::exit::{Failure, note, stream};
 use fspid_study::file;
 use fspid_study::fly::{self, Pilot, StreamError, Summary};
@@ -25,8 +25,9 @@ use fspid_study::fly::{self, Pilot, StreamError, Summary};
     after_help = "In degrees:   5 4.2 0.01 0.8   is set-point 5 deg, pitch 4.2 deg, 0.01 s, 0.8 deg/s.\nA simulator in Python to begin with: examples/fly/aircraft.py"
 )]
 pub(crate) struct Arguments {
-    /// The scenario file; its aircraft, servo and disturbances are not used.
-    file: InFile,
+    /// The scenario file; its aircraft, servo and disturbances are not used. It has to have a name, since samples come on
+    /// standard input.
+    file: NamedFile,
     /// Which of its controllers flies, if there are several.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
@@ -64,11 +65,6 @@ impl From<Angles> for fly::Angles {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if is_standard(&arguments.file) {
-        return Err(Failure::input(
-            "the samples come on standard input; the scenario needs a file",
-        ));
-    }
     let mut pilot = pilot(arguments)?;
     // Standard output holds commands from here on, and no answer of another kind.
     stream();

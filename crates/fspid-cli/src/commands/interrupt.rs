@@ -7,32 +7,49 @@ use fspid_study::shell;
 
 use crate::exit::{Failure, note};
 
+/// What is told of work that ends at once and says nothing else.
+const ENDED: &str = "interrupted";
+
 /// Whether the user wants to stop.
 static ASKED: AtomicBool = AtomicBool::new(false);
-/// What is told where work ends at once, because what is whole stays.
+/// What is told where work ends at once; None where it stops by itself once it is asked to.
 static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
+
+/// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise.
+pub(crate) fn listen() {
+    ends_with(ENDED.to_owned());
+    // Where it cannot be heard, the program ends as any other does.
+    let _ = ctrlc::set_handler(heard);
+}
+
+fn heard() {
+    // Off the line of the progress.
+    note("");
+    let at_once = AT_ONCE.lock().ok().and_then(|told| told.clone());
+    let again = || ASKED.swap(true, Ordering::Relaxed).then(|| ENDED.to_owned());
+    let Some(told) = at_once.or_else(again) else {
+        note("stopping after this generation; Ctrl-C again ends at once");
+        return;
+    };
+    let failure = Failure::interrupted(told);
+    failure.tell();
+    std::process::exit(i32::from(failure.code()));
+}
 
 /// Ctrl-C is told to [`asked`] from here on; a second one ends the program at once.
 pub(crate) fn watch() {
-    // Where it cannot be watched, the program ends as any other does.
-    let _ = ctrlc::set_handler(|| {
-        let told = AT_ONCE.lock().ok().and_then(|told| told.clone());
-        if let Some(told) = &told {
-            note(format_args!("\nfspid: {told}"));
-        }
-        if told.is_some() || ASKED.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(Failure::INTERRUPTED));
-        }
-        note("\nstopping after this generation; Ctrl-C again ends at once");
-    });
+    set(None);
 }
 
-/// Ctrl-C ends the program at once, after these words.
+/// Ctrl-C ends the program at once, with these words.
 pub(crate) fn ends_with(words: String) {
+    set(Some(words));
+}
+
+fn set(words: Option<String>) {
     if let Ok(mut told) = AT_ONCE.lock() {
-        *told = Some(words);
+        *told = words;
     }
-    watch();
 }
 
 /// True once the user has asked to stop.

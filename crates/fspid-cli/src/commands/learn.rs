@@ -1,10 +1,8 @@
 //! `fspid learn`: the numbers of a fuzzy system, from data.
 
-use std::path::Path;
-
 use clap::{ArgGroup, Args, ValueEnum};
 
-use super::{Format, Loading, json_text};
+use super::{Format, Loading, interrupt, json_text};
 use crate::argument::{InFile, OutFile, Source, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_study::fuzzy_system::{self, NUMBER_GRID, Parts, Target};
@@ -106,11 +104,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         patience: arguments.patience,
         ..Plan::default()
     };
+    interrupt::ends_with(
+        "interrupted; nothing is written, and the same command learns from the beginning"
+            .to_owned(),
+    );
     let learned = learn(&parts, &data.map_err(Failure::input)?, &plan).map_err(Failure::input)?;
     let out = &arguments.out;
     // Everything can be said in our own format.
-    let named = if is_standard(out) { Path::new("standard-output.toml") } else { out.as_ref() };
-    let written = fuzzy_system::write_as(&learned.parts, named, Target::default());
+    let format = is_standard(out).then_some(fuzzy_system::Format::Toml);
+    let target = Target { format, ..Target::default() };
+    let written = fuzzy_system::write_as(&learned.parts, out, target);
     output::write(&arguments.out, &written.map_err(Failure::input)?.text)?;
     wrote(&arguments.out);
     tell(arguments, &learned)

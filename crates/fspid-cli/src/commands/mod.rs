@@ -14,7 +14,7 @@ pub(crate) mod explain;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;
-mod interrupt;
+pub(crate) mod interrupt;
 pub(crate) mod learn;
 mod progress;
 pub(crate) mod reproduce;
@@ -25,6 +25,7 @@ pub(crate) mod tune;
 pub(crate) mod verify;
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use crate::argument::Source;
 use crate::exit::{Failure, note, print};
@@ -84,7 +85,7 @@ impl Which {
 #[derive(Debug, Args)]
 pub(crate) struct Inputs {
     /// The value of an input; once for each input.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(long, alias = "fix", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) input: Vec<String>,
     /// The error, in the units of a supervisor: short for `--input error=…`.
     #[arg(long, allow_negative_numbers = true)]
@@ -173,6 +174,9 @@ impl Loading {
     }
 }
 
+/// The key of the version of an answer's shape.
+const SCHEMA: &str = "schema";
+
 /// How an answer is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -196,7 +200,15 @@ impl Format {
     }
 }
 
-/// Pretty JSON with a line end.
-pub(crate) fn json_text(value: &serde_json::Value) -> String {
-    format!("{value:#}\n")
+/// Pretty JSON with a line end. Every answer says the version of its shape, the first one where it has none of its own.
+pub(crate) fn json_text(answer: &serde_json::Value) -> String {
+    match answer.as_object() {
+        Some(keys) if !keys.contains_key(SCHEMA) => {
+            let first = (SCHEMA.to_owned(), json!(1));
+            let rest = keys.iter().map(|(key, value)| (key.clone(), value.clone()));
+            let whole: serde_json::Map<_, _> = std::iter::once(first).chain(rest).collect();
+            format!("{:#}\n", serde_json::Value::Object(whole))
+        }
+        _ => format!("{answer:#}\n"),
+    }
 }

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{Format, json_text};
+use super::Format;
 use crate::exit::{Failure, print};
 use fspid_study::{file, fuzzy_system};
 
@@ -28,8 +28,9 @@ enum Kind {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (Format::Text | Format::Json) = arguments.format;
-    print(&json_text(&match arguments.kind {
+    let schema = match arguments.kind {
         Kind::Scenario => file::schema(),
         Kind::FuzzySystem => fuzzy_system::schema(),
-    }))
+    };
+    print(&format!("{schema:#}\n"))
 }

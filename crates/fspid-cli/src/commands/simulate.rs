@@ -5,6 +5,7 @@ use clap::Args;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
+use fspid_study::digits::counted;
 use fspid_study::simulation::Simulation;
 use fspid_study::{file, output, report};
 
@@ -47,10 +48,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let unmet = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
+    let unmet = counted(unmet, "requirement");
     match simulation.failed_flights().count() {
-        0 => Err(Failure::not_met(format_args!("{unmet} requirement(s) not met"))),
+        0 => Err(Failure::not_met(format_args!("{unmet} not met"))),
         flights => Err(Failure::not_met(format_args!(
-            "{unmet} requirement(s) not met, {flights} flight(s) failed"
+            "{unmet} not met, {} failed",
+            counted(flights, "flight")
         ))),
     }
 }

@@ -2,14 +2,15 @@
 
 use clap::Args;
 
-use super::{Format, Which, drawings, json_text};
-use crate::argument::{Drawings, OutFile, written};
+use super::{Format, Inputs, Which, drawings, json_text};
+use crate::argument::{Drawings, OutFile, count, written};
 use crate::exit::{Failure, print, wrote};
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
 
 /// Draw the outputs of a fuzzy system over two of its inputs, or over its only one.
 ///
+/// An input that is given a value stays there; another one that is not drawn along stays in the middle of its range.
 /// Without --out the drawing of the one output goes to standard output.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -21,9 +22,8 @@ pub(crate) struct Arguments {
     /// The input to the back; the next one if left out.
     #[arg(long, value_name = "NAME")]
     y: Option<String>,
-    /// Where another input stays; the middle of its range if left out.
-    #[arg(long, visible_alias = "input", value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    fix: Vec<String>,
+    #[command(flatten)]
+    inputs: Inputs,
     /// The range over which an input is drawn; that of the file if left out.
     #[arg(long, value_name = "NAME=LOWER..UPPER", allow_hyphen_values = true)]
     span: Vec<String>,
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     output: Option<String>,
     /// Nodes along each input.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
     nodes: Option<usize>,
     /// The drawing, or the folder for one drawing an output.
     #[arg(long, value_name = "FILE.svg or FOLDER")]
@@ -46,10 +46,11 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let system = arguments.which.load()?;
+    let fixed = arguments.inputs.texts();
     let question = SliceQuestion {
         x: arguments.x.as_deref(),
         y: arguments.y.as_deref(),
-        fixed: &arguments.fix,
+        fixed: &fixed,
         spans: &arguments.span,
         output: arguments.output.as_deref(),
         nodes: arguments.nodes,

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::progress::{Telling, answer_after, duration, grouped, tell};
 use super::{Format, drawings, interrupt, json_text};
-use crate::argument::{InFile, OutFile, is_standard, written};
+use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
 use fspid_study::file::{known_words, unread_in_words};
@@ -43,13 +43,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     optimiser: Option<String>,
     /// How many candidates to fly; by default as the scenario says.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(1, u64::MAX))]
     budget: Option<usize>,
     /// Seed of the search; by default as the scenario says.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
     /// Candidates of a generation; by default what serves the optimiser.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
     population: Option<usize>,
     /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history"])]
@@ -134,9 +134,9 @@ fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tun
         design::check_place(source, out).map_err(failure)?;
     }
     let effort = effort(arguments, &problem);
-    let kept = Kept::of(arguments, out.as_deref(), problem.controller());
+    let mut kept = Kept::of(arguments, out.as_deref(), problem.controller());
     let tuned =
-        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &kept)));
+        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &mut kept)));
     let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
     if let Some(out) = &out {
         let heading = tuned.heading(&effort.command(source, name));
@@ -161,7 +161,13 @@ fn place(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
 fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Failure> {
     if name == "list" {
         let row = |rule: &Rule| format!("{:<18}{}\n", rule.name(), rule.about());
-        return print(&Rule::ALL.iter().map(row).collect::<String>());
+        return arguments.format.print(
+            || Rule::ALL.iter().map(row).collect(),
+            || {
+                let one = |rule: &Rule| json!({ "name": rule.name(), "about": rule.about() });
+                json!({ "rules": Rule::ALL.iter().map(one).collect::<Vec<_>>() })
+            },
+        );
     }
     let rule = Rule::from_name(name).ok_or_else(|| unknown("rule", name, &Rule::NAMES))?;
     let form = match arguments.form.as_deref() {
@@ -224,7 +230,7 @@ fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
 fn search(
     arguments: &Arguments,
     problem: &Problem,
-    (effort, place): (&Effort, &Kept),
+    (effort, place): (&Effort, &mut Kept),
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
     let mut search = place.begun(problem, effort)?;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
@@ -262,7 +268,7 @@ fn search(
 
 /// Where the state of a search is kept while it goes on, so that it can be interrupted.
 struct Kept {
-    /// None for a scenario that is no file and a design that is none.
+    /// None for a scenario that is no file and a design that is none, and where the state of another search is kept.
     path: Option<PathBuf>,
     /// Whether it stands for a design that was asked for: then a state that does not fit is told, and one that cannot
     /// be written ends the search.
@@ -286,13 +292,23 @@ impl Kept {
     }
 
     /// The search where it was, or from the start.
-    fn begun<'a>(&self, problem: &'a Problem, effort: &Effort) -> Result<Search<'a>, TuneError> {
+    fn begun<'a>(
+        &mut self,
+        problem: &'a Problem,
+        effort: &Effort,
+    ) -> Result<Search<'a>, TuneError> {
         let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
             return Search::begin(problem, effort.clone());
         };
         match Self::resumed(path, problem, effort) {
-            // Of another search, or another scenario of that name.
-            Err(_) if !self.is_asked => Search::begin(problem, effort.clone()),
+            // Of another search, or another scenario of that name. Hours of somebody's work may be in it.
+            Err(TuneError::State { path, reason }) if !self.is_asked => {
+                note(format_args!(
+                    "warning: {path}: {reason}; it stays as it is, and this search keeps no state"
+                ));
+                self.path = None;
+                Search::begin(problem, effort.clone())
+            }
             found => found,
         }
     }

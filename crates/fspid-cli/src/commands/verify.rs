@@ -7,6 +7,7 @@ use clap::Args;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
+use fspid_study::digits::counted;
 use fspid_study::output;
 use fspid_study::verify::{Question, Verification, verify};
 
@@ -114,10 +115,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (verification.unmet(), verification.judgements.len(), verification.failed_flights.len()) {
         (0, _, 0) => Ok(()),
         (unmet, count, 0) => {
-            Err(Failure::not_met(format_args!("{unmet} of {count} requirement(s) not met")))
+            let count = counted(count, "requirement");
+            Err(Failure::not_met(format_args!("{unmet} of {count} not met")))
         }
         (unmet, count, flights) => Err(Failure::not_met(format_args!(
-            "{unmet} of {count} requirement(s) not met, {flights} flight(s) failed"
+            "{unmet} of {} not met, {} failed",
+            counted(count, "requirement"),
+            counted(flights, "flight")
         ))),
     }
 }

@@ -171,7 +171,9 @@ pub(super) fn number(text: &str, at: Origin, findings: &mut Findings) -> Option<
     match value {
         Some(value) if value.abs() <= MAX_MAGNITUDE => Some(value),
         _ => {
-            let expected = format!("a decimal number of at most {MAX_MAGNITUDE:e} in magnitude");
+            let expected = format!(
+                "a number such as -0.5, 1e-3 or (2/5)pi, at most {MAX_MAGNITUDE:e} in magnitude"
+            );
             findings.problem(at, text, "this is not a number that can be used", expected);
             None
         }

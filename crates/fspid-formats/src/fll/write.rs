@@ -48,7 +48,7 @@ fn adapted(parts: &Parts, loss: &mut Loss) -> Parts {
         }
     }
     for output in &mut parts.outputs {
-        adapt::numbered_fallback(output, loss);
+        adapt::numbered_fallback(output);
         adapt::sampled(output, loss, Sampling::Midpoint(RESOLUTION), |sampling| {
             matches!(sampling, Sampling::Midpoint(_))
         });

@@ -28,7 +28,7 @@ impl Shape for LinearS {
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[foot, shoulder] = params else { return Ok(()) };
-        at_least(foot, "shoulder", shoulder, "a number from foot to foot + 1.7e308")
+        at_least(foot, "shoulder", shoulder, "a number from foot on")
     }
 
     #[inline]

@@ -28,7 +28,7 @@ impl Shape for LinearZ {
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[shoulder, foot] = params else { return Ok(()) };
-        at_least(shoulder, "foot", foot, "a number from shoulder to shoulder + 1.7e308")
+        at_least(shoulder, "foot", foot, "a number from shoulder on")
     }
 
     #[inline]

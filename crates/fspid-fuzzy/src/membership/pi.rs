@@ -29,18 +29,8 @@ impl Shape for Pi {
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[left_foot, left_top, right_top, right_foot] = params else { return Ok(()) };
-        at_least(
-            left_foot,
-            "left_top",
-            left_top,
-            "a number from left_foot to left_foot + 1.7e308",
-        )?;
-        at_least(
-            right_top,
-            "right_foot",
-            right_foot,
-            "a number from right_top to right_top + 1.7e308",
-        )
+        at_least(left_foot, "left_top", left_top, "a number from left_foot on")?;
+        at_least(right_top, "right_foot", right_foot, "a number from right_top on")
     }
 
     #[inline]

@@ -34,22 +34,12 @@ impl Shape for Trapezoid {
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[left_foot, left_top, right_top, right_foot] = params else { return Ok(()) };
-        at_least(
-            left_foot,
-            "left_top",
-            left_top,
-            "a number from left_foot to left_foot + 1.7e308",
-        )?;
+        at_least(left_foot, "left_top", left_top, "a number from left_foot on")?;
         if left_top == f64::INFINITY {
             return refuse("left_top", left_top, "a number below inf, at least left_foot");
         }
         above(f64::NEG_INFINITY, "right_top", right_top, "a number above -inf")?;
-        at_least(
-            right_top,
-            "right_foot",
-            right_foot,
-            "a number from right_top to right_top + 1.7e308",
-        )?;
+        at_least(right_top, "right_foot", right_foot, "a number from right_top on")?;
         above(left_foot, "right_foot", right_foot, "a number above left_foot, at least right_top")
     }
 

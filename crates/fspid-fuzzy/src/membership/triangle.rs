@@ -30,8 +30,8 @@ impl Shape for Triangle {
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[left, peak, right] = params else { return Ok(()) };
-        at_least(left, "peak", peak, "a number from left to left + 1.7e308")?;
-        at_least(peak, "right", right, "a number from peak to peak + 1.7e308")?;
+        at_least(left, "peak", peak, "a number from left on")?;
+        at_least(peak, "right", right, "a number from peak on")?;
         above(left, "right", right, "a number above left, at most left + 1.7e308")
     }
 

@@ -47,6 +47,14 @@ impl System {
         })
     }
 
+    /// Whether a rule concluded anything about an output in the last evaluation.
+    #[must_use]
+    pub fn is_concluded(&self, output: usize, workspace: &Workspace) -> bool {
+        let conclusions = self.outputs.get(output).map(|found| found.conclusions.iter());
+        let degree = |&conclusion: &usize| workspace.degrees.get(conclusion).copied();
+        conclusions.into_iter().flatten().filter_map(degree).any(|degree| degree > 0.0)
+    }
+
     /// What the rules concluded about an output in the last evaluation, in the order of the rules.
     pub fn contributions(&self, output: usize, workspace: &mut Workspace) -> Vec<Contribution> {
         let (Some(part), Some(resolved)) =

@@ -46,6 +46,6 @@ impl List {
                 "source": data.source,
             })
         };
-        Value::Array(self.0.iter().map(entry).collect())
+        json!({ "aircraft": self.0.iter().map(entry).collect::<Vec<_>>() })
     }
 }

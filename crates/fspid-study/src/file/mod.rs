@@ -48,6 +48,7 @@ use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::file::report::Report;
+use crate::fuzzy_system::other_kind;
 use crate::tuning::{Contest, Mark, Tuning};
 
 pub use crate::requirement::Requirement;
@@ -269,6 +270,13 @@ fn changed_document(
         let source = report.add_source(None, "");
         let place = report::Place { source, start: 0, end: 0 };
         report.missing(place, "", "the file is too large", "up to 10 MiB");
+        return None;
+    }
+    if let Some(what) = other_kind(text) {
+        let source = report.add_source(None, "");
+        let place = report::Place { source, start: 0, end: 0 };
+        let allowed = "a scenario; `check` and `infer` read fuzzy systems and rule tables";
+        report.missing(place, "", format!("this is {what}, and not a scenario"), allowed);
         return None;
     }
     let mut document = document::read(report, None, text)?;

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::check::{self, allowed};
 use super::files::Files;
 use super::mark::FIXED;
 use super::report::Report;
+use super::schema::kind as schema_of;
 use super::section::{Checked, Entry, Section};
-use super::setting::{join, number, step, written};
+use super::setting::{join, number, quoted, step, written};
 use super::spec::{Key, Kind, Presence, SCENARIO, Table, Way};
 use super::{LoadError, build, changed_document, extra::Extra, read_text};
 
@@ -27,6 +28,8 @@ pub struct PathRow {
     pub unit: &'static str,
     /// What it may be, in words.
     pub allowed: String,
+    /// The same for programs: a JSON Schema of the value.
+    pub schema: Map<String, Value>,
     /// Written in the file, in an override, or in a file that one of them names.
     pub given: bool,
     /// A dispersion may draw it.
@@ -81,28 +84,38 @@ pub fn paths_text(rows: &[PathRow]) -> String {
     let width =
         |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
-    let mut out = String::new();
+    let mut out = "--set takes every path; what is `drawn` a [[dispersion]] too, and what is `free` a mark { tune = [lower, upper] }.\n\
+        - stands for what is left out; what belongs to a table that is left out goes with the whole table.\n\n"
+        .to_owned();
     for row in &table {
         let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
         out.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
         out.push('\n');
     }
-    out.push_str(
-        "\n--set takes every path; `drawn` a [[dispersion]] too, and `free` a mark { tune = [lower, upper] }. - is left out.\n",
-    );
     out
 }
 
 /// The answer for programs.
 #[must_use]
 pub fn paths_json(rows: &[PathRow]) -> Value {
+    // What TOML writes of numbers, texts and lists is JSON; the few numbers that JSON lacks are told as texts.
+    let value = |text: &String| serde_json::from_str(text).unwrap_or_else(|_| json!(text));
     let row = |row: &PathRow| {
         json!({
-            "path": row.path, "value": row.value, "unit": row.unit, "allowed": row.allowed,
+            "path": row.path, "value": row.value.as_ref().map(value), "unit": row.unit,
+            "allowed": row.allowed, "schema": row.schema,
             "given": row.given, "dispersion": row.drawn, "mark": row.free,
         })
     };
     json!({ "schema": 1, "paths": rows.iter().map(row).collect::<Vec<_>>() })
+}
+
+/// A value as TOML has it, nothing of it cut.
+fn whole(value: &Checked) -> String {
+    match value {
+        Checked::Text(text) => quoted(text),
+        value => written(value),
+    }
 }
 
 fn cut(text: &str, most: usize) -> String {
@@ -133,6 +146,9 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn keys(&mut self, spec: &'static Table, section: &Section, path: &str) {
+        if !section.kind.is_empty() {
+            self.kind(spec, path, Some(section.kind));
+        }
         for key in spec.keys_of(section.kind) {
             let inner = join(path, key.name);
             if path.is_empty() {
@@ -141,7 +157,7 @@ impl Walk<'_> {
             match section.entry(key.name) {
                 Some(entry) => self.entry(key, entry, inner, &section.path(key.name)),
                 None if is_excluded(spec, section, key.name) => {}
-                None => self.absent(key, inner),
+                None => self.absent(key, inner, true),
             }
         }
     }
@@ -163,7 +179,7 @@ impl Walk<'_> {
                 }
             }
             (value, kind) => {
-                self.push(kind, path.clone(), Some(written(value)), entry.given);
+                self.push(kind, path.clone(), Some(whole(value)), entry.given);
                 if let Some((spec, file)) = self.files.referred(place) {
                     let before = std::mem::replace(&mut self.in_file, true);
                     self.keys(spec, file, &path);
@@ -173,57 +189,108 @@ impl Walk<'_> {
         }
     }
 
-    /// A key that the file leaves out, with those of its table.
-    fn absent(&mut self, key: &'static Key, path: String) {
+    /// The kind of a table that has kinds.
+    fn kind(&mut self, spec: &'static Table, path: &str, found: Option<&str>) {
+        let kinds: Vec<&str> = spec.variants.iter().map(|it| it.name).collect();
+        let schema = json!({ "type": "string", "enum": kinds });
+        self.row(PathRow {
+            path: join(path, "kind"),
+            value: found.map(quoted),
+            unit: "",
+            allowed: check::quoted(&kinds),
+            schema: schema.as_object().cloned().unwrap_or_default(),
+            given: found.is_some(),
+            drawn: false,
+            free: false,
+        });
+    }
+
+    /// A key that the file leaves out, with those of its table; its default flies where its table `is_there`.
+    fn absent(&mut self, key: &'static Key, path: String, is_there: bool) {
         match (&key.presence, &key.kind) {
-            (Presence::Default(default), kind) => {
-                self.push(kind, path, Some(written(&check::default_value(kind, *default))), false);
+            (Presence::Default(default), kind) if is_there => {
+                self.push(kind, path, Some(whole(&check::default_value(kind, *default))), false);
             }
             // Lists that are left out have no entry to be changed.
             (_, Kind::Tables { .. }) => {}
             (_, Kind::Table(_)) if FIXED.contains(&self.root.as_str()) => {}
             (_, Kind::Table(spec)) => {
                 if !spec.variants.is_empty() {
-                    let kinds: Vec<&str> = spec.variants.iter().map(|it| it.name).collect();
-                    let allowed = check::quoted(&kinds);
-                    self.row(join(&path, "kind"), (None, ""), allowed, (false, false));
+                    self.kind(spec, &path, None);
                 }
-                spec.keys().for_each(|key| self.absent(key, join(&path, key.name)));
+                // Kinds may share a key.
+                let mut told: Vec<&str> = Vec::new();
+                let of_kinds = spec.variants.iter().flat_map(|kind| kind.table.keys());
+                for key in spec.keys().chain(of_kinds) {
+                    if !told.contains(&key.name) {
+                        told.push(key.name);
+                        self.absent(key, join(&path, key.name), is_there && spec.may_be_empty());
+                    }
+                }
             }
-            // A list that is left out is given as a whole.
-            (_, kind @ (Kind::Numbers { .. } | Kind::Interval { .. })) => {
-                self.row(path, (None, kind.unit()), allowed(kind), (false, false));
+            (_, kind) => {
+                self.push(kind, path, None, false);
+                // A list that is left out is given as a whole, and so is a table.
+                let is_list = matches!(kind, Kind::Numbers { .. } | Kind::Interval { .. });
+                if let Some(row) = self.rows.last_mut().filter(|_| is_list || !is_there) {
+                    (row.drawn, row.free) = (false, false);
+                    if is_list {
+                        (row.allowed, row.schema) = (allowed(kind), schema_of(kind));
+                    }
+                }
             }
-            (_, kind) => self.push(kind, path, None, false),
         }
     }
 
     fn push(&mut self, kind: &'static Kind, path: String, value: Option<String>, given: bool) {
-        let (words, is_scalar, is_real) = match kind {
+        let (words, schema) = match kind {
+            // One of its numbers.
             Kind::Numbers { unit, range, .. } | Kind::Interval { unit, range } => {
-                (range.words(unit), true, true)
+                (range.words(unit), super::schema::number(*range).as_object().cloned())
             }
-            kind => (
-                allowed(kind),
-                !matches!(kind, Kind::Own { .. } | Kind::Rules(_) | Kind::Grid | Kind::NumberGrid),
-                matches!(kind, Kind::Number { .. } | Kind::Grid | Kind::NumberGrid),
-            ),
+            kind => (allowed(kind), Some(schema_of(kind))),
         };
-        let drawn = is_scalar && !NEVER_DRAWN.contains(&self.root.as_str());
-        let free = is_real && !self.in_file && !FIXED.contains(&self.root.as_str());
-        self.row(path, (value, kind.unit()), words, (drawn, free));
-        if let Some(row) = self.rows.last_mut() {
-            row.given = given;
-        }
+        // Texts say something to people, and nothing to a flight.
+        let is_drawn = match kind {
+            Kind::Number { .. }
+            | Kind::Numbers { .. }
+            | Kind::Interval { .. }
+            | Kind::Integer { .. }
+            | Kind::Boolean
+            | Kind::Word(_)
+            | Kind::Preset(_)
+            | Kind::Path
+            | Kind::Defuzzifier => true,
+            Kind::Text
+            | Kind::FreeText
+            | Kind::Own { .. }
+            | Kind::Rules(_)
+            | Kind::Grid
+            | Kind::NumberGrid
+            | Kind::Table(_)
+            | Kind::Tables { .. } => false,
+        };
+        let is_free = match kind {
+            Kind::Number { .. }
+            | Kind::Numbers { .. }
+            | Kind::Interval { .. }
+            | Kind::Grid
+            | Kind::NumberGrid => true,
+            _ => false,
+        };
+        self.row(PathRow {
+            path,
+            value,
+            unit: kind.unit(),
+            allowed: words,
+            schema: schema.unwrap_or_default(),
+            given,
+            drawn: is_drawn && !NEVER_DRAWN.contains(&self.root.as_str()),
+            free: is_free && !self.in_file && !FIXED.contains(&self.root.as_str()),
+        });
     }
 
-    fn row(
-        &mut self,
-        path: String,
-        (value, unit): (Option<String>, &'static str),
-        allowed: String,
-        (drawn, free): (bool, bool),
-    ) {
-        self.rows.push(PathRow { path, value, unit, allowed, given: false, drawn, free });
+    fn row(&mut self, row: PathRow) {
+        self.rows.push(row);
     }
 }

@@ -142,7 +142,7 @@ fn property(key: &'static Key) -> Value {
     Value::Object(schema)
 }
 
-fn kind(kind: &'static Kind) -> Map<String, Value> {
+pub(super) fn kind(kind: &'static Kind) -> Map<String, Value> {
     let schema = match kind {
         Kind::Number { range, .. } => number(*range),
         Kind::Integer { least, most } => {

@@ -199,8 +199,20 @@ fn numbers(values: &[f64]) -> String {
     }
 }
 
-/// A text in quotes; what cannot be seen is escaped.
+/// A text in quotes, cut where it is long.
 fn text(value: &str) -> String {
+    match value.chars().count() {
+        count if count > MOST_CHARACTERS => {
+            let shown: String = value.chars().take(MOST_CHARACTERS).collect();
+            let shown = quoted(&shown);
+            format!("{}…\" ({count} characters)", shown.strip_suffix('"').unwrap_or(&shown))
+        }
+        _ => quoted(value),
+    }
+}
+
+/// A text in quotes; what cannot be seen is escaped.
+pub(super) fn quoted(value: &str) -> String {
     let escaped = |c: char| match c {
         '"' | '\\' => format!("\\{c}"),
         '\n' => "\\n".to_owned(),
@@ -208,11 +220,7 @@ fn text(value: &str) -> String {
         c if is_hidden(c) => format!("\\u{:04X}", u32::from(c)),
         c => c.to_string(),
     };
-    let shown: String = value.chars().take(MOST_CHARACTERS).map(escaped).collect();
-    match value.chars().count() {
-        count if count > MOST_CHARACTERS => format!("\"{shown}…\" ({count} characters)"),
-        _ => format!("\"{shown}\""),
-    }
+    format!("\"{}\"", value.chars().map(escaped).collect::<String>())
 }
 
 /// A grid as seven lines of seven labels.

@@ -128,14 +128,14 @@ pub(super) const fn source(source: Source) -> &'static str {
     }
 }
 
-/// What is worth knowing about an answer that the rules did not give.
-const fn remark(source: Source) -> Option<&'static str> {
+/// What stands in place of an answer that the rules did not give.
+const fn substitute(source: Source) -> Option<&'static str> {
     match source {
         Source::Rules => None,
-        Source::Previous => Some("no rule fired; the previous answer"),
-        Source::Middle => Some("no rule fired; the middle of the range"),
-        Source::Default => Some("no rule fired; the output's default"),
-        Source::Nothing => Some("no rule fired, and there is no default"),
+        Source::Previous => Some("; the previous answer"),
+        Source::Middle => Some("; the middle of the range"),
+        Source::Default => Some("; the output's default"),
+        Source::Nothing => Some(", and there is no default"),
     }
 }
 
@@ -157,6 +157,16 @@ impl<'a> Asked<'a> {
         self.system.parts().outputs.iter().zip(self.workspace.answers())
     }
 
+    /// Why the rules did not give the answer of an output, for one that they did not give.
+    fn reason(&self, index: usize, output: &Output) -> &'static str {
+        match (output.enabled, self.system.is_concluded(index, &self.workspace)) {
+            (false, _) => "the output is switched off",
+            (true, false) => "no rule fired",
+            // A formula without a finite value, or a set without an area.
+            (true, true) => "the rules gave no number",
+        }
+    }
+
     /// Names of the inputs that lay outside of their ranges, and whether each was moved.
     fn outside(&self) -> impl Iterator<Item = (&str, bool)> {
         let inputs = self.system.parts().inputs.iter().zip(self.workspace.outside());
@@ -176,7 +186,11 @@ impl<'a> Asked<'a> {
             .enumerate()
             .map(|(index, (output, answer))| {
                 let interval = self.workspace.interval(index);
-                (output.name.clone(), answer_json(output, answer, interval))
+                let mut found = answer_json(output, answer, interval);
+                if answer.source != Source::Rules {
+                    found["reason"] = json!(self.reason(index, output));
+                }
+                (output.name.clone(), found)
             })
             .collect();
         let names = |clamped: bool| -> Vec<&str> {
@@ -209,7 +223,10 @@ impl<'a> Asked<'a> {
             let between = between.unwrap_or_default();
             let number = answer.value.map_or("none".to_owned(), |value| format!("{value:.12}"));
             let name = &output.name;
-            let remarks = remarks(output, answer);
+            let remarks = match substitute(answer.source) {
+                Some(substitute) => format!("{}{substitute}", self.reason(index, output)),
+                None => remarks(output, answer),
+            };
             out.push_str(&format!("{name:width$} {number:>20}  {remarks}{between}\n"));
         }
         for (name, moved) in self.outside() {
@@ -233,14 +250,11 @@ fn answer_json(output: &Output, answer: &Answer, interval: Option<[f64; 2]>) -> 
     found
 }
 
-/// The rule of an answer, its error bound, and where it comes from if not from the rules.
+/// The rule of an answer, and its error bound.
 fn remarks(output: &Output, answer: &Answer) -> String {
     let mut text = rule(output);
     if answer.error_bound > 0.0 {
         text.push_str(&format!(", within {:.1e}", answer.error_bound));
-    }
-    if let Some(remark) = remark(answer.source) {
-        text = remark.to_owned();
     }
     text
 }

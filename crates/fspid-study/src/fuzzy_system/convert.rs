@@ -7,7 +7,7 @@ use fspid_formats::fcl::Dialect;
 use fspid_formats::{Problems, WriteOptions, fcl, fis, fll, fml};
 use fspid_fuzzy::system::Parts;
 
-use super::load::{ENDINGS, Format, LoadError, Options, load};
+use super::load::{Format, LoadError, Options, load};
 use super::toml_file;
 
 /// Which tool a file is for, where a format has dialects, and what may be lost.
@@ -17,6 +17,8 @@ pub struct Target {
     pub dialect: Option<Dialect>,
     /// Whether what the format cannot say may be approximated or left out.
     pub lossy: bool,
+    /// The format, where the name of the file does not say it.
+    pub format: Option<Format>,
 }
 
 /// A file as it is to be written.
@@ -52,7 +54,11 @@ impl fmt::Display for ConvertError {
         match self {
             Self::Load(error) => error.fmt(f),
             Self::UnknownEnding { path } => {
-                write!(f, "{path}: the ending says no format; known are {ENDINGS}")
+                write!(
+                    f,
+                    "{path}: the ending says no format; known are {}",
+                    Format::endings_in_words()
+                )
             }
             Self::Unwritable { problems } => f.write_str(&problems.join("\n")),
         }
@@ -71,7 +77,7 @@ pub fn convert(
     path: &Path,
     target: Target,
 ) -> Result<Converted, ConvertError> {
-    format_of(path)?;
+    format_of(path, target)?;
     let loaded = load(name, options).map_err(ConvertError::Load)?;
     let written = write_as(loaded.system.parts(), path, target)?;
     Ok(Converted { assumed: loaded.notes, ..written })
@@ -82,7 +88,7 @@ pub fn convert(
 /// # Errors
 /// [`ConvertError`]; nothing is written in any case.
 pub fn write_as(parts: &Parts, path: &Path, target: Target) -> Result<Converted, ConvertError> {
-    let format = format_of(path)?;
+    let format = format_of(path, target)?;
     if let Some(dialect) = target.dialect
         && format != Format::Fcl
     {
@@ -98,14 +104,14 @@ pub fn write_as(parts: &Parts, path: &Path, target: Target) -> Result<Converted,
         Format::Fll => fll::write(parts, options),
         Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
     };
-    let writing = written.map_err(|problems| unwritable(path, &problems))?;
+    let writing = written.map_err(|problems| unwritable(path, &problems, target))?;
     let lost = writing.notes.iter().map(ToString::to_string).collect();
     Ok(Converted { text: writing.text, assumed: Vec::new(), lost })
 }
 
-fn format_of(path: &Path) -> Result<Format, ConvertError> {
+fn format_of(path: &Path, target: Target) -> Result<Format, ConvertError> {
     let unknown = || ConvertError::UnknownEnding { path: path.display().to_string() };
-    Format::of(path).ok_or_else(unknown)
+    target.format.or_else(|| Format::of(path)).ok_or_else(unknown)
 }
 
 impl Converted {
@@ -124,9 +130,13 @@ fn not_type_2(path: &Path) -> ConvertError {
 }
 
 /// What the format cannot say, and how to go on.
-fn unwritable(path: &Path, problems: &Problems) -> ConvertError {
+fn unwritable(path: &Path, problems: &Problems, target: Target) -> ConvertError {
     let path = path.display();
     let mut told: Vec<String> = problems.0.iter().map(|found| format!("{path}: {found}")).collect();
-    told.push("nothing was written; --lossy writes the nearest that can be said, and a .toml file holds everything".to_owned());
+    let nearest = match target.lossy {
+        false => "--lossy writes the nearest that can be said, and ",
+        true => "",
+    };
+    told.push(format!("nothing was written; {nearest}a .toml file holds everything"));
     ConvertError::Unwritable { problems: told }
 }

@@ -68,7 +68,8 @@ impl fmt::Display for LoadError {
                 let tables = rule_table_names().join(", ");
                 write!(
                     f,
-                    "{name}: no fuzzy system; known are files that end in {ENDINGS}, the rule tables {tables}, and {NUMBER_GRID}"
+                    "{name}: no fuzzy system; known are files that end in {}, the rule tables {tables}, and {NUMBER_GRID}",
+                    Format::endings_in_words()
                 )
             }
             Self::Unreadable { path, reason } => write!(f, "{path}: cannot be read: {reason}"),
@@ -97,35 +98,45 @@ pub enum Format {
     T2fis,
 }
 
-/// The endings of files with systems, as a sentence lists them.
-pub const ENDINGS: &str = ".toml, .fis, .t2fis, .fcl, .fll or .xml";
-
 impl Format {
+    /// All of them, in the order in which they are told.
+    pub const ALL: [Self; 6] =
+        [Self::Toml, Self::Fis, Self::T2fis, Self::Fcl, Self::Fll, Self::Fml];
+
+    /// The endings of files of all formats.
+    pub const ENDINGS: [&'static str; 6] = ["toml", "fis", "t2fis", "fcl", "fll", "xml"];
+
+    /// The format of files with an ending.
+    #[must_use]
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        let place = Self::ENDINGS.iter().position(|known| ending.eq_ignore_ascii_case(known))?;
+        Self::ALL.get(place).copied()
+    }
+
+    /// The endings of all formats in words.
+    pub(super) fn endings_in_words() -> String {
+        let [others @ .., last] = Self::ENDINGS.map(|ending| format!(".{ending}"));
+        format!("{} or {last}", others.join(", "))
+    }
+
     /// The format of a file, by its ending; that of standard input by what it begins with.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD_INPUT) {
             return text(path).ok().map(|text| Self::of_text(&text));
         }
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "toml" => Some(Self::Toml),
-            "fis" => Some(Self::Fis),
-            "fcl" => Some(Self::Fcl),
-            "fll" => Some(Self::Fll),
-            "xml" => Some(Self::Fml),
-            "t2fis" => Some(Self::T2fis),
-            _ => None,
-        }
+        Self::of_ending(path.extension()?.to_str()?)
     }
 
-    /// The format of a text that has no ending, by what it begins with.
+    /// The format of a text that has no ending, by what it begins with. The toolbox of `.t2fis` writes MATLAB's words.
     fn of_text(text: &str) -> Self {
         let text = text.trim_start_matches('\u{feff}').trim_start();
         let has_block = || text.to_ascii_uppercase().contains("FUNCTION_BLOCK");
         match text {
             fis if fis.starts_with("[System]") => Self::Fis,
             fll if fll.starts_with("Engine:") => Self::Fll,
+            // Neither of the others can begin so.
+            fml if fml.starts_with('<') => Self::Fml,
             _ if has_block() => Self::Fcl,
             _ => Self::Toml,
         }
@@ -166,6 +177,21 @@ fn is_rule_table(text: &str) -> bool {
     };
     let has_grids = ["delta_kp", "delta_ki", "delta_kd"].into_iter().all(has);
     has_grids && !toml_file::is_of_this_kind(text) && !scenario::is_one(text)
+}
+
+/// What a text is that is no scenario, in words; `None` for one that may be a scenario.
+pub(crate) fn other_kind(text: &str) -> Option<&'static str> {
+    let begins_block = |line: &str| line.trim_start().starts_with("FUNCTION_BLOCK");
+    match Format::of_text(text) {
+        Format::Toml if toml_file::is_of_this_kind(text) => Some("a fuzzy system"),
+        Format::Toml if is_rule_table(text) => Some("a rule table"),
+        Format::Toml => None,
+        // The words may stand in a text of a scenario.
+        Format::Fcl if !text.lines().any(begins_block) => None,
+        Format::Fis | Format::T2fis | Format::Fcl | Format::Fll | Format::Fml => {
+            Some("a fuzzy system")
+        }
+    }
 }
 
 /// True for a file with a scenario.

@@ -23,9 +23,10 @@ pub use answer::{Asked, ask};
 pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
 pub use convert::{ConvertError, Converted, Target, convert, write_as};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
+pub(crate) use load::other_kind;
 pub use load::{
-    ENDINGS, Format, LoadError, Loaded, NUMBER_GRID, Options, is_rule_table_file, is_scenario,
-    is_system, load, needs_range, read,
+    Format, LoadError, Loaded, NUMBER_GRID, Options, is_rule_table_file, is_scenario, is_system,
+    load, needs_range, read,
 };
 pub use numbers::{Numbers, numbers_of};
 pub use slice::{Question as SliceQuestion, Slice, slice};

@@ -7,6 +7,7 @@ use fspid_sim::stability::Unstable;
 use fspid_sim::{Outcome, Timing, Trace};
 
 use super::{Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, short};
+use crate::digits::to_digits;
 
 /// What a flight comes to, in one word.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +75,7 @@ impl fmt::Display for Verdict {
             Self::Unstable { spectral_radius, doubling_s } => {
                 write!(f, "unstable at rest (")?;
                 if doubling_s.is_finite() {
-                    write!(f, "doubles every {} s, ", to_three_digits(*doubling_s))?;
+                    write!(f, "doubles every {} s, ", to_digits(*doubling_s, 3))?;
                 }
                 write!(f, "spectral radius {spectral_radius:.6})")
             }
@@ -184,12 +185,6 @@ fn moves_away(trace: &Trace, edge: &Edge, lost: bool) -> bool {
     let ends_away = way.clone().next_back().is_some_and(|way| way <= -AWAY);
     let first = way.find(|way| *way >= TOWARDS || *way <= -AWAY);
     first.is_some_and(|way| way < 0.0) && (lost || ends_away)
-}
-
-/// A time for people, to three digits, which says enough of a rate of growth.
-fn to_three_digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    short(rounded)
 }
 
 fn edge_metrics(

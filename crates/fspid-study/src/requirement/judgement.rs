@@ -1,6 +1,7 @@
 //! Whether requirements are met.
 
 use super::{Case, Evidence, NotEvaluated, Place, Requirement};
+use crate::digits;
 use crate::file::Study;
 use crate::metrics::{Absent, Family};
 use crate::simulation::ControllerResult;
@@ -78,11 +79,11 @@ impl Judgement {
         if value.is_infinite() {
             return "without end".to_owned();
         }
-        let short: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+        let short = digits::rounded(value, 5);
         let same_side = self.requirement.is_met_by(short) == self.met;
-        let number = if same_side { short } else { value };
+        let number = digits::shortest(if same_side { short } else { value });
         match self.requirement.measure.unit() {
-            "" => format!("{number}"),
+            "" => number,
             unit => format!("{number} {unit}"),
         }
     }

@@ -7,6 +7,7 @@ use fspid_sim::load::ConstantLoad;
 use fspid_sim::stability::Unstable;
 
 use crate::analysis::{AtRest, RestGains};
+use crate::digits::to_digits;
 use crate::file::RangeRule;
 use crate::metrics::short;
 use crate::units::degrees;
@@ -39,14 +40,8 @@ pub fn left_validity(exit: &Exit) -> String {
 
 /// Gains to five digits.
 fn gains(gains: Gains<f64>) -> String {
-    let [kp, ki, kd] = [gains.kp, gains.ki, gains.kd].map(digits);
+    let [kp, ki, kd] = [gains.kp, gains.ki, gains.kd].map(|gain| to_digits(gain, 5));
     format!("kp {kp}, ki {ki}, kd {kd}")
-}
-
-/// A number to five significant digits, at most.
-fn digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    format!("{}", rounded + 0.0)
 }
 
 impl AtRest {
@@ -114,21 +109,15 @@ fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
         false => "no integral at rest (ki = 0)",
         true => "little integral at rest",
     };
-    let (at_end, duration) = (digits3(load.at_end), short(duration_s));
+    let (at_end, duration) = (to_digits(load.at_end, 3), short(duration_s));
     let then = match load.is_slow() {
         true => ", and goes on shrinking".to_owned(),
-        false => format!(", and {} deg for good", digits3(load.for_good)),
+        false => format!(", and {} deg for good", to_digits(load.for_good, 3)),
     };
     format!(
         "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect{then}",
         100.0 * load.share_left()
     )
-}
-
-/// Three significant digits.
-fn digits3(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    format!("{rounded}")
 }
 
 impl RangeRule {

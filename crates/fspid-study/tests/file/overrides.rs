@@ -95,3 +95,17 @@ fn a_setting_that_cannot_be_read_is_refused() {
     let deep = format!("{}=1", vec!["a"; 100_000].join("."));
     assert!(set(&[&deep]).is_err());
 }
+
+/// The whole list of the shipped file was quoted, and a matrix that no file knows.
+#[test]
+fn an_overflow_names_the_number_that_was_set() {
+    for (set, path) in [
+        ("plant.preset.numerator[0]=1e308", "numerator[0]"),
+        ("plant.preset.denominator[0]=1e-308", "denominator[0]"),
+    ] {
+        let found = problem(set);
+        let (_, value) = set.split_once('=').expect("two parts");
+        assert_eq!((found.path.as_str(), found.found.as_str()), (path, value), "{found:?}");
+        assert_eq!(found.origin.as_deref(), Some(format!("--set {set}").as_str()));
+    }
+}

@@ -65,6 +65,24 @@ fn a_speed_that_cannot_be_flown_is_refused_where_it_stands() {
     assert!(problems.contains("angle of attack"), "{problems}");
 }
 
+/// A centre of gravity far aft was told as a mistake in the speed, in radians.
+#[test]
+fn a_loading_that_cannot_be_held_is_not_blamed_on_the_speed() {
+    for (set, words) in [
+        ("aircraft.cg_mac=2", "elevator 47.0611 deg; allowed is -25 to 20 deg"),
+        ("aircraft.mass_kg=90000", "angle of attack"),
+        ("aircraft.climb_angle_deg=60", "throttle"),
+    ] {
+        let told = file::parse(NAVION, "a.toml", None, &[set.to_owned()]).expect_err("no trim");
+        let told = told.to_string();
+        let (key, value) = set.split_once('=').expect("two parts");
+        assert!(told.contains(": aircraft: no trim at 53.6448 m/s"), "{told}");
+        let given = format!("{} = {value}", key.replace("aircraft.", ""));
+        assert!(told.contains(words) && told.contains(&given), "{told}");
+        assert!(told.contains("airspeed_ft_s = 176.0") && !told.contains("rad,"), "{told}");
+    }
+}
+
 #[test]
 fn what_an_aircraft_cannot_do_is_refused_with_a_reason() {
     for (from, to, reason) in [

@@ -99,3 +99,20 @@ fn the_drawing_names_rules_and_answer() {
         assert!(svg.contains(part), "{part}");
     }
 }
+
+/// It said that no rule fired beside a rule that fires at 1, and `100.00 %  NaN`.
+#[test]
+fn a_rule_whose_formula_has_no_number_fires_and_is_not_shared_as_one() {
+    let system = parse(include_str!("../systems/memory.toml"), "memory.toml").expect("good");
+    let found = explain(&system, &values(&["x=1"]), None).expect("good");
+    let told = found.text();
+    assert!(told.contains("the rules gave no number; the output's default"), "{told}");
+    assert!(told.contains("no number  rule 1: more"), "{told}");
+    assert!(!told.contains("NaN") && !told.contains("together"), "{told}");
+    let json = found.json();
+    assert_eq!(json["outputs"]["sum"]["reason"], "the rules gave no number");
+    let nothing = TIP.replace("fallback = \"middle\"", "enabled = false\nfallback = \"middle\"");
+    let system = parse(&nothing, "tip.toml").expect("good");
+    let told = explain(&system, &values(&["service=5", "food=5"]), None).expect("good").text();
+    assert!(told.contains("the output is switched off; the middle of the range"), "{told}");
+}

@@ -2,7 +2,9 @@
 
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::Parts;
-use fspid_study::fuzzy_system::{AuditQuestion, Options, System, audit, load, parse, write};
+use fspid_study::fuzzy_system::{
+    AuditQuestion, Options, SliceQuestion, System, audit, load, parse, slice, write,
+};
 
 use super::{EVERY_KEY, TIP, TYPE_2};
 
@@ -144,4 +146,7 @@ fn a_formula_that_names_an_output_comes_back_and_its_surface_is_refused() {
     assert!(system.parts().formulas_name_outputs());
     let told = audit(&system, &AuditQuestion::default()).expect_err("refused").to_string();
     assert!(told.contains("a formula names an output"), "{told}");
+    // It was drawn, as if it had no memory.
+    let drawn = slice(&system, &SliceQuestion::default()).expect_err("refused").to_string();
+    assert_eq!(drawn, told);
 }

@@ -11,7 +11,7 @@ mod shard;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use crate::argument;
+use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Campaign, CampaignError, Folder, Question};
@@ -127,7 +127,7 @@ struct Planned {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// How many runs; 1000 if left out.
-    #[arg(long)]
+    #[arg(long, value_parser = count::<u64>(1, fspid_campaign::MOST_RUNS))]
     runs: Option<u64>,
     /// Seed of everything that is drawn; 1 if left out.
     #[arg(long)]

@@ -7,6 +7,7 @@ use super::super::Format;
 use super::{Place, Planned};
 use crate::argument::InFile;
 use crate::exit::Failure;
+use fspid_study::digits::counted;
 
 /// Plan a campaign without flying it: for machines that share the shards.
 #[derive(Debug, Args)]
@@ -31,9 +32,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.format.print(
         || {
             format!(
-                "{}: {} runs in {shards} shards, numbered 0 to {last}\ncampaign {}\n",
+                "{}: {} runs in {}, numbered 0 to {last}\ncampaign {}\n",
                 path.display(),
                 plan.runs,
+                counted(shards as usize, "shard"),
                 plan.id(),
             )
         },

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::super::{Format, json_text};
-use crate::argument::{InFile, OutFile, is_standard, written};
+use crate::argument::{NamedFile, OutFile, written};
 use crate::exit::{Failure, print, wrote};
 use fspid_campaign::report;
 use fspid_campaign::summary::{self, Summary, SummarySettings};
@@ -12,8 +12,8 @@ use fspid_study::output;
 /// Say what a campaign found: how often it fails, with confidence bounds, and what that depends on.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The merged file of a campaign.
-    file: InFile,
+    /// The merged file of a campaign; it is read here and there, so that it has to have a name.
+    file: NamedFile,
     /// Write a page that opens offline in a browser: distributions, envelopes, failure maps.
     #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
     out: Option<OutFile>,
@@ -26,11 +26,6 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if is_standard(&arguments.file) {
-        return Err(Failure::input(
-            "a table is read here and there; name its file in place of `-`",
-        ));
-    }
     let settings = SummarySettings { confidence: arguments.confidence };
     let summary = Summary::of(&arguments.file, settings).map_err(Failure::input)?;
     if let Some(path) = &arguments.out {

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::super::{Format, interrupt, json_text};
 use super::failure;
-use crate::argument::InFile;
+use crate::argument::{InFile, count};
 use crate::exit::{Failure, print};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Folder, Question, local, search};
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
     /// How many flights may be flown.
-    #[arg(long, default_value_t = 2000)]
+    #[arg(long, default_value_t = 2000, value_parser = count::<usize>(1, u64::MAX))]
     budget: usize,
     /// Seed of the search.
     #[arg(long, default_value_t = 1)]

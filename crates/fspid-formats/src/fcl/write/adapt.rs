@@ -147,7 +147,7 @@ fn output(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
     if dialect == Dialect::Iec {
         return;
     }
-    numbered_fallback(output, loss);
+    numbered_fallback(output);
     if dialect == Dialect::JFuzzyLogic {
         limits(output, loss);
         enabled(&output.name, output.enabled, loss);

@@ -58,6 +58,8 @@ fn fitted(
         && (1..=64).any(|variable| formula.uses(variable))
     {
         losses.never(format!("{place}: a formula in the inputs cannot be written"));
+        // Nothing is written, so that nothing is told of what would stand for it.
+        return Function::new("trapmf", &[]);
     }
     let (params, error) = fit::trapezoid(|x| grade(membership, x), universe);
     losses.lost(format!(

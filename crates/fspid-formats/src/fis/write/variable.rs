@@ -5,6 +5,7 @@ use fspid_fuzzy::system::{Conclusion, FallbackValue, Input, Membership, Output, 
 
 use super::losses::Losses;
 use super::shape::{Function, function};
+use crate::adapt::reach;
 use crate::number::{written, written_all};
 use crate::report::clipped;
 
@@ -148,16 +149,4 @@ impl Slot {
             }
         }
     }
-}
-
-/// From the first to the last corner or parameter of an input's sets.
-fn reach(input: &Input) -> Universe {
-    let (mut lower, mut upper) = (f64::INFINITY, f64::NEG_INFINITY);
-    for term in &input.terms {
-        if let Membership::Shape { kind, params, .. } = &term.membership {
-            kind.corners(params, &mut |x| (lower, upper) = (lower.min(x), upper.max(x)));
-        }
-    }
-    let usable = lower < upper && (upper - lower).is_finite();
-    if usable { Universe { lower, upper } } else { Universe { lower: -1.0, upper: 1.0 } }
 }

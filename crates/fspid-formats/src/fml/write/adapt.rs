@@ -8,7 +8,7 @@ use fspid_fuzzy::system::{
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::Kind;
-use crate::adapt::{TYPE_1, numbered_fallback, sampled, without_disabled_rules};
+use crate::adapt::{TYPE_1, numbered_fallback, reach, sampled, without_disabled_rules};
 use crate::fit;
 use crate::fml::shape;
 use crate::fml::words::{S_NORMS, T_NORMS, word_of};
@@ -83,6 +83,12 @@ fn input(input: &mut Input, loss: &mut Loss) {
         loss.lose(&input.name, "moves or refuses values outside its range", "it takes any value");
         input.out_of_range = OutOfRange::Evaluate;
     }
+    if input.universe.is_none() {
+        let range = reach(input);
+        let written = format!("{} to {}", number(range.lower), number(range.upper));
+        loss.lose(&input.name, "has no range, which the standard asks for", &written);
+        input.universe = Some(range);
+    }
     for term in &mut input.terms {
         let what = format!("{}.{}", input.name, term.name);
         set(&what, &mut term.membership, term.lower.as_ref(), input.universe, loss);
@@ -92,7 +98,7 @@ fn input(input: &mut Input, loss: &mut Loss) {
 fn output(output: &mut Output, loss: &mut Loss) {
     enabled(&output.name, output.enabled, loss);
     sampled(output, loss, Sampling::Exact, |sampling| sampling == Sampling::Exact);
-    numbered_fallback(output, loss);
+    numbered_fallback(output);
     if output.fallback.previous {
         loss.lose(&output.name, "keeps its answer where no rule fires", "its default alone");
         output.fallback.previous = false;

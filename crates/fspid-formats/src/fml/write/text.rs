@@ -60,7 +60,7 @@ impl Writer<'_> {
         let head = format!(
             "    <fuzzyVariable name=\"{}\"{} type=\"input\">\n",
             escaped(&input.name),
-            self.domain(&input.name, input.universe)
+            Self::domain(input.universe)
         );
         let terms: String = input
             .terms
@@ -70,15 +70,13 @@ impl Writer<'_> {
         format!("{head}{terms}    </fuzzyVariable>\n")
     }
 
-    fn domain(&mut self, name: &str, universe: Option<Universe>) -> String {
+    fn domain(universe: Option<Universe>) -> String {
         match universe {
             Some(Universe { lower, upper }) => {
                 format!(" domainleft=\"{}\" domainright=\"{}\"", number(lower), number(upper))
             }
-            None => {
-                self.loss.note(format!("`{name}` has no range, which the standard asks for"));
-                String::new()
-            }
+            // Outputs alone: a number needs none, and the range of a set is asked for before.
+            None => String::new(),
         }
     }
 
@@ -93,12 +91,10 @@ impl Writer<'_> {
             FallbackValue::Number(value) => number(value),
             FallbackValue::Middle | FallbackValue::Nothing => "NaN".into(),
         };
-        let (domain, method) = match kind {
-            Kind::Mamdani => (self.domain(&output.name, output.universe), self.method(output)),
-            _ => (
-                output.universe.map(|u| self.domain(&output.name, Some(u))).unwrap_or_default(),
-                " combination=\"WA\"".to_owned(),
-            ),
+        let domain = Self::domain(output.universe);
+        let method = match kind {
+            Kind::Mamdani => self.method(output),
+            Kind::Tsk | Kind::Tsukamoto => " combination=\"WA\"".to_owned(),
         };
         let mut text = format!(
             "    <{element} name=\"{}\"{domain} type=\"output\"{method} defaultValue=\"{default}\">\n",

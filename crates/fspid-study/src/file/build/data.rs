@@ -60,11 +60,34 @@ pub(crate) fn coefficients(
         Ok(plant) => Some(plant),
         Err(error) => {
             let (message, allowed) = in_words(&error);
-            let key = key_at_fault(&error);
-            report.value(section.at(key), &section.path(key), message, allowed);
+            let (place, path) = match &error {
+                SimError::Linear(LtiError::NotFinite { .. }) => farthest_coefficient(section)?,
+                _ => {
+                    let key = key_at_fault(&error);
+                    (section.at(key), section.path(key))
+                }
+            };
+            report.value(place, &path, message, allowed);
             None
         }
     }
+}
+
+/// The coefficient whose size is farthest from that of the others: where numbers overflow, it is the one.
+fn farthest_coefficient(section: &Section) -> Option<(Place, String)> {
+    let named = |key: &'static str| {
+        let numbers = section.placed_numbers(key).unwrap_or_default().iter().enumerate();
+        numbers.map(move |(index, (number, place))| (*number, *place, key, index))
+    };
+    let mut all: Vec<_> = named("numerator").chain(named("denominator")).collect();
+    all.retain(|(number, ..)| *number != 0.0);
+    let size = |number: f64| libm::log10(number.abs());
+    all.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let usual = size(all.get(all.len() / 2)?.0);
+    let distance = |number: f64| (size(number) - usual).abs();
+    let farthest = all.iter().max_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
+    let (_, place, key, index) = farthest;
+    Some((*place, format!("{}[{index}]", section.path(key))))
 }
 
 /// The list of coefficients that an error is about.
@@ -99,6 +122,10 @@ fn in_words(error: &SimError) -> (String, String) {
             "as long as the denominator, so that the pitch angle would jump with the elevator"
                 .to_owned(),
             SHORTER,
+        ),
+        SimError::Linear(LtiError::NotFinite { .. }) => (
+            "with it, a number of the plant's model is too large for the machine".to_owned(),
+            "coefficients closer to each other in size",
         ),
         other => (other.to_string(), "coefficients closer to each other in size"),
     };

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
-use fspid_aircraft::{Aircraft, Environment, ForceModel, TrimTarget};
+use fspid_aircraft::{Aircraft, Environment, ForceModel, Quantity, TrimFailure, TrimTarget};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
 use super::{data, judged, linear_aircraft, loading, rad};
+use crate::aircraft::{AircraftFailure, Units};
 use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
 use crate::file::report::Report;
@@ -204,7 +205,30 @@ pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str)
     }
 }
 
-/// The aircraft at its trim, or a problem at the speed that it cannot fly.
+/// Keys that say together which flight is to be held.
+const OF_TRIM: [&str; 19] = [
+    "airspeed_m_s",
+    "airspeed_kt",
+    "airspeed_ft_s",
+    "altitude_m",
+    "altitude_ft",
+    "climb_angle_deg",
+    "mass_kg",
+    "cg_mac",
+    "ix_kg_m2",
+    "ix_slug_ft2",
+    "ix_gyration_m",
+    "iy_kg_m2",
+    "iy_slug_ft2",
+    "iy_gyration_m",
+    "iz_kg_m2",
+    "iz_slug_ft2",
+    "iz_gyration_m",
+    "ixz_kg_m2",
+    "ixz_slug_ft2",
+];
+
+/// The aircraft at its trim, or a problem: at what lies out of its own range, else at the table as a whole.
 fn trimmed(
     report: &mut Report,
     part: &Section,
@@ -213,11 +237,38 @@ fn trimmed(
 ) -> Option<AircraftPlant> {
     let plant = AircraftPlant::trimmed(aircraft.clone(), target);
     if let Err(SimError::Trim(failure)) = &plant {
-        let key = airspeed_key(part);
-        let allowed = "a speed and an altitude at which the aircraft can be trimmed";
-        report.value(part.at(key), &part.path(key), failure.to_string(), allowed);
+        let words = AircraftFailure::Trim { failure: failure.clone(), units: Units::Si };
+        let message = in_a_line(&words.to_string());
+        match out_of_range(part, failure) {
+            Some(key) => {
+                let allowed = "a speed and an altitude at which the aircraft can be trimmed";
+                report.value(part.at(key), &part.path(key), message, allowed);
+            }
+            None => {
+                let given = OF_TRIM.iter().filter(|key| part.given(key));
+                let given = given.map(|key| format!("{key} = {}", report.text(part.at(key))));
+                let given = given.collect::<Vec<_>>().join(", ");
+                let allowed = format!("a flight that can be held; it follows from {given}");
+                report.missing(part.place, &part.path, message, allowed);
+            }
+        }
     }
     plant.ok()
+}
+
+/// The key of the speed or the altitude where that itself is not one that the aircraft is known for.
+fn out_of_range(part: &Section, failure: &TrimFailure) -> Option<&'static str> {
+    failure.limits.iter().find_map(|limit| match limit.quantity {
+        Quantity::Airspeed | Quantity::Mach => Some(airspeed_key(part)),
+        Quantity::Altitude => Some(altitude_key(part)),
+        _ => None,
+    })
+}
+
+/// Sentences in lines of their own, as one line of a problem.
+fn in_a_line(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().map(|line| line.trim().trim_end_matches(';')).collect();
+    lines.join("; ")
 }
 
 pub(super) fn airspeed_key(part: &Section) -> &'static str {

@@ -16,8 +16,9 @@ pub struct Share {
     pub of: Contribution,
     /// Part of the whole: of the area, or of the weight.
     pub part: f64,
-    /// What it adds to the number: the contributions of all rules sum to it.
-    pub contribution: f64,
+    /// What it adds to the number: the contributions of all rules sum to it. None where the conclusion has no number,
+    /// as a formula that divides by zero.
+    pub contribution: Option<f64>,
 }
 
 /// What the shares rest on.
@@ -68,9 +69,15 @@ pub(super) fn shares(system: &System, output: usize, workspace: &mut Workspace) 
 }
 
 fn finish(basis: Basis, mut list: Vec<Share>, pieces: Vec<Piece>) -> Shares {
-    let sum = (!list.is_empty()).then(|| list.iter().map(|share| share.contribution).sum());
+    // No sum where a part of it is no number.
+    let sum = list.iter().map(|share| share.contribution).sum::<Option<f64>>();
+    let sum = sum.filter(|_| !list.is_empty());
     list.sort_by(|a, b| b.part.total_cmp(&a.part).then(b.of.degree.total_cmp(&a.of.degree)));
     Shares { basis, list, sum, pieces }
+}
+
+fn finite(number: f64) -> Option<f64> {
+    Some(number).filter(|number| number.is_finite())
 }
 
 /// $w_i / \sum w$ and $w_i z_i / \sum w$, or without the division for a weighted sum.
@@ -81,7 +88,7 @@ fn weights(contributions: &[Contribution], method: Defuzzifier) -> Vec<Share> {
     let share = |of: &Contribution| Share {
         of: *of,
         part: of.degree / total,
-        contribution: of.degree * of.value.unwrap_or(0.0) / divisor,
+        contribution: finite(of.degree * of.value.unwrap_or(0.0) / divisor),
     };
     fires.map(share).collect()
 }
@@ -96,7 +103,8 @@ fn areas(contributions: &[Contribution], pieces: &[Piece], reference: f64) -> Ve
         let own = pieces.iter().filter(|piece| piece.conclusion == Some(of.conclusion));
         let area: f64 = own.clone().map(Piece::area).sum();
         let moment: f64 = own.map(|piece| piece.moment(reference)).sum();
-        Share { of: *of, part: area / total, contribution: (reference * area + moment) / total }
+        let contribution = finite((reference * area + moment) / total);
+        Share { of: *of, part: area / total, contribution }
     };
     contributions.iter().filter(|c| c.degree > 0.0).map(share).collect()
 }

@@ -69,7 +69,9 @@ impl Explanation<'_> {
             let term = output.terms.get(share.of.term).map_or("", |term| &term.name);
             let (part, contribution) = (100.0 * share.part, share.contribution);
             let rule = self.rule_name(block, rule);
-            let _ = writeln!(out, "  {part:6.2} %  {contribution:+.6}  {rule}: {term}");
+            let contribution =
+                contribution.map_or("no number".to_owned(), |it| format!("{it:+.6}"));
+            let _ = writeln!(out, "  {part:6.2} %  {contribution:>9}  {rule}: {term}");
         }
         let small = shares.list.iter().filter(|share| !shown(share.part)).count();
         if small > 0 {

@@ -4,6 +4,7 @@ mod question;
 
 use std::fmt::Write as _;
 
+use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
@@ -48,6 +49,9 @@ pub struct Slice<'a> {
 /// # Errors
 /// [`Refused`] with everything that is wrong with the question.
 pub fn slice<'a>(system: &'a System, question: &Question<'_>) -> Result<Slice<'a>, Refused> {
+    if system.parts().formulas_name_outputs() {
+        return Err(Refused::one(SurfaceError::Remembers.to_string()));
+    }
     let mut asking = Asking { system, problems: Vec::new() };
     let slice = asking.slice(question);
     match slice {

@@ -1,0 +1,54 @@
+//! Numbers in sentences: no more digits than mean something, and never a row of zeros.
+
+/// Smallest size that is written without a power of ten.
+const SMALLEST: f64 = 1e-4;
+/// The first size that is written as a power of ten.
+const LARGEST: f64 = 1e6;
+
+/// `value` to so many significant digits.
+#[must_use]
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+/// `value` to so many significant digits, without zeros behind them.
+#[must_use]
+pub fn to_digits(value: f64, digits: usize) -> String {
+    shortest(rounded(value, digits))
+}
+
+/// The shortest digits that read back as `value`; with a power of ten below 1e-4 and from 1e6 on.
+#[must_use]
+pub fn shortest(value: f64) -> String {
+    match value == 0.0 || (SMALLEST..LARGEST).contains(&value.abs()) || !value.is_finite() {
+        // No sign of a zero.
+        true => format!("{}", value + 0.0),
+        false => format!("{value:e}"),
+    }
+}
+
+/// "1 controller", "2 controllers".
+#[must_use]
+pub fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_and_small_numbers_are_powers_of_ten_and_never_rows_of_zeros() {
+        let texts = [0.123_456_7, 1234.567, 123_456.7, 999_999.0, 1e300, -2.5e-7, 1e-4, -0.0]
+            .map(|value| to_digits(value, 3));
+        assert_eq!(texts, ["0.123", "1230", "123000", "1e6", "1e300", "-2.5e-7", "0.0001", "0"]);
+        assert_eq!(shortest(f64::INFINITY), "inf");
+        assert_eq!(shortest(0.1 + 0.2), "0.30000000000000004");
+    }
+
+    #[test]
+    fn one_thing_is_told_as_one() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "shard")), ["0 shards", "1 shard", "2 shards"]);
+    }
+}
