@@ -251,3 +251,60 @@ impl<'a> Holding<'a> {
 fn size_least(value: Interval) -> Interval {
     Interval::point(value.lower().max(-value.upper()).max(0.0))
 }
+
+#[cfg(test)]
+#[path = "../tests/flown_proofs/drawn.rs"]
+#[allow(clippy::expect_used, clippy::indexing_slicing, reason = "shared with a test")]
+mod drawn;
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::Law;
+    use fspid_sim::AtRest;
+
+    use super::drawn::{self, Dice};
+    use super::*;
+    use crate::gain_set::{IncrementMap, KnownSlopes};
+    use crate::recheck::produced;
+    use crate::scope::Asked;
+
+    /// Rest is derived twice, here with bounds and in the simulator for margins: the one holds the other.
+    #[test]
+    fn what_moving_gains_make_of_a_held_command_lies_within_its_bounds() {
+        let mut compared = 0;
+        for seed in 0..200 {
+            let scenario = drawn::scenario(&mut Dice::new(seed));
+            let (plant, named) = (scenario.plant.linear(), &scenario.controllers[0]);
+            let Controller::SelfTuning(fspid) = &named.controller else { continue };
+            let plant = plant.expect("linear");
+            if fspid.tuner().settings().law != Law::Memoryless {
+                continue;
+            }
+            let Ok(description) = LoopDescription::of(&scenario, plant, &named.controller) else {
+                continue;
+            };
+            let range = Asked::of(&scenario, plant, &description).range;
+            let set = IncrementMap::of(fspid.tuner(), 4).expect("bounded").gains(1.0);
+            let Ok(rest) = Rest::of(&description, &set, range) else { continue };
+            let known = KnownSlopes::default();
+            let held = set.holding(fspid, 1.0, rest.held, &known);
+            let Some((held, _)) = held.ok().filter(|_| !rest.held.is_none()) else { continue };
+            let [kp, ..] = held.bounds();
+            let change = held.cells.iter().map(|cell| cell.change_gain).fold(0.0, f64::max);
+            let gains = produced(&named.controller, [0.0; 2]);
+            for at_rest in AtRest::all(&scenario, plant, &named.controller, gains) {
+                // Slopes of the plain one are differences, good to some digits.
+                let slack = 1e-6 * (1.0 + kp.magnitude());
+                let by_error = at_rest.gains.kp;
+                assert!(kp.lower() - slack <= by_error && by_error <= kp.upper() + slack, "{seed}");
+                let by_change = at_rest.change_gain.abs();
+                assert!(by_change <= change + slack, "{seed}: {by_change} {change}");
+            }
+            compared += 1;
+            if compared == 8 {
+                break;
+            }
+        }
+        assert_eq!(compared, 8);
+    }
+}

@@ -215,8 +215,6 @@ impl<'a> Prover<'a> {
             return None;
         }
         let proved = |share: f64| self.within(self.range.scaled(share)).stable(set);
-        // Found once, for all parts of the range.
-        let _ = self.rest(set).map(|rest| self.held(set, 1.0, &rest).is_ok());
         let (mut within, mut beyond) = (0.0, self.share_at_rest(set));
         // First: of a larger range more may remain, so that it may be proved where a smaller one is not.
         if beyond < 1.0
