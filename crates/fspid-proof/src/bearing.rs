@@ -12,9 +12,9 @@ use crate::recheck::{Kept, Rechecked};
 pub enum Bearing {
     /// The flown loop is stable, within the scope that the certificate states.
     Stable,
-    /// The flown loop grows: its gains are fixed.
+    /// The flown loop grows: its gains are fixed, or these are the gains that it has at rest.
     Grows,
-    /// Gains that stand still let the loop grow. In flight they move, and the loop may still settle.
+    /// Gains that stand still let the loop grow, and those at rest are not known to. In flight they move, and the loop may still settle.
     GrowsStandingStill,
     /// Gains in an order that no flight may bring about let the loop grow.
     GrowsInSomeOrder,
@@ -43,6 +43,8 @@ impl Certificate {
             (Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }, _) if is_fixed => {
                 Bearing::Grows
             }
+            // The supervisor sees nothing there: these are the gains around which the flown loop is linear.
+            (Claim::FrozenGrowth { input: [0.0, 0.0], .. }, _) => Bearing::Grows,
             (Claim::FrozenGrowth { .. }, _) => Bearing::GrowsStandingStill,
             (Claim::SequenceGrowth { .. }, _) => Bearing::GrowsInSomeOrder,
         }
@@ -80,7 +82,9 @@ impl fmt::Display for Bearing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stable => f.write_str("the flown loop is stable"),
-            Self::Grows => f.write_str("the gains are fixed, so that the flown loop itself grows"),
+            Self::Grows => f.write_str(
+                "these are the gains that it has at rest, so that the flown loop itself leaves rest",
+            ),
             Self::GrowsStandingStill => f.write_str(
                 "this refutes gains that stand still; in flight the gains move on, and the flown loop may still settle",
             ),

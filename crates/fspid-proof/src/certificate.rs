@@ -3,6 +3,7 @@
 use fspid_lti::Matrix;
 
 use crate::description::LoopDescription;
+use crate::limits;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
 
@@ -106,6 +107,7 @@ impl Certificate {
     pub fn scope(&self, rechecked: &Rechecked) -> Scope {
         let mut left_out = self.left_out.clone();
         left_out.extend(LeftOut::ALL.into_iter().filter(|one| one.always()));
+        left_out.retain(|one| self.claim.is_of_stability() || one.of_growth());
         left_out.sort_unstable();
         left_out.dedup();
         Scope {
@@ -116,8 +118,20 @@ impl Certificate {
             remains_rad: rechecked.remains_rad,
             limits: self.description.limits(),
             pitch_within_rad: rechecked.pitch_within_rad,
+            limits_left_out: self.limits_left_out(rechecked),
             left_out,
         }
+    }
+}
+
+impl Certificate {
+    /// Why the claim leaves limits out; none where it covers them, or there are none.
+    fn limits_left_out(&self, rechecked: &Rechecked) -> Option<&'static str> {
+        if rechecked.pitch_within_rad.is_some() || self.description.limits().is_empty() {
+            return None;
+        }
+        let reason = limits::not_covered(&self.description);
+        Some(reason.unwrap_or("the claim names no size of motion within which none acts"))
     }
 }
 

@@ -11,7 +11,6 @@ use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 use crate::gain_set::NoBound;
-use crate::limits;
 use crate::sizes::WrongSize;
 
 /// A flight whose pitch angle goes beyond this is lost: $10^6$ degrees, as in simulations.
@@ -259,12 +258,6 @@ impl LoopDescription {
             dt_s: self.controller.shell().dt_s,
         };
         Ok(LoopModel::new(plant.sampled()?, self.settings()))
-    }
-
-    /// Why no claim about this loop covers its limits, where the reason is the actuator.
-    #[must_use]
-    pub fn limits_left_out(&self) -> Option<&'static str> {
-        limits::not_covered(self).filter(|_| !self.limits().is_empty())
     }
 
     /// What limits motions that are not small, in words; a proof of the loop around rest leaves

@@ -6,6 +6,8 @@
 //!
 //! for every row r that some gain gives a limited quantity $r z$, $|r z| \le L$ holds at every sample.
 
+use core::fmt;
+
 use fspid_core::{AntiWindup, Gains, Limits};
 use fspid_fuzzy::Scalar;
 use fspid_fuzzy::scalar::Interval;
@@ -16,6 +18,7 @@ use crate::check::{ActuatorLag, IntervalMatrix, NotProved, inside_limit};
 use crate::description::LoopDescription;
 use crate::gain_set::HeldGains;
 use crate::rest::Rest;
+use crate::scope::Range;
 
 /// Of the largest level that ordinary arithmetic finds, so much is claimed.
 const CLAIMED: f64 = 1.0 - 1e-6;
@@ -36,6 +39,68 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
         }
         _ => None,
     }
+}
+
+/// Rest that something limited does not leave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtLimit {
+    /// Set-points and loads, at the largest of which it is.
+    pub range: Range,
+    /// What is limited, in words.
+    pub what: &'static str,
+    /// What rest asks of it, rad; infinite where nothing bounds that.
+    pub needed_rad: f64,
+    /// What it allows, rad.
+    pub allowed_rad: f64,
+}
+
+impl fmt::Display for AtLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { range: Range { setpoint_rad, load_rad }, what, needed_rad, allowed_rad } = self;
+        write!(f, "rest at {:.2} deg", setpoint_rad.to_degrees())?;
+        if *load_rad > 0.0 {
+            write!(f, " under a load of {:.2} deg", load_rad.to_degrees())?;
+        }
+        if needed_rad.is_finite() {
+            write!(f, " needs {:.2} deg", needed_rad.to_degrees())?;
+        } else {
+            f.write_str(" needs more than anything allows")?;
+        }
+        write!(f, ", and {what} is at {:.2} deg", allowed_rad.to_degrees())
+    }
+}
+
+/// Whether nothing is at its limit at rest. There the error would not come to zero, or the linear loop around
+/// rest would not be the one that flies; rates are zero at rest, so that their limits ask nothing.
+pub(crate) fn within_at_rest(
+    description: &LoopDescription,
+    rest: &Rest,
+    range: Range,
+) -> Result<(), AtLimit> {
+    let shell = description.controller.shell();
+    let actuator = &description.actuator;
+    let integral = match &shell.anti_windup {
+        AntiWindup::Clamping(limits) => Some(around_zero(limits)),
+        AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => None,
+    };
+    let nearer = |(least, most): (f64, f64)| (-least).min(most);
+    let guard = description.is_guarded().then(|| shell.guard.limit_rad());
+    let of_command = rest.command_rad;
+    let asked = [
+        ("the controller's output limit", of_command, shell.limits.as_ref().map(around_zero)),
+        ("the limit of the integral", rest.integral_rad, integral),
+        ("the servo's command limit", of_command, actuator.command_limits_rad().map(nearer)),
+        ("the end of the actuator's travel", of_command, actuator.travel_rad().map(nearer)),
+        ("the controller's sample guard", rest.seen_rad, guard),
+    ];
+    for (what, needed_rad, allowed_rad) in asked {
+        let Some(allowed_rad) = allowed_rad else { continue };
+        // Written so that NaN is at the limit.
+        if !(needed_rad < allowed_rad) {
+            return Err(AtLimit { range, what, needed_rad, allowed_rad });
+        }
+    }
+    Ok(())
 }
 
 /// Rows from the state to everything that is limited, each with its limit, at some gains.
@@ -147,7 +212,7 @@ fn around_zero(limits: &Limits<f64>) -> f64 {
 }
 
 /// The largest level for which ordinary arithmetic finds no limit at work; none without limits, or
-/// where rest itself is at a limit.
+/// where the resolution of the sensors alone may bring one about.
 pub(crate) fn level(
     description: &LoopDescription,
     model: &LoopModel<f64>,

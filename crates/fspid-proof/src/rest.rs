@@ -7,6 +7,7 @@ use fspid_sim::Controller;
 use crate::check::printed;
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, HeldCommand};
+use crate::limits::{self, AtLimit};
 use crate::scope::Range;
 
 /// The loop at rest, for every set-point and load of a range: largest magnitudes.
@@ -18,7 +19,7 @@ pub(crate) struct Rest {
     pub(crate) command_rad: f64,
     /// The integral's term, rad, whatever its gain has become since.
     pub(crate) integral_rad: f64,
-    /// The set-point, rad: what the sensor then shows.
+    /// What the sensor then shows, rad: the set-point, and without an integral the error as well.
     pub(crate) seen_rad: f64,
     /// The error, rad; 0 with an integral.
     pub(crate) error_rad: f64,
@@ -28,7 +29,7 @@ pub(crate) struct Rest {
 }
 
 /// Why nothing is said of rest at other set-points or loads than zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoRest {
     /// An accumulating law moves a constant part of the command long after the error is gone.
     #[error(
@@ -40,26 +41,44 @@ pub enum NoRest {
         "without an integral an error stays, and nothing bounds it here: nothing is claimed but the return to rest with the set-point at zero and no load"
     )]
     NoIntegral,
-    /// The literal integral holds a command with a gain that may be zero at rest.
-    #[error("the literal integral holds a command with a gain that may be zero at rest")]
+    /// The integral's gain may be zero at rest.
+    #[error(
+        "the gain of the integral may be zero at rest, so that nothing need bring the error to zero there"
+    )]
     NoIntegralGain,
     /// The plant has no pitch per elevator at rest, or one of zero.
     #[error("the elevator that holds a set-point has no bound")]
     NoSteadyGain,
+    /// Something is at its limit already at rest, so that what is linear there is not the loop.
+    #[error("{0}")]
+    AtLimit(AtLimit),
 }
 
 impl Rest {
-    /// Rest of a loop with the gains of a set.
+    /// With nothing to hold, and of a loop that need not come to rest.
+    pub(crate) const NOTHING: Self = Self {
+        held: HeldCommand::NONE,
+        command_rad: 0.0,
+        integral_rad: 0.0,
+        seen_rad: 0.0,
+        error_rad: 0.0,
+        any_setpoint: true,
+        any_load: true,
+    };
+
+    /// Rest of a loop with the gains of a set, within its limits.
     pub(crate) fn of(
         description: &LoopDescription,
         set: &GainSet,
         range: Range,
     ) -> Result<Self, NoRest> {
         let holding = Holding::of(description, set, range);
-        match &description.controller {
-            Controller::Fixed(_) => Ok(holding.still()),
-            Controller::SelfTuning(fspid) => holding.tuned(fspid),
-        }
+        let rest = match &description.controller {
+            Controller::Fixed(_) => holding.still(),
+            Controller::SelfTuning(fspid) => holding.tuned(fspid)?,
+        };
+        limits::within_at_rest(description, &rest, range).map_err(NoRest::AtLimit)?;
+        Ok(rest)
     }
 }
 
@@ -115,16 +134,20 @@ impl<'a> Holding<'a> {
 
     /// Gains that stand still: all is linear, whatever is held.
     fn still(&self) -> Rest {
-        let kp = Interval::point(self.set.rest[0].magnitude());
-        let command_rad = match self.has_integral() {
-            true => self.command_rad(),
-            false => self.proportional(kp).map_or(f64::INFINITY, |(command, _)| command),
+        let [kp, ..] = self.set.rest;
+        let (command_rad, seen_rad) = match self.has_integral() {
+            true => (self.command_rad(), self.range.setpoint_rad),
+            false => match self.proportional(kp) {
+                Some((command_rad, driven_rad)) => (command_rad, self.seen_at(driven_rad)),
+                None => (f64::INFINITY, f64::INFINITY),
+            },
         };
+        let kp = Interval::point(kp.magnitude());
         Rest {
             held: HeldCommand::NONE,
             command_rad,
             integral_rad: (Interval::point(command_rad) + kp * self.by_weight()).upper(),
-            seen_rad: self.range.setpoint_rad,
+            seen_rad,
             error_rad: 0.0,
             any_setpoint: true,
             any_load: true,
@@ -137,6 +160,9 @@ impl<'a> Holding<'a> {
     ///
     /// with G the pitch per command. Some rest there is, as kp is a continuous function of the error.
     fn proportional(&self, kp: Interval) -> Option<(f64, f64)> {
+        if self.holds_nothing() {
+            return Some((0.0, 0.0));
+        }
         let per = self.per_pitch?;
         let sum = kp + per;
         let weight = self.description.controller.shell().setpoint_weights.proportional;
@@ -148,10 +174,28 @@ impl<'a> Holding<'a> {
         known.then_some((command.upper(), driven.upper()))
     }
 
+    fn holds_nothing(&self) -> bool {
+        self.range == Range::REST && self.load == Interval::ZERO
+    }
+
+    /// The error, rad, where the gain kp sees so much: $e = (b r - y) - (b - 1) r$.
+    fn error_at(&self, driven_rad: f64) -> f64 {
+        (Interval::point(driven_rad) + self.by_weight()).upper()
+    }
+
+    /// The pitch that is seen there, rad.
+    fn seen_at(&self, driven_rad: f64) -> f64 {
+        (self.setpoint + Interval::point(self.error_at(driven_rad))).upper()
+    }
+
     fn tuned(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
-        let nothing = self.range == Range::REST && self.load == Interval::ZERO;
         if !self.has_integral() {
-            return self.without_integral(fspid, nothing);
+            return self.without_integral(fspid);
+        }
+        let [_, at_rest, _] = self.set.rest;
+        let least = size_least(at_rest);
+        if !(least.lower() > 0.0) {
+            return Err(NoRest::NoIntegralGain);
         }
         let literal = fspid.shell().integral == IntegralForm::Literal;
         let command_rad = self.command_rad();
@@ -166,11 +210,6 @@ impl<'a> Holding<'a> {
         rest.any_setpoint = self.plain() && !literal;
         rest.any_load = !literal;
         if literal && integral.upper() > 0.0 {
-            let [_, at_rest, _] = self.set.rest;
-            let least = size_least(at_rest);
-            if !(least.lower() > 0.0) {
-                return Err(NoRest::NoIntegralGain);
-            }
             if !integral.upper().is_finite() {
                 return Err(NoRest::NoSteadyGain);
             }
@@ -190,9 +229,9 @@ impl<'a> Holding<'a> {
         self.description.controller.shell().setpoint_weights.proportional - 1.0 == 0.0
     }
 
-    fn without_integral(&self, fspid: &Fspid<f64>, nothing: bool) -> Result<Rest, NoRest> {
-        let mut rest = Rest { any_setpoint: false, any_load: false, ..self.still() };
-        if nothing {
+    fn without_integral(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
+        let rest = Rest { any_setpoint: false, any_load: false, ..self.still() };
+        if self.holds_nothing() {
             return Ok(rest);
         }
         if fspid.tuner().settings().law != Law::Memoryless {
@@ -200,16 +239,72 @@ impl<'a> Holding<'a> {
         }
         let [kp, ..] = self.set.bounds();
         let (command_rad, driven_rad) = self.proportional(kp).ok_or(NoRest::NoIntegral)?;
-        // e = (b r - y) - (b - 1) r.
-        let error_rad = (Interval::point(driven_rad) + self.by_weight()).upper();
+        let error_rad = self.error_at(driven_rad);
         let at_origin = error_rad == 0.0;
         let held = HeldCommand { by_kp: driven_rad, by_ki: 0.0, at_origin };
-        rest = Rest { held, command_rad, integral_rad: 0.0, error_rad, ..rest };
-        Ok(rest)
+        let seen_rad = self.seen_at(driven_rad);
+        Ok(Rest { held, command_rad, integral_rad: 0.0, seen_rad, error_rad, ..rest })
     }
 }
 
 /// The smallest magnitude in an interval, as a number that divides.
 fn size_least(value: Interval) -> Interval {
     Interval::point(value.lower().max(-value.upper()).max(0.0))
+}
+
+#[cfg(test)]
+#[path = "../tests/flown_proofs/drawn.rs"]
+#[allow(clippy::expect_used, clippy::indexing_slicing, reason = "shared with a test")]
+mod drawn;
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::Law;
+    use fspid_sim::AtRest;
+
+    use super::drawn::{self, Dice};
+    use super::*;
+    use crate::gain_set::{IncrementMap, KnownSlopes};
+    use crate::recheck::produced;
+    use crate::scope::Asked;
+
+    /// Rest is derived twice, here with bounds and in the simulator for margins: the one holds the other.
+    #[test]
+    fn what_moving_gains_make_of_a_held_command_lies_within_its_bounds() {
+        let mut compared = 0;
+        for seed in 0..200 {
+            let scenario = drawn::scenario(&mut Dice::new(seed));
+            let (plant, named) = (scenario.plant.linear(), &scenario.controllers[0]);
+            let Controller::SelfTuning(fspid) = &named.controller else { continue };
+            let plant = plant.expect("linear");
+            if fspid.tuner().settings().law != Law::Memoryless {
+                continue;
+            }
+            let Ok(description) = LoopDescription::of(&scenario, plant, &named.controller) else {
+                continue;
+            };
+            let range = Asked::of(&scenario, plant, &description).range;
+            let set = IncrementMap::of(fspid.tuner(), 4).expect("bounded").gains(1.0);
+            let Ok(rest) = Rest::of(&description, &set, range) else { continue };
+            let known = KnownSlopes::default();
+            let held = set.holding(fspid, 1.0, rest.held, &known);
+            let Some((held, _)) = held.ok().filter(|_| !rest.held.is_none()) else { continue };
+            let [kp, ..] = held.bounds();
+            let change = held.cells.iter().map(|cell| cell.change_gain).fold(0.0, f64::max);
+            let gains = produced(&named.controller, [0.0; 2]);
+            for at_rest in AtRest::all(&scenario, plant, &named.controller, gains) {
+                // Slopes of the plain one are differences, good to some digits.
+                let slack = 1e-6 * (1.0 + kp.magnitude());
+                let by_error = at_rest.gains.kp;
+                assert!(kp.lower() - slack <= by_error && by_error <= kp.upper() + slack, "{seed}");
+                let by_change = at_rest.change_gain.abs();
+                assert!(by_change <= change + slack, "{seed}: {by_change} {change}");
+            }
+            compared += 1;
+            if compared == 8 {
+                break;
+            }
+        }
+        assert_eq!(compared, 8);
+    }
 }

@@ -79,6 +79,8 @@ pub struct Scope {
     /// How far the pitch angle may be off, everything else at rest, so that none of them acts, rad; none
     /// where that is not covered.
     pub pitch_within_rad: Option<f64>,
+    /// Why limits are left out; none where they are covered, or there are none.
+    pub limits_left_out: Option<&'static str>,
     /// What the claim does not speak of.
     pub left_out: Vec<LeftOut>,
 }
@@ -146,6 +148,12 @@ impl LeftOut {
     #[must_use]
     pub const fn always(self) -> bool {
         matches!(self, Self::Rounding | Self::MovingSetpoint)
+    }
+
+    /// Whether claims of growth leave it out as well. They are about gains, and so about no set-point or load.
+    #[must_use]
+    pub const fn of_growth(self) -> bool {
+        !matches!(self, Self::MovingSetpoint | Self::Disturbances)
     }
 }
 

@@ -1,15 +1,15 @@
 //! From loops to proved, refuted, refused; and certificates that are tampered with.
 
 use fspid_core::{
-    Derivative, Followers, Fspid, Gains, InputScale, InputSets, Law, Pid, ReferenceModel, Sees,
-    SelfTuner, SetPlaces, Shell, TunerSettings,
+    Derivative, Followers, Fspid, GainLimits, Gains, InputScale, InputSets, Law, Limits, Pid,
+    ReferenceModel, Sees, SelfTuner, SetPlaces, Shell, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
 use fspid_proof::{
-    Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LoopDescription, NotProvable, Range,
-    Verdict, certify,
+    Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LeftOut, LoopDescription, NotProvable,
+    Range, Verdict, certify,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
@@ -102,6 +102,49 @@ fn gains_that_do_not_hold_where_the_supervisor_puts_them_are_refuted() {
     assert!(outcome.largest.proved > 0.0 && outcome.largest.proved < 1.0);
 }
 
+/// Where the gains at rest themselves let the loop grow, the flown loop does not settle; it used to be said that it
+/// may.
+#[test]
+fn growth_at_rest_refutes_the_flown_loop_itself() {
+    let scale = Gains { kp: 0.0, ki: 0.0, kd: 0.01 };
+    let supervisor = |nominal| {
+        let Controller::SelfTuning(fspid) = tuned(scale, Law::Memoryless) else { panic!("tuned") };
+        let tuner = fspid.tuner();
+        SelfTuner::new(nominal, *tuner.supervisor(), *tuner.settings()).expect("allowed")
+    };
+    let unstable = supervisor(Gains { kp: 10.0, ki: 0.0, kd: 0.0 });
+    let fspid = Fspid::new(unstable, shell()).expect("allowed");
+    let description = loop_of(Controller::SelfTuning(fspid));
+    let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
+    let Verdict::Refuted(certificate, rechecked) = outcome.verdict else { panic!("{outcome:?}") };
+    let bearing = certificate.bearing(&rechecked);
+    assert_eq!(bearing, Bearing::Grows);
+    assert!(bearing.is_refutation() && !bearing.to_string().contains("may still settle"));
+    // Nothing of set-points and loads: the claim is about gains.
+    let left_out = certificate.scope(&rechecked).left_out;
+    assert_eq!(left_out, [LeftOut::Rounding]);
+}
+
+/// The error at rest is taken as zero where there is an integral: one whose gain is zero there brings it nowhere.
+#[test]
+fn with_an_integral_gain_of_zero_at_rest_nothing_is_proved() {
+    let Controller::SelfTuning(fspid) =
+        tuned(Gains { kp: 0.09, ki: 0.02, kd: 0.045 }, Law::Memoryless)
+    else {
+        panic!("tuned")
+    };
+    let around = |least, most| Limits::new("gain limits", least, most).expect("allowed");
+    let limits = GainLimits { kp: around(0.5, 4.0), ki: around(0.0, 1.0), kd: around(0.0, 3.0) };
+    let settings = TunerSettings { gain_limits: Some(limits), ..*fspid.tuner().settings() };
+    let nominal = Gains { ki: -0.01, ..NOMINAL };
+    let tuner = SelfTuner::new(nominal, *fspid.tuner().supervisor(), settings).expect("allowed");
+    let description = loop_of(Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed")));
+    let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
+    assert_eq!(outcome.verdict, Verdict::Open);
+    let because = outcome.open_because.expect("a reason").to_string();
+    assert!(because.contains("gain of the integral may be zero at rest"), "{because}");
+}
+
 #[test]
 fn gains_without_bounds_and_actuators_with_play_are_refused_with_words() {
     let law = Law::Accumulating { leakage_per_s: 0.0 };
@@ -120,7 +163,8 @@ fn limits_that_do_not_act_near_rest_are_in_the_proof() {
     let actuator = description.actuator.with_command_limits(-0.35, 0.35);
     description.actuator = actuator.and_then(|a| a.with_rate_limit(0.65)).expect("allowed");
     let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
-    let pitch_rad = outcome.pitch_within_rad.expect("an ellipsoid");
+    let Verdict::Proved(_, rechecked) = outcome.verdict else { panic!("{outcome:?}") };
+    let pitch_rad = rechecked.pitch_within_rad.expect("an ellipsoid");
     assert!(pitch_rad > 1e-4 && pitch_rad < 0.35, "{pitch_rad}");
     let mut certificate = proved(&description);
     assert!(certificate.check().is_ok());

@@ -158,6 +158,8 @@ fn with_a_resolution_it_is_stated_what_remains() {
     description.pitch.resolution = 0.01 * DEG;
     let (_, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
     assert!(rechecked.remains_rad > 0.005 * DEG, "{}", rechecked.remains_rad / DEG);
+    // With gains that stand still the bound is that of the response itself: a few steps.
+    assert!(rechecked.remains_rad < 0.05 * DEG, "{}", rechecked.remains_rad / DEG);
     // What remains grows with the resolution until a limit may act in it: then nothing is proved.
     let limited = description.actuator.with_command_limits(-0.35, 0.35).expect("allowed");
     description.actuator = limited;
@@ -172,8 +174,14 @@ fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
     let mut description = fixed(shell());
     let actuator = description.actuator.with_command_limits(-0.35, 0.35).expect("allowed");
     description.actuator = actuator;
-    let within = |description: &LoopDescription, setpoint_deg, load_deg| {
-        answer(description, &asked(setpoint_deg, load_deg)).pitch_within_rad
+    let within = |description: &LoopDescription, setpoint_deg, load_deg| match answer(
+        description,
+        &asked(setpoint_deg, load_deg),
+    )
+    .verdict
+    {
+        Verdict::Proved(_, rechecked) => rechecked.pitch_within_rad,
+        _ => None,
     };
     let rest = within(&description, 0.0, 0.0).expect("an ellipsoid");
     let held = within(&description, 5.0, 0.0).expect("an ellipsoid");
@@ -187,4 +195,51 @@ fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
     let pitch_rad = within(&guarded, 4.0, 0.0).expect("an ellipsoid");
     assert!(pitch_rad < 6.0 * DEG, "{}", pitch_rad / DEG);
     assert_eq!(within(&guarded, 11.0, 0.0), None);
+}
+
+/// It used to be proved at every set-point, "every deviation dies out", and flights ended a third of the set-point
+/// off: the servo does not hold it.
+#[test]
+fn what_a_limit_does_not_leave_at_rest_is_open_with_the_largest_range_that_it_does() {
+    let mut description = fixed(shell());
+    let limit_rad = 15.0 * DEG;
+    description.actuator =
+        description.actuator.with_command_limits(-limit_rad, limit_rad).expect("allowed");
+    // A pitch of 1.36 per command: 20.4 deg can be held.
+    let outcome = answer(&description, &asked(60.0, 0.0));
+    assert_eq!(outcome.verdict, Verdict::Open);
+    let because = outcome.open_because.expect("a reason").to_string();
+    assert!(because.contains("rest at 60.00 deg needs 44.06 deg"), "{because}");
+    assert!(because.contains("the servo's command limit is at 15.00 deg"), "{because}");
+    let (certificate, _) = outcome.instead.expect("what the servo holds");
+    let proved_deg = certificate.range.setpoint_rad / DEG;
+    assert!(proved_deg > 20.0 && proved_deg < 20.43, "{proved_deg}");
+    // The same of a certificate that is written by hand, at a load, a guard and the end of the travel.
+    let wide = Range { setpoint_rad: 60.0 * DEG, load_rad: 0.0 };
+    let by_hand = Certificate { range: wide, level: None, ..certificate };
+    let refused = by_hand.check().expect_err("at the limit").to_string();
+    assert!(refused.starts_with("rest at 60.00 deg needs 44.06 deg"), "{refused}");
+    assert_eq!(answer(&description, &asked(1.0, 16.0)).verdict, Verdict::Open);
+    let travel = Actuator::new(Lag::first_order(0.1).expect("allowed"));
+    description.actuator = travel.with_travel(-limit_rad, limit_rad).expect("allowed");
+    assert_eq!(answer(&description, &asked(21.0, 0.0)).verdict, Verdict::Open);
+    let guard = Guard::new(10.0 * DEG).expect("allowed");
+    let guarded = fixed(Shell { guard, ..shell() });
+    assert_eq!(answer(&guarded, &asked(11.0, 0.0)).verdict, Verdict::Open);
+}
+
+/// It used to be proved, "the pitch angle may stay up to 6211 deg off rest".
+#[test]
+fn a_proof_that_leaves_more_than_a_flight_shows_is_open_with_the_number() {
+    let mut description = tuned(shell(), Law::Memoryless, NOMINAL);
+    description.pitch.resolution = 0.1 * DEG;
+    let outcome = answer(&description, &asked(1.0, 0.0));
+    assert_eq!(outcome.verdict, Verdict::Open);
+    let because = outcome.open_because.expect("a reason").to_string();
+    assert!(because.contains("may stay up to"), "{because}");
+    assert!(because.contains("allowed are 1.000 deg"), "{because}");
+    // Of a large set-point and with small steps little remains.
+    description.pitch.resolution = 1e-5 * DEG;
+    let (_, rechecked) = proved(answer(&description, &asked(100.0, 0.0)));
+    assert!(rechecked.remains_rad > 0.0 && rechecked.remains_rad <= 10.0 * DEG);
 }

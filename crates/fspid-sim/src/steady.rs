@@ -5,7 +5,7 @@ use fspid_core::Shell;
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
-use crate::signal::Entry;
+use crate::signal::{Disturbance, Entry, Shape, extremes};
 
 /// The set-points and loads that a scenario holds, each as far as it goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,17 +23,14 @@ pub struct Steady {
 }
 
 impl Scenario {
-    /// The set-points and loads of the scenario: where one of them moves, the furthest that it goes.
+    /// The set-points and loads of the scenario: where one of them moves, the furthest that it goes. In all time:
+    /// where a flight ends is no property of the loop.
     #[must_use]
     pub fn steady(&self) -> Steady {
-        let (setpoint_rad, _) = self.setpoint.sampled(self.timing);
-        let ends = setpoint_rad
-            .iter()
-            .fold([0.0_f64; 2], |[least, most], &value| [least.min(value), most.max(value)]);
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
         let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
         Steady {
-            setpoint_rad: ends,
+            setpoint_rad: self.setpoint.ends_rad(),
             load_rad: self.furthest(&[Entry::Servo, Entry::Elevator]),
             bias_rad: bias_rad.abs(),
             offset_rad: self.furthest(&[Entry::Measurement])
@@ -44,12 +41,10 @@ impl Scenario {
 
     /// Largest magnitude of the disturbances that enter at some places, noise left out.
     fn furthest(&self, entries: &[Entry]) -> f64 {
-        let mut sum = vec![0.0; self.timing.rows()];
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
-        for disturbance in entering.filter(|one| !one.is_noise()) {
-            disturbance.add_to(&mut sum, self.timing, 0);
-        }
-        sum.iter().fold(0.0, |most, value| value.abs().max(most))
+        let parts: Vec<(f64, &Shape)> = entering.map(Disturbance::part).collect();
+        let [least, most] = extremes(&parts);
+        least.abs().max(most)
     }
 }
 
@@ -83,6 +78,6 @@ impl Steady {
     #[must_use]
     pub fn largest_setpoint_rad(&self) -> f64 {
         let [least, most] = self.setpoint_rad;
-        (-least).max(most)
+        least.abs().max(most)
     }
 }

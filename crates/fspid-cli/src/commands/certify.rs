@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use super::progress::{Telling, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
@@ -64,8 +65,18 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         let known = file::known_words(name, &names);
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
-    let certification =
-        Certification::of(&study, only, &Effort::default()).map_err(Failure::input)?;
+    let telling = Telling::for_standard_error();
+    let mut watch = |text: String| {
+        if telling == Telling::Line {
+            tell(telling, &text);
+        }
+    };
+    let certification = Certification::watched(&study, only, &Effort::default(), &mut |name| {
+        watch(format!("certifying {name}; a self-tuning controller can take half a minute"));
+    });
+    // The answer begins on an empty line.
+    watch(String::new());
+    let certification = certification.map_err(Failure::input)?;
     if let Some(folder) = &arguments.out {
         write(&certification, folder)?;
     }

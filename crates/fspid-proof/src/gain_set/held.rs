@@ -10,6 +10,7 @@
 //! there, or by the proved slopes between rest and the cell.
 
 use core::cell::OnceCell;
+use std::rc::Rc;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Change, Fspid, Law, SelfTuner};
@@ -50,9 +51,10 @@ struct Square {
 }
 
 /// Proved slopes of a tuner's increments within squares around rest, smallest first. They depend neither on
-/// what is held nor on the output scale, and take longer than all else here: found once, they serve again.
+/// what is held nor on the output scale, and take longer than all else here: found once, they serve again, in every
+/// clone.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct KnownSlopes(OnceCell<Result<Vec<(f64, IncrementSlopes)>, NoSlopes>>);
+pub(crate) struct KnownSlopes(Rc<OnceCell<Result<Vec<(f64, IncrementSlopes)>, NoSlopes>>>);
 
 impl KnownSlopes {
     fn of(&self, tuner: &SelfTuner<f64>) -> Result<&[(f64, IncrementSlopes)], NoSlopes> {

@@ -6,6 +6,8 @@ mod region;
 mod stable;
 mod unstable;
 
+use core::cell::RefCell;
+
 use fspid_core::Fspid;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{Matrix, spectral_radius};
@@ -16,7 +18,7 @@ use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
-use crate::recheck::{Kept, Recheck, Rechecked};
+use crate::recheck::{Doubt, Kept, Recheck, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 
@@ -61,14 +63,12 @@ pub struct Outcome {
     /// Where the answer is neither for the range that was asked for: what is proved of a smaller one, the
     /// largest that was found.
     pub instead: Option<(Certificate, Rechecked)>,
+    /// Why the answer is neither, where that is known.
+    pub open_because: Option<Doubt>,
     /// Bounds of every gain that the controller can have.
     pub bounds: [Interval; 3],
     /// The largest output scale that was proved, as a factor on the loop's own.
     pub largest: Largest,
-    /// Largest offset of the pitch angle from rest for which no limit acts, rad.
-    pub pitch_within_rad: Option<f64>,
-    /// Why limits are left out of the proof.
-    pub limits_left_out: Option<&'static str>,
 }
 
 /// The answer.
@@ -105,21 +105,26 @@ pub fn certify(
     let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
     let (verdict, instead) = prover.verdict(&set);
+    let open_because = match verdict {
+        Verdict::Open => prover.doubt(&set),
+        Verdict::Proved(..) | Verdict::Refuted(..) => None,
+    };
     let largest = prover.largest(&verdict);
-    let (pitch_within_rad, limits_left_out) = prover.limits(&verdict);
     Ok(Outcome {
         verdict,
         asked: asked.range,
         instead,
+        open_because,
         bounds: set.bounds(),
         largest,
-        pitch_within_rad,
-        limits_left_out,
     })
 }
 
 /// Halvings in which the largest part of a range is looked for.
 const SHARES: u32 = 4;
+/// Halvings in which the largest part is looked for at which rest is within all limits: within 0.4 % of it, so
+/// that some room is left for motions.
+const SHARES_AT_REST: u32 = 8;
 
 struct Prover<'a> {
     description: &'a LoopDescription,
@@ -133,6 +138,8 @@ struct Prover<'a> {
     increments: Option<IncrementMap>,
     /// Found where they are asked for.
     slopes: KnownSlopes,
+    /// The least remainder of a proof that was given up because too much remains.
+    too_much: RefCell<Option<Doubt>>,
 }
 
 impl<'a> Prover<'a> {
@@ -159,6 +166,7 @@ impl<'a> Prover<'a> {
             model,
             increments,
             slopes: KnownSlopes::default(),
+            too_much: RefCell::default(),
         })
     }
 
@@ -207,10 +215,14 @@ impl<'a> Prover<'a> {
             return None;
         }
         let proved = |share: f64| self.within(self.range.scaled(share)).stable(set);
-        // Found once, for all parts of the range.
-        let _ = self.rest(set).map(|rest| self.held(set, 1.0, &rest).is_ok());
+        let (mut within, mut beyond) = (0.0, self.share_at_rest(set));
+        // First: of a larger range more may remain, so that it may be proved where a smaller one is not.
+        if beyond < 1.0
+            && let Some(found) = proved(beyond)
+        {
+            return Some(found);
+        }
         let mut best = proved(0.0)?;
-        let (mut within, mut beyond) = (0.0, 1.0);
         for _ in 0..self.effort.halvings.min(SHARES) {
             let share = 0.5 * (within + beyond);
             match proved(share) {
@@ -219,6 +231,39 @@ impl<'a> Prover<'a> {
             }
         }
         Some(best)
+    }
+
+    /// The largest share of the range at which rest is known and within all limits, from below.
+    fn share_at_rest(&self, set: &GainSet) -> f64 {
+        let known = |share: f64| self.within(self.range.scaled(share)).rest(set).is_ok();
+        if known(1.0) {
+            return 1.0;
+        }
+        let (mut within, mut beyond) = (0.0, 1.0);
+        for _ in 0..SHARES_AT_REST {
+            let share = 0.5 * (within + beyond);
+            if known(share) { within = share } else { beyond = share }
+        }
+        within
+    }
+
+    /// Why nothing is proved of the range, where that is known.
+    fn doubt(&self, set: &GainSet) -> Option<Doubt> {
+        self.rest(set).err().map(Doubt::Rest).or_else(|| self.too_much.borrow().clone())
+    }
+
+    /// Keeps the doubt that too much remains in the loop as it is, over the whole range.
+    fn note(&self, factor: f64, doubt: &Doubt) {
+        let Doubt::Remains(remains) = doubt else { return };
+        let whole = factor.to_bits() == 1.0_f64.to_bits() && self.range == self.asked.range;
+        let mut least = self.too_much.borrow_mut();
+        let better = match &*least {
+            Some(Doubt::Remains(known)) => remains.remains_rad < known.remains_rad,
+            _ => true,
+        };
+        if whole && better {
+            *least = Some(doubt.clone());
+        }
     }
 
     /// A certificate of stability at an output scale, re-checked; with the best rate if that is asked for.
@@ -241,6 +286,7 @@ impl<'a> Prover<'a> {
             model: self.model.clone(),
             increments: self.increments.clone(),
             slopes: self.slopes.clone(),
+            too_much: RefCell::default(),
             range,
             ..*self
         }
@@ -296,26 +342,7 @@ impl<'a> Prover<'a> {
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
-        let rechecked = recheck.run().ok()?;
+        let rechecked = recheck.run().map_err(|doubt| self.note(factor, &doubt)).ok()?;
         Some((certificate, rechecked))
-    }
-
-    fn limits(&self, verdict: &Verdict) -> (Option<f64>, Option<&'static str>) {
-        if self.description.limits().is_empty() {
-            return (None, None);
-        }
-        if let Some(reason) = limits::not_covered(self.description) {
-            return (None, Some(reason));
-        }
-        let Verdict::Proved(certificate, _) = verdict else { return (None, None) };
-        let form = match &certificate.claim {
-            Claim::AnySpeed { form, .. } | Claim::Tied { form, .. } => form,
-            _ => return (None, Some("the proof for gains of bounded rate leaves limits out")),
-        };
-        match certificate.level.and_then(|level| limits::pitch_within(&self.enclosed, form, level))
-        {
-            Some(pitch_rad) => (Some(pitch_rad), None),
-            None => (None, Some("rest itself lies at a limit")),
-        }
     }
 }

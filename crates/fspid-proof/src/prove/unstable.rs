@@ -10,11 +10,19 @@ use crate::certificate::Claim;
 use crate::recheck::produced;
 use crate::solve;
 
+/// An input of the supervisor, the spectral radius of the loop with the gains there, and that loop.
+type Frozen = ([f64; 2], f64, Matrix);
+
 impl Prover<'_> {
-    /// Gains that the loop really has, standing still, under which it grows.
+    /// Gains that the loop really has, standing still, under which it grows: those at rest if they do, which
+    /// says most, as it is the flown loop's own growth.
     pub(super) fn frozen_growth(&self) -> Option<Verdict> {
-        let worst = self.frozen().into_iter().max_by(|one, other| one.1.total_cmp(&other.1))?;
-        let (input, radius, matrix) = worst;
+        let worst = || self.frozen().into_iter().max_by(|one, other| one.1.total_cmp(&other.1));
+        let at_rest = self.frozen_at([0.0; 2]).and_then(|found| self.growth_of(found));
+        at_rest.or_else(|| self.growth_of(worst()?))
+    }
+
+    fn growth_of(&self, (input, radius, matrix): Frozen) -> Option<Verdict> {
         if !(radius > 1.0) {
             return None;
         }
@@ -26,14 +34,15 @@ impl Prover<'_> {
     }
 
     /// Inputs of the supervisor, the loop with the gains that it produces there, and its spectral radius.
-    pub(super) fn frozen(&self) -> Vec<([f64; 2], f64, Matrix)> {
-        let found = |input: [f64; 2]| {
-            let matrix =
-                self.model.closed_matrix(produced(&self.description.controller, input)).ok()?;
-            let radius = spectral_radius(&matrix).ok()?;
-            Some((input, radius, matrix))
-        };
-        self.inputs().into_iter().filter_map(found).collect()
+    pub(super) fn frozen(&self) -> Vec<Frozen> {
+        self.inputs().into_iter().filter_map(|input| self.frozen_at(input)).collect()
+    }
+
+    fn frozen_at(&self, input: [f64; 2]) -> Option<Frozen> {
+        let gains = produced(&self.description.controller, input);
+        let matrix = self.model.closed_matrix(gains).ok()?;
+        let radius = spectral_radius(&matrix).ok()?;
+        Some((input, radius, matrix))
     }
 
     /// A grid over the supervisor's inputs; for fixed gains, and for gains that remember, rest alone.
@@ -76,7 +85,7 @@ impl Prover<'_> {
     }
 
     /// Places of the gains that are largest in some direction: few, and at the corners of them all.
-    pub(super) fn extreme(&self, frozen: &[([f64; 2], f64, Matrix)]) -> Vec<usize> {
+    pub(super) fn extreme(&self, frozen: &[Frozen]) -> Vec<usize> {
         let gains: Vec<[f64; 3]> = frozen
             .iter()
             .map(|(input, ..)| {

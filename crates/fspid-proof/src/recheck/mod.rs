@@ -18,10 +18,10 @@ use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
 use crate::rest::{NoRest, Rest};
-use crate::scope::Range;
 use crate::sizes::{self, WrongSizes};
 
 pub(crate) use moving::{Corner, moved_inputs, part_in};
+pub use remains::Remains;
 
 /// What was re-checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +84,8 @@ pub enum Doubt {
     Rest(NoRest),
     /// Nothing bounds what the gains make of the command that holds set-points and loads.
     Held(NoSlopes),
+    /// Every inequality holds, and what they leave is no statement about the flight.
+    Remains(Remains),
     /// The certificate does not fit together.
     Malformed {
         /// What is wrong.
@@ -105,6 +107,7 @@ impl fmt::Display for Doubt {
                 f,
                 "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {reason}"
             ),
+            Self::Remains(remains) => remains.fmt(f),
             Self::Malformed { what } => f.write_str(what),
         }
     }
@@ -133,6 +136,12 @@ impl From<NoRest> for Doubt {
 impl From<NoSlopes> for Doubt {
     fn from(reason: NoSlopes) -> Self {
         Self::Held(reason)
+    }
+}
+
+impl From<Remains> for Doubt {
+    fn from(remains: Remains) -> Self {
+        Self::Remains(remains)
     }
 }
 
@@ -203,9 +212,12 @@ impl<'a> Recheck<'a> {
             return Err(malformed("set-points and loads are not two finite numbers, 0 or more"));
         }
         // Gains that grow standing still, or in an order of our own, say nothing of what is held.
-        let stable = certificate.claim.is_of_stability();
-        let range = if stable { certificate.range } else { Range::REST };
-        let rest = Rest::of(&certificate.description, &set, range)?;
+        let description = &certificate.description;
+        let rest = if certificate.claim.is_of_stability() {
+            Rest::of(description, &set, certificate.range)?
+        } else {
+            Rest::NOTHING
+        };
         let (held, off_rad) = match &certificate.description.controller {
             Controller::Fixed(_) => (set.clone(), 0.0),
             Controller::SelfTuning(fspid) => {
@@ -269,6 +281,7 @@ impl<'a> Recheck<'a> {
         let within = |level| limits::pitch_within(&self.model, form, level);
         let pitch_within_rad = level.and_then(within);
         let remains_rad = self.remains(form, rate)?;
+        self.is_little(remains_rad)?;
         Ok(Proved { inequalities, kept: None, pitch_within_rad, remains_rad })
     }
 

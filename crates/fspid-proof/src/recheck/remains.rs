@@ -7,22 +7,74 @@
 //!
 //! so that every motion comes, and stays, as near to $|z| \le \sigma / (1 - \rho)$ as one likes.
 
+use core::fmt;
+
 use fspid_fuzzy::Scalar;
 use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_sim::Controller;
 use fspid_sim::loop_model::BreakPoint;
 
 use super::{Doubt, Recheck, malformed, points};
 use crate::check::{IntervalMatrix, NotProved, reach};
 use crate::gain_set::HeldGains;
+use crate::scope::Range;
 
 /// Motions come within so much more of what is said to remain, in finite time.
 const NEARLY: f64 = 1.0 + 1e-6;
+/// A claim may leave so much of the largest set-point or load that it is made for: the time in which 90 % of a
+/// step are done is the coarsest that is called a response.
+const OF_THE_RANGE: f64 = 0.1;
+/// It may leave so many steps of the pitch sensor, where that is more. Half a step is there in the best of loops,
+/// and a bound by one form is some ten times what flights show. With more it would not say where flights end.
+const STEPS: f64 = 10.0;
+
+/// What is seen, in the order of the blurs.
+const SEEN: [BreakPoint; 2] = [BreakPoint::Pitch, BreakPoint::Rate];
+/// Most samples that are looked at one by one, and most products that they may take.
+const MOST_SAMPLES: usize = 100_000;
+const MOST_PRODUCTS: usize = 100_000_000;
+/// Every so many samples it is asked whether the later ones are this small a part.
+const LOOKS: usize = 64;
+const LATER: f64 = 0.01;
+
+/// More may remain of every motion than a claim may leave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remains {
+    /// How far from rest the pitch angle may stay for all that is proved, rad.
+    pub remains_rad: f64,
+    /// How far it may, so that the claim says something, rad.
+    pub allowed_rad: f64,
+}
+
+impl fmt::Display for Remains {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { remains_rad, allowed_rad } = self;
+        write!(
+            f,
+            "for all that is proved the pitch angle may stay up to {:.3} deg off rest, which says nothing of a flight: allowed are {:.3} deg, the larger of a tenth of set-points and loads and ten steps of the sensor",
+            remains_rad.to_degrees(),
+            allowed_rad.to_degrees()
+        )
+    }
+}
 
 impl Recheck<'_> {
     /// True with a sensor that resolves in steps.
     pub(super) fn is_blurred(&self) -> bool {
         self.certificate.description.blurs().iter().any(|blur| *blur > 0.0)
+    }
+
+    /// Whether so little remains that the claim says where flights end.
+    pub(super) fn is_little(&self, remains_rad: f64) -> Result<(), Remains> {
+        let Range { setpoint_rad, load_rad } = self.certificate.range;
+        let resolution = self.certificate.description.pitch.resolution;
+        let allowed_rad = (OF_THE_RANGE * setpoint_rad.max(load_rad)).max(STEPS * resolution);
+        // Written so that NaN is too much.
+        if remains_rad <= allowed_rad {
+            return Ok(());
+        }
+        Err(Remains { remains_rad, allowed_rad })
     }
 
     /// Proves how far the pitch angle may stay from rest, rad.
@@ -44,21 +96,42 @@ impl Recheck<'_> {
                 ));
             }
         }
+        let by_form = reach(form, level, &self.pitch_row())?;
+        Ok(by_form.min(self.sample_by_sample(form, rate)?))
+    }
+
+    fn pitch_row(&self) -> Vec<Interval> {
         let mut pitch = vec![Interval::ZERO; self.model.size()];
         pitch[0] = Interval::ONE;
-        Ok(reach(form, level, &pitch)?)
+        pitch
+    }
+
+    /// The same for gains that stand still, with what each sample leaves at all later ones; infinite for others.
+    fn sample_by_sample(&self, form: &Matrix, rate: f64) -> Result<f64, Doubt> {
+        let Controller::Fixed(pid) = &self.certificate.description.controller else {
+            return Ok(f64::INFINITY);
+        };
+        let gains = points(pid.gains());
+        let ripple = Ripple {
+            closed: self.model.closed(gains),
+            norm: Norm(IntervalMatrix::from(form)),
+            rate: Interval::point(rate),
+            reach: Interval::point(reach(form, 1.0, &self.pitch_row())?),
+        };
+        let mut sum = Interval::ZERO;
+        for (point, blur) in SEEN.into_iter().zip(self.certificate.description.blurs()) {
+            if blur > 0.0 {
+                let entry = self.model.by_seen(point, gains);
+                sum = sum + ripple.of(&entry)? * Interval::point(blur);
+            }
+        }
+        Ok((Interval::point(NEARLY) * sum).upper())
     }
 
     /// The most that a sample adds, in the norm of the form.
     fn added(&self, form: &Matrix) -> Result<f64, Doubt> {
-        let own = IntervalMatrix::from(form);
-        let norm = |column: &[Interval]| -> Result<Interval, NotProved> {
-            let rows: Vec<[Interval; 1]> = column.iter().map(|entry| [*entry]).collect();
-            let column = IntervalMatrix::from_rows(&rows)?;
-            let square = column.transpose().product(&own.product(&column)?)?.get(0, 0);
-            let square = square.unwrap_or(Interval::ENTIRE);
-            Ok(Interval::point(square.upper().max(0.0)).sqrt())
-        };
+        let own = Norm(IntervalMatrix::from(form));
+        let norm = |column: &[Interval]| own.of(column);
         let of_command = norm(&self.model.by_command())? * Interval::point(self.off_rad);
         if !self.is_blurred() {
             return Ok(of_command.upper());
@@ -74,4 +147,79 @@ impl Recheck<'_> {
         }
         Ok(most)
     }
+}
+
+/// The norm of a form, from above.
+struct Norm(IntervalMatrix);
+
+impl Norm {
+    fn of(&self, column: &[Interval]) -> Result<Interval, NotProved> {
+        let rows: Vec<[Interval; 1]> = column.iter().map(|entry| [*entry]).collect();
+        let column = IntervalMatrix::from_rows(&rows)?;
+        let square = column.transpose().product(&self.0.product(&column)?)?.get(0, 0);
+        let square = square.unwrap_or(Interval::ENTIRE);
+        Ok(Interval::point(square.upper().max(0.0)).sqrt())
+    }
+}
+
+/// A loop with gains that stand still.
+struct Ripple {
+    closed: Vec<Vec<Interval>>,
+    norm: Norm,
+    rate: Interval,
+    /// The most that the pitch angle is off where the norm is 1.
+    reach: Interval,
+}
+
+impl Ripple {
+    /// A bound of $\sum_\ell |c M^\ell b|$, with c for the pitch angle.
+    ///
+    /// The states $x_\ell \approx M^\ell b$ are computed in ordinary arithmetic. What that leaves, $M x_\ell -
+    /// x_{\ell + 1}$, is enclosed, and the form falls along with it; so it does along with all later samples.
+    fn of(&self, entry: &[Interval]) -> Result<Interval, NotProved> {
+        let mut state: Vec<f64> = entry.iter().map(|value| value.midpoint()).collect();
+        let mut off = self.norm.of(&beside(entry, &state))?;
+        let mut sum = Interval::ZERO;
+        let most = MOST_SAMPLES.min(MOST_PRODUCTS / (state.len() * state.len()).max(1));
+        for sample in 0..most {
+            let pitch = Interval::point(state.first().map_or(0.0, |value| value.abs()));
+            sum = up(sum + pitch + self.reach * off);
+            let next = self.after(&state);
+            let computed: Vec<f64> = next.iter().map(|value| value.midpoint()).collect();
+            off = up(self.rate * off + self.norm.of(&beside(&next, &computed))?);
+            state = computed;
+            if sample % LOOKS == 0 {
+                let later = self.later(&state, off)?;
+                if later.upper() <= LATER * sum.upper() {
+                    return Ok(sum + later);
+                }
+            }
+        }
+        Ok(sum + self.later(&state, off)?)
+    }
+
+    /// All that is left from a state on.
+    fn later(&self, state: &[f64], off: Interval) -> Result<Interval, NotProved> {
+        let state: Vec<Interval> = state.iter().map(|value| Interval::point(*value)).collect();
+        let size = self.norm.of(&state)? + off;
+        Ok(self.reach * size / (Interval::ONE - self.rate))
+    }
+
+    fn after(&self, state: &[f64]) -> Vec<Interval> {
+        let row = |row: &Vec<Interval>| {
+            let terms = row.iter().zip(state);
+            terms.fold(Interval::ZERO, |sum, (entry, value)| sum + *entry * Interval::point(*value))
+        };
+        self.closed.iter().map(row).collect()
+    }
+}
+
+fn beside(enclosed: &[Interval], computed: &[f64]) -> Vec<Interval> {
+    let pairs = enclosed.iter().zip(computed);
+    pairs.map(|(enclosed, computed)| *enclosed - Interval::point(*computed)).collect()
+}
+
+/// The upper end alone.
+fn up(value: Interval) -> Interval {
+    Interval::point(value.upper())
 }

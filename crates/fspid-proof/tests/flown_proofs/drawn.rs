@@ -76,7 +76,8 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
     let controller = controller(dice, shell, size);
     let load =
         Disturbance::new(Entry::Elevator, dice.between(0.0, 5.0) * DEG, Shape::Step { at_s: 1.0 });
-    let setpoint_rad = dice.sized(0.3, 30.0) * DEG;
+    // Up to what no servo here holds.
+    let setpoint_rad = dice.sized(0.3, 90.0) * DEG;
     Scenario {
         name: "drawn".to_owned(),
         plant: Plant::from(plant.expect("a plant")),

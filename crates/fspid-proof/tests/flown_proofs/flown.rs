@@ -111,13 +111,13 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
         }
         flights += 1;
     }
-    if rechecked.pitch_within_rad.is_some() {
+    if !certificate.description.limits().is_empty() {
         for (setpoint_rad, load_rad) in [(far, room), (-far, -room)] {
             let start = Start { setpoint_rad, load_rad, kick_rad: 0.0, ramp: true };
-            if let Err(reason) = settles(scenario, proved, start) {
+            if let Err(reason) = rests_as_without_limits([scenario, &free], proved, start) {
                 return Answer::Contradicted(format!("within limits, {start:?}: {reason}"));
             }
-            flights += 1;
+            flights += 2;
         }
     }
     let held = far > 0.0 && !rechecked.any_setpoint;
@@ -139,11 +139,27 @@ struct Start {
     ramp: bool,
 }
 
+/// No limit keeps the loop from where it comes to rest: it ends where the same loop without limits does.
+fn rests_as_without_limits(
+    scenarios: [&Scenario; 2],
+    proved: &(Certificate, Rechecked),
+    start: Start,
+) -> Result<(), String> {
+    let [limited, free] = scenarios.map(|scenario| settles(scenario, proved, start));
+    let (limited, free) = (limited?, free?);
+    let allowed = LEFT * free.abs() + 2.0 * proved.1.remains_rad + ROUNDING;
+    if (limited - free).abs() <= allowed {
+        return Ok(());
+    }
+    Err(format!("ends at {limited:e} rad, without limits at {free:e}"))
+}
+
+/// Where the pitch angle ends, rad.
 fn settles(
     scenario: &Scenario,
     (certificate, rechecked): &(Certificate, Rechecked),
     start: Start,
-) -> Result<(), String> {
+) -> Result<f64, String> {
     let rate = certificate.claim.rate().expect("of stability");
     let dt_s = scenario.timing.dt_s();
     let samples = (TIME_CONSTANTS / -libm::log(rate)).clamp(1000.0, MOST_SAMPLES);
@@ -192,7 +208,7 @@ fn settles(
             certificate.claim.name()
         ));
     }
-    Ok(())
+    Ok(theta.last().copied().unwrap_or(0.0))
 }
 
 fn without_limits(scenario: &Scenario) -> Scenario {

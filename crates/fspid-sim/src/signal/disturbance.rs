@@ -60,6 +60,11 @@ impl Disturbance {
         matches!(self.shape, Shape::Noise { .. })
     }
 
+    /// Its amplitude, rad, and its shape.
+    pub(crate) fn part(&self) -> (f64, &Shape) {
+        (self.amplitude_rad, &self.shape)
+    }
+
     pub(crate) fn add_to(&self, values: &mut [f64], timing: Timing, stream: u64) {
         self.shape.add_to(values, self.amplitude_rad, timing, stream);
     }

@@ -8,3 +8,4 @@ mod shape;
 pub use disturbance::{Disturbance, Entry};
 pub use profile::{Edge, Interpolation, Profile};
 pub use shape::Shape;
+pub(crate) use shape::extremes;

@@ -1,6 +1,6 @@
 //! The commanded pitch over time.
 
-use super::shape::{Shape, amplitude};
+use super::shape::{Shape, amplitude, extremes};
 use crate::error::{SimError, finite};
 use crate::timing::Timing;
 
@@ -73,6 +73,17 @@ impl Profile {
             }
         }
         Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
+    }
+
+    /// Least and largest set-point that is commanded in all time, rad; the trim is one of them.
+    #[must_use]
+    pub fn ends_rad(&self) -> [f64; 2] {
+        match &self.0 {
+            Kind::Shape { amplitude_rad, shape } => extremes(&[(*amplitude_rad, shape)]),
+            Kind::Table { setpoint_rad, .. } => setpoint_rad
+                .iter()
+                .fold([0.0, 0.0], |[least, most], value| [value.min(least), value.max(most)]),
+        }
     }
 
     /// Set-point at each sample, rad, and the steps in it.

@@ -118,6 +118,52 @@ impl Shape {
         }
     }
 
+    /// The times at which the shape begins, jumps or bends, s. After the last it stays as it is, or swings for ever.
+    fn breaks(&self) -> Vec<f64> {
+        match *self {
+            Self::Step { at_s }
+            | Self::Square { at_s, .. }
+            | Self::Sine { at_s, .. }
+            | Self::Noise { at_s, .. } => vec![at_s],
+            Self::Pulse { at_s, width_s } | Self::Ramp { at_s, width_s } => {
+                vec![at_s, at_s + width_s]
+            }
+            Self::Doublet { at_s, width_s } => vec![at_s, at_s + width_s, at_s + 2.0 * width_s],
+        }
+    }
+
+    /// Least and largest value between two breaks that follow each other; noise counts as nothing.
+    fn between(&self, from_s: f64, to_s: f64) -> [f64; 2] {
+        let from = |at_s: f64, ends: [f64; 2]| if from_s >= at_s { ends } else { [0.0; 2] };
+        match *self {
+            Self::Step { at_s } => from(at_s, [1.0; 2]),
+            Self::Pulse { at_s, width_s } => {
+                if from_s >= at_s + width_s {
+                    [0.0; 2]
+                } else {
+                    from(at_s, [1.0; 2])
+                }
+            }
+            Self::Doublet { at_s, width_s } => {
+                if from_s >= at_s + 2.0 * width_s {
+                    [0.0; 2]
+                } else if from_s >= at_s + width_s {
+                    [-1.0; 2]
+                } else {
+                    from(at_s, [1.0; 2])
+                }
+            }
+            Self::Square { at_s, bipolar, .. } => {
+                from(at_s, [if bipolar { -1.0 } else { 0.0 }, 1.0])
+            }
+            Self::Ramp { at_s, width_s } => {
+                [from_s, to_s].map(|time_s| ((time_s - at_s) / width_s).clamp(0.0, 1.0))
+            }
+            Self::Sine { at_s, .. } => from(at_s, [-1.0, 1.0]),
+            Self::Noise { .. } => [0.0; 2],
+        }
+    }
+
     /// Changes of level of a piecewise constant shape: first sample, and how much is added there.
     pub(crate) fn levels(&self, timing: Timing) -> Vec<(usize, f64)> {
         let sample = |at_s: f64| timing.first_sample_at(at_s);
@@ -149,6 +195,24 @@ impl Shape {
     }
 }
 
+/// Least and largest value that a sum of shapes, each with its amplitude, comes to in all time; 0 is one of its
+/// values. Noise is left out.
+pub(crate) fn extremes(parts: &[(f64, &Shape)]) -> [f64; 2] {
+    let mut breaks: Vec<f64> = parts.iter().flat_map(|(_, shape)| shape.breaks()).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let mut ends = [0.0_f64; 2];
+    for (place, &from_s) in breaks.iter().enumerate() {
+        let to_s = breaks.get(place + 1).copied().unwrap_or(f64::INFINITY);
+        let sum = parts.iter().fold([0.0; 2], |[least, most], (amplitude, shape)| {
+            let [one, other] = shape.between(from_s, to_s).map(|value| amplitude * value);
+            [least + one.min(other), most + one.max(other)]
+        });
+        ends = [ends[0].min(sum[0]), ends[1].max(sum[1])];
+    }
+    ends
+}
+
 fn add_function(
     values: &mut [f64],
     timing: Timing,
@@ -164,4 +228,38 @@ fn add_function(
 /// The amplitude of a signal, if it is finite.
 pub(super) fn amplitude(what: &'static str, value: f64) -> Result<f64, SimError> {
     finite(what, value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_extremes_of_a_sum_are_those_of_all_time_and_no_flight_of_a_minute_goes_beyond() {
+        let (at_s, width_s) = (3.0, 4.0);
+        let shapes = [
+            (2.0, Shape::Step { at_s: 30.0 }, [0.0, 2.0]),
+            (-2.0, Shape::Pulse { at_s, width_s }, [-2.0, 0.0]),
+            (1.5, Shape::Doublet { at_s, width_s }, [-1.5, 1.5]),
+            (-1.0, Shape::Square { at_s, half_period_s: 2.0, bipolar: false }, [-1.0, 0.0]),
+            (1.0, Shape::Square { at_s, half_period_s: 2.0, bipolar: true }, [-1.0, 1.0]),
+            (3.0, Shape::Ramp { at_s, width_s: 50.0 }, [0.0, 3.0]),
+            (-0.5, Shape::Sine { at_s, frequency_hz: 0.3 }, [-0.5, 0.5]),
+            (9.0, Shape::Noise { at_s, seed: 1 }, [0.0, 0.0]),
+        ];
+        let timing = Timing::new(0.1, 60.0).expect("allowed");
+        for (place, (amplitude, shape, expected)) in shapes.iter().enumerate() {
+            assert_eq!(extremes(&[(*amplitude, shape)]), *expected, "{shape:?}");
+            for (more, beside, _) in &shapes[place..shapes.len() - 1] {
+                let [least, most] = extremes(&[(*amplitude, shape), (*more, beside)]);
+                let mut values = vec![0.0; timing.rows()];
+                shape.add_to(&mut values, if place == 7 { 0.0 } else { *amplitude }, timing, 0);
+                beside.add_to(&mut values, *more, timing, 0);
+                assert!(values.iter().all(|value| (least..=most).contains(value)), "{shape:?}");
+            }
+        }
+        // A step up and one down again: never both.
+        let [up, down] = [Shape::Step { at_s: 1.0 }, Shape::Step { at_s: 500.0 }];
+        assert_eq!(extremes(&[(1.0, &up), (-1.0, &down)]), [0.0, 1.0]);
+    }
 }

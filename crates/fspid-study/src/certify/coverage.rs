@@ -46,13 +46,15 @@ const fn row(keys: &'static str, treatment: Treatment, how: &'static str) -> Row
 
 use Treatment::{Beside, Bounded, Covered, NoPart, Refused};
 
-const SCALE: &str = "gains are enclosed over everything that the supervisor can answer";
+const GAINS: &str = "gains are enclosed over everything that the supervisor can answer";
 const MOVING_AIR: &str = "the air is calm in the claim";
 const NOISE: &str = "the claim is about sensors without noise";
 const DRIFT: &str = "a bias stands still in the claim";
 const LINEAR_AT_TRIM: &str =
     "the linear model at the trim; that the aircraft is nonlinear is said beside the verdict";
 const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; the time while it moves is left out";
+const AT_LIMITS: &str = "an ellipsoid in which no limit acts, or said to be left out; where rest itself is at a limit nothing is proved";
+const STEPS: &str = "a disturbance of half a step; what it leaves is stated, and nothing is proved where that is more than a tenth of the set-points and than ten steps";
 const AIM: &str = "asked of flights, not of the loop";
 
 /// Every key of a scenario.
@@ -98,26 +100,18 @@ pub const COVERAGE: &[Row] = &[
     row("actuator.natural_frequency_rad_s", Covered, "exactly held between samples"),
     row("actuator.damping", Covered, "exactly held between samples"),
     row("actuator.delay_samples", Covered, "a queue of commands in the state"),
-    row(
-        "actuator.position_limit_deg",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
-    row(
-        "actuator.travel_deg",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
-    row(
-        "actuator.rate_limit_deg_s",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
+    row("actuator.position_limit_deg", Bounded, AT_LIMITS),
+    row("actuator.travel_deg", Bounded, AT_LIMITS),
+    row("actuator.rate_limit_deg_s", Bounded, AT_LIMITS),
     row("actuator.bias_deg", Bounded, "a constant load; limits are then left out"),
     row("actuator.deadband_deg", Refused, "above 0: around rest the loop is not linear"),
     row("actuator.backlash_deg", Refused, "above 0: around rest the loop is not linear"),
     row("loop.sample_period_s", Covered, "the period of plant and controller"),
-    row("loop.duration_s", NoPart, "a claim is about all time"),
+    row(
+        "loop.duration_s",
+        NoPart,
+        "a claim is about all time, and so is its range: what begins after the flight counts",
+    ),
     row("setpoint.kind", Bounded, TERMS),
     row("setpoint.amplitude_deg", Bounded, TERMS),
     row("setpoint.at_s", Bounded, TERMS),
@@ -129,17 +123,17 @@ pub const COVERAGE: &[Row] = &[
     row("setpoint.value_deg", Bounded, TERMS),
     row("setpoint.interpolation", Bounded, TERMS),
     row("sensor.preset", Covered, "the parts that it stands for"),
-    row("sensor.seed", Beside, NOISE),
+    row(
+        "sensor.seed",
+        Bounded,
+        "the bias that it draws counts as a load; the noise that it draws is left out",
+    ),
     row("sensor.pitch.noise_deg_rt_hz", Beside, NOISE),
     row("sensor.pitch.bias_deg", Bounded, "the bias of this seed counts as a load"),
     row("sensor.pitch.drift_deg", Beside, DRIFT),
     row("sensor.pitch.drift_time_s", Beside, DRIFT),
     row("sensor.pitch.scale_error_pct", Covered, "a factor on what is seen"),
-    row(
-        "sensor.pitch.resolution_deg",
-        Bounded,
-        "a disturbance of half a step; what it leaves is stated",
-    ),
+    row("sensor.pitch.resolution_deg", Bounded, STEPS),
     row(
         "sensor.pitch.period_s",
         Refused,
@@ -156,11 +150,7 @@ pub const COVERAGE: &[Row] = &[
     row("sensor.rate.drift_deg_s", Beside, DRIFT),
     row("sensor.rate.drift_time_s", Beside, DRIFT),
     row("sensor.rate.scale_error_pct", Covered, "a factor on what is seen"),
-    row(
-        "sensor.rate.resolution_deg_s",
-        Bounded,
-        "a disturbance of half a step; what it leaves is stated",
-    ),
+    row("sensor.rate.resolution_deg_s", Bounded, STEPS),
     row(
         "sensor.rate.period_s",
         Refused,
@@ -189,7 +179,7 @@ pub const COVERAGE: &[Row] = &[
     row("controller.ki", Covered, "a gain"),
     row("controller.kd", Covered, "a gain"),
     row("controller.isa.*", Covered, "as the gains and the filter that it stands for"),
-    row("controller.nominal.*", Covered, SCALE),
+    row("controller.nominal.*", Covered, "the middle of the gains that are enclosed"),
     row("controller.nominal_isa.*", Covered, "as the gains and the filter that it stands for"),
     row("controller.design.*", Covered, "as the gains that it makes"),
     row("controller.weights.*", Covered, "as the gains that they make"),
@@ -230,61 +220,77 @@ pub const COVERAGE: &[Row] = &[
         Bounded,
         "clamping is a limit; the others act at limits alone",
     ),
-    row(
-        "controller.anti_windup.lower_deg",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
-    row(
-        "controller.anti_windup.upper_deg",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
+    row("controller.anti_windup.lower_deg", Bounded, AT_LIMITS),
+    row("controller.anti_windup.upper_deg", Bounded, AT_LIMITS),
     row("controller.anti_windup.tracking_s", Bounded, "it acts at limits alone"),
-    row(
-        "controller.output_limits_deg",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
-    row(
-        "controller.slew_limit_deg_s",
-        Bounded,
-        "an ellipsoid in which no limit acts, or said to be left out",
-    ),
+    row("controller.output_limits_deg", Bounded, AT_LIMITS),
+    row("controller.slew_limit_deg_s", Bounded, AT_LIMITS),
     row(
         "controller.sample_guard_deg",
         Bounded,
         "below 10^6 deg a limit as the others; above, a flight is lost before",
     ),
-    row("controller.law", Covered, SCALE),
+    row(
+        "controller.law",
+        Covered,
+        "memoryless: gains belong to the error of the moment; accumulating: every gain within its bounds, at any time",
+    ),
     row(
         "controller.leakage_per_s",
         Covered,
         "what bounds the gains of the accumulating law; without bounds it is refused",
     ),
-    row("controller.gain_limits.*", Covered, SCALE),
-    row("controller.dead_zone.*", Covered, SCALE),
+    row("controller.gain_limits.*", Covered, "gains that are enclosed are moved into them"),
+    row(
+        "controller.dead_zone.*",
+        Covered,
+        "within it the rules add nothing; at its border the gains may jump",
+    ),
     row(
         "controller.followers.*",
         Refused,
         "where something follows: the matrix is not affine in the gains",
     ),
-    row("controller.supervisor.range", Covered, SCALE),
-    row("controller.supervisor.table", Covered, SCALE),
-    row("controller.supervisor.table.*", Covered, SCALE),
-    row("controller.supervisor.system", Covered, SCALE),
+    row("controller.supervisor.range", Covered, "the cells over which gains are enclosed fill it"),
+    row("controller.supervisor.table", Covered, GAINS),
+    row("controller.supervisor.table.*", Covered, GAINS),
+    row("controller.supervisor.system", Covered, GAINS),
     row("controller.supervisor.numbers.*", Refused, "rules that conclude numbers are not enclosed"),
-    row("controller.supervisor.defuzzifier", Covered, SCALE),
-    row("controller.supervisor.out_of_range", Covered, SCALE),
-    row("controller.supervisor.error_sign", Covered, SCALE),
-    row("controller.supervisor.error_scale", Covered, SCALE),
+    row(
+        "controller.supervisor.defuzzifier",
+        Covered,
+        "as it is, with the rounding of its sums; a certificate with more than 10 000 samples is refused",
+    ),
+    row(
+        "controller.supervisor.out_of_range",
+        Covered,
+        "clamped: the gains at the border of the range; evaluated: all that rules can give; refused: those of before, which may be any",
+    ),
+    row(
+        "controller.supervisor.error_sign",
+        Covered,
+        "an error turned round is another cell of the same surface: all cells are in the claim",
+    ),
+    row(
+        "controller.supervisor.error_scale",
+        Covered,
+        "all inputs are in the claim, whatever the scale; it says which cells lie side by side in flight, and what a held command adds",
+    ),
     row("controller.supervisor.error_sets", Refused, "sets that are not even are not enclosed"),
-    row("controller.supervisor.change", Covered, SCALE),
-    row("controller.supervisor.change_scale", Covered, SCALE),
+    row("controller.supervisor.change", Covered, "as for the scales: per second or per sample"),
+    row(
+        "controller.supervisor.change_scale",
+        Covered,
+        "all inputs are in the claim, whatever the scale; it says which cells lie side by side in flight, and what a held command adds",
+    ),
     row("controller.supervisor.change_sets", Refused, "sets that are not even are not enclosed"),
     row("controller.supervisor.sees", Refused, "what is not error and change"),
     row("controller.supervisor.model.*", Refused, "the error of a reference model is not enclosed"),
-    row("controller.supervisor.output_scale.*", Covered, SCALE),
+    row(
+        "controller.supervisor.output_scale.*",
+        Covered,
+        "a factor on what is enclosed of each gain",
+    ),
     row("requirement.*", NoPart, AIM),
     row("dispersion.*", Beside, "the claim is about the nominal numbers"),
     row("tuning.*", NoPart, AIM),

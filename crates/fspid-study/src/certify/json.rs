@@ -4,13 +4,12 @@ use fspid_fuzzy::scalar::Interval;
 use fspid_proof::{Bearing, Kept, Outcome, Rechecked, Verdict};
 use serde_json::{Value, json};
 
-use super::scope::Told;
+use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{Certification, Certified, CheckedFile, Comparison, Difference, Seal};
-use crate::units::degrees;
 
 /// Version of the answer's shape.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 impl Certification {
     /// The answer of `certify --format json`.
@@ -20,7 +19,6 @@ impl Certification {
             "schema": SCHEMA,
             "scenario": self.scenario,
             "controllers": self.results.iter().map(result).collect::<Vec<_>>(),
-            "not_in_these_proofs": self.left_out,
         })
     }
 }
@@ -34,7 +32,6 @@ fn result(certified: &Certified) -> Value {
         }
         Ok(outcome) => outcome_into(&mut answer, outcome),
     }
-    answer["limits"] = json!(certified.limits);
     answer
 }
 
@@ -45,8 +42,8 @@ fn outcome_into(answer: &mut Value, outcome: &Outcome) {
         Verdict::Open => "open",
     });
     answer["asked"] = json!({
-        "setpoint_within_deg": degrees(outcome.asked.setpoint_rad),
-        "load_within_deg": degrees(outcome.asked.load_rad),
+        "setpoint_within_deg": told_deg(outcome.asked.setpoint_rad),
+        "load_within_deg": told_deg(outcome.asked.load_rad),
     });
     if let Some((certificate, rechecked)) = found(outcome) {
         // Of an open answer the claim is one about less than the scenario asks.
@@ -67,8 +64,7 @@ fn outcome_into(answer: &mut Value, outcome: &Outcome) {
         "proved": outcome.largest.proved,
         "not_proved": outcome.largest.not_proved,
     });
-    answer["pitch_within_deg"] = json!(outcome.pitch_within_rad.map(degrees));
-    answer["limits_left_out"] = json!(outcome.limits_left_out);
+    answer["open_because"] = json!(outcome.open_because.as_ref().map(ToString::to_string));
 }
 
 fn ends(bounds: Interval) -> [f64; 2] {

@@ -21,7 +21,6 @@ mod text;
 
 use fspid_proof::{
     Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
-    left_out_of,
 };
 use fspid_sim::{LinearPlant, SimError};
 
@@ -46,8 +45,6 @@ pub struct Certified {
     pub from_s: f64,
     /// The answer, or why there can be none.
     pub outcome: Result<Outcome, NotProvable>,
-    /// What limits motions that are not small, in words.
-    pub limits: Vec<&'static str>,
     /// Where its certificates come from.
     pub origin: Origin,
 }
@@ -86,8 +83,6 @@ pub struct Certification {
     pub scenario: String,
     /// One for each controller and lasting plant.
     pub results: Vec<Certified>,
-    /// What a claim does not speak of, in sentences; each is said beside its claim as well.
-    pub left_out: Vec<String>,
 }
 
 impl Certification {
@@ -96,20 +91,32 @@ impl Certification {
     /// # Errors
     /// [`SimError`] where a plant has no linear model.
     pub fn of(study: &Study, only: Option<&str>, effort: &Effort) -> Result<Self, SimError> {
+        Self::watched(study, only, effort, &mut |_| {})
+    }
+
+    /// As [`of`](Self::of), and tells the name of each controller before it is certified.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model.
+    pub fn watched(
+        study: &Study,
+        only: Option<&str>,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, SimError> {
         let scenario = &study.scenario;
         let plants = lasting_plants(scenario)?;
         let mut results = Vec::new();
         let wanted = |name: &str| only.is_none_or(|only| only == name);
         for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
+            tell(&named.name);
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
-                let limits = described.as_ref().map(LoopDescription::limits).unwrap_or_default();
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
                     outcome: described
                         .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
-                    limits,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
                         scenario: scenario.name.clone(),
@@ -119,8 +126,7 @@ impl Certification {
                 });
             }
         }
-        let left_out = left_out(study, &results);
-        Ok(Self { scenario: scenario.name.clone(), results, left_out })
+        Ok(Self { scenario: scenario.name.clone(), results })
     }
 
     /// True if every loop is proved stable.
@@ -137,19 +143,4 @@ fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> A
         asked.left_out.push(LeftOut::Dispersions);
     }
     asked
-}
-
-/// What the scenario holds, or at least one of the claims leaves out, and no claim speaks of; in sentences.
-fn left_out(study: &Study, results: &[Certified]) -> Vec<String> {
-    let outcomes = results.iter().filter_map(|certified| certified.outcome.as_ref().ok());
-    let found = outcomes.filter_map(text::found);
-    let mut left_out: Vec<LeftOut> =
-        found.flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out).collect();
-    left_out.extend(left_out_of(&study.scenario));
-    if !study.dispersions.is_empty() {
-        left_out.push(LeftOut::Dispersions);
-    }
-    left_out.sort_unstable();
-    left_out.dedup();
-    left_out.iter().map(LeftOut::to_string).collect()
 }

@@ -11,41 +11,28 @@ use crate::units::degrees;
 /// The scope of a claim, ready to be told.
 pub(super) struct Told {
     /// None for a claim of growth, which is about no range.
-    stable: Option<Stable>,
+    stable: Option<Scope>,
     left_out: Vec<LeftOut>,
-}
-
-/// What is said of claims of stability alone.
-struct Stable {
-    scope: Scope,
-    /// Why limits are left out, where the reason is the actuator.
-    reason: Option<&'static str>,
-    /// False for a claim that no level was found for.
-    has_level: bool,
 }
 
 impl Told {
     pub(super) fn of(certificate: &Certificate, rechecked: &Rechecked) -> Self {
         let scope = certificate.scope(rechecked);
         let left_out = scope.left_out.clone();
-        let stable = certificate.claim.is_of_stability().then(|| Stable {
-            scope,
-            reason: certificate.description.limits_left_out(),
-            has_level: certificate.level.is_some(),
-        });
+        let stable = certificate.claim.is_of_stability().then_some(scope);
         Self { stable, left_out }
     }
 
     /// Sentences, each with what it is about.
     pub(super) fn sentences(&self) -> Vec<(&'static str, String)> {
         let mut sentences = Vec::new();
-        if let Some(stable) = &self.stable {
-            sentences.push(("holds for", range_in_words(&stable.scope)));
-            if stable.scope.rest_error_rad > 0.0 {
-                sentences.push(("error at rest", rest_error(&stable.scope)));
+        if let Some(scope) = &self.stable {
+            sentences.push(("holds for", range_in_words(scope)));
+            if scope.rest_error_rad > 0.0 {
+                sentences.push(("error at rest", rest_error(scope)));
             }
-            sentences.push(("remains", remains(&stable.scope)));
-            sentences.push(("limits", stable.limits()));
+            sentences.push(("remains", remains(scope)));
+            sentences.push(("limits", limits(scope)));
         }
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
@@ -65,7 +52,7 @@ impl Told {
             "not_in_this_claim": self.left_out.iter().map(|one| one.name()).collect::<Vec<_>>(),
             "sentences": self.sentences().into_iter().map(|(_, it)| it).collect::<Vec<_>>(),
         });
-        if let Some(stable) = &self.stable {
+        if let Some(scope) = &self.stable {
             let Scope {
                 range,
                 any_setpoint,
@@ -74,16 +61,18 @@ impl Told {
                 remains_rad,
                 limits,
                 pitch_within_rad,
+                limits_left_out,
                 left_out: _,
-            } = &stable.scope;
-            told["rest_error_deg"] = json!(degrees(*rest_error_rad));
-            told["setpoint_within_deg"] = json!(degrees(range.setpoint_rad));
+            } = scope;
+            told["rest_error_deg"] = json!(told_deg(*rest_error_rad));
+            told["setpoint_within_deg"] = json!(told_deg(range.setpoint_rad));
             told["any_setpoint"] = json!(any_setpoint);
-            told["load_within_deg"] = json!(degrees(range.load_rad));
+            told["load_within_deg"] = json!(told_deg(range.load_rad));
             told["any_load"] = json!(any_load);
-            told["remains_deg"] = json!(degrees(*remains_rad));
+            told["remains_deg"] = json!(told_deg(*remains_rad));
             told["limits"] = json!(limits);
-            told["pitch_within_deg"] = json!(pitch_within_rad.map(degrees));
+            told["pitch_within_deg"] = json!(pitch_within_rad.map(told_deg));
+            told["limits_left_out"] = json!(limits_left_out);
         }
         told
     }
@@ -146,31 +135,42 @@ fn remains(scope: &Scope) -> String {
     }
 }
 
-impl Stable {
-    /// The set-points and loads that limits are covered for, where the claim itself is about more.
-    fn held(&self) -> String {
-        let Scope { range, any_setpoint, any_load, .. } = &self.scope;
-        if !(*any_setpoint || *any_load) {
-            return String::new();
-        }
-        let [setpoint, load] = [range.setpoint_rad, range.load_rad].map(|it| short(degrees(it)));
-        format!(" at set-points up to {setpoint} deg and loads up to {load} deg")
+/// What becomes of limits.
+fn limits(scope: &Scope) -> String {
+    let named = scope.limits.join(", ");
+    match (named.as_str(), scope.pitch_within_rad, scope.limits_left_out) {
+        ("", ..) => "there are none in this loop".to_owned(),
+        (_, Some(pitch_rad), _) => format!(
+            "none acts where the pitch angle begins up to {:.3} deg off rest and nothing else is off, at {}: {named}",
+            degrees(pitch_rad),
+            held(scope.range)
+        ),
+        (_, None, Some(reason)) => format!("SATURATION IS NOT COVERED: {named}; {reason}"),
+        (_, None, None) => format!("SATURATION IS NOT COVERED: {named}"),
     }
+}
 
-    fn limits(&self) -> String {
-        let limits = self.scope.limits.join(", ");
-        match (limits.as_str(), self.scope.pitch_within_rad, self.reason) {
-            ("", ..) => "there are none in this loop".to_owned(),
-            (_, Some(pitch_rad), _) => format!(
-                "with a pitch angle off by up to {:.3} deg, all else at rest{}, none acts: {limits}",
-                degrees(pitch_rad),
-                self.held()
-            ),
-            (_, None, Some(reason)) => format!("SATURATION IS NOT COVERED: {limits}; {reason}"),
-            (_, None, None) if self.has_level => {
-                format!("SATURATION IS NOT COVERED: {limits}; rest itself lies at a limit")
-            }
-            (_, None, None) => format!("SATURATION IS NOT COVERED: {limits}"),
-        }
+/// The set-points and loads that limits are covered for, which may be fewer than those of the claim itself.
+fn held(range: Range) -> String {
+    let [setpoint, load] = [range.setpoint_rad, range.load_rad].map(|it| short(degrees(it)));
+    let setpoints = match range.setpoint_rad {
+        0.0 => "the trim".to_owned(),
+        _ => format!("set-points up to {setpoint} deg"),
+    };
+    match range.load_rad {
+        0.0 => format!("{setpoints} without load"),
+        _ => format!("{setpoints} under loads up to {load} deg"),
     }
+}
+
+/// An angle for programs: without the last digits, which are those of the conversion.
+pub(super) fn told_deg(radians: f64) -> f64 {
+    const DIGITS: i32 = 12;
+    let angle = degrees(radians);
+    if angle == 0.0 || !angle.is_finite() {
+        return angle;
+    }
+    let scale = libm::pow(10.0, f64::from(DIGITS - 1) - libm::floor(libm::log10(angle.abs())));
+    let told = libm::round(angle * scale) / scale;
+    if told.is_finite() { told } else { angle }
 }

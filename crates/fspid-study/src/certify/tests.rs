@@ -431,3 +431,37 @@ fn layout_and_digits_of_a_certificate_do_not_matter() {
     let (certificate, origin) = from_text(good()).expect("a certificate");
     assert_eq!(to_text(&certificate, &origin), good());
 }
+
+#[test]
+fn what_the_servo_cannot_hold_is_open_and_said_to_be_so() {
+    let study = design(&["setpoint.amplitude_deg=60"]);
+    let certification = Certification::of(&study, Some("PID"), &effort()).expect("certified");
+    assert!(!certification.all_proved());
+    let told = certification.text();
+    for part in [
+        "OPEN for what the scenario asks (constant set-points up to 60 deg",
+        "proved is less: stable with its gains, which are fixed",
+        "open because       rest at 60.00 deg needs 44.06 deg, and the servo's command limit is at 15.00 deg",
+        "none acts where the pitch angle begins up to",
+    ] {
+        assert!(told.contains(part), "{part}\n{told}");
+    }
+    let json = certification.json();
+    let one = &json["controllers"][0];
+    assert_eq!(one["asked"]["setpoint_within_deg"], 60.0, "{one}");
+    assert!(one["open_because"].as_str().is_some_and(|it| it.contains("44.06")), "{one}");
+    // Said once: in the scope.
+    assert!(one.get("limits").is_none() && one.get("pitch_within_deg").is_none(), "{one}");
+    assert!(one["scope"]["pitch_within_deg"].is_number(), "{one}");
+    // The certificate of the design does not speak for it, although its inequalities hold for every set-point.
+    let mut shipped = checked(good());
+    shipped.compare(&study).expect("comparable");
+    assert_eq!(shipped.answer(), Answer::AnotherLoop);
+    assert!(shipped.text().contains("range.setpoint_rad: certified"), "{}", shipped.text());
+}
+
+#[test]
+fn a_refutation_says_nothing_of_set_points_that_move() {
+    let told = refuted().text();
+    assert!(!told.contains("constant set-points"), "{told}");
+}

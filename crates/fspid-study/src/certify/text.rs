@@ -55,6 +55,11 @@ fn headline(outcome: &Outcome) -> String {
     }
 }
 
+/// True of a loop whose gains do not move.
+fn is_fixed(certificate: &Certificate) -> bool {
+    matches!(certificate.description.controller, Controller::Fixed(_))
+}
+
 /// What an outcome has a certificate of.
 pub(super) fn found(outcome: &Outcome) -> Option<(&Certificate, &Rechecked)> {
     match &outcome.verdict {
@@ -81,6 +86,9 @@ pub(super) fn refuted(bearing: Bearing) -> &'static str {
 /// What a claim says.
 pub(super) fn sentence(certificate: &Certificate) -> String {
     match &certificate.claim {
+        Claim::AnySpeed { .. } if is_fixed(certificate) => {
+            "stable with its gains, which are fixed".to_owned()
+        }
         Claim::AnySpeed { .. } => {
             "stable for every gain that the controller can have, however fast the gains move".to_owned()
         }
@@ -91,10 +99,11 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
             "stable for every gain that the controller can have, as long as gains move no faster than stated"
                 .to_owned()
         }
-        Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }
-            if matches!(certificate.description.controller, Controller::Fixed(_)) =>
-        {
-            "unstable with its gains".to_owned()
+        Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. } if is_fixed(certificate) => {
+            "unstable with its gains, which are fixed".to_owned()
+        }
+        Claim::FrozenGrowth { input: [0.0, 0.0], .. } => {
+            "unstable with the gains that it has at rest".to_owned()
         }
         Claim::FrozenGrowth { input: [error, change], .. } => format!(
             "unstable with gains that the supervisor produces at error {error:.4}, change {change:.4}, if they stand still"
@@ -107,6 +116,9 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
 }
 
 fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
+    if let Some(reason) = &outcome.open_because {
+        line(out, format_args!("  open because       {reason}"));
+    }
     let [kp, ki, kd] = outcome.bounds.map(range);
     line(out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
     let dt_s = match certified.certificate() {
@@ -114,7 +126,7 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         None => f64::NAN,
     };
     if let Some((certificate, rechecked)) = found(outcome) {
-        push_claim(out, certificate, dt_s);
+        push_claim(out, (certificate, Some(rechecked)), dt_s);
         push_rechecked(out, rechecked);
     }
     push_largest(out, outcome);
@@ -136,11 +148,19 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
     line(out, format_args!("  gains move         at most kp {kp}, ki {ki}, kd {kd}"));
 }
 
-pub(super) fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64) {
+/// What is claimed, with what its re-check found where it holds.
+pub(super) fn push_claim(
+    out: &mut String,
+    (certificate, rechecked): (&Certificate, Option<&Rechecked>),
+    dt_s: f64,
+) {
+    let remains = rechecked.is_some_and(|rechecked| rechecked.remains_rad > 0.0);
     match &certificate.claim {
-        Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => push_rate(out, *rate, dt_s),
+        Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => {
+            push_rate(out, *rate, dt_s, remains);
+        }
         Claim::BoundedRate(claim) => {
-            push_rate(out, claim.rate, dt_s);
+            push_rate(out, claim.rate, dt_s, remains);
             push_speed(out, claim, dt_s);
         }
         Claim::FrozenGrowth { factor, .. } => {
@@ -160,13 +180,14 @@ pub(super) fn push_claim(out: &mut String, certificate: &Certificate, dt_s: f64)
     }
 }
 
-fn push_rate(out: &mut String, rate: f64, dt_s: f64) {
+fn push_rate(out: &mut String, rate: f64, dt_s: f64, remains: bool) {
     if rate < 1.0 {
         let time_s = -dt_s / libm::log(rate);
+        let down = if remains { ", down to what remains," } else { "" };
         line(
             out,
             format_args!(
-                "  decay              every deviation falls at least as fast as with a time constant of {time_s:.2} s ({rate:.8} a sample)"
+                "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s:.2} s ({rate:.8} a sample)"
             ),
         );
     } else {
@@ -186,16 +207,21 @@ pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
 
 fn push_largest(out: &mut String, outcome: &Outcome) {
     let largest = &outcome.largest;
+    // What is proved beside it may be for less.
+    let asked = if outcome.instead.is_some() { "for what the scenario asks, it " } else { "" };
     let text = match (largest.proved, largest.not_proved) {
         (proved, Some(above)) if proved > 0.0 => format!(
-            "can be proved up to {} times the supervisor's output scale (not for {})",
+            "{asked}can be proved up to {} times the supervisor's output scale (not for {})",
             short(proved),
             short(above)
         ),
         (proved, None) if proved > 1.0 => {
-            format!("can be proved for {} times the supervisor's output scale", short(proved))
+            format!(
+                "{asked}can be proved for {} times the supervisor's output scale",
+                short(proved)
+            )
         }
-        (_, Some(above)) => format!("not proved even for {} of it", short(above)),
+        (_, Some(above)) => format!("{asked}is not proved even for {} of it", short(above)),
         _ => return,
     };
     line(out, format_args!("  output scale       {text}"));

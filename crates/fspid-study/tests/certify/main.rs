@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use fspid_proof::{LoopDescription, NotProvable};
+use fspid_proof::{Asked, LoopDescription, NotProvable, Range};
+use fspid_sim::LinearPlant;
 use fspid_study::analysis::{Analysis, Question};
 use fspid_study::file::{self, Study};
 
@@ -28,4 +29,28 @@ fn a_vertical_gyro_that_erects_is_refused_by_name_and_told_by_analyse() {
     let text = Analysis::of(&erecting, question).expect("a loop").text();
     assert!(text.contains("erection is left out"), "{text}");
     assert!(described(&study(gallery, &["sensor.pitch.erection_deg_min=0"])).is_ok());
+}
+
+fn asked(study: &Study) -> Range {
+    let scenario = &study.scenario;
+    let plant = scenario.plant.linear().expect("a linear plant");
+    let description = described_with(study, plant);
+    Asked::of(scenario, plant, &description).range
+}
+
+fn described_with(study: &Study, plant: &LinearPlant) -> LoopDescription {
+    let controller = &study.scenario.controllers[0].controller;
+    LoopDescription::of(&study.scenario, plant, controller).expect("provable")
+}
+
+/// A step ten seconds after the end of the flight was no part of what was asked, and the claim is about all time.
+#[test]
+fn set_points_and_loads_that_begin_after_the_flight_are_in_the_range_that_is_asked() {
+    let later = ["setpoint.amplitude_deg=-20", "setpoint.at_s=30"];
+    let range = asked(&study("747-pitch-step.toml", &later));
+    assert!((range.setpoint_rad - 20.0_f64.to_radians()).abs() < 1e-12, "{range:?}");
+    assert_eq!(range.load_rad.to_bits(), 0.0_f64.to_bits());
+    // And nothing is no negative nothing.
+    let still = asked(&study("747-pitch-step.toml", &["setpoint.amplitude_deg=0"]));
+    assert_eq!(still.setpoint_rad.to_bits(), 0.0_f64.to_bits());
 }
