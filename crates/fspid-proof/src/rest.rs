@@ -260,7 +260,6 @@ mod drawn;
 #[cfg(test)]
 mod tests {
     use fspid_core::Law;
-    use fspid_sim::AtRest;
 
     use super::drawn::{self, Dice};
     use super::*;
@@ -292,12 +291,13 @@ mod tests {
             let [kp, ..] = held.bounds();
             let change = held.cells.iter().map(|cell| cell.change_gain).fold(0.0, f64::max);
             let gains = produced(&named.controller, [0.0; 2]);
-            for at_rest in AtRest::all(&scenario, plant, &named.controller, gains) {
+            let rests = fspid_sim::Rest::all(&scenario, plant, &named.controller, gains);
+            for side in rests.iter().flat_map(|rest| &rest.sides) {
                 // Slopes of the plain one are differences, good to some digits.
                 let slack = 1e-6 * (1.0 + kp.magnitude());
-                let by_error = at_rest.gains.kp;
+                let by_error = side.gains.kp;
                 assert!(kp.lower() - slack <= by_error && by_error <= kp.upper() + slack, "{seed}");
-                let by_change = at_rest.change_gain.abs();
+                let by_change = side.change_gain.abs();
                 assert!(by_change <= change + slack, "{seed}: {by_change} {change}");
             }
             compared += 1;
