@@ -430,6 +430,17 @@ fn an_imported_model_passes_its_check_cases_and_reads_back() {
     assert_eq!(written[0], written[1]);
 }
 
+/// Only --iy was known.
+#[test]
+fn every_moment_of_inertia_can_be_loaded() {
+    for (option, key) in [("--ix", "ix_kg_m2"), ("--iy", "iy_kg_m2"), ("--iz", "iz_kg_m2")] {
+        let trim = json(&["trim", "navion", option, "5000 kg m2"]);
+        near(&trim["flight"][key], 5000.0, 1e-9);
+        let told = refused(&["trim", "navion", option, "0 kg m2"]);
+        assert!(told.contains(&format!("{option} must be above 0")), "{told}");
+    }
+}
+
 #[test]
 fn an_import_that_fails_says_where_and_writes_nothing() {
     let folder = tempfile::tempdir().expect("a folder");

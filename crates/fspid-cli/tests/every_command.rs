@@ -206,6 +206,15 @@ fn a_hyphen_is_standard_input_and_output() {
         assert_eq!(code(&output), 0, "{words}: {}", text(&output.stderr));
         assert!(text(&output.stdout).starts_with(begins), "{words}: {}", text(&output.stdout));
     }
+    // What is written there can be read there: the format is known by what it begins with.
+    for format in ["toml", "fis", "fll", "xml"] {
+        let words = ["convert", "-", "-", "--lossy", "--as", format];
+        let written = with_input(&words, folder, &tip);
+        assert_eq!(code(&written), 0, "{format}: {}", text(&written.stderr));
+        let read = with_input(&["check", "-"], folder, &text(&written.stdout));
+        let told = text(&read.stdout);
+        assert!(told.contains("2 inputs, 1 output"), "{format}: {told}{}", text(&read.stderr));
+    }
     assert!(!folder.join("-").exists(), "no file of that name was written");
     let both = with_input(&["simulate", "-", "--trace", "-", "--report", "-"], folder, &scenario);
     assert!(code(&both) == 2 && text(&both.stderr).contains("standard output holds one thing"));

@@ -93,7 +93,7 @@ fn an_interrupted_command_says_so_as_json_too() {
     for words in [
         "campaign run a.toml --runs 100000000 --quiet --out c",
         "campaign search - --measure overshoot_pct",
-        "learn - --teacher mirrored --range 1 --out l.toml",
+        "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml",
         "simulate -",
     ] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
@@ -305,7 +305,7 @@ fn every_path_is_listed_with_its_unit_value_and_range() {
         .filter(|row| !row["value"].is_null())
         .map(|row| format!("{}={}", row["path"].as_str().expect("a path"), row["value"]))
         .collect();
-    assert!(sets.len() > 70, "{sets:?}");
+    assert!(sets.len() > 60, "{sets:?}");
     for set in &sets {
         let output = fspid(&["check", "a.toml", "--set", set], folder);
         assert_eq!(code(&output), 0, "{set}: {}", text(&output.stderr));

@@ -159,6 +159,19 @@ impl Tuned {
             cost(&self.start),
             cost(&self.best)
         ));
+        self.tell_numbers(&mut out);
+        self.tell_at_rest(&mut out);
+        self.tell_front(&mut out);
+        if !self.reasons.is_empty() {
+            out.push_str("\nThe best candidate is not good enough:\n");
+            self.reasons.iter().for_each(|reason| out.push_str(&format!("{reason}\n")));
+        }
+        out
+    }
+
+    /// The free numbers with their bounds.
+    fn tell_numbers(&self, out: &mut String) {
+        let width = self.width();
         out.push_str(&format!(
             "\n  {:<width$}{:>14}{:>14}  bounds\n",
             "free number", "start", "found"
@@ -172,13 +185,6 @@ impl Tuned {
             let name = short(&number.path, &self.controller);
             out.push_str(&format!("  {name:<width$}{start:>14}{value:>14}  {bounds}\n"));
         }
-        self.tell_at_rest(&mut out);
-        self.tell_front(&mut out);
-        if !self.reasons.is_empty() {
-            out.push_str("\nThe best candidate is not good enough:\n");
-            self.reasons.iter().for_each(|reason| out.push_str(&format!("{reason}\n")));
-        }
-        out
     }
 
     /// Several controllers that were tuned alike, side by side.

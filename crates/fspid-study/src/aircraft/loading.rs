@@ -1,5 +1,6 @@
 //! How the aircraft of a question is loaded.
 
+use fspid_aircraft::MassProperties;
 use fspid_aircraft::data::{AircraftData, Loading, ModelData, Moment};
 
 use super::facts::Facts;
@@ -15,8 +16,12 @@ pub struct LoadingQuestion<'a> {
     pub mass: Option<&'a str>,
     /// Centre of gravity as a share of the mean chord.
     pub cg: Option<&'a str>,
+    /// Moment of inertia about the forward axis.
+    pub ix: Option<&'a str>,
     /// Moment of inertia about the right axis.
     pub iy: Option<&'a str>,
+    /// Moment of inertia about the downward axis.
+    pub iz: Option<&'a str>,
 }
 
 impl LoadingQuestion<'_> {
@@ -38,7 +43,9 @@ impl LoadingQuestion<'_> {
         let loading = Loading {
             mass_kg: read("--mass", self.mass, &MASSES, Kind::Mass),
             cg_mac: read("--cg", self.cg, &[], Kind::Plain),
+            roll: read("--ix", self.ix, &INERTIAS, Kind::Inertia).map(Moment::Inertia),
             pitch: read("--iy", self.iy, &INERTIAS, Kind::Inertia).map(Moment::Inertia),
+            yaw: read("--iz", self.iz, &INERTIAS, Kind::Inertia).map(Moment::Inertia),
             ..Loading::default()
         };
         if problems.is_empty() { Ok(loading) } else { Err(Refused::all(problems)) }
@@ -55,15 +62,20 @@ pub(super) fn loaded(
 
 /// What is loaded otherwise than in the data; nothing where nothing is.
 pub(super) fn facts(facts: Facts, loading: &Loading, data: &AircraftData) -> Facts {
-    let iy_kg_m2 = match &data.model {
-        ModelData::Derivatives(data) => data.mass_properties().iy_kg_m2,
-        ModelData::Forces(data) => data.mass.iy_kg_m2,
-        ModelData::Linear(_) => f64::NAN,
+    let mass = match &data.model {
+        ModelData::Derivatives(data) => Some(data.mass_properties()),
+        ModelData::Forces(data) => Some(data.mass),
+        ModelData::Linear(_) => None,
+    };
+    let moment = |given: Option<Moment>, of: fn(&MassProperties) -> f64| {
+        given.and_then(|_| mass.as_ref().map(of))
     };
     let rows = [
         ("mass, as loaded", "mass", Kind::Mass, loading.mass_kg),
         ("centre of gravity, share of the chord", "cg_mac", Kind::Plain, loading.cg_mac),
-        ("Iy, as loaded", "iy", Kind::Inertia, loading.pitch.map(|_| iy_kg_m2)),
+        ("Ix, as loaded", "ix", Kind::Inertia, moment(loading.roll, |mass| mass.ix_kg_m2)),
+        ("Iy, as loaded", "iy", Kind::Inertia, moment(loading.pitch, |mass| mass.iy_kg_m2)),
+        ("Iz, as loaded", "iz", Kind::Inertia, moment(loading.yaw, |mass| mass.iz_kg_m2)),
     ];
     rows.into_iter().fold(facts, |facts, (name, key, kind, value)| match value {
         Some(value) => facts.number(name, key, kind, value),

@@ -270,14 +270,14 @@ impl Walk<'_> {
             | Kind::Table(_)
             | Kind::Tables { .. } => false,
         };
-        let is_free = match kind {
+        let is_free = matches!(
+            kind,
             Kind::Number { .. }
-            | Kind::Numbers { .. }
-            | Kind::Interval { .. }
-            | Kind::Grid
-            | Kind::NumberGrid => true,
-            _ => false,
-        };
+                | Kind::Numbers { .. }
+                | Kind::Interval { .. }
+                | Kind::Grid
+                | Kind::NumberGrid
+        );
         self.row(PathRow {
             path,
             value,

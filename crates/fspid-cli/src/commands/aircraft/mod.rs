@@ -116,9 +116,15 @@ struct Plane {
     /// left out.
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     cg: Option<String>,
+    /// Moment of inertia in roll, as --iy.
+    #[arg(long, value_name = "INERTIA")]
+    ix: Option<String>,
     /// Moment of inertia in pitch, such as "4000 kg m2" or "3000 slug ft2"; that of the source if left out.
     #[arg(long, value_name = "INERTIA")]
     iy: Option<String>,
+    /// Moment of inertia in yaw, as --iy.
+    #[arg(long, value_name = "INERTIA")]
+    iz: Option<String>,
 }
 
 /// Which air.
@@ -155,7 +161,9 @@ impl Plane {
             loading: LoadingQuestion {
                 mass: self.mass.as_deref(),
                 cg: self.cg.as_deref(),
+                ix: self.ix.as_deref(),
                 iy: self.iy.as_deref(),
+                iz: self.iz.as_deref(),
             },
             units,
             air: match self.air {

@@ -21,6 +21,7 @@ use actuator::Drive;
 pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
 use flight::Flown;
+use fspid_sim::signal::Disturbance;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 pub use range_rule::RangeRule;
 use schedule::Pressure;
@@ -61,10 +62,7 @@ pub(crate) fn scenario(
     }
     let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
     let flown = flight::flown(report, files, section);
-    let drive = match section.section("actuator") {
-        None => Some(Drive::ideal()),
-        part => sound(part).and_then(|part| actuator::drive(report, part)),
-    };
+    let drive = drive(report, section);
     let servo = drive.map(|drive| drive.servo);
     let linear = flown.as_ref().and_then(|flown| flown.plant.linear());
     if let (Some(plant), Some(timing), Some(servo)) = (linear, timing, servo) {
@@ -72,10 +70,7 @@ pub(crate) fn scenario(
     }
     let setpoint =
         sound(section.section("setpoint")).and_then(|part| signal::setpoint(report, part));
-    let mut disturbances = Vec::new();
-    for part in section.sections("disturbance").iter().filter(|part| part.sound) {
-        disturbances.extend(signal::disturbance(report, part));
-    }
+    let disturbances = disturbances(report, section);
     let plant_changes = timing::plant_changes(
         report,
         files,
@@ -120,6 +115,19 @@ pub(crate) fn scenario(
         contest,
         range_rule,
     })
+}
+
+/// What moves the elevator, and how.
+fn drive(report: &mut Report, section: &Section) -> Option<Drive> {
+    match section.section("actuator") {
+        None => Some(Drive::ideal()),
+        part => sound(part).and_then(|part| actuator::drive(report, part)),
+    }
+}
+
+fn disturbances(report: &mut Report, section: &Section) -> Vec<Disturbance> {
+    let parts = section.sections("disturbance").iter().filter(|part| part.sound);
+    parts.filter_map(|part| signal::disturbance(report, part)).collect()
 }
 
 /// Moving air, actuator and sensors; what is wrong with them is reported.
