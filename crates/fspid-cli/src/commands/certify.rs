@@ -66,7 +66,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    let mut watch = |text: String| {
+    let watch = |text: String| {
         if telling == Telling::Line {
             tell(telling, &text);
         }
