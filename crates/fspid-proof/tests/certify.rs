@@ -136,7 +136,7 @@ fn with_an_integral_gain_of_zero_at_rest_nothing_is_proved() {
     let around = |least, most| Limits::new("gain limits", least, most).expect("allowed");
     let limits = GainLimits { kp: around(0.5, 4.0), ki: around(0.0, 1.0), kd: around(0.0, 3.0) };
     let settings = TunerSettings { gain_limits: Some(limits), ..*fspid.tuner().settings() };
-    let nominal = Gains { ki: -0.01, ..NOMINAL };
+    let nominal = Gains { ki: 0.0, ..NOMINAL };
     let tuner = SelfTuner::new(nominal, *fspid.tuner().supervisor(), settings).expect("allowed");
     let description = loop_of(Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed")));
     let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");

@@ -50,11 +50,14 @@ struct Square {
     slopes: [f64; 2],
 }
 
+/// Sides of squares with the slopes there, or why there are none.
+type Squares = Result<Vec<(f64, IncrementSlopes)>, NoSlopes>;
+
 /// Proved slopes of a tuner's increments within squares around rest, smallest first. They depend neither on
 /// what is held nor on the output scale, and take longer than all else here: found once, they serve again, in every
 /// clone.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct KnownSlopes(Rc<OnceCell<Result<Vec<(f64, IncrementSlopes)>, NoSlopes>>>);
+pub(crate) struct KnownSlopes(Rc<OnceCell<Squares>>);
 
 impl KnownSlopes {
     fn of(&self, tuner: &SelfTuner<f64>) -> Result<&[(f64, IncrementSlopes)], NoSlopes> {
