@@ -71,6 +71,17 @@ impl Failure {
         Self::new(Self::NOT_MET, message)
     }
 
+    /// Requirements that are not met, of so many, and flights that failed; one of both is.
+    pub(crate) fn not_met_of(unmet: usize, count: usize, flights: usize) -> Self {
+        let noun = |count: usize, one: &str| format!("{one}{}", if count == 1 { "" } else { "s" });
+        let requirements = (unmet > 0)
+            .then(|| format!("{unmet} of {count} {} not met", noun(count, "requirement")));
+        let flights =
+            (flights > 0).then(|| format!("{flights} {} failed", noun(flights, "flight")));
+        let words: Vec<String> = requirements.into_iter().chain(flights).collect();
+        Self::not_met(words.join(", "))
+    }
+
     /// Input that cannot be used.
     pub(crate) fn input(message: impl Display) -> Self {
         Self::new(Self::INPUT, message)

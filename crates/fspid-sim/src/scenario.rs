@@ -48,6 +48,13 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// When a disturbance first pushes the loop, s; infinite where none does. Noise pushes nowhere.
+    #[must_use]
+    pub fn pushed_from_s(&self) -> f64 {
+        let pushing = self.disturbances.iter().filter(|disturbance| !disturbance.is_noise());
+        pushing.map(Disturbance::starts_s).fold(f64::INFINITY, f64::min)
+    }
+
     /// Everything that does not depend on the controller, computed once.
     ///
     /// # Errors

@@ -43,14 +43,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => print(&simulation.text())?,
         Format::Json => print(&json_text(&simulation.json()))?,
     }
-    if simulation.requirements_met() {
-        return Ok(());
-    }
     let unmet = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
-    match simulation.failed_flights().count() {
-        0 => Err(Failure::not_met(format_args!("{unmet} requirement(s) not met"))),
-        flights => Err(Failure::not_met(format_args!(
-            "{unmet} requirement(s) not met, {flights} flight(s) failed"
-        ))),
+    match (unmet, simulation.failed_flights().len()) {
+        (0, 0) => Ok(()),
+        (unmet, flights) => Err(Failure::not_met_of(unmet, simulation.judgements.len(), flights)),
     }
 }

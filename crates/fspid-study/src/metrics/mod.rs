@@ -1,12 +1,14 @@
 //! What a flight amounts to: measures of a response, each a value or the reason there is none.
 
 mod effort;
+mod exit;
 mod extreme;
 mod flight;
 mod measure;
 mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
+pub use exit::left_validity;
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use measure::{Family, Measure};
 pub use step::{StepMetrics, StepWindow};

@@ -1,40 +1,18 @@
 //! What is said of a flight beside its measures.
 
-use fspid_aircraft::Departure;
 use fspid_core::Gains;
-use fspid_sim::Exit;
 use fspid_sim::load::ConstantLoad;
 
+use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains};
 use crate::file::RangeRule;
-use crate::metrics::short;
-use crate::units::degrees;
+use crate::metrics::{left_validity, short};
 
 /// What is asked where the first movement is steadily away from the set-point.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
 
 /// What is said of an aircraft that a linear model flies.
 pub(crate) const LINEAR_AIRCRAFT: &str = "flown by a linear model, which has no height and no range: neither the ground nor the limits of the aircraft's data are asked";
-
-/// When, for how long and by which limit a flight left the range of its model, in words.
-#[must_use]
-pub fn left_validity(exit: &Exit) -> String {
-    let Departure { quantity, value, allowed } = exit.departure;
-    let (factor, unit) = match quantity.unit() {
-        "rad" => (degrees(1.0), "deg"),
-        unit => (1.0, unit),
-    };
-    let text = format!(
-        "left the range of its model at t = {:.2} s, outside for {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
-        exit.at_s,
-        exit.outside_s,
-        quantity.name(),
-        factor * value,
-        factor * allowed.min,
-        factor * allowed.max,
-    );
-    text.trim_end().replace("  ", " ")
-}
 
 /// Gains to five digits.
 fn gains(gains: Gains<f64>) -> String {
@@ -73,12 +51,6 @@ impl AtRest {
             .map(|reason| format!("the loop at rest could not be asked: {reason}"))
     }
 
-    /// All that is said of the loop at rest beside a verdict.
-    pub(crate) fn words(&self, duration_s: f64) -> impl Iterator<Item = String> {
-        let load = self.load_in_words(duration_s);
-        self.gains_in_words().into_iter().chain(load).chain(self.not_asked_in_words())
-    }
-
     /// What is said of a constant load that is not removed within the flight; none where it is, or nobody can tell.
     #[must_use]
     pub fn load_in_words(&self, duration_s: f64) -> Option<String> {
@@ -108,6 +80,20 @@ fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
 fn digits3(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     format!("{rounded}")
+}
+
+impl ControllerResult {
+    /// What is to be known beside the verdict and fails nothing: the question of the sign, a load that stays, what could
+    /// not be asked, a range that may be left and was.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let question = self.metrics.wrong_way.then(|| WRONG_WAY.to_owned());
+        let load = self.at_rest.load_in_words(self.duration_s);
+        let allowed = self.trace.exit.filter(|_| self.range_rule == RangeRule::Warns);
+        let left = allowed.map(|exit| left_validity(&exit));
+        let not_asked = self.at_rest.not_asked_in_words();
+        question.into_iter().chain(load).chain(left).chain(not_asked).collect()
+    }
 }
 
 impl RangeRule {

@@ -12,7 +12,8 @@ pub(super) fn text(outcome: &Outcome) -> String {
     let head = headline(outcome);
     let mut out = format!("{}: {}.\n\n", head.word, head.why);
     let ranking = outcome.first().ranking;
-    for found in ranking.iter().filter_map(|place| outcome.comparison(*place)) {
+    let others = ranking.iter().filter(|place| Some(**place) != head.told);
+    for found in others.filter_map(|place| outcome.comparison(*place)) {
         out.push_str(&format!("{}\n", sentence(outcome, found)));
     }
     out.push_str("\nFirst to last, by kind of case:\n");

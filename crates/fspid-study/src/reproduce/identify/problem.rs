@@ -236,7 +236,10 @@ impl Bench {
         let metrics: Vec<FlightMetrics> = flight
             .traces
             .iter()
-            .map(|trace| FlightMetrics::of(trace, &flight.edges, scenario.timing, None))
+            .map(|trace| {
+                let pushed_from_s = scenario.pushed_from_s();
+                FlightMetrics::of(trace, &flight.edges, scenario.timing, None, pushed_from_s)
+            })
             .collect();
         let flights: Vec<FigureFlight<'_>> = model
             .controllers

@@ -12,6 +12,7 @@ use fspid_study::report::analysis::{Chapter, Item, Picture, Standing as Colour, 
 use fspid_study::report::campaign::CampaignPage;
 use fspid_study::shell::word;
 
+use super::flight::LOST;
 use super::words::{Headline, cautions, cut, headline, list, name, sentence};
 use super::{Contest, Outcome, text};
 
@@ -65,7 +66,9 @@ fn capital(text: &str) -> String {
 /// Sentences, the table of controllers, and the figure of differences.
 fn answer(outcome: &Outcome) -> Vec<Item> {
     let ranking = outcome.first().ranking;
-    let found = ranking.iter().filter_map(|place| outcome.comparison(*place));
+    let told = headline(outcome).told;
+    let found = ranking.iter().filter(|place| Some(**place) != told);
+    let found = found.filter_map(|place| outcome.comparison(*place));
     let sentences = found.take(MOST_SENTENCES).map(|it| sentence(outcome, it));
     vec![
         Item::List(sentences.collect()),
@@ -79,8 +82,12 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
 
 fn notes(outcome: &Outcome) -> Vec<String> {
     let mut notes = cautions(outcome);
-    notes.push("Significant means: cases like these and seeds like these would tell the same. It does not mean that the difference matters, nor that other aircraft would tell the same.".to_owned());
-    notes.push("A lost flight (diverged, an error beyond 90 deg, or refused) has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another stands behind it, whatever its error elsewhere. Whether other cases would tell the same is tested apart.".to_owned());
+    let seeds = match is_tuned(outcome) {
+        true => " and seeds like these",
+        false => "",
+    };
+    notes.push(format!("Significant means: cases like these{seeds} would tell the same. It does not mean that the difference matters, nor that other aircraft would tell the same."));
+    notes.push(format!("A flight is lost that {LOST}; it has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another stands behind it, whatever its error elsewhere. Whether other cases would tell the same is tested apart."));
     notes
 }
 
@@ -96,8 +103,7 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
         fact("cases", judged.cases.len().to_string()),
         fact("flights judged", flights.to_string()),
     ];
-    let is_tuned = judged.contestants.iter().any(|it| it.is_tuned);
-    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned) {
+    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned(outcome)) {
         let seeds: Vec<String> = setting.efforts.iter().map(|it| it.seed.to_string()).collect();
         facts.push(fact("optimiser", effort.optimiser.clone()));
         facts.push(fact("candidates of each tuning", effort.budget.to_string()));
@@ -112,11 +118,16 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
     facts
 }
 
+/// Whether anybody was tuned.
+fn is_tuned(outcome: &Outcome) -> bool {
+    outcome.judged.contestants.iter().any(|it| it.is_tuned)
+}
+
 fn command(outcome: &Outcome) -> String {
     let setting = &outcome.setting;
     let mut words = vec![format!("fspid contest {}", word(&setting.file))];
     words.extend(setting.overrides.iter().map(|it| format!("--set {}", word(it))));
-    if let Some(effort) = setting.efforts.first() {
+    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned(outcome)) {
         words.push(format!("--seeds {} --budget {}", setting.efforts.len(), effort.budget));
     }
     words.push(format!("--out {}", word(&setting.folder)));

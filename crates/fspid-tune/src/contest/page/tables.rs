@@ -5,18 +5,17 @@ use fspid_study::report::number::significant;
 
 use super::chapter;
 use crate::contest::compare::{Comparison, Standing};
+use crate::contest::flight::{FAILED, LOST};
 use crate::contest::judged::Quantity;
 use crate::contest::words::{
-    counted, cut, group, kept, name, number, over_kept, p_value, per_cent, signed, signed_interval,
-    spread, spread_of,
+    counted, cut, group, kept, kinds, name, number, over_kept, p_value, per_cent, signed,
+    signed_interval, spread, spread_of,
 };
 use crate::contest::{First, Flight, Outcome, text, words};
 
 /// Most rows of the table of cases, and most columns of a table by groups.
 const MOST_ROWS: usize = 300;
 const MOST_GROUPS: usize = 16;
-/// Most kinds of reasons in a cell.
-const MOST_KINDS: usize = 2;
 
 pub(super) fn table(caption: String, head: &[&str], rows: Vec<Vec<Datum>>) -> DataTable {
     let head = head.iter().map(|it| (*it).to_owned()).collect();
@@ -187,7 +186,7 @@ fn failures(outcome: &Outcome) -> DataTable {
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost, breaks a requirement of the scenario, or is of a loop that is unstable at rest. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
             kept if kept == outcome.judged.cases.len() => "any case".to_owned(),
@@ -218,9 +217,11 @@ fn reasons(outcome: &Outcome) -> Option<DataTable> {
                 any |= !failed.is_empty();
                 row.push(match failed.len() {
                     0 => Datum::Met(format!("none of {}", flights.len())),
-                    some => {
-                        Datum::Unmet(format!("{some} of {}: {}", flights.len(), kinds(&failed)))
-                    }
+                    some => Datum::Unmet(format!(
+                        "{some} of {}: {}",
+                        flights.len(),
+                        kinds(failed.iter().copied())
+                    )),
                 });
             }
             row
@@ -231,33 +232,6 @@ fn reasons(outcome: &Outcome) -> Option<DataTable> {
         left_out(groups.len())
     );
     any.then(|| grouped_table(caption, &groups, rows))
-}
-
-/// The kinds of reasons, the most frequent first: the measure or the words before the first number.
-fn kinds(failed: &[&Flight]) -> String {
-    let mut counted: Vec<(String, usize)> = Vec::new();
-    for reason in failed.iter().flat_map(|flight| &flight.reasons) {
-        let kind = kind(reason);
-        match counted.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, count)) => *count += 1,
-            None => counted.push((kind, 1)),
-        }
-    }
-    counted.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    let mut told: Vec<String> =
-        counted.iter().take(MOST_KINDS).map(|(kind, _)| kind.clone()).collect();
-    if counted.len() > MOST_KINDS {
-        told.push(format!("{} more", counted.len() - MOST_KINDS));
-    }
-    told.join(", ")
-}
-
-/// A reason without its numbers.
-fn kind(reason: &str) -> String {
-    let end = reason.find(|c: char| c.is_ascii_digit() || ",;:(".contains(c));
-    let words = reason.get(..end.unwrap_or(reason.len())).unwrap_or(reason).trim();
-    let words = words.trim_end_matches(['-', '+', '.', ' ']);
-    cut(if words.is_empty() { reason } else { words }, 40)
 }
 
 /// How everyone differs from the one compared with, by group of cases; the first of each group is marked.
