@@ -48,11 +48,13 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// When a disturbance first pushes the loop, s; infinite where none does. Noise pushes nowhere.
+    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.
     #[must_use]
-    pub fn pushed_from_s(&self) -> f64 {
+    pub fn pushes_s(&self) -> Vec<f64> {
         let pushing = self.disturbances.iter().filter(|disturbance| !disturbance.is_noise());
-        pushing.map(Disturbance::starts_s).fold(f64::INFINITY, f64::min)
+        let mut pushes_s: Vec<f64> = pushing.map(Disturbance::starts_s).collect();
+        pushes_s.sort_by(f64::total_cmp);
+        pushes_s
     }
 
     /// Everything that does not depend on the controller, computed once.

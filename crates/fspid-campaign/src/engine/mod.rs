@@ -140,8 +140,8 @@ fn measure(
             false => AtRest::stability(scenario, &named.controller),
         };
         let unstable = at_rest.unstable.filter(|_| stability == Stability::Analysed);
-        let (edges, pushed_from_s) = (prepared.edges(), scenario.pushed_from_s());
-        let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, pushed_from_s);
+        let (edges, pushes_s) = (prepared.edges(), scenario.pushes_s());
+        let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
         let (name, range_rule) = (named.name.clone(), study.range_rule);
         let duration_s = scenario.timing.end_s();
         Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })

@@ -5,6 +5,9 @@ use fspid_sim::Exit;
 
 use crate::units::degrees;
 
+/// How the sentence begins.
+pub const LEFT_RANGE: &str = "left the range of its model";
+
 /// When, for how long and by which limit a flight left the range of its model, in words.
 #[must_use]
 pub fn left_validity(exit: &Exit) -> String {
@@ -14,7 +17,7 @@ pub fn left_validity(exit: &Exit) -> String {
         unit => (1.0, unit),
     };
     let text = format!(
-        "left the range of its model at t = {:.2} s, outside for {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
+        "{LEFT_RANGE} at t = {:.2} s, outside for {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
         exit.at_s,
         exit.outside_s,
         quantity.name(),

@@ -120,6 +120,8 @@ pub struct EdgeMetrics {
     pub to_rad: f64,
     /// Measures up to the next step.
     pub step: StepMetrics,
+    /// When a disturbance first begins within that time, s: the measures are those of both.
+    pub disturbed_from_s: Option<f64>,
 }
 
 /// The measures of one controller's flight.
@@ -141,15 +143,15 @@ pub struct FlightMetrics {
 }
 
 impl FlightMetrics {
-    /// Measures a trace; `unstable` is what the linear loop says of itself, and `pushed_from_s` when something else than
-    /// the command first moves the aircraft ([`Scenario::pushed_from_s`](fspid_sim::Scenario::pushed_from_s)).
+    /// Measures a trace; `unstable` is what the linear loop says of itself, and `pushes_s` when something else than the
+    /// command begins to move the aircraft ([`Scenario::pushes_s`](fspid_sim::Scenario::pushes_s)).
     #[must_use]
     pub fn of(
         trace: &Trace,
         edges: &[Edge],
         timing: Timing,
         unstable: Option<Unstable>,
-        pushed_from_s: f64,
+        pushes_s: &[f64],
     ) -> Self {
         let failed = match (trace.outcome, unstable) {
             (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
@@ -161,10 +163,11 @@ impl FlightMetrics {
             (Outcome::Completed, None) => None,
         };
         let absence = failed.and_then(Verdict::absence);
-        let quiet = timing.first_sample_at(pushed_from_s);
+        let first_push_s = pushes_s.first().copied().unwrap_or(f64::INFINITY);
+        let quiet = timing.first_sample_at(first_push_s);
         let away =
             edges.first().is_some_and(|edge| moves_away(trace, edge, failed.is_some(), quiet));
-        let edges = edge_metrics(trace, edges, timing, absence);
+        let edges = edge_metrics((trace, edges), timing, absence, pushes_s);
         let restarts: Vec<usize> =
             edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
         let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
@@ -230,10 +233,10 @@ fn to_three_digits(value: f64) -> String {
 }
 
 fn edge_metrics(
-    trace: &Trace,
-    edges: &[Edge],
+    (trace, edges): (&Trace, &[Edge]),
     timing: Timing,
     absence: Option<Absent>,
+    pushes_s: &[f64],
 ) -> Vec<EdgeMetrics> {
     // A step at the very last sample has no response to measure.
     let edges: Vec<&Edge> = edges.iter().filter(|edge| edge.sample + 1 < timing.rows()).collect();
@@ -253,7 +256,13 @@ fn edge_metrics(
                     _ => StepMetrics::absent(Absent::NoStep),
                 };
             let at_s = timing.time_s(edge.sample);
-            EdgeMetrics { at_s, from_rad: edge.from_rad, to_rad: edge.to_rad, step }
+            let within = |push_s: &&f64| {
+                let sample = timing.first_sample_at(**push_s);
+                edge.sample < sample && sample + 1 < end
+            };
+            let disturbed_from_s = pushes_s.iter().find(within).copied();
+            let (from_rad, to_rad) = (edge.from_rad, edge.to_rad);
+            EdgeMetrics { at_s, from_rad, to_rad, step, disturbed_from_s }
         })
         .collect()
 }

@@ -6,6 +6,9 @@ use fspid_sim::Exit;
 use crate::file::RangeRule;
 use crate::metrics::{Verdict, left_validity};
 
+/// Which flights fail by themselves, whatever is required of them, wherever that is said.
+pub const FAILS_BY_ITSELF: &str = "diverges, hits the ground, leaves the range of its aircraft's data where its scenario does not allow that, or is of a loop that is unstable at rest";
+
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ending {

@@ -68,6 +68,7 @@ fn controller(result: &ControllerResult) -> Value {
             "at_end_deg_per_deg": finite(load.at_end),
             "for_good_deg_per_deg": finite(load.for_good),
             "removed": load.is_removed(),
+            "half_gone": load.is_half_gone(),
         });
     }
     if result.metrics.wrong_way {
@@ -130,13 +131,17 @@ fn gains(at_rest: &AtRest) -> Value {
 
 fn edge(edge: &EdgeMetrics) -> Value {
     let (values, absent) = split(&step_measures(&edge.step));
-    json!({
+    let mut answer = json!({
         "at_s": edge.at_s,
         "from_deg": degrees(edge.from_rad),
         "to_deg": degrees(edge.to_rad),
         "metrics": values,
         "absent": absent,
-    })
+    });
+    if let Some(from_s) = edge.disturbed_from_s {
+        answer["disturbed_from_s"] = json!(from_s);
+    }
+    answer
 }
 
 fn step_measures(step: &StepMetrics) -> Vec<(&'static str, Measured)> {

@@ -7,7 +7,7 @@ mod text;
 mod words;
 
 pub(crate) use ending::on_its_own;
-pub use ending::{Ending, FailedFlight};
+pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
 pub(crate) use json::finite;
 pub use words::WRONG_WAY;
 
@@ -107,9 +107,9 @@ impl Simulation {
                     .map_err(|error| too_large(error, named))?;
                 let at_rest = AtRest::of(scenario, &named.controller);
                 let unstable = at_rest.unstable;
-                let pushed_from_s = scenario.pushed_from_s();
+                let pushes_s = scenario.pushes_s();
                 let (edges, timing) = (&flight.edges, scenario.timing);
-                let metrics = FlightMetrics::of(&trace, edges, timing, unstable, pushed_from_s);
+                let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
                 let (name, range_rule) = (named.name.clone(), study.range_rule);
                 let duration_s = scenario.timing.end_s();
                 Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })

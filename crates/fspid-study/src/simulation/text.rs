@@ -41,9 +41,10 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
         line(
             out,
             format_args!(
-                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}",
+                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}{}",
                 edge.at_s,
                 step(&edge.step),
+                edge.disturbed_in_words(),
             ),
         );
     }

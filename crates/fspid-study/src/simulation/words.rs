@@ -1,12 +1,12 @@
 //! What is said of a flight beside its measures.
 
 use fspid_core::Gains;
-use fspid_sim::load::ConstantLoad;
+use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
 
 use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains};
 use crate::file::RangeRule;
-use crate::metrics::{left_validity, short};
+use crate::metrics::{EdgeMetrics, left_validity, short};
 
 /// What is asked where the first movement is steadily away from the set-point.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
@@ -63,6 +63,10 @@ impl AtRest {
 fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
     let why = match load.has_integral {
         false => "no integral at rest (ki = 0)",
+        true if load.at_end >= load.largest => {
+            "the flight is too short to tell what the integral does"
+        }
+        true if load.is_half_gone() => "the flight is short beside the integral at rest",
         true => "little integral at rest",
     };
     let (at_end, duration) = (digits3(load.at_end), short(duration_s));
@@ -70,8 +74,9 @@ fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
         true => ", and goes on shrinking".to_owned(),
         false => format!(", and {} deg for good", digits3(load.for_good)),
     };
+    let [removed, half_gone] = [REMOVED, HALF_GONE].map(|share| 100.0 * share);
     format!(
-        "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect{then}",
+        "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect (removed: at most {removed} %, half gone: at most {half_gone} %){then}",
         100.0 * load.share_left()
     )
 }
@@ -80,6 +85,17 @@ fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
 fn digits3(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     format!("{rounded}")
+}
+
+impl EdgeMetrics {
+    /// What is added to the measures of a step where a disturbance begins before they end; they are those of both.
+    #[must_use]
+    pub fn disturbed_in_words(&self) -> String {
+        let of_both = self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok());
+        of_both.map_or(String::new(), |from_s| {
+            format!("; of the step and of what disturbs from {} s on", short(from_s))
+        })
+    }
 }
 
 impl ControllerResult {

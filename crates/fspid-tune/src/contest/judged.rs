@@ -141,6 +141,12 @@ impl Judged {
         tuned().next().is_some() && tuned().any(|it| it.designs.len() < 2)
     }
 
+    /// Whether anybody was tuned.
+    #[must_use]
+    pub fn is_tuned(&self) -> bool {
+        self.contestants.iter().any(|it| it.is_tuned)
+    }
+
     /// Groups of cases in the order of their first case, with the places of their cases.
     #[must_use]
     pub fn groups(&self) -> Vec<(String, Vec<usize>)> {

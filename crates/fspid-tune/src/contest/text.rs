@@ -126,7 +126,10 @@ fn gains(outcome: &Outcome, out: &mut String) {
     });
     let lines: String = lines.collect();
     if !lines.is_empty() {
-        out.push_str("\nGains of the designs that cost least, in the first case:\n");
+        out.push_str(match outcome.judged.is_tuned() {
+            true => "\nGains of the designs that cost least, in the first case:\n",
+            false => "\nGains in the first case:\n",
+        });
         out.push_str(&lines);
     }
 }

@@ -200,7 +200,7 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
     };
     let word = match is_decided {
         // Nothing is known of how the designs were found.
-        true if !outcome.judged.contestants.iter().any(|it| it.is_tuned) => {
+        true if !outcome.judged.is_tuned() => {
             format!("{winner} wins, as these designs are written")
         }
         true => format!("{winner} wins"),
@@ -476,8 +476,7 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
             counted(others, "comparison", "comparisons")
         ));
     }
-    let any_tuned = judged.contestants.iter().any(|it| it.is_tuned);
-    if any_tuned && setting.efforts.len() < 2 {
+    if judged.is_tuned() && setting.efforts.len() < 2 {
         notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
     }
     for contestant in &judged.contestants {

@@ -237,8 +237,8 @@ impl Bench {
             .traces
             .iter()
             .map(|trace| {
-                let pushed_from_s = scenario.pushed_from_s();
-                FlightMetrics::of(trace, &flight.edges, scenario.timing, None, pushed_from_s)
+                let pushes_s = scenario.pushes_s();
+                FlightMetrics::of(trace, &flight.edges, scenario.timing, None, &pushes_s)
             })
             .collect();
         let flights: Vec<FigureFlight<'_>> = model

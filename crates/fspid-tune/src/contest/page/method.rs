@@ -12,7 +12,7 @@ fn items(outcome: &Outcome) -> Vec<Item> {
     let reference = cut(name(outcome, outcome.judged.against), 60);
     let mut items = vec![
         Item::Heading("Tuning".to_owned()),
-        Item::Text(match setting.efforts.first().filter(|_| super::is_tuned(outcome)) {
+        Item::Text(match setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
             None => "Nobody has free numbers; all fly as they are written.".to_owned(),
             Some(effort) => format!(
                 "Every controller with free numbers was tuned with {} and {} from each of {}, to make small: {}{}. Each candidate flew {}{}. A requirement of the scenario that is broken comes before any cost. Controllers without free numbers fly as they are written.",

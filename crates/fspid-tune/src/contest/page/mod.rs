@@ -82,7 +82,7 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
 
 fn notes(outcome: &Outcome) -> Vec<String> {
     let mut notes = cautions(outcome);
-    let seeds = match is_tuned(outcome) {
+    let seeds = match outcome.judged.is_tuned() {
         true => " and seeds like these",
         false => "",
     };
@@ -103,7 +103,7 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
         fact("cases", judged.cases.len().to_string()),
         fact("flights judged", flights.to_string()),
     ];
-    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned(outcome)) {
+    if let Some(effort) = setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
         let seeds: Vec<String> = setting.efforts.iter().map(|it| it.seed.to_string()).collect();
         facts.push(fact("optimiser", effort.optimiser.clone()));
         facts.push(fact("candidates of each tuning", effort.budget.to_string()));
@@ -118,16 +118,11 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
     facts
 }
 
-/// Whether anybody was tuned.
-fn is_tuned(outcome: &Outcome) -> bool {
-    outcome.judged.contestants.iter().any(|it| it.is_tuned)
-}
-
 fn command(outcome: &Outcome) -> String {
     let setting = &outcome.setting;
     let mut words = vec![format!("fspid contest {}", word(&setting.file))];
     words.extend(setting.overrides.iter().map(|it| format!("--set {}", word(it))));
-    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned(outcome)) {
+    if let Some(effort) = setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
         words.push(format!("--seeds {} --budget {}", setting.efforts.len(), effort.budget));
     }
     words.push(format!("--out {}", word(&setting.folder)));
