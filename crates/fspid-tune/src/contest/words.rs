@@ -230,8 +230,9 @@ fn decision(outcome: &Outcome, first: usize) -> (bool, String) {
         ),
         None => {
             let ranking = outcome.first().ranking;
-            let open = ranking.iter().filter(|place| outcome.comparison(**place).as_ref().is_some_and(is_open));
-            open_of(&open.map(|place| cut(name(outcome, *place), 60)).collect::<Vec<_>>())
+            let open = ranking.iter().filter_map(|place| outcome.comparison(*place)).filter(is_open);
+            let open = open.map(|it| cut(name(outcome, it.contestant), 60));
+            open_of(&open.collect::<Vec<_>>())
         }
     }
 }

@@ -16,6 +16,8 @@ use crate::contest::{First, Flight, Outcome, text, words};
 /// Most rows of the table of cases, and most columns of a table by groups.
 const MOST_ROWS: usize = 300;
 const MOST_GROUPS: usize = 16;
+/// Most groups beside each other: a page of 1200 px has room for them.
+const GROUPS_IN_A_TABLE: usize = 5;
 
 pub(super) fn table(caption: String, head: &[&str], rows: Vec<Vec<Datum>>) -> DataTable {
     let head = head.iter().map(|it| (*it).to_owned()).collect();
@@ -144,7 +146,7 @@ pub(super) fn failures_chapter(outcome: &Outcome) -> Chapter {
     let mut items = vec![Item::Table(failures(outcome))];
     if let Some(reasons) = reasons(outcome) {
         items.push(Item::Heading("Why flights failed".to_owned()));
-        items.push(Item::Table(reasons));
+        items.extend(reasons);
     }
     let mirrors = outcome.summaries.iter().enumerate();
     let mirrors: Vec<String> =
@@ -197,7 +199,7 @@ fn failures(outcome: &Outcome) -> DataTable {
 }
 
 /// Controllers by groups of cases: how many flights failed, and mostly why; none where none failed.
-fn reasons(outcome: &Outcome) -> Option<DataTable> {
+fn reasons(outcome: &Outcome) -> Option<Vec<Item>> {
     let judged = &outcome.judged;
     let groups = judged.groups();
     let mut any = false;
@@ -228,14 +230,14 @@ fn reasons(outcome: &Outcome) -> Option<DataTable> {
         })
         .collect();
     let caption = format!(
-        "Failed flights of all flights of each group, over all seeds and draws, and the requirements that most of them break. The whole reason of every flight is in contest.parquet.{}",
+        "Failed flights of all flights of each group, over all seeds and draws, and the reasons that most of them have. The whole reason of every flight is in contest.parquet.{}",
         left_out(groups.len())
     );
-    any.then(|| grouped_table(caption, &groups, rows))
+    any.then(|| grouped_tables(caption, &groups, &rows))
 }
 
 /// How everyone differs from the one compared with, by group of cases; the first of each group is marked.
-pub(super) fn by_group(outcome: &Outcome) -> DataTable {
+pub(super) fn by_group(outcome: &Outcome) -> Vec<Item> {
     let judged = &outcome.judged;
     let groups = judged.groups();
     let firsts: Vec<First> =
@@ -265,20 +267,35 @@ pub(super) fn by_group(outcome: &Outcome) -> DataTable {
         cut(name(outcome, judged.against), 60),
         left_out(groups.len())
     );
-    grouped_table(caption, &groups, rows.collect())
+    grouped_tables(caption, &groups, &rows.collect::<Vec<_>>())
 }
 
-fn grouped_table(
+/// Tables of a column for each group, so many in one as a page has room for; the caption stands above the first.
+fn grouped_tables(
     caption: String,
     groups: &[(String, Vec<usize>)],
-    rows: Vec<Vec<Datum>>,
-) -> DataTable {
-    let mut head = vec!["controller".to_owned()];
-    head.extend(groups.iter().take(MOST_GROUPS).map(|(name, cases)| {
-        format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
-    }));
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    table(caption, &head, rows)
+    rows: &[Vec<Datum>],
+) -> Vec<Item> {
+    let heads: Vec<String> = groups
+        .iter()
+        .take(MOST_GROUPS)
+        .map(|(name, cases)| {
+            format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
+        })
+        .collect();
+    let mut captions = [caption].into_iter();
+    let chunk = |(index, heads): (usize, &[String])| {
+        let first = 1 + index * GROUPS_IN_A_TABLE;
+        let part = |row: &Vec<Datum>| -> Vec<Datum> {
+            let cells = row.iter().skip(first).take(heads.len());
+            row.iter().take(1).chain(cells).cloned().collect()
+        };
+        let head = ["controller"].into_iter().chain(heads.iter().map(String::as_str));
+        let head: Vec<&str> = head.collect();
+        let caption = captions.next().unwrap_or_else(|| "Further groups of cases.".to_owned());
+        Item::Table(table(caption, &head, rows.iter().map(part).collect()))
+    };
+    heads.chunks(GROUPS_IN_A_TABLE).enumerate().map(chunk).collect()
 }
 
 /// A sentence about groups that a table has no room for.
