@@ -292,12 +292,8 @@ fn cell(drawn: &Drawn) -> Cell<'_> {
 
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Settled => "settled",
-        Verdict::NotSettled { .. } => "not settled",
-        Verdict::Flown => "flown",
-        Verdict::Diverged { .. } => "diverged",
-        Verdict::HitGround { .. } => HIT_GROUND,
         Verdict::Unstable { .. } => "unstable",
+        verdict => verdict.kind(),
     }
 }
 

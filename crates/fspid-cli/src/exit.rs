@@ -3,6 +3,7 @@
 //! With `--format json` standard output holds exactly one JSON object: the answer, or, where there is none, what went
 //! wrong. Standard error holds words for people in any case.
 
+use fspid_study::digits::counted;
 use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -69,6 +70,15 @@ impl Failure {
     /// A requirement or claim check that was not met.
     pub(crate) fn not_met(message: impl Display) -> Self {
         Self::new(Self::NOT_MET, message)
+    }
+
+    /// Requirements that are not met, of so many, and flights that failed; one of both is.
+    pub(crate) fn not_met_of(unmet: usize, count: usize, flights: usize) -> Self {
+        let requirements =
+            (unmet > 0).then(|| format!("{unmet} of {} not met", counted(count, "requirement")));
+        let flights = (flights > 0).then(|| format!("{} failed", counted(flights, "flight")));
+        let words: Vec<String> = requirements.into_iter().chain(flights).collect();
+        Self::not_met(words.join(", "))
     }
 
     /// Input that cannot be used.

@@ -211,16 +211,22 @@ fn a_trace_has_a_row_for_every_sample_and_columns_by_controller() {
 fn an_unstable_loop_is_a_result_without_metrics() {
     let folder = folder();
     example(folder.path());
-    let fly = |set: &str| {
+    let fly = |set: &str, failed: bool| {
         let output =
             fspid(&["simulate", "a.toml", "--format", "json", "--set", set], folder.path());
-        assert_eq!(code(&output), 0, "{}", stderr(&output));
-        json(&output)["controllers"][0].clone()
+        // It used to be 0 for both: nothing is required of a flight that fails by itself.
+        assert_eq!(code(&output), i32::from(failed), "{}", stderr(&output));
+        assert_eq!(stderr(&output).contains("fspid: 1 flight failed"), failed);
+        let controller = json(&output)["controllers"][0].clone();
+        assert_eq!(controller["failed"], failed);
+        controller
     };
-    let wild = fly("controller.PC.kp=100");
+    let wild = fly("controller.PC.kp=100", true);
     assert!(wild["verdict"].as_str().expect("text").starts_with("diverged at t = "), "{wild}");
+    assert_eq!(wild["outcome"]["kind"], "diverged");
+    assert!(wild["outcome"]["at_s"].is_f64());
     // Above the neutral gain with the gyro switched off it grows too slowly to be seen.
-    let slow = fly("controller.PC.rate_gain=0.0");
+    let slow = fly("controller.PC.rate_gain=0.0", false);
     assert!(!slow["verdict"].as_str().expect("text").contains("unstable"), "{slow}");
     let output = fspid(
         &[

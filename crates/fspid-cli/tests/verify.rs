@@ -202,7 +202,7 @@ fn a_flight_into_the_ground_fails_whatever_is_required() {
     assert_eq!(answer["failed_flights"][0]["controller"], "PID");
     let flown = fspid(&[&["simulate", "low.toml"], &set[..]].concat(), folder.path());
     assert_eq!(code(&flown), 1);
-    assert!(text(&flown.stderr).contains("1 flight failed"), "{}", text(&flown.stderr));
+    assert!(text(&flown.stderr).contains("fspid: 1 flight failed"), "{}", text(&flown.stderr));
 }
 
 fn text_of(output: &Output) -> String {

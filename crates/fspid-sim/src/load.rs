@@ -12,15 +12,19 @@ use crate::loop_model::{LoopModel, Memory};
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
-/// Points at which the error of a flight is looked at. Its largest value between them is missed by little where the
-/// slow part of the answer counts, and what is missed makes the share that is left look larger, on the safe side.
+/// Points at which the error of a flight is looked at; in the last tenth it is looked at each sample, for swings that are
+/// faster than the points. Its largest value between them is missed by little where the slow part of the answer counts,
+/// and what is missed makes the share that is left look larger, on the safe side.
 const POINTS: usize = 64;
+/// The points before the last tenth.
+const EARLY_POINTS: usize = POINTS - POINTS / 10;
 /// How often the time is doubled to see where the error ends: beyond a thousand flights.
 const DOUBLINGS: usize = 10;
 /// Share of its largest effect that may be left of a load which counts as removed.
 pub const REMOVED: f64 = 0.1;
-/// Share of its largest effect above which a load counts as kept: a flight may be short beside an integral that works.
-pub const KEPT: f64 = 0.5;
+/// Share of its largest effect up to which a load counts as half gone: a flight may be short beside an integral that
+/// works.
+pub const HALF_GONE: f64 = 0.5;
 /// Share of its largest effect that may be left for good of a load which counts as removed, where there is no integral.
 const FOR_GOOD: f64 = 1e-3;
 
@@ -30,7 +34,7 @@ const FOR_GOOD: f64 = 1e-3;
 pub struct ConstantLoad {
     /// Largest size during the flight.
     pub largest: f64,
-    /// Size at the end of the flight.
+    /// Size at the end of the flight: at its last sample, or, where the error still swings, at the last peak of a swing.
     pub at_end: f64,
     /// Size a thousand flights later.
     pub for_good: f64,
@@ -49,16 +53,22 @@ impl ConstantLoad {
     #[must_use]
     pub fn is_removed(&self) -> bool {
         // Written so that NaN is not removed.
-        self.share_left() <= REMOVED
-            && (self.has_integral || self.for_good <= FOR_GOOD * self.largest)
+        self.share_left() <= REMOVED && !self.stays()
     }
 
-    /// True where more than [`KEPT`] is left at the end or, without an integral, anything for good: what a tuning refuses.
+    /// True where at most [`HALF_GONE`] is left at the end and, without an integral, next to nothing for good: what a
+    /// tuning asks by default.
     #[must_use]
-    pub fn is_kept(&self) -> bool {
-        // Written so that NaN is kept.
-        !(self.share_left() <= KEPT
-            && (self.has_integral || self.for_good <= FOR_GOOD * self.largest))
+    pub fn is_half_gone(&self) -> bool {
+        // Written so that NaN is not half gone.
+        self.share_left() <= HALF_GONE && !self.stays()
+    }
+
+    /// True where, without an integral, something is left for good.
+    #[must_use]
+    pub fn stays(&self) -> bool {
+        // Written so that NaN stays.
+        !self.has_integral && !(self.for_good <= FOR_GOOD * self.largest)
     }
 
     /// True where what is left at the end goes on shrinking to nothing.
@@ -107,22 +117,54 @@ fn with_plant(
     if let Some(load) = state.last_mut() {
         *load = 1.0;
     }
-    let (mut largest, mut at_end): (f64, f64) = (0.0, 0.0);
     // What is left over of whole stretches comes first, so that the last point is the end of the flight.
     power(&one, samples % points)?.apply(&state.clone(), &mut state)?;
-    for _ in 0..points {
+    let mut history: Vec<(usize, f64)> = Vec::new();
+    let mut largest: f64 = 0.0;
+    for point in 1..=points {
+        let stretch = samples / points;
+        // The same sample by another way would have other last bits: the largest is that of the points.
+        let fine = (point > EARLY_POINTS).then(|| state.clone());
         several.apply(&state, &mut next)?;
         std::mem::swap(&mut state, &mut next);
         // The pitch angle is the plant's first state; the set-point stays at zero.
-        at_end = state.first().copied().unwrap_or(0.0).abs();
-        largest = if at_end <= largest { largest } else { at_end };
+        let size_at = |state: &[f64]| state.first().copied().unwrap_or(0.0).abs();
+        let end = samples - (points - point) * stretch;
+        let mut between = fine.unwrap_or_default();
+        for sample in (end - stretch + 1..end).take_while(|_| point > EARLY_POINTS) {
+            one.apply(&between.clone(), &mut between)?;
+            history.push((sample, size_at(&between)));
+        }
+        let here = size_at(&state);
+        largest = if here <= largest { largest } else { here };
+        history.push((end, here));
     }
+    let at_end = left_at_end(&history);
     let mut flight = power(&several, points)?;
     for _ in 0..DOUBLINGS {
         flight = flight.product(&flight)?;
     }
     let for_good = flight.get(0, size).unwrap_or(f64::NAN).abs();
     Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral })
+}
+
+/// What is left at the end of a history of sizes: the last one, or the last peak where the error still swings. It does
+/// where another peak could follow: the last is no farther from the end than from the peak before it.
+fn left_at_end(history: &[(usize, f64)]) -> f64 {
+    let peaks: Vec<(usize, f64)> = history
+        .windows(3)
+        .filter_map(|three| match three {
+            [(_, before), peak, (_, after)] => {
+                (*before < peak.1 && peak.1 >= *after).then_some(*peak)
+            }
+            _ => None,
+        })
+        .collect();
+    let (end, last) = history.last().copied().unwrap_or((0, f64::NAN));
+    match peaks.as_slice() {
+        [.., (before, _), (at, size)] if end - at <= at - before && *size > last => *size,
+        _ => last,
+    }
 }
 
 /// The one-sample matrix of the closed loop with one more state: a load that stays, added to the arriving command.
@@ -202,7 +244,7 @@ mod tests {
         let exact = (1.0 - libm::pow(1.0 - 2.0 * DT_S, 500.0)) / 2.0;
         assert!((load.at_end - exact).abs() < 1e-12, "{load:?} {exact}");
         assert!((load.for_good - 0.5).abs() < 1e-12 && !load.has_integral);
-        assert!(!load.is_removed() && load.is_kept() && !load.is_slow());
+        assert!(!load.is_removed() && !load.is_half_gone() && !load.is_slow());
     }
 
     #[test]
@@ -210,8 +252,34 @@ mod tests {
         let gains = Gains { kp: 2.0, ki: 0.2, kd: 0.0 };
         let (short, long) = (asked(5.0, gains), asked(60.0, gains));
         assert!(!short.is_removed() && short.is_slow(), "{short:?}");
-        assert!(long.is_removed() && !long.is_kept(), "{long:?}");
+        assert!(long.is_removed() && long.is_half_gone(), "{long:?}");
         assert!(short.for_good < 1e-6 && long.for_good < 1e-6);
+    }
+
+    /// The error swings with a period of 6.3 s and a fiftieth of the damping: what was left used to be whatever the last
+    /// sample was, next to nothing where a swing passes zero there.
+    #[test]
+    fn what_is_left_of_a_swing_does_not_depend_on_where_the_flight_ends() {
+        for tenths in 0..32 {
+            let load = asked(30.0 + f64::from(tenths) / 10.0, Gains { kp: 0.02, ki: 1.0, kd: 0.0 });
+            assert!((0.6..0.8).contains(&load.share_left()), "{tenths} {load:?}");
+            assert!(!load.is_removed() && load.is_slow());
+        }
+        // Swings faster than the points.
+        let fast = Gains { kp: 0.02, ki: 900.0, kd: 0.0 };
+        for samples in 0..10 {
+            let load = asked(20.0 + DT_S * f64::from(samples), fast);
+            assert!(load.share_left() > 0.5, "{samples} {load:?}");
+        }
+    }
+
+    #[test]
+    fn a_swing_that_is_over_leaves_what_is_there_at_the_end() {
+        let sizes = [0.0, 1.0, 0.5, 0.0, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01];
+        let history: Vec<(usize, f64)> = sizes.into_iter().enumerate().collect();
+        assert_eq!(left_at_end(&history), 0.01);
+        assert_eq!(left_at_end(&history[..7]), 0.3);
+        assert!(left_at_end(&[]).is_nan());
     }
 
     #[test]

@@ -48,6 +48,15 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.
+    #[must_use]
+    pub fn pushes_s(&self) -> Vec<f64> {
+        let pushing = self.disturbances.iter().filter(|disturbance| !disturbance.is_noise());
+        let mut pushes_s: Vec<f64> = pushing.map(Disturbance::starts_s).collect();
+        pushes_s.sort_by(f64::total_cmp);
+        pushes_s
+    }
+
     /// Everything that does not depend on the controller, computed once.
     ///
     /// # Errors

@@ -37,7 +37,7 @@ fn main() {
     report("the flight", || simulate(&study.scenario).expect("it flies"));
     report("its metrics", || {
         let timing = study.scenario.timing;
-        FlightMetrics::of(&flown.traces[0], &flown.edges, timing, None)
+        FlightMetrics::of(&flown.traces[0], &flown.edges, timing, None, &[])
     });
     let at_rest = report("margins and disk at rest", || analysed(0));
     let mapped = report("the same with the map", || analysed(9));

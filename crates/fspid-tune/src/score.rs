@@ -1,10 +1,10 @@
 //! What a candidate is worth: costs of flights, and how they become one.
 
 use fspid_campaign::engine::FlightResult;
-use fspid_sim::load::{ConstantLoad, KEPT};
+use fspid_sim::load::{ConstantLoad, HALF_GONE};
 use fspid_study::metrics::Verdict;
 use fspid_study::requirement::{Judgement, Requirement};
-use fspid_study::simulation::{WRONG_WAY, left_validity};
+use fspid_study::simulation::WRONG_WAY;
 use fspid_study::tuning::{Over, Tuning};
 use serde::{Deserialize, Serialize};
 
@@ -50,7 +50,7 @@ impl FlightScore {
                 }
                 _ => 1.0,
             };
-            let mut reasons = vec![flight.metrics.verdict.to_string()];
+            let mut reasons = flight.ending().failures();
             reasons.extend(flight.metrics.wrong_way.then(|| WRONG_WAY.to_owned()));
             return Self { violation: LOST * (2.0 - late), values: Vec::new(), reasons };
         }
@@ -68,9 +68,9 @@ impl FlightScore {
                 judgement.requirement.limits_in_words()
             )
         });
-        let left = flight.failing_exit();
-        let beside = left.map(|exit| left_validity(&exit));
-        let reasons = beside.into_iter().chain(missing).chain(broken).collect();
+        let left = flight.ending().failing_exit();
+        let own = flight.ending().failures().into_iter();
+        let reasons = own.chain(missing).chain(broken).collect();
         let violation: f64 = asked.iter().map(violation).sum::<f64>()
             + left.map_or(0.0, |exit| 1.0 + (exit.outside_s / duration_s).clamp(0.0, 1.0));
         match values {
@@ -81,7 +81,7 @@ impl FlightScore {
 
     /// The same where a constant load must not stay.
     pub(crate) fn with_load(mut self, flight: &FlightResult, duration_s: f64) -> Self {
-        if let Some(load) = flight.at_rest.load.filter(ConstantLoad::is_kept) {
+        if let Some(load) = flight.at_rest.load.filter(|load| !load.is_half_gone()) {
             self.violation += load_left(&load);
             self.reasons.extend(flight.at_rest.load_in_words(duration_s));
         }
@@ -91,7 +91,7 @@ impl FlightScore {
 
 /// How much more of a constant load is left than is allowed, as a share of its largest effect.
 fn load_left(load: &ConstantLoad) -> f64 {
-    let beyond = load.share_left() - KEPT;
+    let beyond = load.share_left() - HALF_GONE;
     // Never nothing, for what is left for good may be little. Written so that NaN is all of it.
     if beyond <= 1.0 { beyond.max(LEFT_FOR_GOOD) } else { 1.0 }
 }

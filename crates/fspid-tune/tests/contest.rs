@@ -259,6 +259,72 @@ fn a_controller_that_is_better_everywhere_wins_significantly() {
     );
 }
 
+/// It used to win: errors alone decided, and what failed was told after a "but".
+#[test]
+fn who_fails_every_flight_or_many_more_than_another_does_not_win_and_is_not_better() {
+    let two = [
+        pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("good", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+    ]
+    .concat();
+    let asked = |more: &str| {
+        format!(
+            "\n[[requirement]]\nmeasure = \"largest_command_deg\"\nmost = 0.001\ncontroller = \"good\"\n{more}"
+        )
+    };
+    for (more, head, standing) in [
+        (
+            "",
+            "8 of its 8 flights fail (largest_command_deg)",
+            "not better, for all its flights fail",
+        ),
+        (
+            "not_in = [\"2 deg\"]\n",
+            "7 of its 8 flights fail (largest_command_deg)",
+            "not better, for more of its flights fail",
+        ),
+    ] {
+        let place = place(&format!("{LOOP}{two}{}{}", asked(more), cases("")));
+        let outcome = place.held();
+        let found = outcome.comparison(1).expect("a comparison");
+        assert_eq!((found.standing, found.is_sure), (Standing::Barred, false));
+        assert!(found.ratio.mean.is_some_and(|ratio| ratio < 1.0));
+        let told = outcome.text();
+        let first = format!("good is first, and nobody wins: {head}, 0 of 8 of slack.");
+        assert!(told.starts_with(&first), "{told}");
+        assert!(told.contains(standing) && !told.contains("not significantly"), "{told}");
+        let json = outcome.json();
+        assert!(json["verdict"]["winner"].is_null());
+        assert_eq!(
+            json["controllers"][1]["compared"]["iae_deg_s"]["standing"],
+            "barred by failures"
+        );
+        // Nobody was tuned: the page speaks of no seeds and no budget.
+        let page = fs::read_to_string(place.out().join("contest.html")).expect("a page");
+        for part in
+            ["--seeds", "--budget", "Every controller with free numbers was tuned", "seeds like"]
+        {
+            assert!(!page.contains(part), "{part}");
+        }
+    }
+}
+
+/// The larger error of one whose flights are well is no reason to call the other better, which fails.
+#[test]
+fn who_is_compared_with_one_that_fails_is_not_called_worse() {
+    let text = format!(
+        "{LOOP}{}{}\n[[requirement]]\nmeasure = \"largest_command_deg\"\nmost = 0.001\ncontroller = \"good\"\n{}",
+        pid("good", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+        pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        cases("")
+    );
+    let outcome = place(&text).held();
+    assert_eq!(outcome.comparison(1).map(|it| it.standing), Some(Standing::Barred));
+    let told = outcome.text();
+    assert!(told.starts_with("good is first, and nobody wins: 8 of its 8 flights fail"), "{told}");
+    assert!(told.contains("not worse, for what it is compared with fails"), "{told}");
+}
+
 /// Used to end with "wins, p = 0.0004" after one tuning each, where three seeds name nobody.
 #[test]
 fn one_tuning_each_names_no_winner_in_text_json_and_page() {
@@ -279,6 +345,9 @@ fn one_tuning_each_names_no_winner_in_text_json_and_page() {
         "{told}"
     );
     assert!(!told.contains(" wins"), "{told}");
+    // With one tuning each nothing is significant, and the head does not say so of anybody.
+    let head_line = told.lines().next().expect("a line");
+    assert!(!head_line.contains("significant"), "{head_line}");
     let json = outcome.json();
     assert_eq!(
         (&json["verdict"]["words"], &json["verdict"]["winner"]),

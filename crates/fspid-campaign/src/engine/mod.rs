@@ -12,9 +12,9 @@ use fspid_core::Faults;
 use fspid_sim::{Exit, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
 use fspid_study::file::{RangeRule, Study};
-use fspid_study::metrics::{CommandEffort, FlightMetrics, largest_error_rad};
+use fspid_study::metrics::{CommandEffort, FlightMetrics, Verdict, largest_error_rad};
 use fspid_study::requirement::{Judgement, judge};
-use fspid_study::simulation::{ControllerResult, WRONG_WAY, failing_exit, left_validity};
+use fspid_study::simulation::{ControllerResult, Ending};
 
 pub use memory::Memory;
 
@@ -140,7 +140,8 @@ fn measure(
             false => AtRest::stability(scenario, &named.controller),
         };
         let unstable = at_rest.unstable.filter(|_| stability == Stability::Analysed);
-        let metrics = FlightMetrics::of(&trace, prepared.edges(), scenario.timing, unstable);
+        let (edges, pushes_s) = (prepared.edges(), scenario.pushes_s());
+        let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
         let (name, range_rule) = (named.name.clone(), study.range_rule);
         let duration_s = scenario.timing.end_s();
         Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
@@ -185,7 +186,7 @@ impl FlightResult {
     #[must_use]
     pub fn diverged_at_s(&self) -> Option<f64> {
         match self.metrics.verdict {
-            fspid_study::metrics::Verdict::Diverged { at_s } => Some(at_s),
+            Verdict::Diverged { at_s } => Some(at_s),
             _ => None,
         }
     }
@@ -194,38 +195,37 @@ impl FlightResult {
     #[must_use]
     pub fn hit_ground_at_s(&self) -> Option<f64> {
         match self.metrics.verdict {
-            fspid_study::metrics::Verdict::HitGround { at_s } => Some(at_s),
+            Verdict::HitGround { at_s } => Some(at_s),
             _ => None,
         }
+    }
+
+    /// How the flight ended.
+    #[must_use]
+    pub fn ending(&self) -> Ending {
+        let (measured, exit) = (self.metrics.verdict, self.exit);
+        Ending { measured, exit, range_rule: self.range_rule }
     }
 
     /// True for a flight that has [`reasons`](Self::reasons) to be called failed.
     #[must_use]
     pub fn is_failed(&self) -> bool {
-        self.is_lost()
-            || self.failing_exit().is_some()
+        !self.ending().failures().is_empty()
+            || self.is_unsettled()
             || self.judgements.iter().any(|judgement| !judgement.met)
     }
 
-    /// The range of the aircraft's data that was left, where the scenario does not allow it.
-    #[must_use]
-    pub fn failing_exit(&self) -> Option<Exit> {
-        failing_exit(self.exit, self.range_rule)
-    }
-
-    /// A flight that diverged, hit the ground or is of a loop that is unstable at rest; where nothing is required of it,
-    /// also one that did not settle.
-    fn is_lost(&self) -> bool {
+    /// Where nothing is required of it, a flight is asked to settle its steps.
+    fn is_unsettled(&self) -> bool {
         let verdict = self.metrics.verdict;
-        if self.judgements.is_empty() { !verdict.is_good() } else { verdict.is_failure() }
+        self.judgements.is_empty() && !verdict.is_good() && !verdict.is_failure()
     }
 
-    /// Why the flight counts as failed: it diverged, hit the ground or left the range of the aircraft's data, its loop is
-    /// unstable at rest, requirements are not met; where nothing is required of the controller, a step that it did not settle. Empty for a flight
-    /// that is well.
+    /// Why the flight counts as failed: it fails by itself, requirements are not met, or, where nothing is required of
+    /// the controller, a step is not settled. Empty for a flight that is well.
     #[must_use]
     pub fn reasons(&self) -> Vec<String> {
-        let lost = self.is_lost().then(|| self.metrics.verdict.to_string());
+        let unsettled = self.is_unsettled().then(|| self.metrics.verdict.to_string());
         let unmet = self.judgements.iter().filter(|judgement| !judgement.met).map(|judgement| {
             let requirement = &judgement.requirement;
             format!(
@@ -235,12 +235,6 @@ impl FlightResult {
                 requirement.limits_in_words()
             )
         });
-        let wrong_way = self.metrics.wrong_way && lost.is_some();
-        let left = self.failing_exit().map(|exit| left_validity(&exit));
-        lost.into_iter()
-            .chain(wrong_way.then(|| WRONG_WAY.to_owned()))
-            .chain(left)
-            .chain(unmet)
-            .collect()
+        unsettled.into_iter().chain(self.ending().failures()).chain(unmet).collect()
     }
 }

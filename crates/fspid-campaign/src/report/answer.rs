@@ -2,6 +2,7 @@
 
 use fspid_study::figure::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
 use fspid_study::report::analysis::{DataTable, Datum, Item, Standing, Verdict};
+use fspid_study::simulation::FAILS_BY_ITSELF;
 
 use super::words::{count, cut, percent, probability, with_unit};
 use super::{Source, picture, style};
@@ -51,7 +52,7 @@ pub(super) fn items(source: &Source<'_>) -> Vec<Item> {
         "failing",
         failing(source),
         format!(
-            "Probability that a flight fails: estimates with their exact {} intervals (Clopper and Pearson); where none failed, up to the one-sided bound. A flight fails if it diverges, if its loop is unstable, if a requirement is not met, or if its numbers make no scenario; where nothing is required of its controller, also if it does not settle.",
+            "Probability that a flight fails: estimates with their exact {} intervals (Clopper and Pearson); where none failed, up to the one-sided bound. A flight fails that {FAILS_BY_ITSELF}; one that does not meet a requirement, and one whose numbers make no scenario; where nothing is required of its controller, also one that does not settle.",
             percent(summary.head.confidence)
         ),
     )];
@@ -63,9 +64,9 @@ pub(super) fn items(source: &Source<'_>) -> Vec<Item> {
             items.push(picture("requirements", svg, caption));
         }
     } else {
-        items.push(Item::Text(
-            "The scenario has no requirements: a flight fails if it diverges, if it does not settle, or if its loop of fixed gains is unstable.".to_owned(),
-        ));
+        items.push(Item::Text(format!(
+            "The scenario has no requirements: a flight fails that does not settle, or that {FAILS_BY_ITSELF}."
+        )));
     }
     items
 }

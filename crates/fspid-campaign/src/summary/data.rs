@@ -234,6 +234,8 @@ pub enum Severity {
     HitGround,
     /// The loop is unstable at rest, which did not show in the flight.
     Unstable,
+    /// It left the range of its aircraft's data, which its scenario does not allow.
+    LeftRange,
     /// Its numbers make no scenario.
     Refused,
     /// Requirements are not met.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use fspid_study::metrics::LEFT_RANGE;
+
 use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
@@ -141,6 +143,8 @@ impl Flights {
             HIT_GROUND => Severity::HitGround,
             "unstable" => Severity::Unstable,
             REFUSED => Severity::Refused,
+            // The column of the verdict says what the measures come to.
+            _ if ending.reasons.is_some_and(|it| it.contains(LEFT_RANGE)) => Severity::LeftRange,
             // Alone among the reasons where nothing is required, and never among those of requirements.
             verdict @ "not settled" if ending.reasons.is_some_and(|it| it.starts_with(verdict)) => {
                 Severity::NotSettled

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use fspid_study::simulation::FAILS_BY_ITSELF;
+
 use super::data::{Note, Probability, Severity};
 use crate::sample::Sampling;
 
@@ -111,6 +113,7 @@ impl Severity {
             Self::HitGround => crate::rows::HIT_GROUND,
             Self::Unstable => "unstable",
             Self::Refused => "refused",
+            Self::LeftRange => "left the range",
             Self::RequirementsNotMet => "requirements not met",
             Self::NotSettled => "not settled",
         }
@@ -152,8 +155,8 @@ impl fmt::Display for Note {
             }
             Self::NothingRequired { controller } => write!(
                 f,
-                "{controller}: nothing is required of it. Its flights fail where they diverge or do not settle, or \
-                 where a loop of fixed gains is unstable; of gains that move, ask `measure = \"stable\"`."
+                "{controller}: nothing is required of it. A flight of it fails that does not settle, or that \
+                 {FAILS_BY_ITSELF}."
             ),
             Self::SharesOvercorrected => f.write_str(
                 "Shares of the variance are corrected as for independent runs, which takes off too much on a \

@@ -5,7 +5,6 @@ use clap::Args;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
-use fspid_study::digits::counted;
 use fspid_study::simulation::Simulation;
 use fspid_study::{file, output, report};
 
@@ -44,16 +43,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => print(&simulation.text())?,
         Format::Json => print(&json_text(&simulation.json()))?,
     }
-    if simulation.requirements_met() {
-        return Ok(());
-    }
     let unmet = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
-    let unmet = counted(unmet, "requirement");
-    match simulation.failed_flights().count() {
-        0 => Err(Failure::not_met(format_args!("{unmet} not met"))),
-        flights => Err(Failure::not_met(format_args!(
-            "{unmet} not met, {} failed",
-            counted(flights, "flight")
-        ))),
+    match (unmet, simulation.failed_flights().len()) {
+        (0, 0) => Ok(()),
+        (unmet, flights) => Err(Failure::not_met_of(unmet, simulation.judgements.len(), flights)),
     }
 }

@@ -7,7 +7,6 @@ use clap::Args;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
-use fspid_study::digits::counted;
 use fspid_study::output;
 use fspid_study::verify::{Question, Verification, verify};
 
@@ -44,7 +43,7 @@ const HELP: &str = "Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
   fspid verify pitch.toml --replay again; fspid simulate again/01-overshoot_pct-FSPID.toml
-Exit codes: 0 all met; 1 one is not met; 2 the input is wrong; 4 the output could not be written.
+Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.
 More, with every measure and set: fspid verify --help";
 
 const LONG_HELP: &str = "A requirement:
@@ -86,7 +85,7 @@ Examples:
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
   fspid verify pitch.toml --requirements ours.toml --format json
   fspid verify pitch.toml --replay again; fspid simulate again/01-overshoot_pct-FSPID.toml
-Exit codes: 0 all met; 1 one is not met; 2 the input is wrong; 4 the output could not be written.";
+Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.";
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let requirement_files: Vec<&Path> =
@@ -112,17 +111,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => print(&verification.text(replays))?,
         Format::Json => print(&json_text(&verification.json(replays)))?,
     }
-    match (verification.unmet(), verification.judgements.len(), verification.failed_flights.len()) {
-        (0, _, 0) => Ok(()),
-        (unmet, count, 0) => {
-            let count = counted(count, "requirement");
-            Err(Failure::not_met(format_args!("{unmet} of {count} not met")))
-        }
-        (unmet, count, flights) => Err(Failure::not_met(format_args!(
-            "{unmet} of {} not met, {} failed",
-            counted(count, "requirement"),
-            counted(flights, "flight")
-        ))),
+    match (verification.unmet(), verification.failed_flights.len()) {
+        (0, 0) => Ok(()),
+        (unmet, flights) => Err(Failure::not_met_of(unmet, verification.judgements.len(), flights)),
     }
 }
 

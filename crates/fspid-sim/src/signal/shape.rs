@@ -89,6 +89,20 @@ impl Shape {
         Ok(self)
     }
 
+    /// Before this there is nothing, s.
+    #[must_use]
+    pub fn starts_s(&self) -> f64 {
+        match *self {
+            Self::Step { at_s }
+            | Self::Pulse { at_s, .. }
+            | Self::Doublet { at_s, .. }
+            | Self::Square { at_s, .. }
+            | Self::Ramp { at_s, .. }
+            | Self::Sine { at_s, .. }
+            | Self::Noise { at_s, .. } => at_s,
+        }
+    }
+
     /// Adds `amplitude` times the shape to `values`, one entry a sample. `stream` keeps the noises
     /// of one seed apart.
     pub(crate) fn add_to(&self, values: &mut [f64], amplitude: f64, timing: Timing, stream: u64) {

@@ -4,9 +4,11 @@ use std::fmt;
 
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::Unstable;
-use fspid_sim::{Outcome, Timing, Trace};
+use fspid_sim::{Exit, Outcome, Timing, Trace};
 
-use super::{Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, short};
+use super::{
+    Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, left_validity, short,
+};
 use crate::digits::to_digits;
 
 /// What a flight comes to, in one word.
@@ -38,6 +40,9 @@ pub enum Verdict {
         /// Time in which what grows becomes twice as large, s.
         doubling_s: f64,
     },
+    /// It left the range of its aircraft's data, which its scenario does not allow. Its measures are there, and are of
+    /// data that do not hold: [`Ending`](crate::simulation::Ending) says it of a flight, its metrics never do.
+    LeftRange(Exit),
 }
 
 impl Verdict {
@@ -47,10 +52,31 @@ impl Verdict {
         matches!(self, Self::Settled | Self::Flown)
     }
 
-    /// True for a flight that is lost: it diverged, hit the ground, or its loop is unstable at rest.
+    /// True for a flight that fails by itself: it diverged, hit the ground, left the range of its data, or its loop is
+    /// unstable at rest.
     #[must_use]
     pub fn is_failure(self) -> bool {
-        self.absence().is_some()
+        match self {
+            Self::Settled | Self::NotSettled { .. } | Self::Flown => false,
+            Self::Diverged { .. }
+            | Self::HitGround { .. }
+            | Self::Unstable { .. }
+            | Self::LeftRange(_) => true,
+        }
+    }
+
+    /// Its kind in a word or two, for programs.
+    #[must_use]
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Settled => "settled",
+            Self::NotSettled { .. } => "not settled",
+            Self::Flown => "flown",
+            Self::Diverged { .. } => "diverged",
+            Self::HitGround { .. } => "hit the ground",
+            Self::Unstable { .. } => "unstable at rest",
+            Self::LeftRange(_) => "left the range",
+        }
     }
 
     /// Why nothing can be measured, where that is so.
@@ -59,7 +85,7 @@ impl Verdict {
             Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
             Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
             Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
-            Self::Settled | Self::NotSettled { .. } | Self::Flown => None,
+            Self::Settled | Self::NotSettled { .. } | Self::Flown | Self::LeftRange(_) => None,
         }
     }
 }
@@ -79,6 +105,7 @@ impl fmt::Display for Verdict {
                 }
                 write!(f, "spectral radius {spectral_radius:.6})")
             }
+            Self::LeftRange(exit) => f.write_str(&left_validity(exit)),
         }
     }
 }
@@ -94,6 +121,8 @@ pub struct EdgeMetrics {
     pub to_rad: f64,
     /// Measures up to the next step.
     pub step: StepMetrics,
+    /// When a disturbance first begins within that time, s: the measures are those of both.
+    pub disturbed_from_s: Option<f64>,
 }
 
 /// The measures of one controller's flight.
@@ -110,14 +139,21 @@ pub struct FlightMetrics {
     /// Effort of the command over the whole flight.
     pub effort: Result<CommandEffort, Absent>,
     /// True for a flight that is not good and whose first movement after its first step is steadily away from the
-    /// new set-point: see `moves_away`.
+    /// new set-point, before anything but the command moves it: see `moves_away`. It is a question, and no failure.
     pub wrong_way: bool,
 }
 
 impl FlightMetrics {
-    /// Measures a trace; `unstable` is what the linear loop says of itself.
+    /// Measures a trace; `unstable` is what the linear loop says of itself, and `pushes_s` when something else than the
+    /// command begins to move the aircraft ([`Scenario::pushes_s`](fspid_sim::Scenario::pushes_s)).
     #[must_use]
-    pub fn of(trace: &Trace, edges: &[Edge], timing: Timing, unstable: Option<Unstable>) -> Self {
+    pub fn of(
+        trace: &Trace,
+        edges: &[Edge],
+        timing: Timing,
+        unstable: Option<Unstable>,
+        pushes_s: &[f64],
+    ) -> Self {
         let failed = match (trace.outcome, unstable) {
             (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
             (Outcome::HitGround { at_s }, _) => Some(Verdict::HitGround { at_s }),
@@ -128,8 +164,11 @@ impl FlightMetrics {
             (Outcome::Completed, None) => None,
         };
         let absence = failed.and_then(Verdict::absence);
-        let away = edges.first().is_some_and(|edge| moves_away(trace, edge, failed.is_some()));
-        let edges = edge_metrics(trace, edges, timing, absence);
+        let first_push_s = pushes_s.first().copied().unwrap_or(f64::INFINITY);
+        let quiet = timing.first_sample_at(first_push_s);
+        let away =
+            edges.first().is_some_and(|edge| moves_away(trace, edge, failed.is_some(), quiet));
+        let edges = edge_metrics((trace, edges), timing, absence, pushes_s);
         let restarts: Vec<usize> =
             edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
         let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
@@ -173,25 +212,26 @@ const AWAY: f64 = 1.0;
 
 /// True where a response is a whole step on the wrong side before it was a fiftieth of the step on the right one, or
 /// leaves every range on that side. A loop whose aircraft dips before it rises turns back long before; one that is as
-/// far away as the step was high does not. A flight that was not lost must end there too, so that a gust or a load just
-/// after the step is not taken for it.
-fn moves_away(trace: &Trace, edge: &Edge, lost: bool) -> bool {
+/// far away as the step was high does not. A flight that was not lost must end there too, so that a gust just after the
+/// step is not taken for it; and the movement must be one of the first `quiet` samples, which nothing but the command
+/// moves, so that a load is not.
+fn moves_away(trace: &Trace, edge: &Edge, lost: bool, quiet: usize) -> bool {
     let step_rad = edge.to_rad - edge.from_rad;
     let response = trace.theta_rad.get(edge.sample..).unwrap_or_default();
     let Some(start_rad) = response.first() else {
         return false;
     };
-    let mut way = response.iter().map(|theta_rad| (theta_rad - start_rad) / step_rad);
+    let way = response.iter().map(|theta_rad| (theta_rad - start_rad) / step_rad);
     let ends_away = way.clone().next_back().is_some_and(|way| way <= -AWAY);
-    let first = way.find(|way| *way >= TOWARDS || *way <= -AWAY);
-    first.is_some_and(|way| way < 0.0) && (lost || ends_away)
+    let first = (edge.sample..).zip(way).find(|(_, way)| *way >= TOWARDS || *way <= -AWAY);
+    first.is_some_and(|(sample, way)| way < 0.0 && sample < quiet) && (lost || ends_away)
 }
 
 fn edge_metrics(
-    trace: &Trace,
-    edges: &[Edge],
+    (trace, edges): (&Trace, &[Edge]),
     timing: Timing,
     absence: Option<Absent>,
+    pushes_s: &[f64],
 ) -> Vec<EdgeMetrics> {
     // A step at the very last sample has no response to measure.
     let edges: Vec<&Edge> = edges.iter().filter(|edge| edge.sample + 1 < timing.rows()).collect();
@@ -211,7 +251,13 @@ fn edge_metrics(
                     _ => StepMetrics::absent(Absent::NoStep),
                 };
             let at_s = timing.time_s(edge.sample);
-            EdgeMetrics { at_s, from_rad: edge.from_rad, to_rad: edge.to_rad, step }
+            let within = |push_s: &&f64| {
+                let sample = timing.first_sample_at(**push_s);
+                edge.sample < sample && sample + 1 < end
+            };
+            let disturbed_from_s = pushes_s.iter().find(within).copied();
+            let (from_rad, to_rad) = (edge.from_rad, edge.to_rad);
+            EdgeMetrics { at_s, from_rad, to_rad, step, disturbed_from_s }
         })
         .collect()
 }

@@ -1,12 +1,14 @@
 //! What a flight amounts to: measures of a response, each a value or the reason there is none.
 
 mod effort;
+mod exit;
 mod extreme;
 mod flight;
 mod measure;
 mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
+pub use exit::{LEFT_RANGE, left_validity};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use measure::{Family, Measure};
 pub use step::{StepMetrics, StepWindow};
@@ -71,7 +73,7 @@ impl fmt::Display for Absent {
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
             Self::Unstable { spectral_radius } => {
-                write!(f, "unstable: spectral radius {spectral_radius:.6} of the sampled loop")
+                write!(f, "the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop")
             }
             Self::NotFinite => f.write_str("the response is not finite"),
             Self::NotRisen { window_s } => {

@@ -38,7 +38,8 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
             "Linear analysis of the sampled loop, broken at the {point}, the others closed. Exact zero-order hold, actuator, delays and the controller as it is implemented; frequencies in rad/s."
         ),
         verdicts: analysis.loops.iter().map(verdict).collect(),
-        warnings: study.warnings.iter().chain(&analysis.left_out).cloned().collect(),
+        warnings: study.warnings.clone(),
+        beside: analysis.left_out.clone(),
         requirements: None,
         chapters,
         provenance: Provenance {

@@ -35,7 +35,8 @@ pub(super) fn step_name(index: usize, edge: &EdgeMetrics) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     };
     let (from, to, at_s) = (level(from), level(to), number::fixed(edge.at_s, 2));
-    format!("{}, {way}: {from} to {to} deg at {at_s} s", index + 1)
+    let both = edge.disturbed_in_words();
+    format!("{}, {way}: {from} to {to} deg at {at_s} s{both}", index + 1)
 }
 
 /// Rows of a flight: one a step, or one that says why there is none.

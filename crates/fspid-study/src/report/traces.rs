@@ -213,10 +213,10 @@ impl Drawing<'_> {
 
     /// Where a loop fails: a range in which the good ones, or at least the set-point, can be read.
     fn range(&self, and: &[Series], of: fn(&ControllerResult) -> &Vec<f64>) -> Option<(f64, f64)> {
-        if !self.flown().any(|(_, result)| fails(result)) {
+        if !self.flown().any(|(_, result)| grows(result)) {
             return None;
         }
-        let good = self.flown().filter(|(_, result)| !fails(result));
+        let good = self.flown().filter(|(_, result)| !grows(result));
         let good = good.flat_map(|(_, result)| of(result).iter().copied().map(degrees));
         let commanded = and.iter().filter(|s| s.style == SeriesStyle::Setpoint);
         let commanded = commanded.flat_map(|series| series.y.iter().copied());
@@ -224,6 +224,25 @@ impl Drawing<'_> {
             good.chain(commanded).fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let bound = if largest > 0.0 { HEADROOM * largest } else { 10.0 };
         Some((-bound, bound))
+    }
+
+    /// Names of flights whose lines leave a panel, which shows the range in which others can be read.
+    pub(super) fn leaving(&self) -> Vec<&str> {
+        let angles: [fn(&ControllerResult) -> &Vec<f64>; 2] =
+            [|result| &result.trace.command_rad, |result| &result.trace.elevator_rad];
+        let beyond = |result: &ControllerResult, of: fn(&ControllerResult) -> &Vec<f64>, range| {
+            let (low, high): (f64, f64) = range;
+            of(result).iter().copied().map(degrees).any(|value| !(low..=high).contains(&value))
+        };
+        let pitch = self.pitch().y_range;
+        let leaves = |result: &ControllerResult| {
+            pitch.is_some_and(|range| beyond(result, |it| &it.trace.theta_rad, range))
+                || angles
+                    .iter()
+                    .any(|&of| self.range(&[], of).is_some_and(|range| beyond(result, of, range)))
+        };
+        let leaving = self.flown().filter(|(_, result)| leaves(result));
+        leaving.map(|(_, result)| result.name.as_str()).collect()
     }
 
     /// Two per cent of the step about each level of the command.
@@ -261,7 +280,17 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
     column.get(..end).unwrap_or(column)
 }
 
+/// True for a flight that fails and may go anywhere: what comes down to the ground stays as readable as it was.
+fn grows(result: &ControllerResult) -> bool {
+    fails(result) && !matches!(result.trace.outcome, Outcome::HitGround { .. })
+}
+
+/// True for a flight that ended before its time.
+pub(super) fn is_cut_short(result: &ControllerResult) -> bool {
+    result.trace.outcome != Outcome::Completed
+}
+
 /// True for a flight without measures.
 pub(super) fn fails(result: &ControllerResult) -> bool {
-    result.metrics.verdict.is_failure() || result.trace.outcome != Outcome::Completed
+    result.metrics.verdict.is_failure() || is_cut_short(result)
 }

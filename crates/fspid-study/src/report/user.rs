@@ -5,15 +5,15 @@ use fspid_sim::Controller;
 use serde::Serialize;
 
 use super::html::{self, context};
-use super::number::{capital, fixed, measured, significant, with_sign};
+use super::number::{capital, fixed, measured, sentence, significant, with_sign};
 use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor;
-use super::traces::{Drawing, fails};
+use super::traces::{Drawing, fails, is_cut_short};
 use super::{measures, settings};
 use crate::figure::SurfaceKind;
-use crate::file::Study;
+use crate::file::{Setting, Study};
 use crate::metrics::Verdict;
-use crate::simulation::{ControllerResult, Simulation, WRONG_WAY, failing_exit, left_validity};
+use crate::simulation::{ControllerResult, Simulation};
 
 #[derive(Clone, Copy)]
 struct User<'a> {
@@ -49,7 +49,7 @@ struct Outcome {
 }
 
 fn outcome(result: &ControllerResult) -> Outcome {
-    let verdict = result.metrics.verdict;
+    let verdict = result.verdict();
     let (class, word) = match verdict {
         Verdict::Settled => ("good", "\u{2713} Settled"),
         Verdict::Flown => ("good", "\u{2713} Flown"),
@@ -57,8 +57,8 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
         Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
         Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
+        Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA"),
     };
-    let first = result.metrics.first_step();
     let detail = match verdict {
         Verdict::Diverged { at_s } => format!(
             "The pitch angle left every reasonable range at t = {} s. Nothing can be measured in this flight.",
@@ -75,31 +75,29 @@ fn outcome(result: &ControllerResult) -> Outcome {
             fixed(spectral_radius, 6)
         ),
         Verdict::Flown => "There was no step in the command to measure against.".to_owned(),
-        Verdict::Settled | Verdict::NotSettled { .. } => format!(
-            "{}. First step: rise time {}, overshoot {}.",
-            capital(&verdict.to_string()),
-            with_unit(first.rise_time_s, 3, "s"),
-            with_unit(first.overshoot_pct, 2, "%")
+        Verdict::Settled | Verdict::NotSettled { .. } => {
+            format!("{}. {}", capital(&verdict.to_string()), first_step(result))
+        }
+        Verdict::LeftRange(_) => format!(
+            "The flight {verdict}. It fails, because nobody knows how the aircraft flies there: its measures are of \
+             data that do not hold."
         ),
     };
     Outcome { name: result.name.clone(), class, word, detail }
 }
 
+fn first_step(result: &ControllerResult) -> String {
+    let first = result.metrics.first_step();
+    format!(
+        "First step: rise time {}, overshoot {}.",
+        with_unit(first.rise_time_s, 3, "s"),
+        with_unit(first.overshoot_pct, 2, "%")
+    )
+}
+
 fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> String {
     let text = measured(value, decimals);
     if value.is_ok() { format!("{text} {unit}") } else { format!("absent ({text})") }
-}
-
-/// A sign that may be wrong, a range that was left, the gains at rest, a load that stays.
-fn beside(result: &ControllerResult) -> Vec<String> {
-    let name = &result.name;
-    let fails = failing_exit(result.trace.exit, result.range_rule).is_some();
-    let word = if fails { "FAILED, " } else { "" };
-    let left =
-        result.trace.exit.as_ref().map(|exit| format!("{name}: {word}{}", left_validity(exit)));
-    let sign = result.metrics.wrong_way.then(|| format!("{name} {WRONG_WAY}"));
-    let at_rest = result.at_rest.words(result.duration_s).map(|words| format!("{name}: {words}"));
-    sign.into_iter().chain(left).chain(at_rest).collect()
 }
 
 impl User<'_> {
@@ -110,17 +108,32 @@ impl User<'_> {
             part => "verdicts",
             outcomes,
             warnings => self.warnings(),
+            beside => self.beside(),
             requirements => (!self.simulation.judgements.is_empty()).then(|| self.requirements()),
             met,
         };
         Section::of("verdict", "Verdict", "user", context)
     }
 
-    /// Those of the file, and what is said of flights beside their measures.
+    /// Those of the file, and what may be wrong with flights beside their verdicts.
     fn warnings(self) -> Vec<String> {
-        let beside = self.simulation.results.iter().flat_map(beside);
+        let own = self.simulation.failed_own_flights.iter();
+        let own = own.map(|it| format!("{} fails: {}.", it.who(), it.failures.join("; ")));
+        let of = |result: &ControllerResult| {
+            let name = result.name.clone();
+            result.notes().into_iter().map(move |words| sentence(&format!("{name}: {words}")))
+        };
+        let notes = self.simulation.results.iter().flat_map(of);
+        self.study.warnings.iter().cloned().chain(own).chain(notes).collect()
+    }
+
+    /// Facts beside the verdicts: gains at rest, what nobody asked.
+    fn beside(self) -> Vec<String> {
+        let gains = self.simulation.results.iter().filter_map(|result| {
+            Some(format!("{}: {}.", result.name, result.at_rest.gains_in_words()?))
+        });
         let note = self.simulation.range_rule.note().map(|note| format!("{}.", capital(note)));
-        self.study.warnings.iter().cloned().chain(beside).chain(note).collect()
+        gains.chain(note).collect()
     }
 
     fn requirements(self) -> Table {
@@ -156,8 +169,9 @@ impl User<'_> {
             detailed: true,
             width_px: 720.0,
         };
-        let failing: Vec<&str> =
-            self.simulation.results.iter().filter(|r| fails(r)).map(|r| r.name.as_str()).collect();
+        let ended = self.simulation.results.iter().filter(|result| is_cut_short(result));
+        let ended: Vec<&str> = ended.map(|result| result.name.as_str()).collect();
+        let leaving = drawing.leaving();
         let caption = drawing.panels_in_words();
         let aircraft = match self.study.scenario.plant.aircraft() {
             Some(_) => " Pitch counts from the trim; the elevator is the whole deflection.",
@@ -169,7 +183,7 @@ impl User<'_> {
             "responses",
             "Time responses",
             "user",
-            context! { part => "responses", figure, failing },
+            context! { part => "responses", figure, leaving, ended },
         )
     }
 
@@ -198,8 +212,10 @@ impl User<'_> {
 
     fn settings(self) -> Section {
         let settings = &self.study.settings;
+        let is_plant = |setting: &Setting| setting.table == "plant";
         let context = context! {
             part => "settings",
+            is_plant => settings.iter().any(is_plant),
             flight => settings::of_flight(settings),
             controllers => settings::of_controllers(settings),
             derived => settings::derived(&self.study.derived_gains),

@@ -129,10 +129,9 @@ impl fmt::Display for NotEvaluated {
             Self::OtherAir { asked, found } => {
                 write!(f, "asked for {} air, but the flight has {found}", asked.name())
             }
-            Self::Unstable { spectral_radius, .. } => write!(
-                f,
-                "the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop"
-            ),
+            Self::Unstable { spectral_radius, .. } => {
+                Absent::Unstable { spectral_radius: *spectral_radius }.fmt(f)
+            }
             Self::BeyondMap { why } => f.write_str(why),
             Self::NoMode => f.write_str("no mode of the loop has a frequency that counts"),
             Self::NoCrossover => f.write_str("the gain of the loop is 1 at no frequency"),

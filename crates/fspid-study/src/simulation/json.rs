@@ -3,16 +3,19 @@
 use fspid_core::Gains;
 use serde_json::{Map, Value, json};
 
-use super::{ControllerResult, Judgement, Simulation, failing_exit};
+use super::{ControllerResult, FailedFlight, Judgement, Simulation};
 use crate::analysis::AtRest;
-use crate::metrics::{EdgeMetrics, Measured, StepMetrics};
+use crate::metrics::{EdgeMetrics, Measured, StepMetrics, Verdict};
 use crate::units::degrees;
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
 
 impl Simulation {
-    /// The answer of `simulate --format json`.
+    /// The answer of `simulate --format json`. Of each controller `verdict` is a sentence, `outcome` the same for
+    /// programs: its `kind` ([`Verdict::kind`]) and the numbers of that kind, `at_s`, `window_s`, `doubling_s` and
+    /// `spectral_radius`. `failed` says whether the flight fails whatever is required of it, `failures` why. `notes`
+    /// hold for the whole answer.
     #[must_use]
     pub fn json(&self) -> Value {
         let mut answer = json!({
@@ -20,6 +23,13 @@ impl Simulation {
             "scenario": self.scenario,
             "controllers": self.results.iter().map(controller).collect::<Vec<_>>(),
         });
+        if let Some(note) = self.range_rule.note() {
+            answer["notes"] = json!([note]);
+        }
+        if !self.failed_own_flights.is_empty() {
+            answer["failed_own_flights"] =
+                self.failed_own_flights.iter().map(FailedFlight::json).collect();
+        }
         if !self.judgements.is_empty() {
             answer["requirements"] = self.judgements.iter().map(judgement).collect();
         }
@@ -42,7 +52,9 @@ fn controller(result: &ControllerResult) -> Value {
     let (values, absent) = split(&measures);
     let mut answer = json!({
         "name": result.name,
-        "verdict": metrics.verdict.to_string(),
+        "verdict": result.verdict().to_string(),
+        "outcome": outcome(result.verdict()),
+        "failed": !result.failures().is_empty(),
         "metrics": values,
         "absent": absent,
         "edges": metrics.edges.iter().map(edge).collect::<Vec<_>>(),
@@ -56,6 +68,7 @@ fn controller(result: &ControllerResult) -> Value {
             "at_end_deg_per_deg": finite(load.at_end),
             "for_good_deg_per_deg": finite(load.for_good),
             "removed": load.is_removed(),
+            "half_gone": load.is_half_gone(),
         });
     }
     if result.metrics.wrong_way {
@@ -66,7 +79,7 @@ fn controller(result: &ControllerResult) -> Value {
             "at_s": exit.at_s,
             "outside_s": exit.outside_s,
             "limit": exit.departure.quantity.name(),
-            "fails": failing_exit(result.trace.exit, result.range_rule).is_some(),
+            "fails": result.ending().failing_exit().is_some(),
         });
     }
     let failures = result.failures();
@@ -74,6 +87,37 @@ fn controller(result: &ControllerResult) -> Value {
         answer["failures"] = json!(failures);
     }
     answer
+}
+
+/// A verdict for programs: its kind and its numbers.
+fn outcome(verdict: Verdict) -> Value {
+    let mut answer = json!({ "kind": verdict.kind() });
+    match verdict {
+        Verdict::Settled | Verdict::Flown => {}
+        Verdict::NotSettled { window_s } => answer["window_s"] = finite(window_s),
+        Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => answer["at_s"] = finite(at_s),
+        Verdict::Unstable { spectral_radius, doubling_s } => {
+            answer["spectral_radius"] = finite(spectral_radius);
+            answer["doubling_s"] = finite(doubling_s);
+        }
+        Verdict::LeftRange(exit) => {
+            answer["at_s"] = finite(exit.at_s);
+            answer["outside_s"] = finite(exit.outside_s);
+            answer["limit"] = json!(exit.departure.quantity.name());
+        }
+    }
+    answer
+}
+
+impl FailedFlight {
+    /// `{"controller": "…", "failures": ["…"], "own_flight": {"step_deg": 5.0}}`, the last where it is one.
+    pub(crate) fn json(&self) -> Value {
+        let mut answer = json!({ "controller": self.controller, "failures": self.failures });
+        if let Some(step_deg) = self.own_step_deg {
+            answer["own_flight"] = json!({ "step_deg": step_deg });
+        }
+        answer
+    }
 }
 
 /// The gains of the file and those at rest, `null` where these are not one set.
@@ -87,13 +131,17 @@ fn gains(at_rest: &AtRest) -> Value {
 
 fn edge(edge: &EdgeMetrics) -> Value {
     let (values, absent) = split(&step_measures(&edge.step));
-    json!({
+    let mut answer = json!({
         "at_s": edge.at_s,
         "from_deg": degrees(edge.from_rad),
         "to_deg": degrees(edge.to_rad),
         "metrics": values,
         "absent": absent,
-    })
+    });
+    if let Some(from_s) = edge.disturbed_from_s {
+        answer["disturbed_from_s"] = json!(from_s);
+    }
+    answer
 }
 
 fn step_measures(step: &StepMetrics) -> Vec<(&'static str, Measured)> {

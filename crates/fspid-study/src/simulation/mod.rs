@@ -1,21 +1,23 @@
 //! Flying a study: every controller's trace, measures and verdict, and whether requirements are met.
 
 mod csv;
+mod ending;
 mod json;
 mod text;
 mod words;
 
+pub(crate) use ending::on_its_own;
+pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
 pub(crate) use json::finite;
 pub use words::WRONG_WAY;
-pub use words::left_validity;
 
 use fspid_lti::LtiError;
 use fspid_sim::stability::instability;
-use fspid_sim::{Controller, Exit, NamedController, SimError, Trace, simulate};
+use fspid_sim::{Controller, NamedController, SimError, Trace, simulate};
 
 use crate::analysis::AtRest;
 use crate::file::{RangeRule, Study};
-use crate::metrics::FlightMetrics;
+use crate::metrics::{FlightMetrics, Verdict};
 pub use crate::requirement::Judgement;
 use crate::requirement::{flown_on_their_own, judge};
 
@@ -37,28 +39,30 @@ pub struct ControllerResult {
 }
 
 impl ControllerResult {
-    /// Why the flight fails whatever is required of it: a verdict without measures, a range that was left. Empty for
-    /// one that does not.
+    /// How the flight ended.
+    #[must_use]
+    pub fn ending(&self) -> Ending {
+        let (measured, exit) = (self.metrics.verdict, self.trace.exit);
+        Ending { measured, exit, range_rule: self.range_rule }
+    }
+
+    /// What the flight comes to.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.ending().verdict()
+    }
+
+    /// Why the flight fails whatever is required of it; empty for one that does not.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
-        let verdict = self.metrics.verdict;
-        let mut failures: Vec<String> = Vec::new();
-        if verdict.is_failure() {
-            failures.push(verdict.to_string());
-        }
-        failures.extend(self.metrics.wrong_way.then(|| WRONG_WAY.to_owned()));
-        failures
-            .extend(failing_exit(self.trace.exit, self.range_rule).map(|it| left_validity(&it)));
-        failures
+        self.ending().failures()
     }
-}
 
-/// The range that was left, where that is a failure.
-#[must_use]
-pub fn failing_exit(exit: Option<Exit>, range_rule: RangeRule) -> Option<Exit> {
-    match range_rule {
-        RangeRule::Fails => exit,
-        RangeRule::Warns | RangeRule::Linear | RangeRule::NoRange => None,
+    /// The flight, if it fails whatever is required of it.
+    pub(crate) fn failed(&self, own_step_deg: Option<f64>) -> Option<FailedFlight> {
+        let failures = self.failures();
+        let controller = self.name.clone();
+        (!failures.is_empty()).then_some(FailedFlight { controller, own_step_deg, failures })
     }
 }
 
@@ -73,6 +77,8 @@ pub struct Simulation {
     pub judgements: Vec<Judgement>,
     /// What is made of leaving the range of the aircraft's data.
     pub range_rule: RangeRule,
+    /// Flights of ready sets' own that fail whatever is required of them.
+    pub failed_own_flights: Vec<FailedFlight>,
 }
 
 impl Simulation {
@@ -82,7 +88,8 @@ impl Simulation {
     /// [`SimError`] where the plants cannot be sampled; an unstable loop is a result, not an error.
     pub fn of(study: &Study) -> Result<Self, SimError> {
         let mut simulation = Self::as_commanded(study)?;
-        flown_on_their_own(study, &mut simulation.judgements)?;
+        let Self { judgements, failed_own_flights, .. } = &mut simulation;
+        *failed_own_flights = flown_on_their_own(study, judgements)?;
         Ok(simulation)
     }
 
@@ -100,7 +107,9 @@ impl Simulation {
                     .map_err(|error| too_large(error, named))?;
                 let at_rest = AtRest::of(scenario, &named.controller);
                 let unstable = at_rest.unstable;
-                let metrics = FlightMetrics::of(&trace, &flight.edges, scenario.timing, unstable);
+                let pushes_s = scenario.pushes_s();
+                let (edges, timing) = (&flight.edges, scenario.timing);
+                let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
                 let (name, range_rule) = (named.name.clone(), study.range_rule);
                 let duration_s = scenario.timing.end_s();
                 Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
@@ -108,24 +117,31 @@ impl Simulation {
             .collect::<Result<Vec<_>, SimError>>()?;
         let judgements = judge(study, &results);
         let (scenario, range_rule) = (scenario.name.clone(), study.range_rule);
-        Ok(Self { scenario, results, judgements, range_rule })
+        let failed_own_flights = Vec::new();
+        Ok(Self { scenario, results, judgements, range_rule, failed_own_flights })
     }
 
     /// True if every requirement is met and no flight failed of which something is required.
     #[must_use]
     pub fn requirements_met(&self) -> bool {
         self.judgements.iter().all(|judgement| judgement.met)
-            && self.failed_flights().next().is_none()
+            && self.failed_flights().iter().all(|failed| !self.is_asked(failed))
     }
 
-    /// Flights that failed whatever is required of them, of controllers of which something is required.
-    pub fn failed_flights(&self) -> impl Iterator<Item = &ControllerResult> {
-        let asked = |result: &&ControllerResult| {
-            self.judgements.iter().any(|judgement| {
-                judgement.requirement.controller.as_ref().is_none_or(|name| *name == result.name)
-            })
-        };
-        self.results.iter().filter(asked).filter(|result| !result.failures().is_empty())
+    /// Flights that failed whatever is required of them: those of the scenario, then those of ready sets' own.
+    #[must_use]
+    pub fn failed_flights(&self) -> Vec<FailedFlight> {
+        let flown = self.results.iter().filter_map(|result| result.failed(None));
+        flown.chain(self.failed_own_flights.iter().cloned()).collect()
+    }
+
+    /// True for a flight of a controller of which something is required.
+    #[must_use]
+    pub fn is_asked(&self, failed: &FailedFlight) -> bool {
+        self.judgements.iter().any(|judgement| {
+            let asked = judgement.requirement.controller.as_ref();
+            asked.is_none_or(|name| *name == failed.controller)
+        })
     }
 
     /// The result of the controller with this name.

@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{ControllerResult, Judgement, Simulation, WRONG_WAY, failing_exit, left_validity};
+use super::{ControllerResult, Judgement, Simulation, on_its_own};
 use crate::metrics::{Absent, Measured, StepMetrics};
-use crate::requirement::shortest;
 use crate::units::degrees;
 
 impl Simulation {
@@ -15,21 +14,21 @@ impl Simulation {
         let mut out = format!("{}\n", self.scenario);
         let width = self.results.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(10);
         for result in &self.results {
-            line(&mut out, format_args!("\n{:width$}  {}", result.name, result.metrics.verdict));
+            line(&mut out, format_args!("\n{:width$}  {}", result.name, result.verdict()));
             push_measures(&mut out, result);
         }
         if let Some(note) = self.range_rule.note() {
             line(&mut out, format_args!("\nnote: {note}"));
         }
-        if !self.judgements.is_empty() {
+        if !self.judgements.is_empty() || !self.failed_flights().is_empty() {
             out.push('\n');
         }
         for judgement in &self.judgements {
             push_judgement(&mut out, judgement);
         }
-        for result in self.failed_flights() {
-            let failures = result.failures().join("; ");
-            line(&mut out, format_args!("FAILED FLIGHT: {} {failures}", result.name));
+        for failed in self.failed_flights() {
+            let failures = failed.failures.join("; ");
+            line(&mut out, format_args!("FAILED FLIGHT: {}: {failures}", failed.who()));
         }
         out
     }
@@ -42,9 +41,10 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
         line(
             out,
             format_args!(
-                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}",
+                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}{}",
                 edge.at_s,
                 step(&edge.step),
+                edge.disturbed_in_words(),
             ),
         );
     }
@@ -65,24 +65,13 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
     push_beside(out, result);
 }
 
-/// What is said beside the measures: the gains at rest, loads that stay, ranges that were left, faults.
+/// What is said beside the measures: the gains at rest, notes, faults.
 fn push_beside(out: &mut String, result: &ControllerResult) {
-    if result.metrics.wrong_way {
-        line(out, format_args!("  {WRONG_WAY}"));
-    }
     if let Some(words) = result.at_rest.gains_in_words() {
         line(out, format_args!("  {words}"));
     }
-    if let Some(words) = result.at_rest.load_in_words(result.duration_s) {
+    for words in result.notes() {
         line(out, format_args!("  note: {words}"));
-    }
-    if let Some(words) = result.at_rest.not_asked_in_words() {
-        line(out, format_args!("  note: {words}"));
-    }
-    if let Some(exit) = result.trace.exit {
-        let fails = failing_exit(result.trace.exit, result.range_rule).is_some();
-        let word = if fails { "FAILED" } else { "warning" };
-        line(out, format_args!("  {word}: {}", left_validity(&exit)));
     }
     if !result.trace.faults.is_empty() {
         line(out, format_args!("  faults: {}", result.trace.faults));
@@ -98,9 +87,7 @@ fn push_judgement(out: &mut String, judgement: &Judgement) {
         id if id == name => String::new(),
         id => format!(" ({id})"),
     };
-    let own = judgement.own_step_deg.map_or(String::new(), |step_deg| {
-        format!(", on a flight of its own with a step of {} deg", shortest(step_deg))
-    });
+    let own = on_its_own(judgement.own_step_deg);
     line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}{own}"));
 }
 

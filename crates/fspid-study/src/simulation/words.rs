@@ -1,15 +1,14 @@
 //! What is said of a flight beside its measures.
 
-use fspid_aircraft::Departure;
 use fspid_core::Gains;
-use fspid_sim::Exit;
-use fspid_sim::load::ConstantLoad;
+use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
 use fspid_sim::stability::Unstable;
 
+use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains};
 use crate::digits::to_digits;
 use crate::file::RangeRule;
-use crate::metrics::short;
+use crate::metrics::{EdgeMetrics, left_validity, short};
 use crate::units::degrees;
 
 /// What is asked where the first movement is steadily away from the set-point.
@@ -17,26 +16,6 @@ pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
 
 /// What is said of an aircraft that a linear model flies.
 pub(crate) const LINEAR_AIRCRAFT: &str = "flown by a linear model, which has no height and no range: neither the ground nor the limits of the aircraft's data are asked";
-
-/// When, for how long and by which limit a flight left the range of its model, in words.
-#[must_use]
-pub fn left_validity(exit: &Exit) -> String {
-    let Departure { quantity, value, allowed } = exit.departure;
-    let (factor, unit) = match quantity.unit() {
-        "rad" => (degrees(1.0), "deg"),
-        unit => (1.0, unit),
-    };
-    let text = format!(
-        "left the range of its model at t = {:.2} s, outside for {:.2} s: {} {:.4} {unit}, trusted {:.4} to {:.4} {unit}",
-        exit.at_s,
-        exit.outside_s,
-        quantity.name(),
-        factor * value,
-        factor * allowed.min,
-        factor * allowed.max,
-    );
-    text.trim_end().replace("  ", " ")
-}
 
 /// Gains to five digits.
 fn gains(gains: Gains<f64>) -> String {
@@ -67,13 +46,6 @@ impl AtRest {
         self.not_asked
             .as_ref()
             .map(|reason| format!("the loop at rest could not be asked: {reason}"))
-    }
-
-    /// All that is said of the loop at rest beside a verdict.
-    pub(crate) fn words(&self, duration_s: f64) -> impl Iterator<Item = String> {
-        let load = self.load_in_words(duration_s);
-        let held = self.held_in_words().into_iter().chain(self.one_side_in_words());
-        self.gains_in_words().into_iter().chain(held).chain(load).chain(self.not_asked_in_words())
     }
 
     /// At which set-point the loop is unstable, where it is not at the trim.
@@ -107,6 +79,10 @@ impl AtRest {
 fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
     let why = match load.has_integral {
         false => "no integral at rest (ki = 0)",
+        true if load.at_end >= load.largest => {
+            "the flight is too short to tell what the integral does"
+        }
+        true if load.is_half_gone() => "the flight is short beside the integral at rest",
         true => "little integral at rest",
     };
     let (at_end, duration) = (to_digits(load.at_end, 3), short(duration_s));
@@ -114,10 +90,37 @@ fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
         true => ", and goes on shrinking".to_owned(),
         false => format!(", and {} deg for good", to_digits(load.for_good, 3)),
     };
+    let [removed, half_gone] = [REMOVED, HALF_GONE].map(|share| 100.0 * share);
     format!(
-        "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect{then}",
+        "{why}: a constant load of 1 deg at the servo leaves an error of {at_end} deg after {duration} s, {:.0} % of its largest effect (removed: at most {removed} %, half gone: at most {half_gone} %){then}",
         100.0 * load.share_left()
     )
+}
+
+impl EdgeMetrics {
+    /// What is added to the measures of a step where a disturbance begins before they end; they are those of both.
+    #[must_use]
+    pub fn disturbed_in_words(&self) -> String {
+        let of_both = self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok());
+        of_both.map_or(String::new(), |from_s| {
+            format!("; of the step and of what disturbs from {} s on", short(from_s))
+        })
+    }
+}
+
+impl ControllerResult {
+    /// What is to be known beside the verdict and fails nothing: the question of the sign, a load that stays, what could
+    /// not be asked, a range that may be left and was.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let question = self.metrics.wrong_way.then(|| WRONG_WAY.to_owned());
+        let load = self.at_rest.load_in_words(self.duration_s);
+        let allowed = self.trace.exit.filter(|_| self.range_rule == RangeRule::Warns);
+        let left = allowed.map(|exit| left_validity(&exit));
+        let not_asked = self.at_rest.not_asked_in_words();
+        let held = self.at_rest.held_in_words().into_iter().chain(self.at_rest.one_side_in_words());
+        question.into_iter().chain(held).chain(load).chain(left).chain(not_asked).collect()
+    }
 }
 
 impl RangeRule {

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::Verification;
 use crate::requirement::Judgement;
-use crate::simulation::finite;
+use crate::simulation::{FailedFlight, finite};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
@@ -29,8 +29,8 @@ impl Verification {
     /// `not_met` counts what could not be evaluated too; such a line has `reason` in place of `value`. A margin without
     /// an end is the text `"inf"`. `own_flight` stands
     /// where a ready set was judged on a flight of its own. Keys without a value are left out. `failed_flights` are
-    /// flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`; with one `all_met` is
-    /// false. `at_rest` says of each self-tuning controller its gains at rest, and of each controller a constant load
+    /// flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`, with `own_flight` for
+    /// those of ready sets; with one `all_met` is false. `at_rest` says of each self-tuning controller its gains at rest, and of each controller a constant load
     /// that it does not remove.
     #[must_use]
     pub fn json(&self, replays: Option<&[String]>) -> Value {
@@ -54,10 +54,7 @@ impl Verification {
             "not_evaluated": unevaluated.count(),
             "requirements": requirements,
         });
-        let failed = self.failed_flights.iter();
-        let failed: Vec<Value> = failed
-            .map(|it| json!({ "controller": it.controller, "failures": it.failures }))
-            .collect();
+        let failed: Vec<Value> = self.failed_flights.iter().map(FailedFlight::json).collect();
         if !failed.is_empty() {
             answer["failed_flights"] = json!(failed);
         }

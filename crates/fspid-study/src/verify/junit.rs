@@ -1,7 +1,8 @@
 //! The answer as JUnit XML, which continuous integration reads: a suite for the scenario, a case for each line.
 
-use super::{FailedFlight, Verification};
+use super::Verification;
 use crate::requirement::Judgement;
+use crate::simulation::FailedFlight;
 
 impl Verification {
     /// JUnit XML. Every line has properties: the number, its limits, and its margin to the nearer of them. A line that is
@@ -42,8 +43,12 @@ impl Verification {
     fn flight(&self, failed: &FailedFlight) -> String {
         let class = format!("{}.{}", self.study.scenario.name, failed.controller);
         let message = escaped(&failed.failures.join("; "));
+        // One name each: a reader that keeps the last of two cases must not lose one.
+        let name = failed.own_step_deg.map_or("flight".to_owned(), |step_deg| {
+            format!("flight with a step of {} deg", crate::requirement::shortest(step_deg))
+        });
         format!(
-            "    <testcase name=\"flight\" classname=\"{}\" time=\"0\">\n      <failure type=\"failed flight\" message=\"{message}\">{message}</failure>\n    </testcase>\n",
+            "    <testcase name=\"{name}\" classname=\"{}\" time=\"0\">\n      <failure type=\"failed flight\" message=\"{message}\">{message}</failure>\n    </testcase>\n",
             escaped(&class)
         )
     }

@@ -13,8 +13,9 @@ use std::path::Path;
 use fspid_sim::SimError;
 
 use crate::file::{self, Extra, LoadError, Problems, Study};
+use crate::report::number::sentence;
 use crate::requirement::Judgement;
-use crate::simulation::{ControllerResult, Simulation};
+use crate::simulation::{ControllerResult, FailedFlight, Simulation};
 
 pub use replay::ReplayFile;
 
@@ -42,19 +43,11 @@ pub struct Verification {
     study: Study,
     /// Every requirement for every controller that it concerns.
     pub judgements: Vec<Judgement>,
-    /// Flights that fail whatever is required of them, of controllers of which something is required.
+    /// Flights that fail whatever is required of them, of controllers of which something is required: those of the
+    /// scenario and those of ready sets' own.
     pub failed_flights: Vec<FailedFlight>,
-    /// What is said of each loop at rest: its gains, and loads that it does not remove.
+    /// What is said of each loop beside its judgements: its gains at rest, loads that it does not remove.
     at_rest: Vec<String>,
-}
-
-/// A flight that fails whatever is required of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FailedFlight {
-    /// Name of the controller.
-    pub controller: String,
-    /// Why: the verdict, the range that was left.
-    pub failures: Vec<String>,
 }
 
 /// Why nothing was verified.
@@ -121,20 +114,17 @@ pub fn verify(question: &Question<'_>) -> Result<Verification, VerifyError> {
         return Err(VerifyError::NothingRequired { path, in_cases });
     }
     let simulation = Simulation::of(&study)?;
-    let failed = simulation.failed_flights().map(|result| FailedFlight {
-        controller: result.name.clone(),
-        failures: result.failures(),
-    });
-    let failed_flights = failed.collect();
+    let mut failed_flights = simulation.failed_flights();
+    failed_flights.retain(|failed| simulation.is_asked(failed));
     let at_rest = simulation.results.iter().flat_map(at_rest).collect();
     let judgements = simulation.judgements;
     Ok(Verification { path, scenario_text, overrides, study, judgements, failed_flights, at_rest })
 }
 
-/// The gains of a controller at rest beside the nominal ones, and a load that it does not remove.
+/// The gains of a controller at rest beside the nominal ones, and what else is to be known of its flight.
 fn at_rest(result: &ControllerResult) -> Vec<String> {
-    let words = result.at_rest.words(result.duration_s);
-    words.map(|words| format!("{}: {words}.", result.name)).collect()
+    let words = result.at_rest.gains_in_words().into_iter().chain(result.notes());
+    words.map(|words| sentence(&format!("{}: {words}", result.name))).collect()
 }
 
 /// True for `NAME` and `NAME:key=value`, false for `path=value`; names in quotes do not count.

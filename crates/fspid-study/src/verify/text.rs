@@ -26,7 +26,7 @@ impl Verification {
             format!("{} ({})\n\n", visible(&self.study.scenario.name), visible(&self.path));
         out.push_str(&self.table(replays));
         let failed = self.failed_flights.iter();
-        let failed = failed.map(|it| format!("{}: {}.", it.controller, it.failures.join("; ")));
+        let failed = failed.map(|it| format!("{}: {}.", it.who(), it.failures.join("; ")));
         section(&mut out, "Flights that failed, whatever is required", &failed.collect::<Vec<_>>());
         section(&mut out, "What is asked", &self.asked());
         section(&mut out, "Notes", &self.notes());

@@ -43,6 +43,17 @@ fn a_flight_ends_where_the_aircraft_touches_the_ground() {
     assert!(page.contains("HIT THE GROUND") && !page.contains("Settled"));
 }
 
+/// The page used to say that the lines of such a flight leave the panels.
+#[test]
+fn the_page_of_a_flight_into_the_ground_says_that_its_lines_end() {
+    let simulation = flown(NAVION, &DOWN);
+    let page = report::of_simulation(&study(NAVION, &DOWN), &simulation);
+    assert!(page.contains("the flight ended before its time, and so do its lines"));
+    assert!(!page.contains("lines leave the panels"));
+    // The aircraft is no plant that says something of itself.
+    assert!(!page.contains("plant.preset"));
+}
+
 #[test]
 fn the_ground_is_where_the_file_has_it() {
     let deep = [&DOWN[..], &["aircraft.ground_m=-5000.0"]].concat();
@@ -58,7 +69,7 @@ fn requirements_that_the_loop_meets_do_not_save_a_flight_into_the_ground() {
     let text = format!("{NAVION}\n[[requirement]]\nmeasure = \"gain_margin_db\"\nleast = 1.0\n");
     let simulation = flown(&text, &DOWN);
     assert!(simulation.judgements[0].met && !simulation.requirements_met());
-    assert!(simulation.text().contains("FAILED FLIGHT: PID hit the ground"));
+    assert!(simulation.text().contains("FAILED FLIGHT: PID: hit the ground"));
     assert!(flown(&text, &[]).requirements_met());
 }
 
@@ -77,7 +88,10 @@ fn a_nonlinear_flight_that_begins_at_the_ground_is_refused_and_a_linear_one_is_n
 
 #[test]
 fn a_linear_flight_says_that_it_has_no_height() {
-    let text = flown(NAVION, &["aircraft.model=linear"]).text();
+    let linear = flown(NAVION, &["aircraft.model=linear"]);
+    let note = linear.json()["notes"][0].to_string();
+    assert!(note.contains("neither the ground nor the limits"), "{note}");
+    let text = linear.text();
     assert!(text.contains("neither the ground nor the limits of the aircraft's data are asked"));
     assert!(!flown(NAVION, &[]).text().contains("no height"));
 }
@@ -95,9 +109,16 @@ fn leaving_the_range_of_the_data_fails_unless_the_scenario_allows_it() {
     assert!(simulation.judgements[0].met && !simulation.requirements_met());
     let sentence = format!("outside for {:.2} s", exit.outside_s);
     assert!(simulation.text().contains(&sentence), "{}", simulation.text());
-    assert!(simulation.text().contains("FAILED: left the range"));
+    assert!(simulation.text().contains("FAILED FLIGHT: PID: left the range"));
+    // It used to be "settled" in text, page and JSON beside the failure.
+    let json = &simulation.json()["controllers"][0];
+    assert_eq!(json["outcome"]["kind"], "left the range");
+    assert_eq!((&json["failed"], &json["outcome"]["at_s"]), (&true.into(), &exit.at_s.into()));
+    let page = report::of_simulation(&study(&text, &far), &simulation);
+    assert!(page.contains("LEFT THE RANGE OF ITS DATA") && !page.contains("Settled"));
+    assert!(!simulation.text().contains("PID         settled"), "{}", simulation.text());
     let allowed = flown(&text, &[&far[..], &["aircraft.validity=warn"]].concat());
     assert!(allowed.requirements_met());
-    assert!(allowed.text().contains("warning: left the range"), "{}", allowed.text());
+    assert!(allowed.text().contains("note: left the range"), "{}", allowed.text());
     assert!(allowed.text().contains(&sentence));
 }

@@ -57,6 +57,60 @@ fn every_measure_of_every_controller_is_replayed_bit_for_bit() {
     assert!(replayed > 50, "{replayed}");
 }
 
+/// The flight of the scenario is well, and the one of the ready set's own step leaves the range of the aircraft's data:
+/// this used to be PASS, beside a replay that the program calls failed.
+#[test]
+fn a_flight_of_a_set_s_own_that_fails_is_told_and_its_replay_fails_too() {
+    let step = include_str!("../../../../scenarios/gallery/navion-step.toml");
+    let (flight, _) = step.split_once("[[requirement]]").expect("it asks for an overshoot");
+    let (folder, path) = written(flight);
+    let set = [
+        "ctms",
+        "controller.PID.kp=3",
+        "controller.PID.ki=3",
+        "controller.PID.kd=1.2",
+        "controller.PID.setpoint_weights.proportional=0.6",
+        "loop.duration_s=30",
+        "aircraft.name.validity.alpha_deg[1]=5",
+    ];
+    let verification = verified(&path, &set, &[]);
+    let [failed] = verification.failed_flights.as_slice() else {
+        panic!("{:?}", verification.failed_flights)
+    };
+    assert!(failed.own_step_deg.is_some_and(|step_deg| (step_deg - 11.46).abs() < 0.01));
+    assert!(failed.failures[0].starts_with("left the range of its model at t = 1"), "{failed:?}");
+    assert_eq!((verification.unmet(), verification.all_met()), (0, false));
+    let told = verification.text(None);
+    assert!(
+        told.contains("- PID, on a flight of its own with a step of 11.4592 deg: left"),
+        "{told}"
+    );
+    assert!(told.ends_with("met; 1 flight failed; FAIL\n"), "{told}");
+    assert!(
+        verification.junit(None).contains("<testcase name=\"flight with a step of 11.4592 deg\"")
+    );
+    let own = &verification.json(None)["failed_flights"][0]["own_flight"];
+    assert_eq!(own["step_deg"], failed.own_step_deg.expect("seen above"));
+    for replay in verification.replays(folder.path()) {
+        let again = file::parse(&replay.text, "replay", Some(folder.path()), &[]).expect("read");
+        let again = Simulation::of(&again).expect("it flies");
+        assert_eq!(again.failed_flights()[0].failures, failed.failures, "{}", replay.name);
+    }
+}
+
+/// Its own flight used not to be flown where that of the scenario failed.
+#[test]
+fn a_set_is_judged_on_its_own_flight_also_where_the_flight_of_the_scenario_fails() {
+    let step = include_str!("../../../../scenarios/gallery/navion-step.toml");
+    let (_folder, path) = written(step);
+    let down = ["aircraft.altitude_ft=300", "setpoint.amplitude_deg=-10", "loop.duration_s=60"];
+    let verification = verified(&path, &[&["ctms"], &down[..]].concat(), &[]);
+    assert_eq!(verification.failed_flights[0].own_step_deg, None);
+    let of_set = verification.judgements.iter().filter(|it| it.requirement.origin.set.is_some());
+    let own: Vec<&Judgement> = of_set.filter(|it| it.own_step_deg.is_some()).collect();
+    assert!(!own.is_empty() && own.iter().all(|it| it.found.is_ok()), "{own:?}");
+}
+
 #[test]
 fn frozen_gains_are_fixed_in_their_replay() {
     let (folder, path) = written(&format!(

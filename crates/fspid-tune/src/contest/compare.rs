@@ -18,6 +18,38 @@ pub enum Standing {
     Worse,
     /// The difference is not significant.
     Open,
+    /// The one that would be better is [`barred`]: it fails too often for that.
+    Barred,
+}
+
+/// Why a controller is not better than another, whatever its error and however few flights it loses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bar {
+    /// Every flight of it fails.
+    AllFail,
+    /// A larger share of its flights is of loops that are unstable at rest.
+    Unstable,
+    /// It fails more flights, by the signed ranks of the shares that fail of each case.
+    FailsMore,
+}
+
+/// Why one controller is not called better than another, if it is not. What fails is no success beside what does not,
+/// and errors of flights that fail are no measure of success.
+pub(crate) fn barred(judged: &Judged, one: &Contestant, other: &Contestant) -> Option<Bar> {
+    let all = judged.all();
+    let [mine, theirs] = [one, other].map(|it| judged.count(it, &all));
+    if mine.failed == mine.of {
+        return Some(Bar::AllFail);
+    }
+    if mine.compared(theirs, |it| it.unstable).is_gt() {
+        return Some(Bar::Unstable);
+    }
+    let share = |it: &Contestant, case: usize| judged.count(it, &[case]).failed_share();
+    let differences: Vec<f64> =
+        all.iter().map(|&case| share(one, case) - share(other, case)).collect();
+    let p = SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p);
+    let is_more = mine.compared(theirs, |it| it.failed).is_gt();
+    (is_more && p <= 1.0 - CONFIDENCE).then_some(Bar::FailsMore)
 }
 
 /// A mean ratio over cases and designs.
@@ -58,6 +90,8 @@ pub struct Comparison {
     pub by_flights: bool,
     /// Whether that is significant, over cases and over tunings; never where each was tuned once.
     pub is_sure: bool,
+    /// Whether it is this controller that would be better, and why it is not, where the standing is barred.
+    pub(crate) bar: Option<(bool, Bar)>,
 }
 
 /// Whether one of two controllers loses more flights.
@@ -137,6 +171,7 @@ impl Pair<'_> {
             standing: Standing::Open,
             by_flights: false,
             is_sure: false,
+            bar: None,
         }
     }
 
@@ -232,5 +267,14 @@ impl Pair<'_> {
             (Ordering::Equal, Some(ratio)) if is_significant && ratio > 1.0 => Standing::Worse,
             _ => Standing::Open,
         };
+        let bar = match found.standing {
+            Standing::Better => barred(self.judged, mine, self.theirs),
+            Standing::Worse => barred(self.judged, self.theirs, mine),
+            Standing::Open | Standing::Barred => None,
+        };
+        if let Some(bar) = bar {
+            found.bar = Some((found.standing == Standing::Better, bar));
+            (found.standing, found.is_sure) = (Standing::Barred, false);
+        }
     }
 }

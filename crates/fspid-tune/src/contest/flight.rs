@@ -29,8 +29,15 @@ const SETTLING: usize = 4;
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
 /// right angle there is no pitch hold left whose error could be compared.
 const LOST_DEG: f64 = 90.0;
+/// Reason of a failure: the same.
+pub(crate) const FAR: &str = "an error beyond 90 deg";
 /// Reason of a failure.
 const UNSTABLE: &str = "the loop is unstable at rest";
+/// Which flights are lost, wherever that is said.
+pub(crate) const LOST: &str =
+    "diverges, hits the ground, has an error beyond 90 deg, or cannot be flown";
+/// Which flights fail, wherever that is said.
+pub(crate) const FAILED: &str = "is lost, leaves the range of its aircraft's data where its scenario does not allow that, breaks a requirement, or is of a loop that is unstable at rest";
 
 /// A flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,16 +51,18 @@ pub struct Flight {
     pub cost: Option<f64>,
     /// The verdict in words.
     pub verdict: String,
-    /// True for a flight that diverged, whose error grew beyond 90 deg, or that could not be flown at all.
+    /// True for a flight that is [`LOST`].
     pub lost: bool,
     /// True for a loop that is unstable at rest, with the gains that it has there. It is judged by its error as it
     /// flew, and counts as failed: a calm window proves nothing.
     pub unstable: bool,
-    /// True for a flight that is lost, breaks a requirement, or is of a loop that is unstable at rest.
+    /// True for a flight that has [`FAILED`].
     pub failed: bool,
     /// True for a loop that does not remove a constant load at the servo within the flight, with the gains that it has at
     /// rest. It is told, and fails nothing: a controller may have no integral by design.
     pub load_left: bool,
+    /// True where that stays for good: there is no integral at rest.
+    pub load_stays: bool,
     /// The gains at rest beside the nominal ones, in words; none for fixed gains.
     pub gains: Option<String>,
     /// Why it is lost, and which requirements are broken.
@@ -70,6 +79,7 @@ impl Flight {
             lost: true,
             unstable: false,
             load_left: false,
+            load_stays: false,
             gains: None,
             failed: true,
             reasons: vec![reason],
@@ -106,9 +116,13 @@ impl Flight {
             unstable: is_unstable(flight),
             gains: flight.at_rest.gains_in_words(),
             load_left: flight.at_rest.load.is_some_and(|load| !load.is_removed()),
-            failed: is_lost || unmet || is_unstable(flight) || flight.failing_exit().is_some(),
+            load_stays: flight.at_rest.load.is_some_and(|load| load.stays()),
+            failed: is_lost
+                || unmet
+                || is_unstable(flight)
+                || !flight.ending().failures().is_empty(),
             reasons: is_far
-                .then(|| format!("an error beyond {LOST_DEG} deg"))
+                .then(|| FAR.to_owned())
                 .into_iter()
                 .chain(is_unstable(flight).then(|| UNSTABLE.to_owned()))
                 .chain(score.reasons)

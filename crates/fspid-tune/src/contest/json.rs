@@ -146,6 +146,7 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
         (Standing::Better, false) => "ahead",
         (Standing::Worse, false) => "behind",
         (Standing::Open, _) => "not significant",
+        (Standing::Barred, _) => "barred by failures",
     };
     let Lost { cases: lost_cases, p: lost_p, p_adjusted: lost_p_adjusted } = found.lost;
     let names = outcome.judged.groups().into_iter().zip(&found.groups);
@@ -202,7 +203,7 @@ fn spread(found: Option<Spread>) -> Value {
 }
 
 fn count(count: Count) -> Value {
-    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "constant_load_left": count.load_left, "of": count.of })
+    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "constant_load_left": count.load_left, "constant_load_stays": count.load_stays, "of": count.of })
 }
 
 /// JSON has no infinity: a mean with lost flights is null, and the flights are counted beside it.

@@ -97,12 +97,14 @@ impl Quantity {
 pub struct Count {
     /// Flights that are lost.
     pub lost: u64,
-    /// Flights that are lost, break a requirement, or are of a loop that is unstable at rest.
+    /// Flights that fail: lost ones among them.
     pub failed: u64,
     /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
     /// Flights of a loop that does not remove a constant load within the flight.
     pub load_left: u64,
+    /// Those of them of which it stays for good.
+    pub load_stays: u64,
     /// All flights.
     pub of: u64,
 }
@@ -113,9 +115,19 @@ impl Count {
         self.lost as f64 / self.of.max(1) as f64
     }
 
+    /// Share of the flights that fails.
+    pub(crate) fn failed_share(self) -> f64 {
+        self.failed as f64 / self.of.max(1) as f64
+    }
+
     /// Which of two controllers loses the larger share, without rounding.
     pub(crate) fn cmp_lost(self, other: Self) -> Ordering {
-        let crossed = |one: Self, other: Self| u128::from(one.lost) * u128::from(other.of);
+        self.compared(other, |it| it.lost)
+    }
+
+    /// Which of two controllers has the larger share of some flights, without rounding.
+    pub(crate) fn compared(self, other: Self, some: fn(&Self) -> u64) -> Ordering {
+        let crossed = |one: Self, other: Self| u128::from(some(&one)) * u128::from(other.of);
         crossed(self, other).cmp(&crossed(other, self))
     }
 }
@@ -127,6 +139,12 @@ impl Judged {
     pub fn is_tuned_once(&self) -> bool {
         let tuned = || self.contestants.iter().filter(|it| it.is_tuned);
         tuned().next().is_some() && tuned().any(|it| it.designs.len() < 2)
+    }
+
+    /// Whether anybody was tuned.
+    #[must_use]
+    pub fn is_tuned(&self) -> bool {
+        self.contestants.iter().any(|it| it.is_tuned)
     }
 
     /// Groups of cases in the order of their first case, with the places of their cases.
@@ -189,6 +207,7 @@ impl Judged {
                 count.failed += u64::from(flight.failed);
                 count.unstable += u64::from(flight.unstable);
                 count.load_left += u64::from(flight.load_left);
+                count.load_stays += u64::from(flight.load_stays);
                 count.of += 1;
             }
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fspid_campaign::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, Writer};
 use fspid_study::output;
 
-use super::flight::{Flight, MEASURES};
+use super::flight::{FAILED, Flight, LOST, MEASURES};
 use super::judged::Judged;
 use crate::error::TuneError;
 
@@ -83,11 +83,11 @@ fn schema() -> Result<Schema, TuneError> {
         column("run", Kind::Integer).meaning("number of the draw within the case, from 0"),
         column("verdict", Kind::Text).meaning("verdict on the flight"),
         column("lost", Kind::Boolean)
-            .meaning("it diverged, its error grew beyond 90 deg, or it could not be flown"),
+            .meaning(format!("it {LOST}")),
         column("unstable", Kind::Boolean).meaning(
             "the loop is unstable at rest, with the gains that it has there; such a flight counts as failed",
         ),
-        column("failed", Kind::Boolean).meaning("it is lost, breaks a requirement, or is of a loop that is unstable at rest"),
+        column("failed", Kind::Boolean).meaning(format!("it {FAILED}")),
         column("reasons", Kind::Text).meaning("why it failed or has no cost"),
         column("cost", Kind::Float)
             .meaning("what the objectives of the tuning cost; empty for a lost flight"),

@@ -12,7 +12,8 @@ pub(super) fn text(outcome: &Outcome) -> String {
     let head = headline(outcome);
     let mut out = format!("{}: {}.\n\n", head.word, head.why);
     let ranking = outcome.first().ranking;
-    for found in ranking.iter().filter_map(|place| outcome.comparison(*place)) {
+    let others = ranking.iter().filter(|place| Some(**place) != head.told);
+    for found in others.filter_map(|place| outcome.comparison(*place)) {
         out.push_str(&format!("{}\n", sentence(outcome, found)));
     }
     out.push_str("\nFirst to last, by kind of case:\n");
@@ -125,7 +126,10 @@ fn gains(outcome: &Outcome, out: &mut String) {
     });
     let lines: String = lines.collect();
     if !lines.is_empty() {
-        out.push_str("\nGains of the designs that cost least, in the first case:\n");
+        out.push_str(match outcome.judged.is_tuned() {
+            true => "\nGains of the designs that cost least, in the first case:\n",
+            false => "\nGains in the first case:\n",
+        });
         out.push_str(&lines);
     }
 }

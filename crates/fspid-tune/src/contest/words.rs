@@ -4,7 +4,8 @@ use fspid_study::report::number::{fixed, significant};
 use fspid_study::requirement::Requirement;
 use fspid_study::tuning::{Over, Tuning};
 
-use super::compare::{CONFIDENCE, Comparison, Standing};
+use super::compare::{Bar, CONFIDENCE, Comparison, Standing, barred};
+use super::flight::{FAR, Flight};
 use super::judged::Quantity;
 use super::outcome::Outcome;
 use super::summary::Spread;
@@ -177,71 +178,141 @@ pub(super) struct Headline {
     pub(super) winner: Option<usize>,
     /// Why, without a full stop.
     pub(super) why: String,
+    /// Whose comparison the reason tells in full, if it does.
+    pub(super) told: Option<usize>,
 }
 
 pub(super) fn headline(outcome: &Outcome) -> Headline {
-    let against = outcome.judged.against;
-    let reference = cut(name(outcome, against), 60);
-    let ranking = outcome.first().ranking;
-    let first = ranking.first().copied().unwrap_or(against);
+    let first = outcome.first().ranking.first().copied().unwrap_or(outcome.judged.against);
     let winner = cut(name(outcome, first), 60);
-    let is_once = outcome.judged.is_tuned_once();
-    let open: Vec<String> = ranking
-        .iter()
-        .filter(|place| {
-            let found = outcome.comparison(**place);
-            found.is_some_and(|it| !(it.standing == Standing::Worse && (it.is_sure || is_once)))
-        })
-        .map(|place| cut(name(outcome, *place), 60))
-        .collect();
-    let (is_decided, why) = match outcome.comparison(first) {
-        _ if outcome.error.is_none() => {
-            (false, "an error is 0 somewhere, so that errors have no ratios".to_owned())
-        }
-        Some(found) => {
-            (found.standing == Standing::Better && found.is_sure, finding(outcome, found))
-        }
-        None if open.is_empty() => (
-            true,
-            "every other controller has a significantly larger error or loses more flights"
-                .to_owned(),
-        ),
-        None => (false, format!("its difference from {} is not significant", list(&open))),
-    };
-    let (is_decided, why) = match unstable(outcome, first) {
-        None => (is_decided, why),
-        Some(words) => (false, format!("{words}; {why}")),
-    };
-    if is_once {
+    let bar = bar_of_first(outcome, first);
+    if outcome.judged.is_tuned_once() {
+        let bar = bar.map_or(String::new(), |words| format!("; {words}"));
         let why = format!(
-            "{winner} is first in it, and another seed may find another order; contest.seeds = 3 or more would tell; {why}"
+            "{winner} is first in it, and another seed may find another order; contest.seeds = 3 or more would tell{bar}"
         );
         let word = "one tuning each: no winner can be named".to_owned();
-        return Headline { is_decided: false, word, winner: None, why };
+        return Headline { is_decided: false, word, winner: None, why, told: None };
     }
+    let (is_decided, why) = match bar {
+        Some(words) => (false, words),
+        None => decision(outcome, first),
+    };
     let word = match is_decided {
         // Nothing is known of how the designs were found.
-        true if !outcome.judged.contestants.iter().any(|it| it.is_tuned) => {
+        true if !outcome.judged.is_tuned() => {
             format!("{winner} wins, as these designs are written")
         }
         true => format!("{winner} wins"),
         false => format!("{winner} is first, and nobody wins"),
     };
-    let why = match is_decided || first == against {
-        true => why,
-        false => format!("not significantly different from {reference}; {why}"),
-    };
-    Headline { is_decided, word, winner: is_decided.then_some(first), why }
+    let told = outcome.comparison(first).filter(|_| is_decided).map(|it| it.contestant);
+    Headline { is_decided, word, winner: is_decided.then_some(first), why, told }
 }
 
-/// How many flights of a controller are of loops that are unstable at rest, if any.
-fn unstable(outcome: &Outcome, place: usize) -> Option<String> {
-    let count = outcome.summaries.get(place)?.whole.count;
-    let words = format!(
-        "{} of its {} flights are of loops that are unstable at rest",
-        count.unstable, count.of
-    );
-    (count.unstable > 0).then_some(words)
+/// Whether the first wins, and why, or why not.
+fn decision(outcome: &Outcome, first: usize) -> (bool, String) {
+    let is_open = |it: &&Comparison| !(it.standing == Standing::Worse && it.is_sure);
+    let open_of =
+        |open: &[String]| (false, format!("nothing decides between it and {}", list(open)));
+    let (Some(all), found) = (outcome.error.as_ref(), outcome.comparison(first)) else {
+        return (false, "an error is 0 somewhere, so that errors have no ratios".to_owned());
+    };
+    match found {
+        Some(found) if found.standing == Standing::Better && found.is_sure => {
+            (true, finding(outcome, found))
+        }
+        Some(_) => open_of(&[cut(name(outcome, outcome.judged.against), 60)]),
+        None if !all.iter().any(|it| is_open(&it)) => (
+            true,
+            "every other controller has a significantly larger error or loses significantly more flights"
+                .to_owned(),
+        ),
+        None => {
+            let ranking = outcome.first().ranking;
+            let open = ranking.iter().filter_map(|place| outcome.comparison(*place)).filter(is_open);
+            let open = open.map(|it| cut(name(outcome, it.contestant), 60));
+            open_of(&open.collect::<Vec<_>>())
+        }
+    }
+}
+
+/// What keeps the first from winning, whatever its error: loops that are unstable at rest, flights that all fail, or
+/// more that fail than of another.
+fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
+    let (judged, count) = (&outcome.judged, outcome.summaries.get(first)?.whole.count);
+    if count.unstable > 0 {
+        return Some(format!(
+            "{} of its {} flights {} of loops that are unstable at rest",
+            count.unstable,
+            count.of,
+            if count.unstable == 1 { "is" } else { "are" }
+        ));
+    }
+    let contestant = judged.contestants.get(first)?;
+    let others = judged.contestants.iter().enumerate().filter(|(place, _)| *place != first);
+    let bars =
+        others.filter_map(|(place, other)| Some((place, barred(judged, contestant, other)?)));
+    bars.map(|(place, _)| failing(outcome, first, place)).next()
+}
+
+/// How many flights of a controller fail, and why, and how many of another: "8 of its 8 flights fail (left the range of
+/// its model), 2 of 8 of PID".
+fn failing(outcome: &Outcome, place: usize, other: usize) -> String {
+    let count = |place: usize| outcome.summaries[place].whole.count;
+    let (mine, theirs) = (count(place), count(other));
+    let verb = if mine.failed == 1 { "fails" } else { "fail" };
+    let designs = outcome.judged.contestants[place].designs.iter();
+    let why = kinds(designs.flat_map(|it| &it.flights).filter(|flight| flight.failed));
+    let why = if why.is_empty() { why } else { format!(" ({why})") };
+    format!(
+        "{} of its {} flights {verb}{why}, {} of {} of {}",
+        mine.failed,
+        mine.of,
+        theirs.failed,
+        theirs.of,
+        cut(name(outcome, other), 60)
+    )
+}
+
+/// Most kinds of reasons that are told at once.
+const MOST_KINDS: usize = 2;
+
+/// The kinds of reasons, the most frequent first: the measure, or the words before what differs from flight to flight.
+pub(super) fn kinds<'a>(failed: impl Iterator<Item = &'a Flight>) -> String {
+    let mut counted: Vec<(String, usize)> = Vec::new();
+    for reason in failed.flat_map(|flight| &flight.reasons) {
+        let kind = kind(reason);
+        match counted.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((kind, 1)),
+        }
+    }
+    counted.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let mut told: Vec<String> =
+        counted.iter().take(MOST_KINDS).map(|(kind, _)| kind.clone()).collect();
+    if counted.len() > MOST_KINDS {
+        told.push(format!("{} more", counted.len() - MOST_KINDS));
+    }
+    told.join(", ")
+}
+
+/// Words that lead over to a number which is left out.
+const LEADING: [&str; 5] = ["=", "t", "at", "within", "to"];
+
+/// A reason without its numbers.
+fn kind(reason: &str) -> String {
+    if reason == FAR {
+        return reason.to_owned();
+    }
+    let end = reason.find(|c: char| c.is_ascii_digit() || ",;:(".contains(c));
+    let words = reason.get(..end.unwrap_or(reason.len())).unwrap_or(reason).trim();
+    let mut words: Vec<&str> = words.trim_end_matches(['-', '+', '.', ' ']).split(' ').collect();
+    while words.last().is_some_and(|last| LEADING.contains(last)) {
+        words.pop();
+    }
+    let words = words.join(" ");
+    cut(if words.is_empty() { reason } else { &words }, 40)
 }
 
 /// What a comparison found: "12 % less error than PID (95 %: from 18 % less to 5.1 % less), p = 0.0004".
@@ -289,16 +360,14 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
 fn failed_against(outcome: &Outcome, found: &Comparison) -> Option<String> {
     let against = outcome.judged.against;
     let count = |place: usize| outcome.summaries[place].whole.count;
-    let (mine, theirs) = (count(found.contestant), count(against));
-    let is_more = u128::from(mine.failed) * u128::from(theirs.of)
-        > u128::from(theirs.failed) * u128::from(mine.of);
-    let reference = name(outcome, against);
-    is_more.then(|| {
-        format!(
-            "but {} of its {} flights fail, {} of {} of {reference}",
-            mine.failed, mine.of, theirs.failed, theirs.of
-        )
-    })
+    let is_more = count(found.contestant).compared(count(against), |it| it.failed).is_gt();
+    let is_ahead = match found.standing {
+        Standing::Better => true,
+        Standing::Worse => false,
+        Standing::Open | Standing::Barred => found.ratio.mean.is_some_and(|ratio| ratio < 1.0),
+    };
+    let word = if is_ahead { "but" } else { "and" };
+    is_more.then(|| format!("{word} {}", failing(outcome, found.contestant, against)))
 }
 
 /// How many flights a controller loses and how many the one compared with.
@@ -330,10 +399,20 @@ pub(super) fn standing(found: &Comparison) -> String {
         (Standing::Better, false, false) => "ahead in this one tuning",
         (Standing::Worse, false, false) => "behind in this one tuning",
         (Standing::Open, ..) => "not significant",
+        (Standing::Barred, ..) => match found.bar {
+            Some((true, Bar::AllFail)) => "not better, for all its flights fail",
+            Some((true, Bar::Unstable)) => "not better, for it is unstable at rest",
+            Some((true, Bar::FailsMore)) => "not better, for more of its flights fail",
+            _ => "not worse, for what it is compared with fails",
+        },
     };
     // Lost flights come first, and do not hide what holds where both came back.
     let elsewhere = match found.ratio.mean {
-        Some(ratio) if found.by_flights && found.p_adjusted <= 1.0 - CONFIDENCE => {
+        Some(ratio)
+            if found.by_flights
+                && found.standing != Standing::Barred
+                && found.p_adjusted <= 1.0 - CONFIDENCE =>
+        {
             if ratio < 1.0 {
                 ", a smaller error elsewhere"
             } else {
@@ -398,8 +477,7 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
             counted(others, "comparison", "comparisons")
         ));
     }
-    let any_tuned = judged.contestants.iter().any(|it| it.is_tuned);
-    if any_tuned && setting.efforts.len() < 2 {
+    if judged.is_tuned() && setting.efforts.len() < 2 {
         notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
     }
     for contestant in &judged.contestants {
@@ -418,11 +496,18 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
     notes
 }
 
-/// How many flights of a controller are of loops that do not remove a constant load, if any.
+/// In how many flights of a controller much of a constant load is left, if in any.
 fn loads_left(outcome: &Outcome, place: usize) -> Option<String> {
     let count = outcome.summaries.get(place)?.whole.count;
+    let stays = match count.load_stays {
+        0 => String::new(),
+        all if all == count.load_left => {
+            "; without an integral at rest it stays for good".to_owned()
+        }
+        some => format!("; in {some} of them, without an integral at rest, it stays for good"),
+    };
     let words = format!(
-        "{}: {} of its {} flights are of loops that, with the gains that they have at rest, do not remove a constant load at the servo within the flight to a tenth of its largest effect; without an integral it stays for good.",
+        "{}: in {} of its {} flights a constant load at the servo is not removed: the loop at rest leaves more than a tenth of its largest effect at the end{stays}.",
         cut(name(outcome, place), 60),
         count.load_left,
         count.of

@@ -29,6 +29,8 @@ pub struct AnalysisPage {
     pub verdicts: Vec<Verdict>,
     /// Below the verdicts: what is to be known before they are believed.
     pub warnings: Vec<String>,
+    /// Below the warnings: what the verdicts do not cover.
+    pub beside: Vec<String>,
     /// Below the warnings: a table of requirements, and whether all are met.
     pub requirements: Option<(DataTable, bool)>,
     /// Chapters, in this order.
@@ -137,6 +139,7 @@ impl AnalysisPage {
             part => "verdicts",
             verdicts,
             warnings => self.warnings,
+            beside => self.beside,
             requirements => self.requirements.as_ref().map(|(table, _)| table.shown()),
             met => self.requirements.as_ref().is_some_and(|(_, met)| *met),
         };

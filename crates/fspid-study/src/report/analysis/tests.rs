@@ -58,6 +58,7 @@ fn full() -> AnalysisPage {
         heading: "paper".to_owned(),
         lead: "Margins of the sampled loop.".to_owned(),
         verdicts: vec![verdict(Standing::Good, "Stable"), verdict(Standing::Bad, "UNSTABLE")],
+        beside: Vec::new(),
         warnings: vec!["Saturation is not covered.".to_owned()],
         requirements: Some((table(), false)),
         chapters: vec![chapter("margins"), chapter("margins"), chapter("content"), chapter("")],

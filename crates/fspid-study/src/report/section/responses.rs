@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::metrics::short;
 use crate::report::html::context;
 use crate::report::measures;
 use crate::report::number::exact;
@@ -89,7 +90,7 @@ fn figure(flown: &FlownFigure, fit: &str) -> Figure {
         "Fig. {} with {fit}. Window {} s, sampled every {} s; controllers {}. From above: pitch angle, command, and \
          the three gains of the FSPID.{}",
         flown.figure.id,
-        exact(timing.time_s(timing.rows().saturating_sub(1))),
+        short(timing.end_s()),
         exact(timing.dt_s()),
         names.join(", "),
         drawing.spikes(),

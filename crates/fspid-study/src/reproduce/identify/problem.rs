@@ -236,7 +236,10 @@ impl Bench {
         let metrics: Vec<FlightMetrics> = flight
             .traces
             .iter()
-            .map(|trace| FlightMetrics::of(trace, &flight.edges, scenario.timing, None))
+            .map(|trace| {
+                let pushes_s = scenario.pushes_s();
+                FlightMetrics::of(trace, &flight.edges, scenario.timing, None, &pushes_s)
+            })
             .collect();
         let flights: Vec<FigureFlight<'_>> = model
             .controllers

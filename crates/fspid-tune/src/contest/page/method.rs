@@ -4,6 +4,7 @@ use fspid_study::report::analysis::{Chapter, Datum, Item};
 
 use super::tables;
 use crate::contest::Outcome;
+use crate::contest::flight::{FAILED, LOST};
 use crate::contest::words::{counted, cut, group, name, number, per_cent};
 
 fn items(outcome: &Outcome) -> Vec<Item> {
@@ -11,12 +12,12 @@ fn items(outcome: &Outcome) -> Vec<Item> {
     let reference = cut(name(outcome, outcome.judged.against), 60);
     let mut items = vec![
         Item::Heading("Tuning".to_owned()),
-        Item::Text(match setting.efforts.first() {
+        Item::Text(match setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
             None => "Nobody has free numbers; all fly as they are written.".to_owned(),
             Some(effort) => format!(
-                "Every controller with free numbers was tuned with {} and {} candidates from each of {}, to make small: {}{}. Each candidate flew {}{}. A requirement of the scenario that is broken comes before any cost. Controllers without free numbers fly as they are written.",
+                "Every controller with free numbers was tuned with {} and {} from each of {}, to make small: {}{}. Each candidate flew {}{}. A requirement of the scenario that is broken comes before any cost. Controllers without free numbers fly as they are written.",
                 effort.optimiser,
-                effort.budget,
+                counted(effort.budget, "candidate", "candidates"),
                 counted(setting.efforts.len(), "seed", "seeds"),
                 setting.objectives.join(" + "),
                 match setting.limits.is_empty() {
@@ -37,7 +38,7 @@ fn items(outcome: &Outcome) -> Vec<Item> {
         Item::Text(format!("For each case the logarithm of the IAE, averaged over the seeds, less that of {reference}. The mean over the cases is the logarithm of the mean ratio. Its error has a part for the cases, which are as if drawn from many cases like these, and a part for the seeds of each tuned controller (crossed random effects; what is peculiar to a single flight is counted in every part, which errs on the wide side); Student's distribution with the degrees of freedom of Satterthwaite (1946) gives interval and p-value.")),
         Item::Text(format!("A second test assumes no distribution: Wilcoxon's signed ranks of the cases, exact, with Pratt's treatment of ties; the estimate of Hodges and Lehmann and its interval belong to it. The larger of both p-values counts, after Holm's correction (1979) for all comparisons; the intervals of all cases are widened likewise (Bonferroni), so that all hold together at {}. Significant is a corrected p of at most 0.05. Elevator travel, groups and single cases are told without such a test.", per_cent())),
         Item::Heading("Lost flights".to_owned()),
-        Item::Text("A flight is lost if it diverges, if its error grows beyond 90 deg, or if its numbers make no scenario. A loop that is unstable at rest and does not diverge is judged by its error like any other, but the flight counts as failed, and who has one does not win, however small the error in its window. Lost flights never vanish from a mean: with one the mean is infinite, \"lost\". In the test of ranks a case in which one controller loses a larger share of its flights is its largest defeat. The mean ratio is that of the cases that neither lost, and says so. Who loses the larger share of all flights ranks behind and is never called better; it is called worse where the signed ranks of the shares that are lost of each case, after Holm's correction, say that this is significant, and behind where they do not.".to_owned()),
+        Item::Text(format!("A flight is lost that {LOST}. A flight fails that {FAILED}. Who fails all flights does not win and is not called better than anybody; nor is who fails more than another, where the signed ranks of the shares that fail of each case say that this is significant. A loop that is unstable at rest and does not diverge is judged by its error like any other, but the flight counts as failed, and who has one does not win, however small the error in its window. Lost flights never vanish from a mean: with one the mean is infinite, \"lost\". In the test of ranks a case in which one controller loses a larger share of its flights is its largest defeat. The mean ratio is that of the cases that neither lost, and says so. Who loses the larger share of all flights ranks behind and is never called better; it is called worse where the signed ranks of the shares that are lost of each case, after Holm's correction, say that this is significant, and behind where they do not.")),
         Item::Text("A step that did not settle counts in means of settling times with the whole length of its window.".to_owned()),
     ];
     items.push(Item::Fold("The cases".to_owned(), vec![Item::Table(case_table(outcome))]));

@@ -12,6 +12,7 @@ use fspid_study::report::analysis::{Chapter, Item, Picture, Standing as Colour, 
 use fspid_study::report::campaign::CampaignPage;
 use fspid_study::shell::word;
 
+use super::flight::LOST;
 use super::words::{Headline, cautions, cut, headline, list, name, sentence};
 use super::{Contest, Outcome, text};
 
@@ -65,22 +66,31 @@ fn capital(text: &str) -> String {
 /// Sentences, the table of controllers, and the figure of differences.
 fn answer(outcome: &Outcome) -> Vec<Item> {
     let ranking = outcome.first().ranking;
-    let found = ranking.iter().filter_map(|place| outcome.comparison(*place));
+    let told = headline(outcome).told;
+    let found = ranking.iter().filter(|place| Some(**place) != told);
+    let found = found.filter_map(|place| outcome.comparison(*place));
     let sentences = found.take(MOST_SENTENCES).map(|it| sentence(outcome, it));
-    vec![
+    let mut items = vec![
         Item::List(sentences.collect()),
         Item::Heading("Who is how far from whom, by kind of case".to_owned()),
-        Item::Table(tables::by_group(outcome)),
+    ];
+    items.extend(tables::by_group(outcome));
+    items.extend([
         Item::Heading("The controllers".to_owned()),
         Item::Table(tables::controllers(outcome)),
         Item::Fold("More of everyone".to_owned(), vec![Item::Table(tables::more(outcome))]),
-    ]
+    ]);
+    items
 }
 
 fn notes(outcome: &Outcome) -> Vec<String> {
     let mut notes = cautions(outcome);
-    notes.push("Significant means: cases like these and seeds like these would tell the same. It does not mean that the difference matters, nor that other aircraft would tell the same.".to_owned());
-    notes.push("A lost flight (diverged, an error beyond 90 deg, or refused) has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another stands behind it, whatever its error elsewhere. Whether other cases would tell the same is tested apart.".to_owned());
+    let seeds = match outcome.judged.is_tuned() {
+        true => " and seeds like these",
+        false => "",
+    };
+    notes.push(format!("Significant means: cases like these{seeds} would tell the same. It does not mean that the difference matters, nor that other aircraft would tell the same."));
+    notes.push(format!("A flight is lost that {LOST}; it has no error. It makes the mean of its design infinite, which the tables call \"lost\"; its case ranks behind every case without; and a controller that loses a larger share of its flights than another stands behind it, whatever its error elsewhere. Whether other cases would tell the same is tested apart."));
     notes
 }
 
@@ -96,8 +106,7 @@ fn facts(outcome: &Outcome) -> Vec<(String, String)> {
         fact("cases", judged.cases.len().to_string()),
         fact("flights judged", flights.to_string()),
     ];
-    let is_tuned = judged.contestants.iter().any(|it| it.is_tuned);
-    if let Some(effort) = setting.efforts.first().filter(|_| is_tuned) {
+    if let Some(effort) = setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
         let seeds: Vec<String> = setting.efforts.iter().map(|it| it.seed.to_string()).collect();
         facts.push(fact("optimiser", effort.optimiser.clone()));
         facts.push(fact("candidates of each tuning", effort.budget.to_string()));
@@ -116,7 +125,7 @@ fn command(outcome: &Outcome) -> String {
     let setting = &outcome.setting;
     let mut words = vec![format!("fspid contest {}", word(&setting.file))];
     words.extend(setting.overrides.iter().map(|it| format!("--set {}", word(it))));
-    if let Some(effort) = setting.efforts.first() {
+    if let Some(effort) = setting.efforts.first().filter(|_| outcome.judged.is_tuned()) {
         words.push(format!("--seeds {} --budget {}", setting.efforts.len(), effort.budget));
     }
     words.push(format!("--out {}", word(&setting.folder)));

@@ -29,7 +29,13 @@ struct Curves {
 }
 
 pub(super) fn chapter(contest: &Contest, outcome: &Outcome) -> Chapter {
-    let mut items = vec![Item::Text("Of each controller the design that costs least on the training cases. The first figure is the case in which the controllers differ most, the second the one in which they differ as they mostly do.".to_owned())];
+    let designs = match outcome.judged.is_tuned() {
+        true => "Of each controller the design that costs least on the training cases. ",
+        false => "",
+    };
+    let mut items = vec![Item::Text(format!(
+        "{designs}The first figure is the case in which the controllers differ most, the second the one in which they differ as they mostly do."
+    ))];
     for case in chosen(outcome) {
         items.extend(figure(contest, outcome, case));
     }

@@ -5,18 +5,19 @@ use fspid_study::report::number::significant;
 
 use super::chapter;
 use crate::contest::compare::{Comparison, Standing};
+use crate::contest::flight::{FAILED, LOST};
 use crate::contest::judged::Quantity;
 use crate::contest::words::{
-    counted, cut, group, kept, name, number, over_kept, p_value, per_cent, signed, signed_interval,
-    spread, spread_of,
+    counted, cut, group, kept, kinds, name, number, over_kept, p_value, per_cent, signed,
+    signed_interval, spread, spread_of,
 };
 use crate::contest::{First, Flight, Outcome, text, words};
 
 /// Most rows of the table of cases, and most columns of a table by groups.
 const MOST_ROWS: usize = 300;
 const MOST_GROUPS: usize = 16;
-/// Most kinds of reasons in a cell.
-const MOST_KINDS: usize = 2;
+/// Most groups beside each other: a page of 1200 px has room for them.
+const GROUPS_IN_A_TABLE: usize = 5;
 
 pub(super) fn table(caption: String, head: &[&str], rows: Vec<Vec<Datum>>) -> DataTable {
     let head = head.iter().map(|it| (*it).to_owned()).collect();
@@ -145,7 +146,7 @@ pub(super) fn failures_chapter(outcome: &Outcome) -> Chapter {
     let mut items = vec![Item::Table(failures(outcome))];
     if let Some(reasons) = reasons(outcome) {
         items.push(Item::Heading("Why flights failed".to_owned()));
-        items.push(Item::Table(reasons));
+        items.extend(reasons);
     }
     let mirrors = outcome.summaries.iter().enumerate();
     let mirrors: Vec<String> =
@@ -187,7 +188,7 @@ fn failures(outcome: &Outcome) -> DataTable {
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost if it diverges, if its error grows beyond 90 deg, or if it cannot be flown; it fails if it is lost, breaks a requirement of the scenario, or is of a loop that is unstable at rest. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
             kept if kept == outcome.judged.cases.len() => "any case".to_owned(),
@@ -198,7 +199,7 @@ fn failures(outcome: &Outcome) -> DataTable {
 }
 
 /// Controllers by groups of cases: how many flights failed, and mostly why; none where none failed.
-fn reasons(outcome: &Outcome) -> Option<DataTable> {
+fn reasons(outcome: &Outcome) -> Option<Vec<Item>> {
     let judged = &outcome.judged;
     let groups = judged.groups();
     let mut any = false;
@@ -218,50 +219,25 @@ fn reasons(outcome: &Outcome) -> Option<DataTable> {
                 any |= !failed.is_empty();
                 row.push(match failed.len() {
                     0 => Datum::Met(format!("none of {}", flights.len())),
-                    some => {
-                        Datum::Unmet(format!("{some} of {}: {}", flights.len(), kinds(&failed)))
-                    }
+                    some => Datum::Unmet(format!(
+                        "{some} of {}: {}",
+                        flights.len(),
+                        kinds(failed.iter().copied())
+                    )),
                 });
             }
             row
         })
         .collect();
     let caption = format!(
-        "Failed flights of all flights of each group, over all seeds and draws, and the requirements that most of them break. The whole reason of every flight is in contest.parquet.{}",
+        "Failed flights of all flights of each group, over all seeds and draws, and the reasons that most of them have. The whole reason of every flight is in contest.parquet.{}",
         left_out(groups.len())
     );
-    any.then(|| grouped_table(caption, &groups, rows))
-}
-
-/// The kinds of reasons, the most frequent first: the measure or the words before the first number.
-fn kinds(failed: &[&Flight]) -> String {
-    let mut counted: Vec<(String, usize)> = Vec::new();
-    for reason in failed.iter().flat_map(|flight| &flight.reasons) {
-        let kind = kind(reason);
-        match counted.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, count)) => *count += 1,
-            None => counted.push((kind, 1)),
-        }
-    }
-    counted.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    let mut told: Vec<String> =
-        counted.iter().take(MOST_KINDS).map(|(kind, _)| kind.clone()).collect();
-    if counted.len() > MOST_KINDS {
-        told.push(format!("{} more", counted.len() - MOST_KINDS));
-    }
-    told.join(", ")
-}
-
-/// A reason without its numbers.
-fn kind(reason: &str) -> String {
-    let end = reason.find(|c: char| c.is_ascii_digit() || ",;:(".contains(c));
-    let words = reason.get(..end.unwrap_or(reason.len())).unwrap_or(reason).trim();
-    let words = words.trim_end_matches(['-', '+', '.', ' ']);
-    cut(if words.is_empty() { reason } else { words }, 40)
+    any.then(|| grouped_tables(caption, &groups, &rows))
 }
 
 /// How everyone differs from the one compared with, by group of cases; the first of each group is marked.
-pub(super) fn by_group(outcome: &Outcome) -> DataTable {
+pub(super) fn by_group(outcome: &Outcome) -> Vec<Item> {
     let judged = &outcome.judged;
     let groups = judged.groups();
     let firsts: Vec<First> =
@@ -291,20 +267,35 @@ pub(super) fn by_group(outcome: &Outcome) -> DataTable {
         cut(name(outcome, judged.against), 60),
         left_out(groups.len())
     );
-    grouped_table(caption, &groups, rows.collect())
+    grouped_tables(caption, &groups, &rows.collect::<Vec<_>>())
 }
 
-fn grouped_table(
+/// Tables of a column for each group, so many in one as a page has room for; the caption stands above the first.
+fn grouped_tables(
     caption: String,
     groups: &[(String, Vec<usize>)],
-    rows: Vec<Vec<Datum>>,
-) -> DataTable {
-    let mut head = vec!["controller".to_owned()];
-    head.extend(groups.iter().take(MOST_GROUPS).map(|(name, cases)| {
-        format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
-    }));
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    table(caption, &head, rows)
+    rows: &[Vec<Datum>],
+) -> Vec<Item> {
+    let heads: Vec<String> = groups
+        .iter()
+        .take(MOST_GROUPS)
+        .map(|(name, cases)| {
+            format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
+        })
+        .collect();
+    let mut captions = [caption].into_iter();
+    let chunk = |(index, heads): (usize, &[String])| {
+        let first = 1 + index * GROUPS_IN_A_TABLE;
+        let part = |row: &Vec<Datum>| -> Vec<Datum> {
+            let cells = row.iter().skip(first).take(heads.len());
+            row.iter().take(1).chain(cells).cloned().collect()
+        };
+        let head = ["controller"].into_iter().chain(heads.iter().map(String::as_str));
+        let head: Vec<&str> = head.collect();
+        let caption = captions.next().unwrap_or_else(|| "Further groups of cases.".to_owned());
+        Item::Table(table(caption, &head, rows.iter().map(part).collect()))
+    };
+    heads.chunks(GROUPS_IN_A_TABLE).enumerate().map(chunk).collect()
 }
 
 /// A sentence about groups that a table has no room for.
