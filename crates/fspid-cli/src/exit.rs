@@ -3,11 +3,11 @@
 //! With `--format json` standard output holds exactly one JSON object: the answer, or, where there is none, what went
 //! wrong. Standard error holds words for people in any case.
 
-use fspid_study::digits::counted;
 use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use fspid_study::digits::counted;
 use fspid_study::file::LoadError;
 use fspid_study::output::OutputError;
 use serde_json::{Value, json};

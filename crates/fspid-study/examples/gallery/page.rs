@@ -32,7 +32,8 @@ pub(crate) fn page(figures: &[(&'static str, Svg)]) -> String {
         lead: "Loop analysis of a sampled loop. Angles are in degrees, frequencies in rad/s."
             .to_owned(),
         verdicts: verdicts(),
-        warnings: vec!["Saturation of the elevator is not covered.".to_owned()],
+        warnings: Vec::new(),
+        beside: vec!["Saturation of the elevator is not covered.".to_owned()],
         requirements: Some((margins(), false)),
         chapters: Vec::from([responses, poles, frozen, certificate].map(|it| it(&figures))),
         provenance: Provenance {
