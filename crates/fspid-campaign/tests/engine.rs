@@ -243,7 +243,8 @@ fn a_self_tuning_loop_that_is_unstable_at_rest_fails_without_measures() {
         let reasons = flight.reasons();
         assert!(flight.is_failed() && flight.metrics.effort.is_err(), "{}", flight.controller);
         assert!(reasons[0].starts_with("unstable at rest (doubles every"), "{reasons:?}");
-        assert_eq!(reasons[1], "moves the wrong way: is elevator_sign right?");
+        // The question of the sign is no reason of a failure.
+        assert!(reasons.len() == 1 && flight.metrics.wrong_way, "{reasons:?}");
     }
 }
 

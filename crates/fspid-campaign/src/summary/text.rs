@@ -203,7 +203,7 @@ fn failed_runs(controller: &ControllerSummary) -> Vec<String> {
     if controller.failed_runs.is_empty() {
         return Vec::new();
     }
-    let order = "  failed runs: diverged first, then ground, unstable, range left, refused, requirements not met, not settled";
+    let order = "  failed runs: diverged first, ground, unstable, range, refused, requirements not met, not settled";
     let mut lines = vec![String::new(), order.to_owned()];
     for failed in &controller.failed_runs {
         let reasons = match (failed.reasons.as_str(), failed.severity) {
