@@ -1,9 +1,9 @@
 """Refutes margins of sampled loops with slow modes by evaluating them: python check_slow_loops.py loops.csv
 
 The lines are those of `cargo run --release -p fspid-lti --example slow_loops`. A loop is its printed coefficients: the
-zero-order hold is the sum of its modes, r (e^(p T) - 1) / (p (z - e^(p T))), with poles and residues of 50 digits, times
+zero-order hold is the sum of its modes, r (e^(p T) - 1) / (p (z - e^(p T))), with poles and residues of 60 digits, times
 the controller and the dead time. Peaks are looked for on a logarithmic ladder with refinement, at all modes, at random
-frequencies and at the answer's own; what counts is the value there at 50 digits. No peak may be below such a value, no
+frequencies and at the answer's own; what counts is the value there at 60 digits. No peak may be below such a value, no
 disk margin above, no limit of the gain beyond a real value of L, no phase margin above that of a gain of 1.
 
 With --table it writes the loops with the peaks found, for slow_modes.csv of the tests.
@@ -69,7 +69,7 @@ class Loop:
         return plant * self.control(zeta) * cmath.exp(-1j * self.delay * omega * self.dt)
 
     def at_exactly(self, omega):
-        """L at 50 digits."""
+        """L at 60 digits."""
         kp, ki, kd = (arb(gain) for gain in self.gains)
         dt, filter_s = arb(self.dt), arb(self.filter_s)
         angle = acb(0, arb(omega) * dt)
@@ -188,7 +188,7 @@ def main():
             fields = line.strip().split(";")[:6]
             fields += [" ".join(repr(x) for x in found[name]) for name in ("Ms", "Mt", "disk")]
             print(";".join(fields))
-    print(f"# {counted} loops, {refuted} refuted, {loose} with brackets that do not meet; python-flint {flint.__version__}, 50 digits")
+    print(f"# {counted} loops, {refuted} refuted, {loose} with brackets that do not meet; python-flint {flint.__version__}, 60 digits")
     for name, by in kinds.items():
         print(f"# {name}: {len(by)}, worst {max(by, key=abs)}")
 
