@@ -228,7 +228,8 @@ fn folder() -> tempfile::TempDir {
 fn a_plant_file_of_a_linear_model_flies_in_a_scenario() {
     let folder = folder();
     let output = fspid(&["simulate", "step.toml", "--format", "json"], folder.path());
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // One of the two loops is unstable.
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let flown: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     assert!(flown.to_string().contains("\"PID\""));
     let written = std::fs::read_to_string(folder.path().join("slow.toml")).expect("read");

@@ -92,7 +92,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (vec!["campaign", "run", "--out", "nowhere"], "there is no campaign here"),
         (
             vec!["campaign", "run", "pitch.toml", "--runs", "0", "--out", "x"],
-            "the number of runs is 0",
+            "--runs is 0; allowed is a whole number from 1",
         ),
         (
             vec!["campaign", "plan", "pitch.toml", "--shard-runs", "65537", "--out", "x"],

@@ -91,7 +91,7 @@ pub fn sweep(library: &Library) -> Result<Vec<Sweep>, Problems> {
             for size_deg in SIZES_DEG {
                 let amplitude = format!("disturbance[0].amplitude_deg={size_deg:?}");
                 let study = library.study(&scenario_name(shape, entry), &[amplitude])?;
-                let simulation = Simulation::of(&study);
+                let simulation = Simulation::of_window(&study);
                 for (costs, controller) in costs.iter_mut().zip(CONTROLLERS) {
                     costs.push(match &simulation {
                         Ok(simulation) => cost(simulation, controller, size_deg),

@@ -122,16 +122,16 @@ impl Reproduction {
         for fit in Fit::ALL {
             for figure in FIGURES {
                 let study = library.figure(fit, figure.id)?;
-                let simulation = Simulation::of(&study)?;
+                let simulation = Simulation::of_window(&study)?;
                 figures.push(FlownFigure { figure: *figure, fit, study, simulation });
             }
         }
         let sweeps = disturbance::sweep(library)?;
-        let long_term = Simulation::of(&library.study(LONG_TERM, &[])?)?;
+        let long_term = Simulation::of_window(&library.study(LONG_TERM, &[])?)?;
         let mut long_term_shares = Vec::new();
         for share in EFFECTIVENESS {
             let study = library.study(LONG_TERM, &[weakened(share)])?;
-            long_term_shares.push((share, Simulation::of(&study)?));
+            long_term_shares.push((share, Simulation::of_window(&study)?));
         }
         let printed =
             file::rule_table("printed").ok_or(ReproduceError::Missing("printed rule table"))?;

@@ -12,7 +12,7 @@ pub(crate) use json::finite;
 pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;
-use fspid_sim::stability::instability;
+use fspid_sim::stability::{Unstable, instability};
 use fspid_sim::{Controller, NamedController, SimError, Trace, simulate};
 
 use crate::analysis::AtRest;
@@ -93,8 +93,19 @@ impl Simulation {
         Ok(simulation)
     }
 
+    /// The same for the figures of a paper, which show a window and say nothing of what comes after: a loop that grows
+    /// around a held set-point alone keeps the measures of its window. A note says that it grows.
+    pub(crate) fn of_window(study: &Study) -> Result<Self, SimError> {
+        Self::flown(study, |unstable| unstable.setpoint_rad == 0.0)
+    }
+
     /// Flies the study with its own command alone.
     pub(crate) fn as_commanded(study: &Study) -> Result<Self, SimError> {
+        Self::flown(study, |_| true)
+    }
+
+    /// Flies the study; a loop that grows has no measures where it `counts`.
+    fn flown(study: &Study, counts: impl Fn(&Unstable) -> bool) -> Result<Self, SimError> {
         let scenario = &study.scenario;
         let flight = simulate(scenario)?;
         let results = scenario
@@ -106,7 +117,7 @@ impl Simulation {
                 instability(scenario, &named.controller)
                     .map_err(|error| too_large(error, named))?;
                 let at_rest = AtRest::of(scenario, &named.controller);
-                let unstable = at_rest.unstable;
+                let unstable = at_rest.unstable.filter(&counts);
                 let pushes_s = scenario.pushes_s();
                 let (edges, timing) = (&flight.edges, scenario.timing);
                 let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);

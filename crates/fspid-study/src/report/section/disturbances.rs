@@ -55,7 +55,7 @@ pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simul
     for shape in SHAPES {
         for entry in ENTRIES {
             let flown = library.study(&scenario_name(shape, entry), &[]).ok().and_then(|study| {
-                Simulation::of(&study).ok().map(|simulation| (study, simulation))
+                Simulation::of_window(&study).ok().map(|simulation| (study, simulation))
             });
             if let Some((study, simulation)) = flown {
                 flights.push((format!("disturbance-{shape}-{entry}"), study, simulation));

@@ -206,7 +206,7 @@ fn law(controller: &Controller) -> Option<&'static str> {
 fn alone(paper: &Paper<'_>, figure: &str, controller: &str, size_deg: f64) -> Option<Measured> {
     let step = format!("setpoint={{kind=\"step\",amplitude_deg={size_deg:?},at_s=1.0}}");
     let study = paper.library.study(&format!("own/figure-{figure}.toml"), &[step]).ok()?;
-    let simulation = Simulation::of(&study).ok()?;
+    let simulation = Simulation::of_window(&study).ok()?;
     let of = |step: &StepMetrics| step.rise_time_s;
     Some(simulation.result(controller)?.metrics.of_step(0, of))
 }

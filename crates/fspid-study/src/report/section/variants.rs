@@ -74,7 +74,7 @@ fn fly(paper: &Paper<'_>, flown: &FlownFigure, (key, value): (&str, &str)) -> Op
     let overrides: Vec<String> = tuned(flown).map(set).collect();
     let name = format!("{}/figure-{}.toml", flown.fit.name(), flown.figure.id);
     let study = paper.library.study(&name, &overrides).ok()?;
-    Simulation::of(&study).ok()
+    Simulation::of_window(&study).ok()
 }
 
 /// The rise time that changes most, in words.
