@@ -27,22 +27,37 @@ impl Scenario {
     /// where a flight ends is no property of the loop.
     #[must_use]
     pub fn steady(&self) -> Steady {
+        self.steady_where(|_| true)
+    }
+
+    /// The same of what the loop can come to rest under: loads that stay from some time on, and set-points but for
+    /// sines. Around a pulse or a sine of a load no loop rests.
+    #[must_use]
+    pub fn resting(&self) -> Steady {
+        let stays = |shape: &Shape| matches!(shape, Shape::Step { .. } | Shape::Ramp { .. });
+        let setpoint_rad =
+            if self.setpoint.is_sine() { [0.0; 2] } else { self.setpoint.ends_rad() };
+        Steady { setpoint_rad, ..self.steady_where(stays) }
+    }
+
+    fn steady_where(&self, counts: impl Fn(&Shape) -> bool + Copy) -> Steady {
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
         let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
         Steady {
             setpoint_rad: self.setpoint.ends_rad(),
-            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator]),
+            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator], counts),
             bias_rad: bias_rad.abs(),
-            offset_rad: self.furthest(&[Entry::Measurement])
+            offset_rad: self.furthest(&[Entry::Measurement], counts)
                 + biased(&self.surroundings.pitch_sensor),
             rate_offset_rad_s: biased(&self.surroundings.rate_sensor),
         }
     }
 
     /// Largest magnitude of the disturbances that enter at some places, noise left out.
-    fn furthest(&self, entries: &[Entry]) -> f64 {
+    fn furthest(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> f64 {
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
-        let parts: Vec<(f64, &Shape)> = entering.map(Disturbance::part).collect();
+        let parts = entering.map(Disturbance::part).filter(|(_, shape)| counts(shape));
+        let parts: Vec<(f64, &Shape)> = parts.collect();
         let [least, most] = extremes(&parts);
         least.abs().max(most)
     }

@@ -140,7 +140,7 @@ impl Rest {
     ) -> Vec<Self> {
         let still = vec![Self::still(gains)];
         let Controller::SelfTuning(fspid) = controller else { return still };
-        let steady = scenario.steady();
+        let steady = scenario.resting();
         // A bias is drawn once: with its sign.
         let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
         let is_same = is_the_same_everywhere(fspid, rate_rad_s);

@@ -75,6 +75,12 @@ impl Profile {
         Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
     }
 
+    /// True for a set-point that never stands still.
+    #[must_use]
+    pub fn is_sine(&self) -> bool {
+        matches!(self.0, Kind::Shape { shape: Shape::Sine { .. } | Shape::Noise { .. }, .. })
+    }
+
     /// Least and largest set-point that is commanded in all time, rad; the trim is one of them.
     #[must_use]
     pub fn ends_rad(&self) -> [f64; 2] {

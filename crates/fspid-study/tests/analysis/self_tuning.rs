@@ -153,7 +153,10 @@ fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
     assert_eq!((map.unstable(), map.unstable_nodes()), (0, 1), "{:?}", map.worst);
     assert!(!map.is_stable() && !analysis.all_held());
     let text = analysis.text();
-    assert!(text.contains("1 of 49 cells DOES NOT HOLD; the worst: unstable"), "{text}");
+    assert!(
+        text.contains("1 of 49 cells DOES NOT HOLD; the worst: the loop is unstable"),
+        "{text}"
+    );
     let frozen = &analysis.json()["controllers"][0]["frozen_gains"];
     assert_eq!((&frozen["unstable"], &frozen["unstable_cells"]), (&0.into(), &1.into()));
     assert_eq!((&frozen["cells"], &frozen["stable"]), (&49.into(), &false.into()));
