@@ -145,5 +145,5 @@ fn scattered(motion: u64, place: u64) -> f64 {
     let mut bits = (motion << 32 | place).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (bits ^ bits >> 31) as f64 / 2.0_f64.powi(63) - 1.0
+    (bits ^ bits >> 31) as f64 / (1_u64 << 63) as f64 - 1.0
 }

@@ -95,7 +95,10 @@ impl Simulation {
 
     /// The same for the figures of a paper, which show a window and say nothing of what comes after: a loop that grows
     /// around a held set-point alone keeps the measures of its window. A note says that it grows.
-    pub(crate) fn of_window(study: &Study) -> Result<Self, SimError> {
+    ///
+    /// # Errors
+    /// As [`Simulation::of`].
+    pub fn of_window(study: &Study) -> Result<Self, SimError> {
         Self::flown(study, |unstable| unstable.setpoint_rad == 0.0)
     }
 

@@ -109,7 +109,7 @@ fn no_reproduced_number_hangs_on_the_last_digits_of_a_parameter() {
             let kp = named.controller.nominal().kp * (1.0 + 1e-6);
             let set = format!("controller[{index}].nominal.kp={kp:?}");
             let study = library.study(&name, &[set]).expect("a good value");
-            let moved = Simulation::of(&study).expect("flies");
+            let moved = Simulation::of_window(&study).expect("flies");
             let (before, after) =
                 (&flown.simulation.results[index].metrics, &moved.results[index].metrics);
             for (before, after) in before.edges.iter().zip(&after.edges) {
