@@ -91,7 +91,7 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
             IntegralForm::Bumpless => dice.between(-0.2, 0.2),
             IntegralForm::Literal => dice.between(-20.0, 20.0),
         };
-        let held_rad = fspid.step(&mut state.clone(), at_rest).command_rad;
+        let held_rad = fspid.step(&mut { state }, at_rest).command_rad;
         let gains = fspid.tuner().gains_at_rest();
         let holding = Holding { fspid: &fspid, command_per_pitch: 0.0, gains };
         let rest = holding.with_error((setpoint_rad, held_rad, rate_rad_s), 0.0);
@@ -106,7 +106,7 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
             Sees::ErrorAndRate => rate_off_rad_s = -second,
             Sees::ErrorAndModelError(_) => second_seen = error_rad,
         }
-        let mut before = state.clone();
+        let mut before = state;
         if let Some(previous) = &mut before.previous {
             previous.error_rad = last_error_rad;
         }

@@ -44,7 +44,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     if let Some(reason) = found.absent {
         return format!("no margins: {reason}");
     }
-    let held = found.worst().map(|plant| at_setpoint(plant)).unwrap_or_default();
+    let held = found.worst().map(at_setpoint).unwrap_or_default();
     let count = |answer| found.plants.iter().filter(|it| it.is_stable() == answer).count();
     let (unstable, undecided) = (count(Some(false)), count(None));
     let plants = |bad| match found.plants.len() {
