@@ -18,7 +18,7 @@ pub enum Standing {
     Worse,
     /// The difference is not significant.
     Open,
-    /// The one that would be better is [`barred`]: it fails too often for that.
+    /// The one that would be better is barred: it fails too often for that.
     Barred,
 }
 

@@ -51,12 +51,12 @@ pub struct Flight {
     pub cost: Option<f64>,
     /// The verdict in words.
     pub verdict: String,
-    /// True for a flight that is [`LOST`].
+    /// True for a flight that is lost.
     pub lost: bool,
     /// True for a loop that is unstable at rest, with the gains that it has there. It is judged by its error as it
     /// flew, and counts as failed: a calm window proves nothing.
     pub unstable: bool,
-    /// True for a flight that has [`FAILED`].
+    /// True for a flight that has failed.
     pub failed: bool,
     /// True for a loop that does not remove a constant load at the servo within the flight, with the gains that it has at
     /// rest. It is told, and fails nothing: a controller may have no integral by design.
