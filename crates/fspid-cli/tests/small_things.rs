@@ -4,7 +4,7 @@ mod common;
 
 use std::process::{Command, Stdio};
 
-use common::{code, fspid, json, text};
+use common::{code, fspid, json, started, text};
 
 /// "rule \"amigo\"" gave gains without saying whose; for a self-tuner as if its supervisor were in them.
 #[test]
@@ -96,14 +96,8 @@ fn an_interrupted_command_says_so_as_json_too() {
         "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml",
         "simulate -",
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
-            .args(words.split(' ').chain(["--format", "json"]))
-            .current_dir(folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
+        let arguments: Vec<&str> = words.split(' ').chain(["--format", "json"]).collect();
+        let mut child = started(&arguments, folder);
         // Kept open: the program waits for the rest. More than a pipe holds has gone when it listens.
         let mut input = child.stdin.take().expect("standard input");
         match words.contains(" - ") || words.ends_with(" -") {

@@ -53,7 +53,7 @@ pub use error::SimError;
 pub use flown::{AllPass, Perturbation};
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
-pub use rest::{Rest, Side, Stand};
+pub use rest::{Rest, RestPoint, Side, Stand};
 pub use scenario::{NamedController, Prepared, Scenario};
 pub use servo::Servo;
 pub use steady::Steady;

@@ -20,13 +20,15 @@ const POINTS: usize = 64;
 const EARLY_POINTS: usize = POINTS - POINTS / 10;
 /// How often the time is doubled to see where the error ends: beyond a thousand flights.
 const DOUBLINGS: usize = 10;
-/// Share of its largest effect that may be left of a load which counts as removed.
+/// Share of its largest effect that may be left of a load which counts as removed: a tenth, as a step has risen when a
+/// tenth of it is missing.
 pub const REMOVED: f64 = 0.1;
-/// Share of its largest effect up to which a load counts as half gone: a flight may be short beside an integral that
-/// works.
+/// Share of its largest effect up to which a load counts as half gone. A flight may be short beside an integral that
+/// works; one that has not taken off half within the flight that it was tuned on is no better than none there.
 pub const HALF_GONE: f64 = 0.5;
-/// Share of its largest effect that may be left for good of a load which counts as removed, where there is no integral.
-const FOR_GOOD: f64 = 1e-3;
+/// Share of its largest effect that may be left for good of a load which counts as removed, where there is no integral:
+/// a hundredth of [`REMOVED`], far above what rounding leaves of a load that goes on shrinking (below 10⁻⁶).
+const FOR_GOOD: f64 = REMOVED / 100.0;
 
 /// The pitch error that a constant load of one degree at the servo makes from the start of the flight on, around rest,
 /// no limit at work; deg for a degree.
@@ -110,42 +112,57 @@ fn with_plant(
     let one = loaded(&model, gains)?;
     let samples = scenario.timing.rows().saturating_sub(1).max(1);
     let points = samples.min(POINTS);
-    let several = power(&one, samples / points)?;
-    let size = model.size();
-    let mut state = vec![0.0; size + 1];
+    let stretch = samples / points;
+    let several = power(&one, stretch)?;
+    let mut state = vec![0.0; model.size() + 1];
     let mut next = state.clone();
     if let Some(load) = state.last_mut() {
         *load = 1.0;
     }
     // What is left over of whole stretches comes first, so that the last point is the end of the flight.
-    power(&one, samples % points)?.apply(&state.clone(), &mut state)?;
+    let mut at = samples % points;
+    power(&one, at)?.apply(&state.clone(), &mut state)?;
     let mut history: Vec<(usize, f64)> = Vec::new();
     let mut largest: f64 = 0.0;
     for point in 1..=points {
-        let stretch = samples / points;
-        // The same sample by another way would have other last bits: the largest is that of the points.
-        let fine = (point > EARLY_POINTS).then(|| state.clone());
+        if point > EARLY_POINTS {
+            history.extend(sizes_between(&one, (at, &state), stretch)?);
+        }
         several.apply(&state, &mut next)?;
         std::mem::swap(&mut state, &mut next);
-        // The pitch angle is the plant's first state; the set-point stays at zero.
-        let size_at = |state: &[f64]| state.first().copied().unwrap_or(0.0).abs();
-        let end = samples - (points - point) * stretch;
-        let mut between = fine.unwrap_or_default();
-        for sample in (end - stretch + 1..end).take_while(|_| point > EARLY_POINTS) {
-            one.apply(&between.clone(), &mut between)?;
-            history.push((sample, size_at(&between)));
-        }
-        let here = size_at(&state);
+        at += stretch;
+        // The largest is that of the points: samples between them, found another way, have other last bits.
+        let here = size(&state);
         largest = if here <= largest { largest } else { here };
-        history.push((end, here));
+        history.push((at, here));
     }
     let at_end = left_at_end(&history);
     let mut flight = power(&several, points)?;
     for _ in 0..DOUBLINGS {
         flight = flight.product(&flight)?;
     }
-    let for_good = flight.get(0, size).unwrap_or(f64::NAN).abs();
+    let for_good = flight.get(0, model.size()).unwrap_or(f64::NAN).abs();
     Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral })
+}
+
+/// The size of the error: the pitch angle is the plant's first state, and the set-point stays at zero.
+fn size(state: &[f64]) -> f64 {
+    state.first().copied().unwrap_or(0.0).abs()
+}
+
+/// The samples of a stretch but for its ends, with the size of the error at each.
+fn sizes_between(
+    one: &Matrix,
+    (from, state): (usize, &[f64]),
+    stretch: usize,
+) -> Result<Vec<(usize, f64)>, LtiError> {
+    let (mut state, mut next) = (state.to_vec(), state.to_vec());
+    let of_sample = |sample| {
+        one.apply(&state, &mut next)?;
+        std::mem::swap(&mut state, &mut next);
+        Ok((sample, size(&state)))
+    };
+    (from + 1..from + stretch).map(of_sample).collect()
 }
 
 /// What is left at the end of a history of sizes: the last one, or the last peak where the error still swings. It does

@@ -11,7 +11,7 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
-use crate::rest::{Rest, Stand};
+use crate::rest::{Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
@@ -26,8 +26,8 @@ pub struct Unstable {
     pub from_s: f64,
     /// Time in which what grows becomes twice as large, s; infinite where nothing grows.
     pub doubling_s: f64,
-    /// The set-point that is held meanwhile, rad from the trim.
-    pub setpoint_rad: f64,
+    /// What is held meanwhile.
+    pub at: RestPoint,
 }
 
 /// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
@@ -61,7 +61,8 @@ pub fn instability(
         // What cannot be told from the edge counts as unstable here, and so does NaN.
         if !(spectral_radius < 1.0 - MARGIN) {
             let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
-            return Ok(Some(Unstable { spectral_radius, from_s, doubling_s, setpoint_rad: 0.0 }));
+            let at = RestPoint::TRIM;
+            return Ok(Some(Unstable { spectral_radius, from_s, doubling_s, at }));
         }
     }
     Ok(None)
@@ -70,7 +71,7 @@ pub fn instability(
 /// Whether a loop grows around rest, whoever's gains they are and whatever limits act elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GrowthAtRest {
-    /// The first plant and set-point around which something grows for certain.
+    /// The first plant and rest around which something grows for certain.
     pub certain: Option<Unstable>,
     /// Where nothing grows for certain: the first at which one side of a kink of the rules is unstable and another is
     /// not, so that it is not decided.
@@ -98,7 +99,7 @@ pub fn growth_at_rest(
         for rest in Rest::all(scenario, plant, controller, gains) {
             let unstable = |spectral_radius| Unstable {
                 doubling_s: doubling_s(spectral_radius, scenario.timing.dt_s()),
-                setpoint_rad: rest.setpoint_rad,
+                at: rest.at,
                 spectral_radius,
                 from_s,
             };

@@ -15,8 +15,8 @@ pub const FORBIDDEN: f64 = 1e12;
 const LOST: f64 = 1e3;
 /// Violation of a candidate that is no scenario.
 const REFUSED: f64 = 1e4;
-/// Least violation of a constant load that is not removed.
-const LEFT_FOR_GOOD: f64 = 1e-3;
+/// Least violation of a constant load that is not half gone: any that is above 0, as little may be left for good.
+const LEAST_OF_LOAD: f64 = 1e-3;
 /// Violation of a requirement that has no value.
 const UNKNOWN: f64 = 10.0;
 
@@ -92,8 +92,8 @@ impl FlightScore {
 /// How much more of a constant load is left than is allowed, as a share of its largest effect.
 fn load_left(load: &ConstantLoad) -> f64 {
     let beyond = load.share_left() - HALF_GONE;
-    // Never nothing, for what is left for good may be little. Written so that NaN is all of it.
-    if beyond <= 1.0 { beyond.max(LEFT_FOR_GOOD) } else { 1.0 }
+    // Written so that NaN is all of it.
+    if beyond <= 1.0 { beyond.max(LEAST_OF_LOAD) } else { 1.0 }
 }
 
 fn value(judgement: &Judgement) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! The program, run in a folder.
 
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -11,19 +11,24 @@ pub(crate) fn fspid(arguments: &[&str], folder: &Path) -> Output {
 
 pub(crate) fn with_input(arguments: &[&str], folder: &Path, input: &str) -> Output {
     use std::io::Write as _;
-    let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
+    let mut child = started(arguments, folder);
+    let mut stdin = child.stdin.take().expect("standard input");
+    // A program that reads nothing closes its end.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    child.wait_with_output().expect("it ends")
+}
+
+/// The program, running, with pipes to all its ends.
+pub(crate) fn started(arguments: &[&str], folder: &Path) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_fspid"))
         .args(arguments)
         .current_dir(folder)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("standard input");
-    // A program that reads nothing closes its end.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    child.wait_with_output().expect("it ends")
+        .expect("the program starts")
 }
 
 pub(crate) fn code(output: &Output) -> i32 {

@@ -28,8 +28,10 @@ const PLANTS: [(&[f64], &[f64], f64); 4] = [
 pub(crate) struct Dice(u64);
 
 impl Dice {
+    /// Begins where no other seed comes by: steps of the generator's own increment would make the numbers of one seed
+    /// those of the seed before it, moved by one place.
     pub(crate) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15))
+        Self(Self(seed).next())
     }
 
     fn next(&mut self) -> u64 {

@@ -24,7 +24,7 @@ mod stand;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{ErrorSign, Fspid, Gains, IntegralForm, Law, Sees, Shell};
+use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, Sees, Shell};
 
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -45,11 +45,25 @@ const STEPS: u32 = 128;
 /// this many steps to the furthest one.
 const LADDER: u32 = 4;
 
+/// The set-point and the load that are held while a loop rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RestPoint {
+    /// The set-point, rad from the trim.
+    pub setpoint_rad: f64,
+    /// The load at the servo, rad, offsets of sensors counted as the command that they ask for.
+    pub load_rad: f64,
+}
+
+impl RestPoint {
+    /// Nothing is held.
+    pub const TRIM: Self = Self { setpoint_rad: 0.0, load_rad: 0.0 };
+}
+
 /// A controller at rest while a set-point and a load are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// The set-point that is held, rad from the trim.
-    pub setpoint_rad: f64,
+    /// What is held; of several points with the same loop the one nearest to the trim.
+    pub at: RestPoint,
     /// The loops there: one, or one for each side of the kinks that the rules have there.
     pub sides: Vec<Side>,
     /// Which of them a motion in each direction is on.
@@ -120,7 +134,7 @@ impl Rest {
     #[must_use]
     pub fn still(gains: Gains<f64>) -> Self {
         Self {
-            setpoint_rad: 0.0,
+            at: RestPoint::TRIM,
             sides: vec![Side::still(gains)],
             of_direction: [0; DIRECTIONS],
             seen_per_unit: [1.0; 2],
@@ -160,14 +174,19 @@ impl Rest {
         let mut found: Vec<Self> = Vec::new();
         for setpoint_rad in held.setpoints(&steady) {
             for &load_rad in &loads {
-                for rest in held.at(setpoint_rad, load_rad, rate_rad_s) {
-                    if !found.contains(&rest) {
+                for rest in held.at(RestPoint { setpoint_rad, load_rad }, rate_rad_s) {
+                    if !found.iter().any(|known| known.is_the_same_loop_as(&rest)) {
                         found.push(rest);
                     }
                 }
             }
         }
         found
+    }
+
+    /// Of the same controller.
+    fn is_the_same_loop_as(&self, other: &Self) -> bool {
+        self.sides == other.sides && self.of_direction == other.of_direction
     }
 }
 
@@ -188,8 +207,12 @@ fn is_the_same_everywhere(fspid: &Fspid<f64>, rate_rad_s: f64) -> bool {
     plain && integrates(fspid)
 }
 
+/// True where the gain of the integral may be other than zero.
 fn integrates(fspid: &Fspid<f64>) -> bool {
-    fspid.tuner().nominal().ki != 0.0 || fspid.tuner().settings().output_scale.ki != 0.0
+    let settings = fspid.tuner().settings();
+    let asked = fspid.tuner().nominal().ki != 0.0 || settings.output_scale.ki != 0.0;
+    let allowed = |limits: GainLimits<f64>| limits.ki.lower() != 0.0 || limits.ki.upper() != 0.0;
+    asked && settings.gain_limits.is_none_or(allowed)
 }
 
 /// A self-tuning controller that holds a plant.
@@ -223,17 +246,16 @@ impl Holding<'_> {
     }
 
     /// Rest at a set-point under a load with a rate that is seen and not there: one, or several without an integral.
-    fn at(&self, setpoint_rad: f64, load_rad: f64, rate_rad_s: f64) -> Vec<Rest> {
-        let outside = (setpoint_rad, load_rad, rate_rad_s);
-        let errors = if integrates(self.fspid) { vec![0.0] } else { self.errors_at_rest(outside) };
-        errors.into_iter().map(|error_rad| self.with_error(outside, error_rad)).collect()
+    fn at(&self, at: RestPoint, rate_rad_s: f64) -> Vec<Rest> {
+        let errors = match integrates(self.fspid) {
+            true => vec![0.0],
+            false => self.errors_at_rest(at, rate_rad_s),
+        };
+        errors.into_iter().map(|error_rad| self.with_error(at, rate_rad_s, error_rad)).collect()
     }
 
-    fn with_error(
-        &self,
-        (setpoint_rad, load_rad, rate_rad_s): (f64, f64, f64),
-        error_rad: f64,
-    ) -> Rest {
+    fn with_error(&self, at: RestPoint, rate_rad_s: f64, error_rad: f64) -> Rest {
+        let RestPoint { setpoint_rad, load_rad } = at;
         let centre = self.seen(error_rad, rate_rad_s);
         let is_zero = centre.iter().all(|seen| *seen == 0.0);
         let gains = if is_zero { self.gains } else { self.gains_at(centre) };
@@ -264,7 +286,7 @@ impl Holding<'_> {
         });
         let sees = self.fspid.tuner().settings().sees;
         let seen_per_unit = self.seen_per_unit();
-        let mut rest = Rest { setpoint_rad, sides, of_direction, seen_per_unit, sees };
+        let mut rest = Rest { at, sides, of_direction, seen_per_unit, sees };
         rest.join_equal_sides();
         rest
     }
@@ -289,7 +311,8 @@ impl Holding<'_> {
     }
 
     /// The errors at rest without an integral: where rules weaken the gain as the error grows there may be several.
-    fn errors_at_rest(&self, (setpoint_rad, load_rad, rate_rad_s): (f64, f64, f64)) -> Vec<f64> {
+    fn errors_at_rest(&self, at: RestPoint, rate_rad_s: f64) -> Vec<f64> {
+        let RestPoint { setpoint_rad, load_rad } = at;
         let missing = |error_rad: f64| {
             let gains = self.gains_at(self.seen(error_rad, rate_rad_s));
             let shell = self.fspid.shell_at(gains);

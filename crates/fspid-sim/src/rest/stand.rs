@@ -1,19 +1,21 @@
 //! Whether a rest holds where the rules have a kink.
 
-use fspid_core::Sees;
+use fspid_core::{Gains, Sees};
 use fspid_lti::{Matrix, spectral_radius};
 
 use super::{Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::SampledPlant;
+use crate::loop_model::{LoopModel, SampledPlant};
 use crate::scenario::Scenario;
 
-/// Motions that are followed around a kink, and for how many samples. A motion that grows does so by itself after a
-/// while, wherever it starts; several starts are for loops with several ways to move.
+/// Motions that are followed around a kink. One that grows does so by itself after a while, wherever it starts; several
+/// starts are for loops with several ways to move. What all of them miss is undecided, never stable.
 const MOTIONS: u64 = 6;
+/// For so many samples: two minutes at 100 Hz, the first half of which is for what dies out.
 const SAMPLES: usize = 12_000;
-/// By so much a motion has to grow over the second half, as a logarithm, to be called growing: twice.
+/// By so much a motion has to grow over the second half, as a logarithm, to be called growing: twice. Rounding makes no
+/// difference of that size; what grows more slowly, less than twice a minute at 100 Hz, stays undecided.
 const GROWN: f64 = core::f64::consts::LN_2;
 
 /// Whether something grows around a rest.
@@ -50,38 +52,57 @@ impl Rest {
         controller: &Controller,
         limit: f64,
     ) -> Result<Stand, SimError> {
-        let several = self.sides.len() > 1;
-        let model =
-            |side: &Side| side.around(scenario, plant, controller, several).without_changing_ages();
-        let models: Vec<_> = self.sides.iter().map(|side| (model(side), side.gains)).collect();
-        let mut closed = Vec::new();
         let mut largest = 0.0_f64;
-        for (model, gains) in &models {
-            let rows = model.closed(*gains);
-            let radius = spectral_radius(&Matrix::from_rows(&rows)?)?;
+        for (model, gains) in self.models(scenario, plant, controller) {
+            let radius = spectral_radius(&Matrix::from_rows(&model.closed(gains))?)?;
             largest = if radius.is_nan() { f64::INFINITY } else { largest.max(radius) };
-            closed.push(rows);
         }
         if largest < limit {
             return Ok(Stand::Holds);
         }
-        let same_states = closed.iter().all(|rows| rows.len() == closed[0].len());
-        if closed.len() == 1 || !largest.is_finite() {
+        if self.sides.len() == 1 || !largest.is_finite() {
             return Ok(Stand::Grows { spectral_radius: largest });
         }
-        let grown = models.first().filter(|_| same_states).and_then(|(model, _)| {
-            let [error, change] = model.error_rows();
-            let second = match self.sees {
-                Sees::ErrorAndChange => change,
-                Sees::ErrorAndRate => model.seen_rows()[1].iter().map(|rate| -rate).collect(),
-                Sees::ErrorAndModelError(_) => error.clone(),
-            };
-            self.largest_growth(&closed, [error, second])
-        });
-        Ok(match grown {
+        Ok(match self.growth_of_motions(scenario, plant, controller) {
             Some(spectral_radius) => Stand::Grows { spectral_radius },
             None => Stand::OneSide { spectral_radius: largest },
         })
+    }
+
+    /// The growth a sample of the motion that grows most around the kinks of this rest, through all its sides as they
+    /// come; none where no motion is seen to grow.
+    #[must_use]
+    pub fn growth_of_motions(
+        &self,
+        scenario: &Scenario,
+        plant: &SampledPlant<f64>,
+        controller: &Controller,
+    ) -> Option<f64> {
+        let models = self.models(scenario, plant, controller);
+        let (first, _) = models.first()?;
+        let [error, change] = first.error_rows();
+        let second = match self.sees {
+            Sees::ErrorAndChange => change,
+            Sees::ErrorAndRate => first.seen_rows()[1].iter().map(|rate| -rate).collect(),
+            Sees::ErrorAndModelError(_) => error.clone(),
+        };
+        let closed: Vec<_> = models.iter().map(|(model, gains)| model.closed(*gains)).collect();
+        // Sides with other states, such as one without an integral, are not one after the other in a motion.
+        let same_states = closed.iter().all(|rows| rows.len() == error.len());
+        if same_states { self.largest_growth(&closed, [error, second]) } else { None }
+    }
+
+    /// The loop of each side.
+    fn models(
+        &self,
+        scenario: &Scenario,
+        plant: &SampledPlant<f64>,
+        controller: &Controller,
+    ) -> Vec<(LoopModel<f64>, Gains<f64>)> {
+        let several = self.sides.len() > 1;
+        let model =
+            |side: &Side| side.around(scenario, plant, controller, several).without_changing_ages();
+        self.sides.iter().map(|side| (model(side), side.gains)).collect()
     }
 
     /// The growth a sample of the motion that grows most, if one is seen to grow.

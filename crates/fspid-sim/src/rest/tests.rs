@@ -8,7 +8,7 @@ use fspid_core::{
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 
-use super::{Holding, slopes};
+use super::{Holding, RestPoint, slopes};
 
 const DT_S: f64 = 0.02;
 const RANGE: f64 = 5.0;
@@ -94,7 +94,8 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         let held_rad = fspid.step(&mut { state }, at_rest).command_rad;
         let gains = fspid.tuner().gains_at_rest();
         let holding = Holding { fspid: &fspid, command_per_pitch: 0.0, gains };
-        let rest = holding.with_error((setpoint_rad, held_rad, rate_rad_s), 0.0);
+        let at = RestPoint { setpoint_rad, load_rad: held_rad };
+        let rest = holding.with_error(at, rate_rad_s, 0.0);
         kinks += usize::from(rest.sides.len() > 1);
 
         let [per_error, beside] = holding.seen_per_unit();

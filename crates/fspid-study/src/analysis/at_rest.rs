@@ -4,9 +4,21 @@
 use fspid_core::{Gains, Law};
 use fspid_sim::load::{ConstantLoad, constant_load};
 use fspid_sim::stability::{GrowthAtRest, Unstable, growth_at_rest};
-use fspid_sim::{Controller, Scenario, SimError};
+use fspid_sim::{Controller, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
+use crate::metrics::short;
+use crate::units::degrees;
+
+/// What is held at a rest, in words.
+pub(crate) fn held_in_words(at: RestPoint) -> String {
+    let [setpoint_deg, load_deg] = [at.setpoint_rad, at.load_rad].map(|rad| short(degrees(rad)));
+    let load = match at.load_rad == 0.0 {
+        true => String::new(),
+        false => format!(" under a constant load of {load_deg} deg"),
+    };
+    format!("while the set-point is held at {setpoint_deg} deg{load}")
+}
 
 /// Where the gains are when error and change are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::units::degrees;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
-use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop};
+use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop, RestLoop};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
@@ -63,9 +63,12 @@ fn controller(found: &AnalysedLoop) -> Value {
 fn plant_into(answer: &mut Map<String, Value>, plant: &PlantLoop) {
     let unstable = plant.worst.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
     answer.insert("stable".into(), json!(plant.is_stable()));
-    // Where gains that move make a constant command part of the loop, at the set-point at which it is worst.
+    // Where gains that move make a constant command part of the loop, the rest at which it is worst.
     if !plant.others.is_empty() {
-        answer.insert("setpoint_deg".into(), json!(degrees(plant.worst.setpoint_rad)));
+        let RestLoop { at, gains, .. } = &plant.worst;
+        answer.insert("setpoint_deg".into(), json!(degrees(at.setpoint_rad)));
+        answer.insert("load_deg".into(), json!(degrees(at.load_rad)));
+        answer.insert("gain_on_the_error".into(), json!(gains.kp));
     }
     let shown = |pole: &Complex| pole_of(*pole, plant.worst.open.dt_s());
     answer.insert("unstable_poles".into(), unstable.map(shown).collect());

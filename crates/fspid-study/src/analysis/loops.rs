@@ -4,7 +4,8 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins, Stability};
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::{
-    AircraftPlant, Controller, LinearPlant, NamedController, Rest, Scenario, Side, SimError, Stand,
+    AircraftPlant, Controller, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side,
+    SimError,
 };
 
 use super::Question;
@@ -17,8 +18,8 @@ use crate::metrics::Absent;
 /// A controller's loop with a plant, at one rest of the scenario and on one side of the kinks that the rules have there.
 #[derive(Clone, Debug)]
 pub struct RestLoop {
-    /// The set-point at which the loop rests, rad from the trim.
-    pub setpoint_rad: f64,
+    /// What is held while the loop rests.
+    pub at: RestPoint,
     /// The gains, and with them what a held command adds to the gain on the error.
     pub gains: Gains<f64>,
     /// The open loop.
@@ -146,11 +147,11 @@ impl AnalysedLoop {
 }
 
 impl RestLoop {
-    fn of(setpoint_rad: f64, gains: Gains<f64>, open: SampledLoop) -> Result<Self, SimError> {
+    fn of(at: RestPoint, gains: Gains<f64>, open: SampledLoop) -> Result<Self, SimError> {
         let closed_poles = open.closed_poles()?;
         let judged = judged(&open)?;
         let margins = judged.as_deref().map(Margins::of).map_err(|reason| *reason);
-        Ok(Self { setpoint_rad, gains, open, sampled: judged.ok(), closed_poles, margins })
+        Ok(Self { at, gains, open, sampled: judged.ok(), closed_poles, margins })
     }
 
     /// The loops of a rest, one for each side of its kinks.
@@ -163,7 +164,7 @@ impl RestLoop {
         let of_side = |side: &Side| {
             let model = side.model(scenario, plant, controller)?;
             let open = model.sharpened(scenario, plant)?.open(side.gains, point)?;
-            Self::of(rest.setpoint_rad, side.gains, open)
+            Self::of(rest.at, side.gains, open)
         };
         let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
         for side in &mut sides {
@@ -186,12 +187,8 @@ fn of_all_sides(
     if rest.sides.len() == 1 {
         return Ok(reason);
     }
-    // A limit of 0: that a side is unstable is known already.
-    let sampled = SampledPlant::of(scenario, plant)?;
-    Ok(match rest.stand(scenario, &sampled, controller, 0.0)? {
-        Stand::Grows { spectral_radius } => Absent::Unstable { spectral_radius },
-        Stand::Holds | Stand::OneSide { .. } => Absent::OneSide,
-    })
+    let grown = rest.growth_of_motions(scenario, &SampledPlant::of(scenario, plant)?, controller);
+    Ok(grown.map_or(Absent::OneSide, |spectral_radius| Absent::Unstable { spectral_radius }))
 }
 
 impl PlantLoop {
@@ -255,8 +252,8 @@ pub(super) fn judged(open: &SampledLoop) -> Result<Result<Box<SampledMargins>, A
 pub(crate) struct Held {
     /// From when the plant is that one, s.
     pub(crate) from_s: f64,
-    /// The set-point at which it is held worst, rad from the trim.
-    pub(crate) setpoint_rad: f64,
+    /// The rest at which it is held worst.
+    pub(crate) at: RestPoint,
     /// Why it is not.
     pub(crate) verdict: Result<(), Absent>,
 }
@@ -266,10 +263,7 @@ impl Held {
     fn rank(&self) -> f64 {
         match self.verdict {
             Ok(()) => 0.0,
-            Err(Absent::Unstable { spectral_radius } | Absent::Undecided { spectral_radius }) => {
-                -spectral_radius
-            }
-            Err(_) => f64::NEG_INFINITY,
+            Err(reason) => rank_without_margins(reason),
         }
     }
 }
@@ -288,7 +282,7 @@ pub(crate) fn held_at_rest(
         let mut worst: Option<Held> = None;
         for rest in Rest::all(scenario, plant, controller, gains) {
             let verdict = verdict_of(scenario, (plant, &rest), controller)?;
-            let found = Held { from_s: *from_s, setpoint_rad: rest.setpoint_rad, verdict };
+            let found = Held { from_s: *from_s, at: rest.at, verdict };
             if worst.is_none_or(|worst| found.rank() < worst.rank()) {
                 worst = Some(found);
             }
@@ -329,10 +323,20 @@ fn verdict(open: &SampledLoop) -> Result<Result<(), Absent>, SimError> {
 pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
     match margins {
         Ok(margins) => margins.disk_margin,
-        Err(Absent::Unstable { spectral_radius } | Absent::Undecided { spectral_radius }) => {
-            -spectral_radius
+        Err(reason) => rank_without_margins(*reason),
+    }
+}
+
+/// How bad it is that there are no margins, below 0: a stable loop without proved margins, then what is not known, and
+/// before all others what is known to be unstable, the faster the worse.
+fn rank_without_margins(reason: Absent) -> f64 {
+    match reason {
+        Absent::Unstable { spectral_radius } if spectral_radius.is_finite() => {
+            -3.0 - spectral_radius
         }
-        Err(_) => f64::NEG_INFINITY,
+        Absent::Unstable { .. } => f64::NEG_INFINITY,
+        Absent::NotProved { .. } => -1.0,
+        _ => -2.0,
     }
 }
 
@@ -350,6 +354,28 @@ mod tests {
 
     use super::*;
     use crate::file;
+
+    /// A loop that one rest leaves undecided and another makes unstable used to be called undecided.
+    #[test]
+    fn what_is_known_to_be_unstable_is_worse_than_all_that_is_not_known() {
+        let unstable = |spectral_radius| Absent::Unstable { spectral_radius };
+        let worst_first = [
+            unstable(f64::NAN),
+            unstable(2.0),
+            unstable(1.0),
+            Absent::OneSide,
+            Absent::NotProved { order: 100 },
+        ];
+        let ranks: Vec<f64> = worst_first.into_iter().map(rank_without_margins).collect();
+        assert!(ranks.windows(2).all(|two| two[0] < two[1]), "{ranks:?}");
+        assert!(
+            ranks[4] < 0.0
+                && rank_without_margins(Absent::Undecided { spectral_radius: 1.0 }) < -1.0
+        );
+        let held = |verdict| Held { from_s: 0.0, at: RestPoint::TRIM, verdict }.rank();
+        assert!(held(Err(unstable(1.1))) < held(Err(Absent::OneSide)));
+        assert!(held(Err(Absent::OneSide)) < held(Ok(())));
+    }
 
     const STEP: &str = include_str!("../../../../scenarios/plant-change.toml");
 
@@ -372,7 +398,7 @@ mod tests {
                         AnalysedLoop::of(&study.scenario, named, question).expect("a loop");
                     let plants = analysed.plants.iter().map(|plant| Held {
                         from_s: plant.from_s,
-                        setpoint_rad: plant.worst.setpoint_rad,
+                        at: plant.worst.at,
                         verdict: plant.margins.map(|_| ()),
                     });
                     let held = held_at_rest(&study.scenario, &named.controller).expect("a loop");

@@ -27,6 +27,7 @@ use crate::file::Study;
 use crate::simulation::too_large;
 
 pub use answer::{Margins, decibels};
+pub(crate) use at_rest::held_in_words;
 pub use at_rest::{AtRest, RestGains};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use flights::Flights;

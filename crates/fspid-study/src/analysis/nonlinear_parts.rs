@@ -4,69 +4,72 @@ use fspid_core::Law;
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, Scenario};
 
+/// Something that a linear loop leaves out: whether a scenario has it, and what is said of it.
+type LeftOut = (bool, &'static str);
+
 /// Everything of a scenario that its linear loops leave out, in sentences.
 #[must_use]
 pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
-    let mut left_out = Vec::new();
-    let mut say = |applies: bool, sentence: &str| {
-        if applies {
-            left_out.push(sentence.to_owned());
-        }
-    };
+    let all = [&of_what_flies(scenario)[..], &of_controllers(scenario), &[of_clocks(scenario)]];
+    let applying = all.into_iter().flatten().filter(|(applies, _)| *applies);
+    applying.map(|(_, sentence)| (*sentence).to_owned()).collect()
+}
+
+fn of_what_flies(scenario: &Scenario) -> [LeftOut; 5] {
     let surroundings = &scenario.surroundings;
-    say(
-        scenario.plant.aircraft().is_some(),
-        "The aircraft is nonlinear: analysed is its linear model at the trim.",
-    );
-    let limited = match &surroundings.actuator {
-        Some(actuator) => !actuator.is_linear(),
-        None => !scenario.servo.is_linear(),
-    };
-    say(limited, "Limits of the actuator are left out; they act beyond small motions.");
-    let widths = surroundings
-        .actuator
-        .as_ref()
-        .is_some_and(|actuator| actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0);
-    say(
-        widths,
-        "Deadband and play of the actuator are left out: a loop that is called stable may keep a small oscillation.",
-    );
-    let sensors = || [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter().flatten();
-    say(
-        sensors().any(|sensor| sensor.model().resolution > 0.0),
-        "The resolution of the sensors is left out: a loop that is called stable may keep a small oscillation.",
-    );
+    let actuator = surroundings.actuator.as_ref();
+    let is_aircraft = scenario.plant.aircraft().is_some();
+    let is_limited = !actuator.map_or(scenario.servo.is_linear(), |actuator| actuator.is_linear());
+    let has_widths =
+        actuator.is_some_and(|actuator| actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0);
+    let mut sensors = [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter().flatten();
+    let is_stepped = sensors.any(|sensor| sensor.model().resolution > 0.0);
     let erects = surroundings.pitch_sensor.is_some_and(|s| s.model().erection_rad_s > 0.0);
-    say(
-        erects && scenario.plant.aircraft().is_some(),
-        "The vertical gyro's erection is left out: it follows the apparent vertical at a bounded rate, so that a loop that is called stable may keep an oscillation.",
-    );
-    let shells = || scenario.controllers.iter().map(|named| named.controller.shell());
-    say(
-        shells().any(|shell| !shell.is_linear()),
-        "Limits of the controller's output and its anti-windup are left out; they act beyond small motions.",
-    );
-    let tuning =
-        |named: &fspid_sim::NamedController| matches!(named.controller, Controller::SelfTuning(_));
-    say(
-        scenario.controllers.iter().any(tuning),
-        "Of gains that move only what they add to a held command is in these numbers; for all else they stand still. Only a certificate speaks of gains that move.",
-    );
-    let accumulates = |named: &fspid_sim::NamedController| match &named.controller {
-        Controller::SelfTuning(fspid) => fspid.tuner().settings().law != Law::Memoryless,
-        Controller::Fixed(_) => false,
-    };
-    say(
-        scenario.controllers.iter().any(accumulates),
-        "An accumulating law is analysed at its equilibrium alone: where else its gains can stand, a certificate says.",
-    );
-    let dt_s = scenario.timing.dt_s();
-    let aged = [surroundings.pitch_sensor.as_ref(), surroundings.rate_sensor.as_ref()]
-        .into_iter()
-        .any(|sensor| Sensing::through(sensor, dt_s).at_largest_age);
-    say(
-        aged,
+    [
+        (is_aircraft, "The aircraft is nonlinear: analysed is its linear model at the trim."),
+        (is_limited, "Limits of the actuator are left out; they act beyond small motions."),
+        (
+            has_widths,
+            "Deadband and play of the actuator are left out: a loop that is called stable may keep a small oscillation.",
+        ),
+        (
+            is_stepped,
+            "The resolution of the sensors is left out: a loop that is called stable may keep a small oscillation.",
+        ),
+        (
+            erects && is_aircraft,
+            "The vertical gyro's erection is left out: it follows the apparent vertical at a bounded rate, so that a loop that is called stable may keep an oscillation.",
+        ),
+    ]
+}
+
+fn of_controllers(scenario: &Scenario) -> [LeftOut; 3] {
+    let controllers = || scenario.controllers.iter().map(|named| &named.controller);
+    let mut tuners = controllers().filter_map(|controller| match controller {
+        Controller::SelfTuning(fspid) => Some(fspid.tuner()),
+        Controller::Fixed(_) => None,
+    });
+    [
+        (
+            controllers().any(|controller| !controller.shell().is_linear()),
+            "Limits of the controller's output and its anti-windup are left out; they act beyond small motions.",
+        ),
+        (
+            controllers().any(|controller| matches!(controller, Controller::SelfTuning(_))),
+            "Of gains that move only what they add to a held command is in these numbers; for all else they stand still. Only a certificate speaks of gains that move.",
+        ),
+        (
+            tuners.any(|tuner| tuner.settings().law != Law::Memoryless),
+            "An accumulating law is analysed at its equilibrium alone: where else its gains can stand, a certificate says.",
+        ),
+    ]
+}
+
+fn of_clocks(scenario: &Scenario) -> LeftOut {
+    let (surroundings, dt_s) = (&scenario.surroundings, scenario.timing.dt_s());
+    let mut sensors = [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter();
+    (
+        sensors.any(|sensor| Sensing::through(sensor.as_ref(), dt_s).at_largest_age),
         "A sensor has a clock of its own, so that the age of its values changes: they are taken at their largest age.",
-    );
-    left_out
+    )
 }

@@ -8,10 +8,8 @@ use fspid_lti::{Complex, Mode, modulus};
 use crate::metrics::Absent;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
-use crate::metrics::short;
-use crate::units::degrees;
 
-use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop};
+use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop, held_in_words};
 
 impl Analysis {
     /// The answer of `analyse --format text`: verdict first, then the margins with their frequencies.
@@ -44,7 +42,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     if let Some(reason) = found.absent {
         return format!("no margins: {reason}");
     }
-    let held = found.worst().map(at_setpoint).unwrap_or_default();
+    let held = found.worst().map(held_where_worst).unwrap_or_default();
     let count = |answer| found.plants.iter().filter(|it| it.is_stable() == answer).count();
     let (unstable, undecided) = (count(Some(false)), count(None));
     let plants = |bad| match found.plants.len() {
@@ -66,12 +64,11 @@ fn verdict(found: &AnalysedLoop) -> String {
 }
 
 /// Where the loop at rest is worst, if it differs from set-point to set-point.
-pub(crate) fn at_setpoint(plant: &PlantLoop) -> String {
+pub(crate) fn held_where_worst(plant: &PlantLoop) -> String {
     if plant.others.is_empty() {
         return String::new();
     }
-    let held = short(degrees(plant.worst.setpoint_rad));
-    format!("; worst while the set-point is held at {held} deg")
+    format!("; worst {}", held_in_words(plant.worst.at))
 }
 
 fn push_loop(out: &mut String, found: &AnalysedLoop) {
@@ -96,6 +93,16 @@ fn push_plant(out: &mut String, plant: &PlantLoop) {
             line(out, format_args!("  no margins         {reason}"));
         }
         Err(_) => push_unstable(out, plant),
+    }
+    if !plant.others.is_empty() {
+        let Gains { kp, .. } = plant.worst.gains;
+        let held = held_in_words(plant.worst.at);
+        line(
+            out,
+            format_args!(
+                "  gain on the error  {kp:.4} {held}: kp, and what it adds where it moves and multiplies what is held"
+            ),
+        );
     }
     let oscillating = plant.worst.closed_poles.iter().filter(|pole| pole.im > 0.0);
     let modes = oscillating.map(|pole| mode(*pole, plant.worst.open.dt_s()));

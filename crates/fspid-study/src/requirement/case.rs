@@ -3,9 +3,12 @@
 use std::fmt;
 
 use fspid_core::Gains;
+use fspid_sim::RestPoint;
 use serde_json::{Map, Value, json};
 
 use super::condition::shortest;
+use crate::analysis::held_in_words;
+use crate::units::degrees;
 
 /// A step of the command.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,8 +50,8 @@ pub struct Place {
     pub at_s: Option<f64>,
     /// The plant, where there are several.
     pub plant: Option<PlantAt>,
-    /// The set-point that is held, deg from the trim, where the loop at rest differs from one to the next.
-    pub setpoint_deg: Option<f64>,
+    /// What is held at rest, where the loop there differs from the one at the trim.
+    pub rest: Option<RestPoint>,
     /// The frozen gains.
     pub frozen: Option<FrozenAt>,
     /// The frequency, rad/s.
@@ -93,7 +96,8 @@ impl Place {
             "plant",
             self.plant.map(|plant| json!({ "index": plant.index, "from_s": plant.from_s })),
         );
-        put("setpoint_deg", self.setpoint_deg.map(|setpoint_deg| json!(setpoint_deg)));
+        put("setpoint_deg", self.rest.map(|at| json!(degrees(at.setpoint_rad))));
+        put("load_deg", self.rest.map(|at| json!(degrees(at.load_rad))));
         put("frozen_gains", self.frozen.map(|frozen| frozen_json(&frozen)));
         put("frequency_rad_s", self.frequency_rad_s.map(|omega| json!(omega)));
         put("spectral_radius", self.spectral_radius.map(|radius| json!(radius)));
@@ -128,8 +132,7 @@ impl fmt::Display for Place {
             0 => "the first plant".to_owned(),
             _ => format!("the plant after the change at {} s", shortest(plant.from_s)),
         }));
-        let held = |deg| format!("while the set-point is held at {} deg", shortest(deg));
-        parts.extend(self.setpoint_deg.map(held));
+        parts.extend(self.rest.map(held_in_words));
         parts.extend(self.frozen.map(frozen_in_words));
         parts.extend(self.frequency_rad_s.map(|omega| format!("at {} rad/s", shortest(omega))));
         parts.extend(self.spectral_radius.map(|radius| format!("spectral radius {radius:.6}")));

@@ -13,7 +13,7 @@ pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;
 use fspid_sim::stability::{Unstable, instability};
-use fspid_sim::{Controller, NamedController, SimError, Trace, simulate};
+use fspid_sim::{Controller, NamedController, RestPoint, SimError, Trace, simulate};
 
 use crate::analysis::AtRest;
 use crate::file::{RangeRule, Study};
@@ -94,12 +94,12 @@ impl Simulation {
     }
 
     /// The same for the figures of a paper, which show a window and say nothing of what comes after: a loop that grows
-    /// around a held set-point alone keeps the measures of its window. A note says that it grows.
+    /// around a held set-point or load alone keeps the measures of its window. A note says that it grows.
     ///
     /// # Errors
     /// As [`Simulation::of`].
     pub fn of_window(study: &Study) -> Result<Self, SimError> {
-        Self::flown(study, |unstable| unstable.setpoint_rad == 0.0)
+        Self::flown(study, |unstable| unstable.at == RestPoint::TRIM)
     }
 
     /// Flies the study with its own command alone.

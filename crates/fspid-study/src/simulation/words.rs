@@ -1,15 +1,15 @@
 //! What is said of a flight beside its measures.
 
 use fspid_core::Gains;
+use fspid_sim::RestPoint;
 use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
 use fspid_sim::stability::Unstable;
 
 use super::ControllerResult;
-use crate::analysis::{AtRest, RestGains};
+use crate::analysis::{AtRest, RestGains, held_in_words};
 use crate::digits::to_digits;
 use crate::file::RangeRule;
 use crate::metrics::{EdgeMetrics, left_validity, short};
-use crate::units::degrees;
 
 /// What is asked where the first movement is steadily away from the set-point.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
@@ -48,22 +48,22 @@ impl AtRest {
             .map(|reason| format!("the loop at rest could not be asked: {reason}"))
     }
 
-    /// At which set-point the loop is unstable, where it is not at the trim.
-    fn held_in_words(&self) -> Option<String> {
-        let setpoint_deg = degrees(self.unstable?.setpoint_rad);
-        let held = short(setpoint_deg);
-        (setpoint_deg != 0.0).then(|| {
-            format!("unstable while the set-point is held at {held} deg: gains that move multiply the command that holds it")
+    /// At which rest the loop is unstable, where it is not at the trim.
+    fn unstable_where_in_words(&self) -> Option<String> {
+        let at = self.unstable?.at;
+        (at != RestPoint::TRIM).then(|| {
+            let held = held_in_words(at);
+            format!("unstable {held}: gains that move multiply the command that holds it")
         })
     }
 
     /// That stability is not decided, and where; none where it is.
     #[must_use]
     pub fn one_side_in_words(&self) -> Option<String> {
-        let Unstable { spectral_radius, setpoint_rad, .. } = self.on_one_side?;
-        let held = short(degrees(setpoint_rad));
+        let Unstable { spectral_radius, at, .. } = self.on_one_side?;
+        let held = held_in_words(at);
         Some(format!(
-            "whether the loop is stable while the set-point is held at {held} deg is not decided: its rules have a kink there, on one side of it the spectral radius is {spectral_radius:.6}, and no motion around it was seen to grow"
+            "whether the loop is stable {held} is not decided: its rules have a kink there, on one side of it the spectral radius is {spectral_radius:.6}, and no motion around it was seen to grow"
         ))
     }
 
@@ -118,7 +118,11 @@ impl ControllerResult {
         let allowed = self.trace.exit.filter(|_| self.range_rule == RangeRule::Warns);
         let left = allowed.map(|exit| left_validity(&exit));
         let not_asked = self.at_rest.not_asked_in_words();
-        let held = self.at_rest.held_in_words().into_iter().chain(self.at_rest.one_side_in_words());
+        let held = self
+            .at_rest
+            .unstable_where_in_words()
+            .into_iter()
+            .chain(self.at_rest.one_side_in_words());
         question.into_iter().chain(held).chain(load).chain(left).chain(not_asked).collect()
     }
 }

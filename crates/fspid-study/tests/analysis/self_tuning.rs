@@ -170,7 +170,7 @@ fn held(text: &str, set: &[&str]) -> (f64, f64) {
     let analysis = analysed(text, set);
     let plant = analysis.loops[0].worst().expect("a loop").clone();
     let moduli = plant.worst.closed_poles.iter().map(|pole| pole.re.hypot(pole.im));
-    (moduli.fold(0.0, f64::max), plant.worst.setpoint_rad.to_degrees())
+    (moduli.fold(0.0, f64::max), plant.worst.at.setpoint_rad.to_degrees())
 }
 
 /// It used to be called stable, with margins, at every set-point: the slope of kp times (b - 1) r was left out.
@@ -186,7 +186,15 @@ fn a_setpoint_weight_of_zero_makes_the_747_unstable_at_rest_at_20_deg_and_not_at
     let steep = analysed(TUNED, &[weight, "setpoint.amplitude_deg=-20"]);
     assert!(!steep.all_held());
     assert!(steep.text().contains("UNSTABLE") && steep.text().contains("at -20 deg"));
-    assert!(steep.json()["controllers"][0]["setpoint_deg"].as_f64().is_some_and(|deg| deg < -19.0));
+    let json = &steep.json()["controllers"][0];
+    assert!(json["setpoint_deg"].as_f64().is_some_and(|deg| deg < -19.0));
+    assert_eq!(json["load_deg"], 0.0);
+    // The gain that acts on the error there is not the nominal one.
+    let (acts, nominal) = (json["gain_on_the_error"].as_f64(), json["gains"]["kp"].as_f64());
+    assert!(
+        acts.zip(nominal).is_some_and(|(acts, nominal)| (acts - nominal).abs() > 0.1),
+        "{json}"
+    );
     assert!(analysed(TUNED, &[weight]).loops[0].margins().is_ok());
     // With a weight of 1 the loop at rest is the same at every set-point.
     let plain = analysed(TUNED, &["setpoint.amplitude_deg=-20"]);

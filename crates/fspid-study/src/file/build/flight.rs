@@ -205,27 +205,14 @@ pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str)
     }
 }
 
-/// Keys that say together which flight is to be held.
-const OF_TRIM: [&str; 19] = [
+/// Keys that say together, beside those of the loading, which flight is to be held.
+const OF_TRIM: [&str; 6] = [
     "airspeed_m_s",
     "airspeed_kt",
     "airspeed_ft_s",
     "altitude_m",
     "altitude_ft",
     "climb_angle_deg",
-    "mass_kg",
-    "cg_mac",
-    "ix_kg_m2",
-    "ix_slug_ft2",
-    "ix_gyration_m",
-    "iy_kg_m2",
-    "iy_slug_ft2",
-    "iy_gyration_m",
-    "iz_kg_m2",
-    "iz_slug_ft2",
-    "iz_gyration_m",
-    "ixz_kg_m2",
-    "ixz_slug_ft2",
 ];
 
 /// The aircraft at its trim, or a problem: at what lies out of its own range, else at the table as a whole.
@@ -245,7 +232,7 @@ fn trimmed(
                 report.value(part.at(key), &part.path(key), message, allowed);
             }
             None => {
-                let given = OF_TRIM.iter().filter(|key| part.given(key));
+                let given = OF_TRIM.iter().chain(&loading::KEYS).filter(|key| part.given(key));
                 let given = given.map(|key| format!("{key} = {}", report.text(part.at(key))));
                 let given = given.collect::<Vec<_>>().join(", ");
                 let allowed = format!("a flight that can be held; it follows from {given}");

@@ -78,7 +78,7 @@ fn fault<'a>(part: &Section, key: &'a str, error: &AircraftError) -> (&'a str, &
 }
 
 /// Every key of a loading.
-const KEYS: [&str; 13] = [
+pub(super) const KEYS: [&str; 13] = [
     "mass_kg",
     "cg_mac",
     "ix_kg_m2",

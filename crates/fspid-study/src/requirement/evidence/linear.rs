@@ -1,7 +1,7 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
 use fspid_lti::Mode;
-use fspid_sim::{NamedController, Scenario, SimError};
+use fspid_sim::{NamedController, RestPoint, Scenario, SimError};
 
 use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
 use crate::metrics::{Absent, Measure};
@@ -26,10 +26,9 @@ impl PlantEvidence {
     /// The loops of all rests, each with its place.
     fn rests(&self) -> impl Iterator<Item = (&RestLoop, Place)> {
         let several = !self.at_rest.others.is_empty();
-        self.at_rest.rests().map(move |rest| {
-            let setpoint_deg = several.then(|| degrees(rest.setpoint_rad));
-            (rest, Place { setpoint_deg, ..self.place() })
-        })
+        self.at_rest
+            .rests()
+            .map(move |rest| (rest, Place { rest: several.then_some(rest.at), ..self.place() }))
     }
 }
 
@@ -58,7 +57,10 @@ pub(super) fn require_stability(
         match held.verdict {
             // Not decided by the loop: the flight tells.
             Ok(()) | Err(Absent::OneSide) => {}
-            Err(reason) => return Err(with_place(reason, Place { plant, ..Place::default() })),
+            Err(reason) => {
+                let rest = (held.at != RestPoint::TRIM).then_some(held.at);
+                return Err(with_place(reason, Place { plant, rest, ..Place::default() }));
+            }
         }
     }
     Ok(())
