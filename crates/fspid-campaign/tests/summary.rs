@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use fspid_campaign::rows::HIT_GROUND;
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::statistics::{rank, share};
 use fspid_campaign::summary::{
@@ -13,6 +14,7 @@ use fspid_campaign::table::{
     Cell, Column, Kind, Reader, Schema, Table, TableError, Values, Writer,
 };
 use fspid_campaign::{Folder, Progress, Question, local, plan};
+use fspid_study::metrics::LEFT_RANGE;
 use proptest::prelude::*;
 
 /// A file of its own in a folder that is removed in the end.
@@ -215,6 +217,11 @@ fn failures_are_counted_by_kind_and_named_the_worst_first() {
             met: None,
             ..good(run)
         },
+        (0, 12) => Row {
+            reasons: Some(format!("{LEFT_RANGE} at t = 3.00 s; low 14 %, at most 12 %")),
+            ..good(run)
+        },
+        (0, 15) => Row { verdict: HIT_GROUND, reasons: Some("hit".to_owned()), ..good(run) },
         (0, 20) => Row { verdict: "unstable", reasons: Some("unstable".to_owned()), ..good(run) },
         (0, 1 | 7) => Row {
             reasons: Some("low 14 %, at most 12 %".to_owned()),
@@ -225,17 +232,23 @@ fn failures_are_counted_by_kind_and_named_the_worst_first() {
         _ => good(run),
     });
     let [a, b] = &summary.controllers[..] else { panic!("two controllers") };
-    assert_eq!((a.failed.count, a.refused.count, b.failed.count), (6, 1, 0));
+    assert_eq!((a.failed.count, a.refused.count, b.failed.count), (8, 1, 0));
     let verdicts: Vec<_> =
         a.verdicts.iter().map(|count| (count.verdict.as_str(), count.flights)).collect();
-    assert_eq!(verdicts, [("settled", 26), ("refused", 1), ("unstable", 1), ("diverged", 2)]);
+    let settled = ("settled", 25);
+    assert_eq!(
+        verdicts,
+        [settled, ("refused", 1), ("unstable", 1), (HIT_GROUND, 1), ("diverged", 2)]
+    );
     let worst: Vec<_> = a.failed_runs.iter().map(|it| (it.run, it.severity)).collect();
     assert_eq!(
         worst,
         [
             (9, Severity::Diverged),
             (4, Severity::Diverged),
+            (15, Severity::HitGround),
             (20, Severity::Unstable),
+            (12, Severity::LeftRange),
             (2, Severity::Refused),
             (1, Severity::RequirementsNotMet),
             (7, Severity::RequirementsNotMet),

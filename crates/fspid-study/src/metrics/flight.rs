@@ -121,7 +121,7 @@ pub struct EdgeMetrics {
     pub to_rad: f64,
     /// Measures up to the next step.
     pub step: StepMetrics,
-    /// When a disturbance first begins within that time, s: the measures are those of both.
+    /// When a disturbance first begins within that time or with the step, s: the measures are those of both.
     pub disturbed_from_s: Option<f64>,
 }
 
@@ -253,7 +253,7 @@ fn edge_metrics(
             let at_s = timing.time_s(edge.sample);
             let within = |push_s: &&f64| {
                 let sample = timing.first_sample_at(**push_s);
-                edge.sample < sample && sample + 1 < end
+                edge.sample <= sample && sample + 1 < end
             };
             let disturbed_from_s = pushes_s.iter().find(within).copied();
             let (from_rad, to_rad) = (edge.from_rad, edge.to_rad);

@@ -73,6 +73,21 @@ fn a_self_tuning_loop_with_the_elevator_the_wrong_way_is_unstable_at_rest_and_is
     );
 }
 
+/// Measures of a step with a load in the middle of it were told as those of the step alone.
+#[test]
+fn measures_of_a_step_say_from_when_on_a_disturbance_is_in_them() {
+    let load = |at_s| {
+        format!(
+            "disturbance=[{{kind='step', enters_at='elevator', amplitude_deg=-1.0, at_s={at_s}}}]"
+        )
+    };
+    let words = |set: &[&str]| flown(set).results[0].metrics.edges[0].disturbed_in_words();
+    assert_eq!(words(&[]), "");
+    assert_eq!(words(&[&load("3.0")]), "; of the step and of what disturbs from 3 s on");
+    // Also where it begins with the step.
+    assert_eq!(words(&[&load("0.0")]), "; of the step and of what disturbs from 0 s on");
+}
+
 /// A load just after the step used to be taken for a turned sign, and to fail the flight.
 #[test]
 fn a_load_that_pushes_the_aircraft_down_is_not_taken_for_a_turned_sign_and_the_question_fails_nothing()
