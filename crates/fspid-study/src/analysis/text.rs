@@ -100,7 +100,7 @@ fn push_plant(out: &mut String, plant: &PlantLoop) {
         line(
             out,
             format_args!(
-                "  gain on the error  {kp:.4} {held}: kp, and what it adds where it moves and multiplies what is held"
+                "  gain on the error  {kp:.4} {held}: kp, and what the held command changes by as kp moves"
             ),
         );
     }
