@@ -2,7 +2,7 @@
 
 use fspid_aircraft::Air;
 
-mod support;
+use crate::support;
 
 use support::{FOOT_M, SLUG_KG};
 

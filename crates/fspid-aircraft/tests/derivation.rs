@@ -3,7 +3,7 @@
 use fspid_aircraft::derivation::{DerivationCondition, DimensionalDerivatives};
 use fspid_lti::{Mode, TransferFunction};
 
-mod support;
+use crate::support;
 
 use support::{FOOT_M, POUND_FORCE_N, derivative_data};
 

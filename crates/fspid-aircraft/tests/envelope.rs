@@ -9,7 +9,7 @@ use fspid_aircraft::qualities::{CommandPath, PitchModel, Qualities};
 use fspid_aircraft::{Aircraft, Environment, Linearisation, ModeName};
 use fspid_lti::{FrequencyResponse, LtiError, TransferFunction};
 
-mod support;
+use crate::support;
 
 use support::{FOOT_M, derivative_data};
 

@@ -12,7 +12,7 @@ use fspid_aircraft::{
 };
 use fspid_lti::TransferFunction;
 
-mod support;
+use crate::support;
 
 use support::{DEG_RAD, FOOT_M, aircraft, derivative_data, names};
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp, reason = "what is given comes back bit by bit")]
 
-mod support;
+use crate::support;
 
 use fspid_aircraft::data::{DerivativeData, Laws, Loading, Moment};
 use fspid_aircraft::linearise::VelocityForm;

@@ -8,7 +8,7 @@ use fspid_aircraft::{
     VelocityForm, longitudinal_modes,
 };
 
-mod support;
+use crate::support;
 
 use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG, derivative_data};
 

@@ -4,7 +4,7 @@ use fspid_aircraft::integrate::dormand_prince::{DormandPrince, Tolerance};
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{MassProperties, RIGID_STATES, RigidState, Vector3};
 
-mod support;
+use crate::support;
 
 use support::{DEG_RAD, FOOT_M, SLUG_KG};
 

@@ -1,6 +1,6 @@
 //! What holds for every command: JSON where it is asked for, errors too; templates that check and run.
 
-mod common;
+use crate::common;
 
 use std::path::Path;
 

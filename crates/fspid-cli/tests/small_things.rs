@@ -1,6 +1,6 @@
 //! Small things that cost a user minutes, each once: what it did, and what it does.
 
-mod common;
+use crate::common;
 
 use std::process::{Command, Stdio};
 

@@ -4,7 +4,7 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 #![allow(clippy::disallowed_methods, reason = "powers of two are exact everywhere")]
 
-mod common;
+use crate::common;
 
 use common::{NOMINAL, Random, T, error, fspid, gains, pid, sample, supervisor};
 use fspid_core::fuzzy::{OutOfRange, Real};

@@ -1,6 +1,6 @@
 //! Every bad setting is refused by its name.
 
-mod common;
+use crate::common;
 
 use common::{NOMINAL, T, supervisor, tuner};
 use fspid_core::fuzzy::OutOfRange;

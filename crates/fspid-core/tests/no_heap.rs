@@ -3,7 +3,7 @@
 //! That neither this crate nor `fspid-fuzzy` can name the heap (`no_std` without `alloc`) already
 //! says so; this would also notice a feature or a dependency that changes it.
 
-mod common;
+use crate::common;
 
 use common::{NOMINAL, Random, T, fspid, pid};
 use fspid_core::{AntiWindup, Law, Limits, Shell, State, TunerSettings};

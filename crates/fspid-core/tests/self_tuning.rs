@@ -6,7 +6,7 @@
     reason = "formulas to compare with, within a tolerance; nothing that flies"
 )]
 
-mod common;
+use crate::common;
 
 use common::{NOMINAL, T, error, fspid, tuner};
 use fspid_core::{DeadZone, GainLimits, Gains, Law, Limits, Shell, State, TunerSettings};

@@ -3,7 +3,7 @@
 
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-mod common;
+use crate::common;
 
 use common::{NOMINAL, Random, T, fspid, pid, sample, supervisor};
 use fspid_core::fuzzy::OutOfRange;

@@ -6,7 +6,7 @@
     reason = "formulas to compare with, within a tolerance; nothing that flies"
 )]
 
-mod common;
+use crate::common;
 
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! Systems in every dialect of FCL: what they mean, and that nothing gets lost on the way back.
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-mod common;
+use crate::common;
 
 use common::{EXACT, LOSSY, answers, notes, paper, problems};
 use fspid_formats::fcl::{self, Dialect, ReadOptions};

@@ -1,7 +1,7 @@
 //! Texts that nobody writes: no panic, no recursion, every one answered. That the work is in
 //! proportion to the length is counted in `src/work/tests.rs`; no test here looks at a clock.
 
-mod common;
+use crate::common;
 
 use common::problems;
 use fspid_formats::{MAX_INPUT_BYTES, fcl, fll, fuzzing};

@@ -1,6 +1,6 @@
 //! What is wrong with a text: every problem, its line and column, the word, and what would be right.
 
-mod common;
+use crate::common;
 
 use common::problems;
 use fspid_formats::{fcl, fll};

@@ -1,6 +1,6 @@
 //! Random systems come back from every format as they were: parts equal, numbers to the last bit.
 
-mod common;
+use crate::common;
 
 use common::{EXACT, LOSSY};
 use fspid_formats::fcl::{self, Dialect};

@@ -1,7 +1,7 @@
 //! Systems in the FuzzyLite Language: what they mean, and that nothing gets lost on the way back.
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-mod common;
+use crate::common;
 
 use common::{EXACT, LOSSY, answers, notes, paper, problems};
 use fspid_formats::fll;

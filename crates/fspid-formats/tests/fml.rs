@@ -2,7 +2,7 @@
 //! lost on the way back. Such files were no known format.
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-mod common;
+use crate::common;
 
 use common::{EXACT, LOSSY, answers, notes, paper, problems};
 use fspid_formats::{MAX_INPUT_BYTES, fis, fml};

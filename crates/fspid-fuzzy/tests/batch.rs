@@ -1,8 +1,6 @@
 //! Batches answer bit by bit what single inferences answer, whatever the machine's vectors.
 
-#![cfg(feature = "batch")]
-
-mod common;
+use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{

@@ -1,7 +1,5 @@
 //! Derivatives of answers against central differences of sixth order.
 
-#![cfg(feature = "alloc")]
-
 use fspid_fuzzy::formula::Formula;
 use fspid_fuzzy::hedge::Hedge;
 use fspid_fuzzy::membership::ShapeKind;

@@ -3,7 +3,7 @@
 //! Stored flights, claims and reports depend on the last bit of each increment. So a change that
 //! moves one here is not an optimisation: it needs a line under **Numbers** in the changelog.
 
-mod common;
+use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{Defuzzifier, Inference, InferenceError, OutOfRange, Real, Scalar, Supervisor};

@@ -1,6 +1,5 @@
 //! Interval type-2 systems.
 
-#![cfg(feature = "alloc")]
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use fspid_fuzzy::OutOfRange;

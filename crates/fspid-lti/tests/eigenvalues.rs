@@ -1,6 +1,6 @@
 //! Eigenvalues: against SciPy, 60-digit arithmetic and the classic matrices that make an iteration stall.
 
-mod support;
+use crate::support;
 
 use fspid_lti::{Complex, LtiError, Matrix, Polynomial, eigenvalues, modulus, spectral_radius};
 use proptest::prelude::*;

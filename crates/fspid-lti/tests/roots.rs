@@ -1,6 +1,6 @@
 //! Roots of polynomials: against 60-digit arithmetic, against closed forms, and in bulk.
 
-mod support;
+use crate::support;
 
 use core::f64::consts::TAU;
 

@@ -3,7 +3,7 @@
 //! The digests are not accuracies: they change with any change of an algorithm, and only then. Whoever changes one says
 //! so under "Numbers" in the changelog. A digest that differs between two machines is a defect.
 
-mod support;
+use crate::support;
 
 use fspid_lti::{
     Complex, LtiError, Mode, Polynomial, SampledLoop, Stability, continuous_pole, eigenvalues,

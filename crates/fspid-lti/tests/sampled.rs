@@ -1,6 +1,6 @@
 //! Sampled loops against the handbook's numbers, closed forms and themselves.
 
-mod support;
+use crate::support;
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 

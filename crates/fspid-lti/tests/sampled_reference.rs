@@ -1,6 +1,6 @@
 //! Margins of sampled loops against polynomials in cos ωT of 80 digits: `oracles/make_margins.py`.
 
-mod support;
+use crate::support;
 
 use fspid_lti::{
     Complex, GainLimit, LtiError, Peak, SampledLoop, SampledMargins, Stability, modulus,

@@ -1,6 +1,6 @@
 //! Matrix exponential and zero-order hold: against closed forms, 200-digit arithmetic and SciPy.
 
-mod support;
+use crate::support;
 
 use fspid_lti::{
     LtiError, Matrix, TransferFunction, exponential, spectral_radius, zero_order_hold,

@@ -1,8 +1,7 @@
 //! Loops whose slow modes lie close to z = 1, where level sets lost their peaks.
 
-#[path = "support/slow.rs"]
-mod slow;
-mod support;
+use crate::slow;
+use crate::support;
 
 use fspid_lti::{
     LtiError, Matrix, SampledLoop, SampledMargins, Stability, TransferFunction, zero_order_hold,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp, reason = "what is exact is asked for exactly")]
 
-mod gain_set_common;
+use crate::gain_set_common;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{

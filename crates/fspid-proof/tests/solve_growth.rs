@@ -1,7 +1,7 @@
 //! Sequences that grow and forms that prove it.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-mod solve_loops;
+use crate::solve_loops;
 
 use fspid_lti::{Matrix, spectral_radius};
 use fspid_proof::solve::{Effort, Growth, InstabilityForm, growing_sequence, instability_form};

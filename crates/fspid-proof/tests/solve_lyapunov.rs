@@ -1,7 +1,7 @@
 //! Forms that fall under every matrix of a set: known answers, the paper's loops, and whatever is found.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-mod solve_loops;
+use crate::solve_loops;
 
 use fspid_lti::Matrix;
 use fspid_proof::solve::{

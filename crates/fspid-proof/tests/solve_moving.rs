@@ -1,7 +1,7 @@
 //! Forms that move with the gains.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
-mod solve_loops;
+use crate::solve_loops;
 
 use fspid_lti::Matrix;
 use fspid_proof::solve::{Effort, GainFamily, MovingForm, MovingVerdict, moving_form};

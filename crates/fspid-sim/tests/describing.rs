@@ -18,8 +18,7 @@ use fspid_sim::{
     Surroundings, Timing, Trace, simulate,
 };
 
-#[path = "../../fspid-aircraft/tests/support/mod.rs"]
-mod support;
+use crate::support;
 
 const DT_S: f64 = 0.01;
 const DEG: f64 = PI / 180.0;

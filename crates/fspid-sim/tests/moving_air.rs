@@ -2,8 +2,7 @@
 
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-#[path = "../../fspid-aircraft/tests/support/mod.rs"]
-mod support;
+use crate::support;
 
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;

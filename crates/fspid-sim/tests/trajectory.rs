@@ -25,8 +25,7 @@ use fspid_sim::{
     Servo, SimError, Surroundings, Timing, simulate,
 };
 
-#[path = "../../fspid-aircraft/tests/support/mod.rs"]
-mod support;
+use crate::support;
 
 const DT_S: f64 = 0.01;
 const DEG: f64 = PI / 180.0;

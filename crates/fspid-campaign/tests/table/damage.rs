@@ -16,7 +16,7 @@ use parquet::schema::types::Type;
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-use crate::{file, long_table, read, schema};
+use crate::table::{file, long_table, read, schema};
 
 /// What comes of a file: nothing but an error, or all that was in it. Returns whether it was read.
 fn survives(path: &Path, bytes: &[u8], original: &Table, place: &str) -> bool {

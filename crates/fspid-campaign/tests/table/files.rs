@@ -9,7 +9,7 @@ use fspid_campaign::table::{
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-use crate::{any_table, file, file_in_pieces, long_table, read, schema};
+use crate::table::{any_table, file, file_in_pieces, long_table, read, schema};
 
 /// Numbers of rows about the ends of row groups.
 const SIZES: [usize; 7] =

@@ -7,7 +7,7 @@ use fspid_campaign::table::{
 };
 use proptest::prelude::*;
 
-use crate::{any_table, schema};
+use crate::table::{any_table, schema};
 
 #[test]
 fn a_schema_without_columns_is_refused() {
@@ -69,7 +69,7 @@ fn columns_that_do_not_fit_are_refused() {
 
 #[test]
 fn rows_that_a_table_does_not_have_are_refused_and_not_invented() {
-    let table = crate::long_table(5);
+    let table = crate::table::long_table(5);
     for rows in [3..6, 6..6, std::ops::Range { start: 4, end: 3 }] {
         assert!(matches!(table.slice(rows), Err(TableError::NoSuchRows { rows: 5, .. })));
     }
@@ -80,7 +80,7 @@ fn rows_that_a_table_does_not_have_are_refused_and_not_invented() {
 
 #[test]
 fn numbers_are_had_by_the_name_of_their_column() {
-    let table = crate::long_table(5);
+    let table = crate::table::long_table(5);
     assert_eq!(table.floats("e").unwrap(), [None, Some(0.25), Some(0.25), Some(0.25), None]);
     assert!(matches!(
         table.floats("b"),
@@ -117,7 +117,7 @@ fn the_digest_is_what_its_rules_say() {
 
 #[test]
 fn a_digest_is_read_from_64_small_hexadecimal_digits_only() {
-    let good = Digest::of(&crate::long_table(1)).to_string();
+    let good = Digest::of(&crate::table::long_table(1)).to_string();
     assert_eq!(good.len(), 64);
     assert_eq!(good.parse::<Digest>().unwrap().to_string(), good);
     for bad in

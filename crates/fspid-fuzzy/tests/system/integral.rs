@@ -5,7 +5,7 @@ use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{Defuzzifier, Membership, Parts, SNorm, Sampling, Source};
 use fspid_fuzzy::{Formula, Scalar};
 
-use crate::build::{answers, graded, output, sets, shape, system, triangle, value};
+use crate::system::build::{answers, graded, output, sets, shape, system, triangle, value};
 
 const EXACT: Sampling = Sampling::Exact;
 

@@ -4,7 +4,9 @@ use fspid_fuzzy::membership::ShapeKind::Trapezoid;
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{Antecedent, Defuzzifier, Membership, Parts, Sampling};
 
-use crate::build::{answers, block, input, is, output, parts, rule, sets, shape, system, then};
+use crate::system::build::{
+    answers, block, input, is, output, parts, rule, sets, shape, system, then,
+};
 
 /// A system and what is known of its answers.
 #[derive(Default)]

@@ -4,7 +4,7 @@ use fspid_fuzzy::norm::TNormKind;
 use fspid_fuzzy::system::{Defuzzifier, Parts, Sampling, Source};
 use fspid_fuzzy::{OutOfRange, RuleTable, Supervisor};
 
-use crate::build::{
+use crate::system::build::{
     answers, block, graded, grades, is, output, parts, rule, sets, system, then, triangle, value,
 };
 

@@ -7,7 +7,7 @@ use fspid_fuzzy::system::{
 };
 use fspid_fuzzy::{Formula, Hedge, OutOfRange};
 
-use crate::build::{
+use crate::system::build::{
     answers, block, graded, grades, is, output, parts, rule, sets, shape, system, then, triangle,
 };
 
@@ -98,7 +98,7 @@ fn one_workspace() -> fspid_fuzzy::system::Workspace {
 
 #[test]
 fn state_does_not_leak_between_calls() {
-    let general = system(crate::tipper::matlab(Sampling::Exact));
+    let general = system(crate::system::tipper::matlab(Sampling::Exact));
     let mut used = general.workspace();
     for n in 0..100 {
         let inputs = [f64::from(n * 37 % 101) * 0.1, f64::from(n * 53 % 101) * 0.1];

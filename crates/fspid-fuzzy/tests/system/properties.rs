@@ -2,8 +2,8 @@
 
 use fspid_fuzzy::system::{Defuzzifier, Parts, Sampling, SetReading};
 
-use crate::build::{answers, system};
-use crate::random::Random;
+use crate::system::build::{answers, system};
+use crate::system::random::Random;
 
 fn asked(parts: &Parts, defuzzifier: Defuzzifier) -> Parts {
     let mut parts = parts.clone();

@@ -4,7 +4,7 @@ use fspid_fuzzy::membership::ShapeKind::{Gaussian, Trapezoid};
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{Antecedent, Conclusion, Membership, Parts};
 
-use crate::build::{block, input, is, output, parts, rule, sets, shape, then};
+use crate::system::build::{block, input, is, output, parts, rule, sets, shape, then};
 
 /// Numbers by Knuth's linear congruential generator.
 pub(crate) struct Random(pub(crate) u64);

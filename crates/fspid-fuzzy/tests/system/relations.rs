@@ -5,8 +5,8 @@ use fspid_fuzzy::system::{
     Conclusion, Defuzzifier, Membership, Parts, Sampling, SetReading, Universe,
 };
 
-use crate::build::{answers, system};
-use crate::random::Random;
+use crate::system::build::{answers, system};
+use crate::system::random::Random;
 
 const SAMPLINGS: [Sampling; 6] = [
     Sampling::Exact,

@@ -8,7 +8,7 @@ use fspid_fuzzy::system::{
 };
 use fspid_fuzzy::{Formula, Hedge};
 
-use crate::build::{
+use crate::system::build::{
     answers, block, grades, is, output, parts, rule, sets, shape, system, then, triangle, value,
 };
 
@@ -77,7 +77,7 @@ fn the_negation_of_term_0_can_be_written() {
 #[test]
 fn a_triangle_with_its_peak_on_an_end_grades_1_there() {
     let shoulders = || {
-        crate::build::input(
+        crate::system::build::input(
             0.0,
             10.0,
             vec![shape(Triangle, &[0.0, 0.0, 5.0]), shape(Triangle, &[5.0, 10.0, 10.0])],

@@ -5,7 +5,7 @@ use fspid_fuzzy::norm::TNormKind;
 use fspid_fuzzy::system::{Defuzzifier, Parts, Sampling};
 use fspid_fuzzy::{OutOfRange, RuleTable, Supervisor};
 
-use crate::build::{graded, output, sets, shape, system, triangle, value};
+use crate::system::build::{graded, output, sets, shape, system, triangle, value};
 
 /// The set of MATLAB's example *Defuzzification Methods*: three scaled trapezoids over [-10, 10].
 fn example(method: Defuzzifier) -> Parts {
@@ -128,7 +128,7 @@ fn the_general_path_has_the_reference_answers_in_every_mode() {
     ];
     let rows: Vec<Vec<&str>> = data.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut worst = 0.0_f64;
-    for (table, text) in crate::supervisor::TABLES {
+    for (table, text) in crate::system::supervisor::TABLES {
         let grids: Vec<&str> = text.split("\"\"\"").collect();
         let grids = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
         for (mode, rule) in rules.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use fspid_fuzzy::membership::ShapeKind::{Gaussian, Trapezoid};
 use fspid_fuzzy::system::{Antecedent, Defuzzifier, Parts, Sampling};
 
-use crate::build::{
+use crate::system::build::{
     answers, block, input, is, output, parts, rule, sets, shape, system, then, triangle,
 };
 

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use crate::factored::{Factored, Value};
+use crate::sampled_battery::factored::{Factored, Value};
 use fspid_lti::{Complex, Matrix, modulus, quotient};
 
 /// Angles of the grid, half of them evenly, half evenly in the logarithm.

@@ -1,6 +1,6 @@
 //! Random loops of several kinds.
 
-use crate::factored::{Factored, Section, zeta};
+use crate::sampled_battery::factored::{Factored, Section, zeta};
 use crate::support::Random;
 use fspid_lti::modulus;
 

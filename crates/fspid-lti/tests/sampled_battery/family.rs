@@ -1,8 +1,8 @@
 //! Loops of a family by the quick way and by the careful one.
 
-use crate::Outcome;
-use crate::factored::{Factored, Section};
-use crate::families::random_loop;
+use crate::sampled_battery::Outcome;
+use crate::sampled_battery::factored::{Factored, Section};
+use crate::sampled_battery::families::random_loop;
 use crate::support::Random;
 use fspid_lti::{
     Complex, LoopFamily, LtiError, Matrix, SampledLoop, SampledMargins, SeriesControl, Stability,

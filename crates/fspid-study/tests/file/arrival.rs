@@ -14,7 +14,7 @@ use fspid_sim::{
 };
 use fspid_study::file::{self, rule_table};
 
-use crate::text;
+use crate::file::text;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 

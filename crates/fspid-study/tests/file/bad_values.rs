@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use fspid_study::file;
 use serde_json::Value;
 
-use crate::schema::as_json;
-use crate::text;
+use crate::file::schema::as_json;
+use crate::file::text;
 
 /// Set-points that take the place of the one in the file with every key.
 const SETPOINTS: [&str; 6] = [
@@ -164,7 +164,7 @@ fn the_file_with_every_key_is_good() {
         let study = file::parse(&text, "every-key.toml", None, &[]);
         let study = study.unwrap_or_else(|problems| panic!("{problems}"));
         assert!(study.warnings.is_empty(), "{:?}", study.warnings);
-        assert_eq!(crate::schema::fault(&file::schema(), &as_json(&text), ""), None);
+        assert_eq!(crate::file::schema::fault(&file::schema(), &as_json(&text), ""), None);
     }
 }
 
@@ -208,7 +208,7 @@ fn every_number_refuses_what_lies_outside_its_range() {
             for value in ["-1", "0", "-1e-9", "1e301"] {
                 let bad = with(&text, &number, value);
                 // The schema is the second opinion on what is in range.
-                if crate::schema::fault(&schema, &as_json(&bad), "").is_some() {
+                if crate::file::schema::fault(&schema, &as_json(&bad), "").is_some() {
                     refuse(&text, &number, value);
                     outside += 1;
                 }

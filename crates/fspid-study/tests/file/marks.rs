@@ -161,8 +161,8 @@ fn what_is_wrong_with_a_tuning_is_told() {
 
 #[test]
 fn every_marked_scenario_flies_and_bears_the_ends_of_its_bounds() {
-    for (name, _) in crate::marked() {
-        let path = crate::repository(&format!("scenarios/{name}"));
+    for (name, _) in crate::file::marked() {
+        let path = crate::file::repository(&format!("scenarios/{name}"));
         let template = Template::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         assert!(!template.study().marks.is_empty() && template.study().tuning.is_some(), "{name}");
         assert_eq!(template.check_marks(), Ok(()), "{name}");

@@ -4,7 +4,7 @@
 
 use fspid_study::file;
 
-use crate::{repository, text};
+use crate::file::{repository, text};
 
 const GOLDEN: &str = "crates/fspid-study/tests/scenarios/messages.txt";
 

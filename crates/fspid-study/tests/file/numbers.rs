@@ -292,7 +292,10 @@ fn a_grid_of_numbers_may_be_free_and_so_may_a_single_cell() {
     assert_eq!((mark.dimensions(), mark.controller()), (25, Some("FSPID")));
     assert!(matches!(mark.free, Free::Numbers(_)));
     let schema = file::schema();
-    assert_eq!(crate::schema::fault(&schema, &crate::schema::as_json(&marked), ""), None);
+    assert_eq!(
+        crate::file::schema::fault(&schema, &crate::file::schema::as_json(&marked), ""),
+        None
+    );
     assert_eq!(mark.names()[24], "controller.FSPID.supervisor.numbers.delta_kp[3][3]");
     let template =
         Template::parse(&marked, "mine.toml", None, &Extra::default()).expect("a scenario");

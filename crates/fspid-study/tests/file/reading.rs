@@ -4,7 +4,7 @@ use fspid_sim::Controller;
 use fspid_study::file::{self, LoadError};
 use fspid_study::metrics::Measure;
 
-use crate::{repository, shipped, text};
+use crate::file::{repository, shipped, text};
 
 fn parse(text: &str) -> Result<file::Study, file::Problems> {
     file::parse(text, "test.toml", None, &[])

@@ -1,7 +1,7 @@
 use fspid_study::file;
 use serde_json::Value;
 
-use crate::shipped;
+use crate::file::shipped;
 
 /// Whether a value is valid: the part of draft 2020-12 that the schema uses. `None` where it is,
 /// or the first thing that is not. A word of the schema that is not known here fails the test.

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use fspid_study::file::{self, Setting};
 use toml::{Table, Value};
 
-use crate::bad_values::texts;
-use crate::shipped;
+use crate::file::bad_values::texts;
+use crate::file::shipped;
 
 fn settings(text: &str, set: &[String]) -> Vec<Setting> {
     let study = file::parse(text, "test.toml", None, set);
@@ -167,7 +167,7 @@ fn a_preset_shows_its_coefficients_and_their_source() {
 #[test]
 fn a_plant_file_shows_its_coefficients_too() {
     let folder = tempfile::tempdir().expect("a folder");
-    let plant = crate::text("data/plants/ctms-pitch.toml");
+    let plant = crate::file::text("data/plants/ctms-pitch.toml");
     std::fs::write(folder.path().join("mine.toml"), plant).expect("written");
     let text = file::starter().replace("preset = \"navion-paper\"", "file = \"mine.toml\"");
     let study = file::parse(&text, "test.toml", Some(folder.path()), &[]).expect("no problems");
@@ -177,7 +177,7 @@ fn a_plant_file_shows_its_coefficients_too() {
 
 #[test]
 fn rules_in_the_file_and_long_tables_stay_one_line() {
-    let rules = crate::text("data/rule-tables/printed.toml");
+    let rules = crate::file::text("data/rule-tables/printed.toml");
     let grids: Vec<&str> = rules.split("\"\"\"").collect();
     let table = ["delta_kp", "delta_ki", "delta_kd"];
     let grid = |n: usize| format!("{} = \"\"\"{}\"\"\"\n", table[n], grids[2 * n + 1]);

@@ -1,6 +1,6 @@
 //! What is small is linear, and what is integrated is integrated finely enough.
 
-use crate::{NAVION, apart, flown, largest};
+use crate::flying::{NAVION, apart, flown, largest};
 
 const B747: [&str; 3] = [
     "aircraft.name=b747-cruise-low",

@@ -4,7 +4,7 @@ use fspid_study::analysis::RestGains;
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::{Simulation, WRONG_WAY};
 
-use crate::study;
+use crate::flying::study;
 
 /// The short period of the 747 of the paper.
 const SIGN: &str = r#"

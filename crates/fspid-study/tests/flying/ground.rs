@@ -6,7 +6,7 @@ use fspid_study::metrics::{Absent, Verdict};
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
 
-use crate::{NAVION, column, study};
+use crate::flying::{NAVION, column, study};
 
 /// 300 ft, a step of -10 deg: down after some 12 s.
 const DOWN: [&str; 4] = [

@@ -9,7 +9,7 @@ use fspid_study::metrics::Verdict;
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
 
-use crate::{NAVION, column, flown, study};
+use crate::flying::{NAVION, column, flown, study};
 
 #[test]
 fn a_flight_beyond_its_model_says_when_and_by_which_limit() {

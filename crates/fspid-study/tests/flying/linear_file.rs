@@ -6,7 +6,7 @@ use fspid_sim::ElevatorSign;
 use fspid_study::file::{self, aircraft};
 use fspid_study::simulation::Simulation;
 
-use crate::{NAVION, apart, flown, largest, study};
+use crate::flying::{NAVION, apart, flown, largest, study};
 
 const ETKIN: [&str; 3] =
     ["aircraft.name=etkin-747", "aircraft.airspeed_ft_s=774", "aircraft.altitude_ft=40000"];

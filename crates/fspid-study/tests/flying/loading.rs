@@ -3,7 +3,7 @@
 use fspid_sim::{AircraftPlant, Plant};
 use fspid_study::file;
 
-use crate::{NAVION, apart, column, flown, study};
+use crate::flying::{NAVION, apart, column, flown, study};
 
 /// At sea level, over ground that is lower: a flight begins above it.
 const AT_THE_REFERENCE: [&str; 3] =

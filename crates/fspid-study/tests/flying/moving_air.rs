@@ -1,6 +1,6 @@
 //! Winds, gusts, turbulence and sensors around a nonlinear aircraft.
 
-use crate::{NAVION, apart, column, flown, largest};
+use crate::flying::{NAVION, apart, column, flown, largest};
 
 const TURBULENCE: &str = "[turbulence]\nintensity = \"moderate\"\nseed = 4\n";
 const QUIET: [&str; 2] = ["setpoint.amplitude_deg=0.0", "loop.duration_s=60.0"];

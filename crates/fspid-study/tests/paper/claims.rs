@@ -3,7 +3,7 @@
 use fspid_study::reproduce::Status;
 use fspid_study::reproduce::Status::{Approached, Contradicted, Reproduced};
 
-use crate::paper;
+use crate::paper::paper;
 
 fn status(id: &str) -> Status {
     paper().statuses().find(|(of, _)| *of == id).map(|(_, status)| status).expect("a judged claim")

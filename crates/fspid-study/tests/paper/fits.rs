@@ -5,7 +5,7 @@ use fspid_study::metrics::Absent;
 use fspid_study::reproduce::{CLAIMS, Fit, FlownFigure, Library, Quantity, Reproduction, Status};
 use fspid_study::simulation::Simulation;
 
-use crate::paper;
+use crate::paper::paper;
 
 fn controller<'a>(flown: &'a FlownFigure, name: &str) -> &'a Controller {
     let mut controllers = flown.study.scenario.controllers.iter();

@@ -2,7 +2,7 @@
 
 use fspid_study::verify::{Question, VerifyError, verify};
 
-use crate::{JUMBO, repository, verified, written};
+use crate::requirements::{JUMBO, repository, verified, written};
 
 /// One line that is met, one that is not, one that cannot be evaluated; for each of two controllers.
 const THREE: &str = r#"

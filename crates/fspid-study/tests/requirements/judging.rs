@@ -5,7 +5,7 @@ use fspid_study::metrics::{Absent, Family, Measure};
 use fspid_study::requirement::{Judgement, NotEvaluated};
 use fspid_study::simulation::Simulation;
 
-use crate::{JUMBO, judged, study, values, verified, written};
+use crate::requirements::{JUMBO, judged, study, values, verified, written};
 
 /// The only judgement.
 fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {

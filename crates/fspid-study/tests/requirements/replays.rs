@@ -8,7 +8,7 @@ use fspid_study::requirement::{Judgement, NotEvaluated};
 use fspid_study::simulation::Simulation;
 use fspid_study::verify::Verification;
 
-use crate::{JUMBO, repository, verified, written};
+use crate::requirements::{JUMBO, repository, verified, written};
 
 /// Every measure without a limit that anything could miss.
 fn every_measure() -> String {

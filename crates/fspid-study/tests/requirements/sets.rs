@@ -4,7 +4,7 @@ use fspid_aircraft::qualities::{Category, Level, cap_level};
 use fspid_study::metrics::Measure;
 use fspid_study::requirement::{Confidence, Requirement, SET_NAMES, set};
 
-use crate::{JUMBO, study};
+use crate::requirements::{JUMBO, study};
 
 /// The requirements of a set under choices such as `level = 2`.
 fn lines(name: &str, choices: &str) -> Vec<Requirement> {

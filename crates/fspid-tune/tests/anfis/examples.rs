@@ -5,7 +5,7 @@ use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_study::file::rule_table;
 use fspid_tune::anfis::{Curve, Data, Order, Plan, grid, learn_beside, sugeno};
 
-use crate::{answer, axis, learned};
+use crate::anfis::{answer, axis, learned};
 
 /// Jang's example 2: (1 + √x + 1/y + z^-1.5)² at every place of a cube of evenly spaced points.
 fn cube(first: f64, count: u32) -> Data {

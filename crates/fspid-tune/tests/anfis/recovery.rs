@@ -4,7 +4,7 @@ use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{Conclusion, Defuzzifier, Parameter, Parts, SetReading};
 use fspid_tune::anfis::{Curve, Data, Order, Plan, Stop, grid, learn_beside, sugeno};
 
-use crate::{answer, axis, learned, root_mean_square, samples, teacher};
+use crate::anfis::{answer, axis, learned, root_mean_square, samples, teacher};
 
 fn numbers(parts: &Parts) -> Vec<f64> {
     parts.parameters().into_iter().filter_map(|parameter| parts.parameter(parameter)).collect()

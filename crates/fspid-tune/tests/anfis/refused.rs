@@ -5,7 +5,7 @@ use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_study::file::rule_table;
 use fspid_tune::anfis::{AnfisError, Curve, Data, Order, Plan, grid, learn, sugeno};
 
-use crate::{axis, samples};
+use crate::anfis::{axis, samples};
 
 fn start() -> Parts {
     grid(&[axis("x", 0.0, 1.0, 2)], &["y"], Curve::Triangle, Order::One)

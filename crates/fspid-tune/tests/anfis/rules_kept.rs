@@ -5,7 +5,7 @@ use fspid_fuzzy::system::{Membership, Parts, System};
 use fspid_tune::anfis::{AnfisError, Curve, Data, Order, Plan, Stop, grid, learn};
 use proptest::prelude::*;
 
-use crate::{axis, learned, samples};
+use crate::anfis::{axis, learned, samples};
 
 /// Parameters of the sets of an input.
 fn sets(parts: &Parts) -> Vec<&[f64]> {

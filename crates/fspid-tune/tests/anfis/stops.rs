@@ -2,7 +2,7 @@
 
 use fspid_tune::anfis::{Curve, Order, Plan, Stop, grid};
 
-use crate::{axis, learned, samples};
+use crate::anfis::{axis, learned, samples};
 
 #[test]
 fn learning_ends_at_the_error_that_is_enough() {

@@ -1,6 +1,5 @@
 //! What is true of rule bases and surfaces.
 
-#![cfg(feature = "alloc")]
 #![allow(clippy::float_cmp, reason = "what is exact is asked for exactly")]
 
 mod reach;

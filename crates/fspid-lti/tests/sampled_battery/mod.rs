@@ -8,8 +8,7 @@ mod dense;
 mod factored;
 mod families;
 mod family;
-#[path = "../support/mod.rs"]
-mod support;
+use crate::support;
 
 use dense::{Dense, closed_matrix, distance, growth, quotient_of};
 use factored::Factored;

@@ -1,6 +1,5 @@
 //! General systems: what they answer, and what they keep to.
 
-#![cfg(feature = "alloc")]
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod build;

@@ -1,0 +1,11 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod atmosphere;
+mod derivation;
+mod envelope;
+mod flight;
+mod loading;
+mod qualities;
+mod support;
+mod trim_and_linearise;
+mod tumbling_brick;

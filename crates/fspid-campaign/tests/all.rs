@@ -1,0 +1,8 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod campaign;
+mod engine;
+mod search;
+mod statistics;
+mod summary;
+mod table;

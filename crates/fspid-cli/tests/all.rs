@@ -1,0 +1,18 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod aircraft;
+mod bench;
+mod campaign;
+mod certify;
+mod cli;
+mod common;
+mod every_command;
+mod fly;
+mod fuzzy_system;
+mod learn;
+mod no_clock;
+mod repository;
+mod small_things;
+mod tables;
+mod tune;
+mod verify;

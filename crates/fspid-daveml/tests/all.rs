@@ -1,0 +1,7 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod abuse;
+mod data_file;
+mod flight;
+mod refused;
+mod toy;

@@ -1,0 +1,21 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+#[cfg(feature = "alloc")]
+mod audit;
+#[cfg(feature = "batch")]
+mod batch;
+mod common;
+mod duals;
+#[cfg(feature = "alloc")]
+mod gradient;
+mod intervals;
+mod jets;
+mod membership;
+mod numbers;
+mod quadrature;
+mod recorded_bits;
+mod reference;
+#[cfg(feature = "alloc")]
+mod system;
+#[cfg(feature = "alloc")]
+mod type2;

@@ -1,0 +1,17 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod certify;
+mod check_definite;
+mod check_exponential;
+mod check_growth;
+mod check_lyapunov;
+mod check_matrix;
+mod check_plant;
+mod flown_proofs;
+mod gain_set;
+mod gain_set_common;
+mod range;
+mod solve_growth;
+mod solve_loops;
+mod solve_lyapunov;
+mod solve_moving;

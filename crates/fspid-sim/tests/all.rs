@@ -1,0 +1,13 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod batch;
+mod closed_loop;
+mod describing;
+mod empirical;
+mod moving_air;
+mod reference;
+mod set_places;
+#[path = "../../fspid-aircraft/tests/support/mod.rs"]
+mod support;
+mod surroundings;
+mod trajectory;

@@ -1,0 +1,14 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod analysis;
+mod certify;
+mod designs;
+mod file;
+mod fly;
+mod flying;
+mod fuzzy_system;
+mod optimisers;
+mod paper;
+mod report;
+mod requirements;
+mod step_metrics;

@@ -1,0 +1,7 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod anfis;
+mod contest;
+mod designs;
+mod problem;
+mod rules;
