@@ -81,4 +81,4 @@ def power(x, p):
 
 if __name__ == "__main__":
     made = list(rows())
-    write("fspid-fuzzy", "elementary.csv", HEADER, made)
+    write("fspid-numeric", "elementary.csv", HEADER, made)

@@ -112,7 +112,7 @@ def arguments(fmt, lowest, normal, highest, count, tiny_exponent):
 
 def make(fmt, *limits):
     rows = [row(fmt, kind, fmt.nearest(x)) for kind, x in arguments(fmt, *limits)]
-    write("fspid-fuzzy", f"exp_{fmt.name}.csv", HEADER, rows)
+    write("fspid-numeric", f"exp_{fmt.name}.csv", HEADER, rows)
     return rows
 
 

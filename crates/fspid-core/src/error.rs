@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 /// Why a controller could not be built: which setting, what was found, what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]

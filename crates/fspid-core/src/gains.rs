@@ -1,6 +1,7 @@
 //! Gains of a PID controller in parallel form, and the bounds they may be kept in.
 
-use fspid_fuzzy::{Increments, Real};
+use fspid_fuzzy::Increments;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::limits::Limits;

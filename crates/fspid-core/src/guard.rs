@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, positive};
 use crate::state::Sample;

@@ -1,6 +1,6 @@
 //! The integral of a PID controller: what it remembers, and what keeps it from winding up.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, at_least};
 use crate::limits::Limits;

@@ -1,6 +1,6 @@
 //! An interval a value is kept in.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::ConfigError;
 

@@ -1,6 +1,6 @@
 //! The two controllers: fixed gains, and gains that a fuzzy supervisor tunes while flying.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::ConfigError;
 use crate::gains::Gains;

@@ -1,6 +1,6 @@
 //! What the supervisor sees beside the error, and how the sets of its inputs lie.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, allowed_if, positive};
 

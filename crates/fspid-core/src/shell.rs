@@ -1,6 +1,6 @@
 //! Everything of a PID controller but where its gains come from.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, allowed_if, finite, not_negative, positive};
 use crate::gains::Gains;

@@ -1,6 +1,6 @@
 //! What goes into a step, what comes out of it, and what is remembered from one to the next.
 
-use fspid_fuzzy::Real;
+use fspid_numeric::Real;
 
 use crate::gains::Gains;
 use crate::guard::Faults;

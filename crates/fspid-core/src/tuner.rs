@@ -1,6 +1,7 @@
 //! The self-tuning law: from the loop's error to the gains of the moment.
 
-use fspid_fuzzy::{Real, Supervisor};
+use fspid_fuzzy::Supervisor;
+use fspid_numeric::Real;
 
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};

@@ -7,11 +7,12 @@
 use crate::common;
 
 use common::{NOMINAL, Random, T, error, fspid, gains, pid, sample, supervisor};
-use fspid_core::fuzzy::{OutOfRange, Real};
+use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
     AntiWindup, Faults, Fspid, GainLimits, Gains, Guard, InputScale, IntegralForm, Law, Limits,
     Pid, Sample, SelfTuner, Shell, State, Step, TunerSettings,
 };
+use fspid_numeric::Real;
 
 /// Every feature at once: rate loop, filter, limits, slew, back-calculation.
 fn full_shell<R: Real>(integral: IntegralForm) -> Shell<R> {

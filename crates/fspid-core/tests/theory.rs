@@ -11,8 +11,8 @@ use crate::common;
 use std::f64::consts::PI;
 
 use common::{NOMINAL, Random, T, error, fspid, gains, pid};
-use fspid_core::fuzzy::Real;
 use fspid_core::{Derivative, Gains, InputScale, IntegralForm, Law, Shell, State, TunerSettings};
+use fspid_numeric::Real;
 
 fn shell(filter_s: f64) -> Shell<f64> {
     Shell { derivative: Derivative { filter_s }, ..Shell::sampled_every(T) }

@@ -15,7 +15,7 @@ use fspid_aircraft::{
 };
 use fspid_daveml::flight::{Body, Gearing, Setting, TableForces};
 use fspid_daveml::{Model, read};
-use fspid_fuzzy::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -1,6 +1,6 @@
 //! Formulas of variables, as MathML's content markup writes them.
 
-use fspid_fuzzy::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 use crate::finding::Origin;
 use crate::number::Number;
@@ -238,7 +238,7 @@ fn truth<N: Scalar>(holds: bool) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fspid_fuzzy::scalar::Dual;
+    use fspid_numeric::scalar::Dual;
 
     #[test]
     fn every_function_is_found_by_its_name_and_names_itself() {

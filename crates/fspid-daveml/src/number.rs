@@ -1,6 +1,6 @@
 //! Numbers that a model can be computed with.
 
-use fspid_fuzzy::scalar::{Dual, Scalar};
+use fspid_numeric::scalar::{Dual, Scalar};
 
 /// A number with a plain value, by which cases are chosen and tables are searched.
 ///

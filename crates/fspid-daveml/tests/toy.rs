@@ -3,7 +3,7 @@
 
 use fspid_daveml::document::Role;
 use fspid_daveml::{EvaluateError, Model, Reading};
-use fspid_fuzzy::scalar::Dual;
+use fspid_numeric::scalar::Dual;
 use proptest::prelude::*;
 
 fn toy() -> Reading {

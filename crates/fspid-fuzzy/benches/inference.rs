@@ -15,7 +15,8 @@ use std::hint::black_box;
 use std::ops::Range;
 use std::time::Instant;
 
-use fspid_fuzzy::{Defuzzifier, Increments, NumberTable, OutOfRange, Real, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, Increments, NumberTable, OutOfRange, RuleTable, Supervisor};
+use fspid_numeric::Real;
 
 const INPUTS: usize = 1_000_000;
 const BLOCK: usize = 10_000;
@@ -76,7 +77,7 @@ fn numbers() -> Supervisor<f64> {
 #[cfg(feature = "batch")]
 fn report_batches<R: Real>(precision: &str, fixed: f64, inputs: &Inputs<R>) {
     let supervisor = supervisor(Defuzzifier::Exact);
-    for set in fspid_fuzzy::InstructionSet::available() {
+    for set in fspid_numeric::InstructionSet::available() {
         report(&format!("exact, batch of {precision}, {set}"), Some(fixed), |block, answers| {
             let (error, change) = (&inputs.error[block.clone()], &inputs.change[block]);
             let answered = supervisor.infer_many_by(set, error, change, answers.as_batch());

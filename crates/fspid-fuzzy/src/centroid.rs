@@ -5,9 +5,9 @@
 //! last. All functions here work in units of the spacing, with the peaks at $-3, -2, \dots, 3$.
 
 use crate::defuzzifier::{Defuzzifier, SampleGrid};
-use crate::lanes::Lanes;
-use crate::real::Real;
-use crate::scalar::Scalar as _;
+use fspid_numeric::Real;
+use fspid_numeric::lanes::Lanes;
+use fspid_numeric::scalar::Scalar as _;
 
 /// Number of spacings from the middle of the universe to its ends.
 #[inline(always)]
@@ -165,7 +165,7 @@ fn next_cut<R: Real>(strengths: &[R], ends: [R; 2], from: R) -> R {
 mod tests {
     use super::*;
     use crate::label::LABEL_COUNT;
-    use crate::lanes::One;
+    use fspid_numeric::lanes::One;
 
     fn centroid(rule: Defuzzifier, strengths: &[f64; LABEL_COUNT]) -> f64 {
         super::centroid(rule, &strengths.map(One), One(0.0)).0

@@ -1,9 +1,9 @@
 //! The rules in the order in which they are fastest evaluated.
 
 use crate::label::{LABEL_COUNT, Label};
-use crate::lanes::Lanes;
-use crate::real::Real;
 use crate::rule_table::Grid;
+use fspid_numeric::Real;
+use fspid_numeric::lanes::Lanes;
 
 /// Rules in the base.
 const RULE_COUNT: usize = LABEL_COUNT * LABEL_COUNT;

@@ -2,7 +2,7 @@
 
 use crate::error::FuzzyError;
 use crate::membership::{root, smooth, smooth_inverse};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// A function of a grade, from [0, 1] to [0, 1].
 ///

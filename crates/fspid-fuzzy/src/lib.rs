@@ -7,7 +7,7 @@
 //! labels the rules may conclude numbers ([`NumberTable`], [`Supervisor::of_numbers`]).
 //!
 //! The feature `batch` adds `Supervisor::infer_many`: the same bits for arrays of inputs, with the
-//! vectors of the machine. It needs `std`; without it the crate depends on nothing.
+//! vectors of the machine. It needs `std`; without it the crate depends on `fspid-numeric` alone.
 //!
 //! It knows nothing of time, plants or files: the self-tuning law is in `fspid-core`, the reading
 //! of rule tables from files in `fspid-study`.
@@ -48,27 +48,26 @@ mod centroid;
 mod consequents;
 mod defuzzifier;
 mod error;
-mod exp;
+
 #[cfg(feature = "alloc")]
 pub mod formula;
 pub mod hedge;
 #[cfg(feature = "alloc")]
 pub mod karnik_mendel;
 mod label;
-mod lanes;
+
 pub mod membership;
 pub mod norm;
 mod number_table;
-pub mod quadrature;
-mod real;
+
 mod rule_table;
-pub mod scalar;
+
 mod supervisor;
 #[cfg(feature = "alloc")]
 pub mod system;
 
 #[cfg(feature = "batch")]
-pub use batch::{Answers, BatchError, InstructionSet};
+pub use batch::{Answers, BatchError};
 pub use defuzzifier::{Defuzzifier, MAX_SAMPLES};
 pub use error::FuzzyError;
 #[cfg(feature = "alloc")]
@@ -77,7 +76,7 @@ pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
 pub use norm::{SNormKind, TNormKind};
 pub use number_table::{NumberGrid, NumberTable};
-pub use real::Real;
+
 pub use rule_table::{Grid, GridError, Output, RuleTable};
-pub use scalar::Scalar;
+
 pub use supervisor::{Increments, Inference, InferenceError, OutOfRange, Supervisor};

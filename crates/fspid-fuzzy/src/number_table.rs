@@ -2,9 +2,9 @@
 
 use crate::error::FuzzyError;
 use crate::label::LABEL_COUNT;
-use crate::real::Real;
 use crate::rule_table::Output;
 use crate::supervisor::Increments;
+use fspid_numeric::Real;
 
 /// One output's numbers: rows are the error from `NB` to `PB`, columns its change.
 pub type NumberGrid<R> = [[R; LABEL_COUNT]; LABEL_COUNT];

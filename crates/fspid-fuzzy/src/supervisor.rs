@@ -12,13 +12,13 @@ use crate::consequents::{Consequents, Firing};
 use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
 use crate::label::LABEL_COUNT;
-#[cfg(feature = "batch")]
-use crate::lanes::Lanes;
-use crate::lanes::{One, Two};
 use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
 use crate::number_table::{self, NumberTable};
-use crate::real::Real;
 use crate::rule_table::{Output, RuleTable};
+use fspid_numeric::Real;
+#[cfg(feature = "batch")]
+use fspid_numeric::lanes::Lanes;
+use fspid_numeric::lanes::{One, Two};
 
 /// Half ranges outside this interval would overflow or underflow inside.
 const RANGE_LIMITS: core::ops::RangeInclusive<f64> = 1e-100..=1e100;

@@ -4,11 +4,11 @@
 mod audit;
 #[cfg(feature = "batch")]
 mod batch;
+mod boxes;
 mod common;
 mod duals;
 #[cfg(feature = "alloc")]
 mod gradient;
-mod intervals;
 mod jets;
 mod membership;
 mod numbers;

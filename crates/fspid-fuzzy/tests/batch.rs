@@ -4,9 +4,10 @@ use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{
-    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, InstructionSet,
-    LABEL_COUNT, NumberTable, OutOfRange, Real, Supervisor,
+    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, LABEL_COUNT,
+    NumberTable, OutOfRange, Supervisor,
 };
+use fspid_numeric::{InstructionSet, Real};
 
 /// Arrays for answers, filled with what no supervisor answers.
 struct Places<R> {

@@ -1,7 +1,7 @@
 //! Derivatives of every membership function against differences of sixth order.
 
 use fspid_fuzzy::membership::ShapeKind;
-use fspid_fuzzy::scalar::{Base, Dual, Interval, Scalar};
+use fspid_numeric::scalar::{Base, Dual, Interval, Scalar};
 
 /// Sixth-order central difference.
 fn difference(function: impl Fn(f64) -> f64, at: f64, step: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Taylor polynomials against series from the textbook.
 
 use fspid_fuzzy::membership::ShapeKind;
-use fspid_fuzzy::scalar::{Dual, Interval, Jet, Scalar};
+use fspid_numeric::scalar::{Dual, Interval, Jet, Scalar};
 
 /// Number of coefficients in these tests.
 const COUNT: usize = 9;

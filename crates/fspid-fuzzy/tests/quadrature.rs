@@ -1,8 +1,8 @@
 //! Certified integrals against values of 45 digits, and what they promise when cut short.
 
 use fspid_fuzzy::membership::{Gaussian, Shape, ShapeKind};
-use fspid_fuzzy::quadrature::{Accuracy, Curve, Quadrature};
-use fspid_fuzzy::scalar::{Interval, Scalar};
+use fspid_numeric::quadrature::{Accuracy, Curve, Quadrature};
+use fspid_numeric::scalar::{Interval, Scalar};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -6,7 +6,8 @@
 use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
-use fspid_fuzzy::{Defuzzifier, Inference, InferenceError, OutOfRange, Real, Scalar, Supervisor};
+use fspid_fuzzy::{Defuzzifier, Inference, InferenceError, OutOfRange, Supervisor};
+use fspid_numeric::{Real, Scalar};
 
 /// Hashes of all answers: a row for each rule of [`RULES`], a column for each policy.
 type Recorded = [[u64; 3]; 4];

@@ -10,8 +10,8 @@
 use std::time::Instant;
 
 use fspid_core::{Gains, Shell};
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, falls};
 use fspid_sim::ElevatorSign;
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use fspid_core::{AntiWindup, Followers, Sees, SelfTuner, Shell, TunerSettings};
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::actuator::{Actuator, ActuatorParts};
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
 use fspid_sim::sensor::Sensor;

@@ -9,9 +9,9 @@
 use core::fmt;
 
 use fspid_core::{AntiWindup, Gains, Limits};
-use fspid_fuzzy::Scalar;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::check::{ActuatorLag, IntervalMatrix, NotProved, inside_limit};

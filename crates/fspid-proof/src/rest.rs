@@ -1,7 +1,7 @@
 //! Where a loop comes to rest while set-point and load stand still, and what its command does there.
 
 use fspid_core::{Fspid, IntegralForm, Law};
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 
 use crate::check::printed;

@@ -1,7 +1,7 @@
 //! What is called positive definite is, and what is, by more than rounding, is called so.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{IntervalMatrix, NotProved, prove_positive_definite};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,7 +1,7 @@
 //! Enclosures of the matrix exponential: against 120-digit values and laws of the exponential.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{IntervalMatrix, NotProved, exponential, held};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

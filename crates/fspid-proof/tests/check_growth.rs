@@ -1,7 +1,7 @@
 //! What is said to grow does, and a stable loop is never said to.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{Matrix, spectral_radius};
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{IntervalMatrix, NotProved, prove_growth, prove_unstable};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

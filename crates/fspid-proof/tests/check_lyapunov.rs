@@ -1,7 +1,7 @@
 //! Falling Lyapunov functions: closed forms, exact counterexamples, refusals.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{
     IntervalMatrix, NotProved, falls, falls_between, inside_limit, is_positive,
 };

@@ -1,7 +1,7 @@
 //! Products of interval matrices hold every exact product.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::IntervalMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,7 +1,7 @@
 //! The enclosed plant against the one that simulations fly.
 
 use fspid_core::{Gains, Pid, Shell};
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, NotProved, PrintedPlant, printed};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};

@@ -9,7 +9,7 @@ use fspid_core::{
     DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits, SelfTuner, Shell, State,
     TunerSettings,
 };
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::gain_set::{GainCell, IncrementMap, NoBound, grid, producible};
 use gain_set_common::*;
 

@@ -1,6 +1,6 @@
 //! Elementary functions with the same bits on every machine.
 
-use fspid_fuzzy::Scalar;
+use fspid_numeric::Scalar;
 
 /// $e^x$ by the one exponential of the project.
 pub(crate) fn exp(x: f64) -> f64 {

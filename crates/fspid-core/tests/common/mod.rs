@@ -2,8 +2,9 @@
 
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Real, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{Fspid, Gains, Pid, Sample, SelfTuner, Shell, State, TunerSettings};
+use fspid_numeric::Real;
 
 const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
 

@@ -122,7 +122,7 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fspid_fuzzy::scalar::Dual;
+    use fspid_numeric::scalar::Dual;
     use proptest::prelude::*;
 
     fn axis(points: &[f64]) -> Axis {

@@ -19,7 +19,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
-use crate::scalar::{Interval, Scalar};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Sides below this fraction of the domain's are not halved any more.
 const NARROWEST: f64 = 1e-13;

@@ -30,19 +30,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod instruction_set;
-mod vector;
-
 use core::fmt;
 use core::ops::Range;
 
 use fearless_simd::{Simd, SimdFloat, SimdMask, dispatch};
 
-pub use instruction_set::InstructionSet;
-use vector::Vector;
-
-use crate::real::Real;
 use crate::supervisor::{Inference, InferenceError, OutOfRange, Supervisor};
+use fspid_numeric::{InstructionSet, Real, Vector};
 
 /// Where a batch of answers is to be put: arrays as long as those of the inputs.
 #[derive(Debug)]
@@ -128,12 +122,12 @@ impl<R: Real> Supervisor<R> {
     ) -> Result<(), BatchError> {
         let mut batch = Batch { supervisor: self, error, change, answers };
         batch.check_lengths()?;
-        dispatch!(instructions.level(), simd => R::answer(simd, &mut batch))
+        dispatch!(instructions.level(), simd => batch.answer(simd))
     }
 }
 
 /// What is to be answered, and where.
-pub struct Batch<'a, R> {
+struct Batch<'a, R> {
     supervisor: &'a Supervisor<R>,
     error: &'a [R],
     change: &'a [R],
@@ -173,9 +167,14 @@ impl<R: Real> Batch<'_, R> {
         Ok(())
     }
 
-    /// Answers everything with vectors of type `V`.
+    /// Answers everything with the vectors of an instruction set.
     #[inline(always)]
-    pub(crate) fn answer<S: Simd, V: SimdFloat<S, Element = R>>(
+    fn answer<S: Simd>(&mut self, simd: S) -> Result<(), BatchError> {
+        self.answer_by::<S, R::Vector<S>>(simd)
+    }
+
+    #[inline(always)]
+    fn answer_by<S: Simd, V: SimdFloat<S, Element = R>>(
         &mut self,
         simd: S,
     ) -> Result<(), BatchError> {

@@ -32,7 +32,7 @@ use alloc::vec::Vec;
 pub use error::{FormulaError, FormulaErrorKind};
 use operation::{FUNCTIONS, Operation};
 
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// Longest text, in bytes.
 const MAX_BYTES: usize = 64 * 1024;

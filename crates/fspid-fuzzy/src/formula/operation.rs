@@ -1,6 +1,6 @@
 //! What a formula is made of, once read.
 
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// One step of computing a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::side::{apart, root, up_to_one};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// From 0 at `start` along a quarter of an ellipse to 1 at `end`, level beyond both:
 /// $\mu(x) = \sqrt{1 - z^2}, \quad z = \min\left(1, \max\left(0, \frac{e - x}{e - s}\right)\right)$

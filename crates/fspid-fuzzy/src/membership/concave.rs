@@ -3,7 +3,7 @@
 use super::side::{apart, beyond};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \frac{1}{1 + \max\left(0, \frac{e - x}{e - i}\right)}$
 ///

@@ -1,7 +1,7 @@
 //! One period of a raised cosine.
 
 use super::{Param, Range, Shape};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \frac12\left(1 + \cos\frac{2\pi(x - c)}{w}\right)$ for $|x - c| < \frac w2$, else 0
 ///

@@ -1,8 +1,8 @@
 //! The bell curve of the paper's inputs.
 
 use super::{Param, Range, Shape};
-use crate::lanes::Lanes;
-use crate::scalar::Scalar;
+use fspid_numeric::lanes::Lanes;
+use fspid_numeric::scalar::Scalar;
 
 /// Width of Gaussian sets, as a fraction of their spacing, at which neighbours cross at 0.5:
 /// $1 / (2 \sqrt{2 \ln 2})$.
@@ -17,7 +17,7 @@ impl Gaussian {
     #[inline(always)]
     pub(crate) fn exponent<L: Lanes>([centre, sigma]: [L::Number; 2], x: L) -> L {
         let z = (x - x.same(centre)) / x.same(sigma);
-        x.same(-<L::Number as crate::real::Real>::HALF) * (z * z)
+        x.same(-<L::Number as fspid_numeric::Real>::HALF) * (z * z)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::side::beyond;
 use super::{Param, Range, Shape};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = e^{-\frac12 (l^2 + r^2)}, \quad l = \max\left(0, \frac{c_l - x}{\sigma_l}\right), \quad
 /// r = \max\left(0, \frac{x - c_r}{\sigma_r}\right)$

@@ -3,7 +3,7 @@
 use super::side::{at_least, rise};
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// 0 up to `foot`, straight to 1 at `shoulder`, 1 beyond:
 /// $\mu(x) = \max\left(0, \min\left(1, \frac{x - f}{s - f}\right)\right)$

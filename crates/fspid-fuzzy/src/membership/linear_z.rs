@@ -3,7 +3,7 @@
 use super::side::{at_least, up_to_one, width};
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// 1 up to `shoulder`, straight to 0 at `foot`, 0 beyond:
 /// $\mu(x) = \max\left(0, \min\left(1, \frac{f - x}{f - s}\right)\right)$

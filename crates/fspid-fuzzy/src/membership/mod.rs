@@ -57,7 +57,7 @@ pub use trapezoid::Trapezoid;
 pub use triangle::Triangle;
 
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// What values a parameter may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

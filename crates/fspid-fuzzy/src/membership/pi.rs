@@ -3,7 +3,7 @@
 use super::side::at_least;
 use super::{Param, Range, Shape, SmoothS, SmoothZ};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// The product of a [`SmoothS`](super::SmoothS) from `left_foot` to `left_top` and a
 /// [`SmoothZ`](super::SmoothZ) from `right_top` to `right_foot`.

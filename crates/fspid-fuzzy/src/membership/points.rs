@@ -3,7 +3,7 @@
 use super::side::{at_least, refuse, width};
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// Straight from point to point; level before the first and after the last.
 ///

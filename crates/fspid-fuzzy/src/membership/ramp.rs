@@ -3,7 +3,7 @@
 use super::side::apart;
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// 0 at `start` and before, straight to 1 at `end`, 1 beyond:
 /// $\mu(x) = \max\left(0, \min\left(1, \frac{x - s}{e - s}\right)\right)$

@@ -3,7 +3,7 @@
 use super::side::{above, refuse};
 use super::{Param, Range, Shape, Vertex, finite_vertices};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = 1$ for $s \le x \le e$, else 0
 ///

@@ -3,7 +3,7 @@
 use super::side::{above, root};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \sqrt{1 - z^2}, \quad z = \frac{x - c}{r}, \quad c = \frac{s + e}{2}, \quad
 /// r = \frac{e - s}{2}$ for $|z| < 1$, else 0

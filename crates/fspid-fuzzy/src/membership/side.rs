@@ -3,7 +3,7 @@
 //! A NaN lies outside every side: it is taken for the infinity at which the grade is 0.
 
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// The smallest positive number. As the least width of a side it changes no width but 0, and
 /// keeps a division by it from being 0/0.

@@ -2,7 +2,7 @@
 
 use super::side::one_over_one_plus;
 use super::{Param, Range, Shape};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \frac{1}{1 + e^{-s(x - c)}}$
 ///

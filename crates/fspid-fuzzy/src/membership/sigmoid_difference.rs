@@ -1,7 +1,7 @@
 //! How far two logistic steps are apart.
 
 use super::{Param, Range, Shape, Sigmoid};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \left|\frac{1}{1 + e^{-s_l(x - c_l)}} - \frac{1}{1 + e^{-s_r(x - c_r)}}\right|$
 ///

@@ -1,7 +1,7 @@
 //! The product of two logistic steps.
 
 use super::{Param, Range, Shape, Sigmoid};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \frac{1}{1 + e^{-s_l(x - c_l)}} \cdot \frac{1}{1 + e^{-s_r(x - c_r)}}$
 ///

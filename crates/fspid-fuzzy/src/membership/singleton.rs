@@ -1,7 +1,7 @@
 //! A single point.
 
 use super::{Param, Range, Shape, Vertex};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = 1$ for $x = v$, else 0
 ///

@@ -3,7 +3,7 @@
 use super::side::{near, rise, smooth, smooth_inverse, step_ends};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// 0 up to `foot`, two parabolas that meet in the middle, 1 from `shoulder` on; with
 /// $t = \frac{x - f}{s - f}$: $\mu(x) = 2t^2$ for $0 \le t < \frac12$ and $1 - 2(1 - t)^2$ for

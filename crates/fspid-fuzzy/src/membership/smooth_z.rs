@@ -3,7 +3,7 @@
 use super::side::{fall, near, smooth, smooth_inverse, step_ends};
 use super::{Param, Range, Shape};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// 1 up to `shoulder`, two parabolas that meet in the middle, 0 from `foot` on; with
 /// $t = \frac{f - x}{f - s}$: $\mu(x) = 1 - 2(1 - t)^2$ for $\frac12 \le t \le 1$ and $2t^2$ for

@@ -1,7 +1,7 @@
 //! An exponential on either side of a peak.
 
 use super::{Param, Range, Shape};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = e^{-10\left|\frac{x - c}{w}\right|}$
 ///

@@ -1,7 +1,7 @@
 //! A crisp set with one end.
 
 use super::{Param, Range, Shape, Vertex};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = 1$ for $d(x - t) \ge 0$, else 0
 ///

@@ -3,7 +3,7 @@
 use super::side::{above, at_least, fall, refuse, rise};
 use super::{Param, Range, Shape, Vertex, finite_vertices};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $\mu(x) = \max\left(0, \min\left(\frac{x - a}{b - a}, 1, \frac{d - x}{d - c}\right)\right)$ with
 /// $a$ `left_foot`, $b$ `left_top`, $c$ `right_top`, $d$ `right_foot`

@@ -3,7 +3,7 @@
 use super::side::{above, at_least, fall, rise};
 use super::{Param, Range, Shape, Vertex};
 use crate::error::FuzzyError;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// Rises from `left` to 1 at `peak` and falls to `right`:
 /// $\mu(x) = \max\left(0, \min\left(\frac{x - l}{p - l}, \frac{r - x}{r - p}\right)\right)$

@@ -1,7 +1,7 @@
 //! Algebraic product.
 
 use super::{SNormKind, TNorm};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = ab$
 ///

@@ -1,7 +1,7 @@
 //! Algebraic sum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = a + b - ab$
 ///

@@ -1,7 +1,7 @@
 //! Bounded difference.
 
 use super::{SNormKind, TNorm};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = \max(0, a + b - 1)$
 ///

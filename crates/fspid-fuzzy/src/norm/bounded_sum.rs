@@ -1,7 +1,7 @@
 //! Bounded sum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \min(1, a + b)$
 ///

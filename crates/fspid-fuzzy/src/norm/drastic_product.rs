@@ -1,7 +1,7 @@
 //! Drastic product.
 
 use super::{SNormKind, TNorm};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = \min(a, b)$ if $\max(a, b) = 1$, else 0
 ///

@@ -1,7 +1,7 @@
 //! Drastic sum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \max(a, b)$ if $\min(a, b) = 0$, else 1
 ///

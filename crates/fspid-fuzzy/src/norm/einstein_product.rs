@@ -1,7 +1,7 @@
 //! Einstein product.
 
 use super::{SNormKind, TNorm};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = \frac{ab}{2 - (a + b - ab)}$
 ///

@@ -1,7 +1,7 @@
 //! Einstein sum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \frac{a + b}{1 + ab}$
 ///

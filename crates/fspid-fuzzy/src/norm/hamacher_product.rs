@@ -1,7 +1,7 @@
 //! Hamacher product.
 
 use super::{SNormKind, TNorm, not_zero};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = \frac{ab}{a + b - ab}$, and $0 \otimes 0 = 0$
 ///

@@ -1,7 +1,7 @@
 //! Hamacher sum.
 
 use super::{SNorm, not_zero};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \frac{a + b - 2ab}{1 - ab}$, and $1 \oplus 1 = 1$
 ///

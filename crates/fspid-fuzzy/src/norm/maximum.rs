@@ -1,7 +1,7 @@
 //! Maximum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \max(a, b)$
 ///

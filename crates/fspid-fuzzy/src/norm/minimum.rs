@@ -1,7 +1,7 @@
 //! Minimum.
 
 use super::{SNormKind, TNorm};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \otimes b = \min(a, b)$
 ///

@@ -37,7 +37,7 @@ pub use nilpotent_minimum::NilpotentMinimum;
 pub use normalized_sum::NormalizedSum;
 pub use unbounded_sum::UnboundedSum;
 
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// An "and" of two grades in [0, 1].
 pub trait TNorm {

@@ -1,7 +1,7 @@
 //! Nilpotent maximum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \max(a, b)$ if $a + b < 1$, else 1
 ///

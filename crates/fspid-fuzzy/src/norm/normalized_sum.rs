@@ -1,7 +1,7 @@
 //! Normalized sum.
 
 use super::SNorm;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// $a \oplus b = \frac{a + b}{\max(1, a + b)}$
 ///

@@ -8,7 +8,7 @@ use super::program::{self, Form};
 use super::workspace::Workspace;
 use crate::hedge::Hedge;
 use crate::norm::TNormKind;
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 impl Membership {
     /// Grade of `x`. `inputs` are those of the system (for formulas); `room` holds at least as many

@@ -2,7 +2,7 @@
 
 use crate::formula::Formula;
 use crate::norm::{SNormKind, TNormKind};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 macro_rules! norm {
     ($(#[$doc:meta])* $name:ident, $kind:ident) => {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::parts::{Antecedent, RuleBlock, Statement, Variable};
-use crate::scalar::Scalar;
+use fspid_numeric::scalar::Scalar;
 
 /// Deepest nesting of an antecedent.
 pub(crate) const MAX_DEPTH: usize = 64;

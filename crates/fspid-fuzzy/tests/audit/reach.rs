@@ -2,8 +2,8 @@
 
 use fspid_fuzzy::Defuzzifier;
 use fspid_fuzzy::audit::Reach;
-use fspid_fuzzy::scalar::Interval;
 use fspid_fuzzy::system::System;
+use fspid_numeric::scalar::Interval;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -1,6 +1,7 @@
 //! What the tests of the supervisor's bits share: rule tables and inputs of every kind.
 
-use fspid_fuzzy::{Defuzzifier, Grid, LABEL_COUNT, Label, Real, RuleTable};
+use fspid_fuzzy::{Defuzzifier, Grid, LABEL_COUNT, Label, RuleTable};
+use fspid_numeric::Real;
 
 /// Splitmix64 (Steele, Lea and Flood 2014).
 pub(crate) struct Random(pub(crate) u64);

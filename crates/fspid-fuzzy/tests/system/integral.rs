@@ -1,9 +1,10 @@
 //! Outputs whose sets are curved, or joined by norms that bend them: certified integrals.
 
+use fspid_fuzzy::Formula;
 use fspid_fuzzy::membership::ShapeKind::{self, Gaussian};
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{Defuzzifier, Membership, Parts, SNorm, Sampling, Source};
-use fspid_fuzzy::{Formula, Scalar};
+use fspid_numeric::Scalar;
 
 use crate::system::build::{answers, graded, output, sets, shape, system, triangle, value};
 

@@ -1,7 +1,7 @@
 //! Enclosures of the matrix exponential and of a sampled system.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::scalar::Interval;
 
 use super::balance::balance;
 use super::error::NotProved;

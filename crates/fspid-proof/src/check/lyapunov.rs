@@ -1,8 +1,8 @@
 //! Conditions on Lyapunov functions $V(z) = z^T P z$ of a sampled loop $z_{k+1} = M z_k$.
 
-use fspid_fuzzy::Scalar;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
 
 use super::definite::{basis, dominant, form, prove_named, symmetric};
 use super::error::{NotProved, positive};

@@ -1,7 +1,7 @@
 //! Matrices whose entries are known within bounds.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::scalar::Interval;
 
 use super::product;
 use super::rounding::{exact_sum, sum_up, times_power};

@@ -6,7 +6,7 @@
 //!
 //! # What it rests on
 //! Sums, products, quotients and square roots of `f64` rounded to nearest (IEEE 754), the intervals of
-//! [`fspid_fuzzy::scalar::Interval`], and the error bounds written down beside the code. No other
+//! [`fspid_numeric::scalar::Interval`], and the error bounds written down beside the code. No other
 //! elementary function is used.
 
 mod balance;

@@ -13,8 +13,8 @@
 //! # Source
 //! J. Garloff, *The Bernstein algorithm*, Interval Computations 2 (1993) 154.
 
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::scalar::Interval;
 
 use super::definite::{basis, form, symmetric};
 use super::error::NotProved;

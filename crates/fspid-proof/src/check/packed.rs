@@ -146,8 +146,8 @@ impl Packed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fspid_fuzzy::scalar::Interval;
     use fspid_lti::Matrix;
+    use fspid_numeric::scalar::Interval;
 
     fn packed(rows: &[[f64; 3]; 3]) -> Packed {
         Packed::of(&IntervalMatrix::from(&Matrix::from_rows(rows).expect("finite")))

@@ -1,6 +1,6 @@
 //! The sampled plant from printed coefficients, with proof.
 
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::actuator::Lag;
 use fspid_sim::loop_model::SampledPlant;
 use fspid_sim::{ElevatorSign, LinearPlant};

@@ -21,7 +21,7 @@
 //! 1955, algorithm 5.3; T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numer. Math. 18 (1971) 224, for the exact product.
 
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 use super::matrix::{IntervalMatrix, bounded};
 use super::rounding::{exact_sum, sum_up};

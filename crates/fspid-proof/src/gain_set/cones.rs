@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 use super::{GainCell, GainSet};
 

@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Change, Fspid, Law, SelfTuner};
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 use super::slopes::{IncrementSlopes, NoSlopes};
 use super::{GainCell, GainSet};

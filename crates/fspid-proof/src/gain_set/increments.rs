@@ -3,8 +3,8 @@
 use fspid_core::SelfTuner;
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_fuzzy::audit::Reach;
-use fspid_fuzzy::scalar::Interval;
 use fspid_fuzzy::system::{Parts, System};
+use fspid_numeric::scalar::Interval;
 
 use super::{EVERYWHERE, GainSet, NoBound, law};
 

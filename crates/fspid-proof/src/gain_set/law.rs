@@ -2,7 +2,7 @@
 
 use fspid_core::{Law, Limits};
 use fspid_fuzzy::OutOfRange;
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 use super::increments::IncrementMap;
 use super::{EVERYWHERE, GainCell, GainSet, NAMES, NoBound, array};

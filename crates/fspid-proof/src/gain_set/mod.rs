@@ -27,7 +27,7 @@ mod produced;
 mod slopes;
 
 use fspid_core::Gains;
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 pub use cones::Cone;
 pub(crate) use held::{HeldCommand, KnownSlopes};

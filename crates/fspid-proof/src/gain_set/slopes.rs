@@ -3,8 +3,8 @@
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Law, SelfTuner};
 use fspid_fuzzy::audit::{SurfaceOptions, slopes};
-use fspid_fuzzy::scalar::Interval;
 use fspid_fuzzy::system::{Parts, System};
+use fspid_numeric::scalar::Interval;
 
 use super::increments::is_dense;
 

@@ -1,8 +1,8 @@
 //! Forms that move with the gains, for gains of bounded rate.
 
 use fspid_core::{Gains, Law};
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
 
 use super::{Prover, region::Region};
 use crate::certificate::{BoundedRate, Certificate, Claim};

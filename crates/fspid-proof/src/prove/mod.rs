@@ -9,8 +9,8 @@ mod unstable;
 use core::cell::RefCell;
 
 use fspid_core::Fspid;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::{Matrix, spectral_radius};
+use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 

@@ -6,9 +6,9 @@ mod remains;
 use core::fmt;
 
 use fspid_core::{Change, Fspid, Gains, Law};
-use fspid_fuzzy::Scalar;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 

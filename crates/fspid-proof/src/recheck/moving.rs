@@ -3,9 +3,9 @@
 use core::cmp::Ordering;
 
 use fspid_core::Gains;
-use fspid_fuzzy::Scalar;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 
 use super::{Doubt, Kept, Proved, Recheck, allowed_rate, input_rows, malformed};

@@ -1,9 +1,10 @@
 //! The gains of all lanes' self-tuning controllers.
 
-use fspid_core::fuzzy::{Answers, Inference, InstructionSet, OutOfRange, Supervisor};
+use fspid_core::fuzzy::{Answers, Inference, OutOfRange, Supervisor};
 use fspid_core::{
     Change, ErrorSign, Gains, InputSets, Law, ModelState, ReferenceModel, Sees, SelfTuner,
 };
+use fspid_numeric::InstructionSet;
 
 use super::lane::{Lanes, Mask, NO, YES, limited, mask, numbers};
 use super::memory::Memories;

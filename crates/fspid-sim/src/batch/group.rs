@@ -1,6 +1,6 @@
 //! A group of flights from start to end.
 
-use fspid_fuzzy::InstructionSet;
+use fspid_numeric::InstructionSet;
 
 use super::Entrant;
 use super::lane::{Lanes, Mask, NO, YES, all, mask};

@@ -29,7 +29,7 @@ mod refusal;
 mod regulator;
 mod row;
 
-pub use fspid_fuzzy::InstructionSet;
+pub use fspid_numeric::InstructionSet;
 pub use refusal::Refusal;
 pub use row::Row;
 

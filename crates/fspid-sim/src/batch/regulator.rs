@@ -1,7 +1,7 @@
 //! The controllers of all lanes.
 
 use fspid_core::{AntiWindup, Faults, Followers, Gains, IntegralForm, Sample, Shell, Step};
-use fspid_fuzzy::InstructionSet;
+use fspid_numeric::InstructionSet;
 
 use super::gains::SelfTuners;
 use super::lane::{Lanes, Mask, NO, YES, all, limited, mask, numbers};

@@ -1,7 +1,7 @@
 //! From plant, queues and controller to one matrix.
 
 use fspid_core::{Gains, IntegralForm};
-use fspid_fuzzy::Scalar;
+use fspid_numeric::Scalar;
 
 use super::{BreakPoint, LoopModel, LoopSettings, Sensing};
 

@@ -23,9 +23,9 @@ mod sensing;
 mod tests;
 
 use fspid_core::{Gains, Shell};
-use fspid_fuzzy::Scalar;
-use fspid_fuzzy::scalar::Interval;
 use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;

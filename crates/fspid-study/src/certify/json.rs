@@ -1,6 +1,6 @@
 //! Certificates for programs.
 
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, Kept, Outcome, Rechecked, Verdict};
 use serde_json::{Value, json};
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fspid_fuzzy::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 use fspid_sim::Controller;
 

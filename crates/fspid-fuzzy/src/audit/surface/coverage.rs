@@ -9,8 +9,8 @@ use super::objective::{Coverage as Strongest, StrongestGrade};
 use super::options::SurfaceOptions;
 use crate::audit::Statement;
 use crate::audit::search::{Effort, Extreme, middle, minimum};
-use crate::scalar::Interval;
 use crate::system::{Activation, Step, System, Variable};
+use fspid_numeric::scalar::Interval;
 
 /// Where the question falls apart into one for each input, this is cheap to ask for.
 const TOLERANCE: f64 = 1e-9;

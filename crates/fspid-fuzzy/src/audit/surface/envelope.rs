@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::layers::{Layers, Slice};
-use crate::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 /// Steps towards a bound; they double its digits.
 const STEPS: usize = 30;

@@ -9,7 +9,7 @@ use super::symmetry::Mirror;
 use super::{AlongInput, Counterexample, Monotone, OutputSurface, Symmetry, coverage, ends};
 use crate::audit::Statement;
 use crate::audit::search::{self, Effort, Extreme, Magnitude, Objective, maximum, minimum, signs};
-use crate::scalar::Interval;
+use fspid_numeric::scalar::Interval;
 
 /// What the halving of boxes may lose of a share by rounding.
 const SHARE_ROUNDING: f64 = 1e-9;

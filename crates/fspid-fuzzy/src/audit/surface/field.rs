@@ -9,8 +9,8 @@ use super::layers::Layers;
 use super::masses::Masses;
 use super::weighted::Weighted;
 use crate::norm::TNormKind;
-use crate::scalar::{Interval, Scalar};
 use crate::system::{Activation, FallbackValue, Output, Program, Step, System};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// How an output is enclosed.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use alloc::vec::Vec;
 use super::continuity::{Continuity, Jumps};
 use super::ties::Ties;
 use crate::membership::Vertex;
-use crate::scalar::{Dual, Interval, Scalar};
 use crate::supervisor::OutOfRange;
 use crate::system::{Activation, Membership, STACK, Statement, System, Variable, hedged};
+use fspid_numeric::scalar::{Dual, Interval, Scalar};
 
 /// All values over a box, and all slopes along one input.
 pub(super) type Slope = Dual<Interval, 1>;

@@ -17,7 +17,7 @@ use alloc::vec::Vec;
 
 use super::envelope::{Bounds, meeting};
 use super::layers::{Layers, Line, Slice};
-use crate::scalar::{Interval, Scalar};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// The level of a layer over a box.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 
 use crate::membership::Vertex;
 use crate::norm::{SNormKind, TNormKind};
-use crate::scalar::Interval;
 use crate::system::{Conclusion, Defuzzifier, Membership, Output, Sampling, System};
+use fspid_numeric::scalar::Interval;
 
 /// Roundings that a grade computed from a line may have suffered, with room to spare.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;

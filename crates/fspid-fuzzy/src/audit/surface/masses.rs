@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 use super::continuity::{Jumps, continuous_join, jumps_of};
 use super::firing::{Firing, Slope, unknown_slope};
 use crate::norm::{SNormKind, TNormKind};
-use crate::scalar::{Interval, Scalar};
 use crate::system::{Conclusion, Defuzzifier, Membership, Output, Sampling, System, TNorm};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Slices of the universe where an integral is enclosed piece by piece.
 const SLICES: u32 = 256;

@@ -26,9 +26,9 @@ use alloc::vec::Vec;
 
 use super::Statement;
 use super::search::Extreme;
-use crate::scalar::Interval;
 use crate::system::System;
 use field::Field;
+use fspid_numeric::scalar::Interval;
 
 pub use coverage::Coverage;
 pub use options::{SurfaceError, SurfaceOptions};

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::super::search::Objective;
 use super::field::Field;
-use crate::scalar::{Interval, Scalar};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// An output.
 pub(super) struct Value<'f, 'a> {

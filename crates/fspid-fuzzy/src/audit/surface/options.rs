@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use crate::scalar::Interval;
 use crate::system::{System, Universe};
+use fspid_numeric::scalar::Interval;
 
 /// Where to look, and how hard. Nothing depends on a clock.
 #[derive(Clone, Debug, PartialEq)]

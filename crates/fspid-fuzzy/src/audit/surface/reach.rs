@@ -4,8 +4,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::field::Field;
-use crate::scalar::Interval;
 use crate::system::System;
+use fspid_numeric::scalar::Interval;
 
 /// Slopes are asked for in boxes whose sides are narrower than this share of their universes.
 ///

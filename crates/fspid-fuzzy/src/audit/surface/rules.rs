@@ -8,8 +8,8 @@ use super::options::SurfaceOptions;
 use crate::audit::rule_base::{RulePosition, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
 use crate::norm::SNormKind;
-use crate::scalar::{Interval, Scalar};
 use crate::system::{Activation, Defuzzifier, System};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Boxes for each rule and term; a point is mostly found at once.
 const BOXES: u64 = 2_000;

@@ -12,11 +12,11 @@ use super::objective::Image;
 use crate::audit::rule_base::canonical;
 use crate::membership::{ShapeKind, Vertex};
 use crate::norm::SNormKind;
-use crate::scalar::Interval;
 use crate::system::{
     Activation, Antecedent, Conclusion, Consequent, Defuzzifier, FallbackValue, Input, Membership,
     Output, Parts, Rule, RuleBlock, Sampling, Statement, Universe, Variable,
 };
+use fspid_numeric::scalar::Interval;
 
 /// A mirroring of inputs and, if it has a middle, of the output.
 pub(super) struct Mirror<'m> {

@@ -14,8 +14,8 @@
 use alloc::vec::Vec;
 
 use crate::membership::ShapeKind;
-use crate::scalar::Interval;
 use crate::system::{Membership, Statement, System, Variable};
+use fspid_numeric::scalar::Interval;
 
 /// Width of the strips that are left out, as a share of the distances in question.
 pub(super) const STRIP: f64 = 1e-12;

@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use super::continuity::is_continuous;
 use super::firing::{Firing, Slope, unknown_slope};
 use super::masses::average_bounds;
-use crate::scalar::{Interval, Scalar};
 use crate::system::{Conclusion, Defuzzifier, Membership, SetReading};
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Room for the computation.
 #[derive(Clone, Debug, Default)]

@@ -12,7 +12,7 @@ use super::super::program::{self, STACK, Step};
 use super::super::workspace::Workspace;
 use super::nodes::{Node, Top};
 use super::{Differentiator, Parameter, zeros};
-use crate::scalar::{Dual, Scalar};
+use fspid_numeric::scalar::{Dual, Scalar};
 
 /// Derivatives that are computed at once.
 const LANES: usize = 8;

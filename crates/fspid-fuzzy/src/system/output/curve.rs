@@ -8,8 +8,8 @@ use super::super::parts::{Conclusion, Membership};
 use super::actors::Actor;
 use super::sampled::Concluded;
 use crate::norm::{SNormKind, TNormKind};
-use crate::quadrature::Curve;
-use crate::scalar::Scalar;
+use fspid_numeric::quadrature::Curve;
+use fspid_numeric::scalar::Scalar;
 
 /// Parameters and variables that need no heap.
 const ROOM: usize = 8;

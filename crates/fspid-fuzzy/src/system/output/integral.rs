@@ -8,8 +8,8 @@ use super::curve::JoinedCurve;
 use super::joined::scale;
 use super::maximum::Search;
 use super::sampled::Concluded;
-use crate::quadrature::Quadrature;
-use crate::scalar::Interval;
+use fspid_numeric::quadrature::Quadrature;
+use fspid_numeric::scalar::Interval;
 
 /// What integration over an output's universe needs to know beforehand.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 //! # Source
 //! Hansen and Walster, *Global Optimization Using Interval Analysis*, 2nd ed. 2004, chapter 12.
 
-use crate::quadrature::Curve;
-use crate::scalar::{Interval, Jet};
+use fspid_numeric::quadrature::Curve;
+use fspid_numeric::scalar::{Interval, Jet};
 
 /// Grades that differ by this fraction count as equally high.
 const SLACK: f64 = 32.0 * f64::EPSILON;

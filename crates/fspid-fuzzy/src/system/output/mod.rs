@@ -19,7 +19,7 @@ use super::build::{ResolvedOutput, System};
 use super::defuzzifier::Defuzzifier;
 use super::parts::{Conclusion, Membership, Output};
 use super::workspace::Workspace;
-use crate::lanes::One;
+use fspid_numeric::lanes::One;
 
 pub(crate) use actors::{Actors, Level};
 pub(crate) use integral::Integral;

@@ -7,9 +7,9 @@ use super::super::parts::{Conclusion, Membership, Output, OutputTerm};
 use super::actors::{Actors, Level};
 use crate::centroid::centroid;
 use crate::defuzzifier;
-use crate::lanes::One;
 use crate::membership::ShapeKind;
 use crate::norm::{SNormKind, TNormKind};
+use fspid_numeric::lanes::One;
 
 /// Corners may be off by this many times the universe's span times the precision: what is lost when
 /// they are computed from the spacing, and written and read again.

@@ -17,8 +17,8 @@
 //! panels are needed; when they run out the bounds are wide, and the answer says so.
 //!
 //! ```
-//! use fspid_fuzzy::quadrature::{Curve, Quadrature};
-//! use fspid_fuzzy::scalar::Scalar;
+//! use fspid_numeric::quadrature::{Curve, Quadrature};
+//! use fspid_numeric::scalar::Scalar;
 //!
 //! /// A bell cut at one half.
 //! struct Clipped;

@@ -10,7 +10,18 @@ use crate::scalar::Scalar;
 pub(crate) mod sealed {
     use super::{Lanes, Real};
 
-    pub trait Sealed: Sized {
+    /// What may be in a machine's vector.
+    #[cfg(feature = "simd")]
+    #[allow(unreachable_pub, reason = "as public as the trait that has it")]
+    pub use fearless_simd::SimdFloatElement as Element;
+
+    /// Anything: there are no vectors.
+    #[cfg(not(feature = "simd"))]
+    pub trait Element {}
+    #[cfg(not(feature = "simd"))]
+    impl<T> Element for T {}
+
+    pub trait Sealed: Sized + Element {
         /// Adding and subtracting this rounds a small number to the nearest integer, which then
         /// stands in the low bits of the sum.
         const ROUND: Self;
@@ -34,12 +45,9 @@ pub(crate) mod sealed {
         /// the number and the answer must be normal.
         fn raised(self, shifted: Self) -> Self;
 
-        /// Answers a batch with the vectors of numbers of this type.
-        #[cfg(feature = "batch")]
-        fn answer<S: fearless_simd::Simd>(
-            simd: S,
-            batch: &mut crate::batch::Batch<'_, Self>,
-        ) -> Result<(), crate::batch::BatchError>;
+        /// The vectors of an instruction set with numbers of this type.
+        #[cfg(feature = "simd")]
+        type Vector<S: fearless_simd::Simd>: fearless_simd::SimdFloat<S, Element = Self>;
     }
 }
 
@@ -106,14 +114,8 @@ macro_rules! real {
                 $float::from_bits(self.to_bits().wrapping_add(exponent))
             }
 
-            #[cfg(feature = "batch")]
-            #[inline(always)]
-            fn answer<S: fearless_simd::Simd>(
-                simd: S,
-                batch: &mut crate::batch::Batch<'_, Self>,
-            ) -> Result<(), crate::batch::BatchError> {
-                batch.answer::<S, S::$vector>(simd)
-            }
+            #[cfg(feature = "simd")]
+            type Vector<S: fearless_simd::Simd> = S::$vector;
         }
 
         impl Real for $float {

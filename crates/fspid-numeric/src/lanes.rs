@@ -33,10 +33,10 @@ pub trait Lanes:
 }
 
 /// Most numbers that [`Lanes::lane_by_lane`] takes.
-pub(crate) const MOST_LANES_ROWS: usize = 64;
+pub const MOST_LANES_ROWS: usize = 64;
 
 /// A function of one lane's numbers; of those beyond the sixty-fourth it takes no notice.
-pub(crate) fn of_lane<N: Real, L: Copy>(
+pub fn of_lane<N: Real, L: Copy>(
     numbers: &[L],
     lane: impl Fn(L) -> N,
     function: impl Fn(&[N]) -> N,
@@ -50,11 +50,11 @@ pub(crate) fn of_lane<N: Real, L: Copy>(
 
 /// One number.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct One<R>(pub(crate) R);
+pub struct One<R>(pub R);
 
 /// Two numbers; a compiler makes a vector of them where it can.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Two<R>(pub(crate) R, pub(crate) R);
+pub struct Two<R>(pub R, pub R);
 
 macro_rules! operator {
     ($trait:ident, $method:ident) => {

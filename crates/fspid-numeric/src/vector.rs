@@ -10,11 +10,12 @@ use crate::real::Real;
 use crate::real::sealed::Sealed;
 
 /// A vector `V` of the instruction set `S`.
-pub(crate) struct Vector<S, V>(pub(crate) V, PhantomData<S>);
+pub struct Vector<S, V>(pub V, PhantomData<S>);
 
 impl<S, V> Vector<S, V> {
     #[inline(always)]
-    pub(crate) fn new(vector: V) -> Self {
+    /// Lanes of a vector.
+    pub fn new(vector: V) -> Self {
         Self(vector, PhantomData)
     }
 }
