@@ -11,7 +11,7 @@ use fspid_core::fuzzy::{
     RuleTable, Supervisor,
 };
 use fspid_core::{
-    ConfigError, Fspid, Gains, Pid, Sample, SelfTuner, Shell, State, Step, TunerSettings,
+    ConfigError, Fspid, Gains, Pid, Sample, SelfTuner, PidConfig, State, Step, TunerSettings,
 };
 
 unsafe extern "C" {
@@ -52,9 +52,9 @@ macro_rules! export {
 
         #[unsafe(no_mangle)]
         pub extern "Rust" fn $new_pid(
-            gains: Gains<$real>, shell: Shell<$real>,
+            gains: Gains<$real>, config: PidConfig<$real>,
         ) -> Result<Pid<$real>, ConfigError> {
-            Pid::new(gains, shell)
+            Pid::new(gains, config)
         }
 
         #[unsafe(no_mangle)]
@@ -62,9 +62,9 @@ macro_rules! export {
             nominal: Gains<$real>,
             supervisor: Supervisor<$real>,
             settings: TunerSettings<$real>,
-            shell: Shell<$real>,
+            config: PidConfig<$real>,
         ) -> Result<Fspid<$real>, ConfigError> {
-            Fspid::new(SelfTuner::new(nominal, supervisor, settings)?, shell)
+            Fspid::new(SelfTuner::new(nominal, supervisor, settings)?, config)
         }
 
         #[unsafe(no_mangle)]

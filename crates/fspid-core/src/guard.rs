@@ -17,7 +17,7 @@ impl Faults {
     /// A sample was NaN or infinite; the output was held.
     pub const NOT_FINITE: Self = Self(1);
     /// A sample was beyond the guard's limit; the output was held.
-    pub const ABSURD: Self = Self(1 << 1);
+    pub const IMPLAUSIBLE: Self = Self(1 << 1);
     /// The calculation overflowed from finite samples, or would have at the next; the output was
     /// held.
     pub const OVERFLOW: Self = Self(1 << 2);
@@ -28,7 +28,7 @@ impl Faults {
 
     const NAMES: [(Self, &'static str); 5] = [
         (Self::NOT_FINITE, "sample not finite"),
-        (Self::ABSURD, "sample beyond the guard"),
+        (Self::IMPLAUSIBLE, "sample beyond the guard"),
         (Self::OVERFLOW, "overflow"),
         (Self::OUT_OF_RANGE, "supervisor input out of range"),
         (Self::UNDERFLOW, "supervisor underflow"),
@@ -96,7 +96,7 @@ impl<R: Real> Guard<R> {
         if values.iter().any(|value| !value.is_finite()) {
             return Some(Faults::NOT_FINITE);
         }
-        values.iter().any(|value| value.abs() > self.limit).then_some(Faults::ABSURD)
+        values.iter().any(|value| value.abs() > self.limit).then_some(Faults::IMPLAUSIBLE)
     }
 }
 

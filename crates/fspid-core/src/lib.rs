@@ -3,9 +3,9 @@
 //! A controller is configuration; its memory is passed in, and everything observable is returned:
 //!
 //! ```
-//! use fspid_core::{Gains, Pid, Sample, Shell, State};
+//! use fspid_core::{Gains, Pid, Sample, PidConfig, State};
 //!
-//! let pid = Pid::new(Gains { kp: 2.0, ki: 0.5, kd: 1.0 }, Shell::sampled_every(0.01))?;
+//! let pid = Pid::new(Gains { kp: 2.0, ki: 0.5, kd: 1.0 }, PidConfig::sampled_every(0.01))?;
 //! let mut state = State::new();
 //! let step = pid.step(&mut state, Sample { setpoint_rad: 0.1, measurement_rad: 0.0, rate_rad_s: 0.0 });
 //! assert_eq!(step.command_rad, 2.0 * 0.1 + 0.5 * 0.1 * 0.01);
@@ -44,8 +44,8 @@ mod guard;
 mod integral;
 mod limits;
 mod pid;
-mod sees;
-mod shell;
+mod pid_config;
+mod second_input;
 mod state;
 mod tuner;
 
@@ -55,11 +55,11 @@ pub use guard::{Faults, Guard};
 pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
-pub use sees::{ModelState, ReferenceModel, Sees, SetPlaces};
-pub use shell::{Derivative, SetpointWeights, Shell};
+pub use pid_config::{Derivative, PidConfig, SetpointWeights};
+pub use second_input::{ModelState, ReferenceModel, SecondInput, SetCentres};
 pub use state::{Previous, Sample, State, Step};
 pub use tuner::{
-    Change, DeadZone, ErrorSign, Followers, InputScale, InputSets, Law, SelfTuner, TunerSettings,
+    Change, DeadZone, ErrorSign, GainCoupling, InputScale, InputSets, Law, SelfTuner, TunerSettings,
 };
 
 pub use fspid_fuzzy as fuzzy;

@@ -4,8 +4,8 @@ use fspid_numeric::Real;
 
 use crate::error::ConfigError;
 use crate::gains::Gains;
-use crate::sees::ModelState;
-use crate::shell::Shell;
+use crate::pid_config::PidConfig;
+use crate::second_input::ModelState;
 use crate::state::{Sample, State, Step};
 use crate::tuner::{SelfTuner, Tuned};
 
@@ -13,7 +13,7 @@ use crate::tuner::{SelfTuner, Tuned};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pid<R> {
     gains: Gains<R>,
-    shell: Shell<R>,
+    config: PidConfig<R>,
 }
 
 impl<R: Real> Pid<R> {
@@ -21,9 +21,9 @@ impl<R: Real> Pid<R> {
     ///
     /// # Errors
     /// [`ConfigError`] names the first setting that is not allowed.
-    pub fn new(gains: Gains<R>, shell: Shell<R>) -> Result<Self, ConfigError> {
-        shell.check()?;
-        Ok(Self { gains: gains.checked()?, shell })
+    pub fn new(gains: Gains<R>, config: PidConfig<R>) -> Result<Self, ConfigError> {
+        config.check()?;
+        Ok(Self { gains: gains.checked()?, config })
     }
 
     /// The gains.
@@ -32,17 +32,17 @@ impl<R: Real> Pid<R> {
     }
 
     /// Everything but the gains.
-    pub fn shell(&self) -> &Shell<R> {
-        &self.shell
+    pub fn config(&self) -> &PidConfig<R> {
+        &self.config
     }
 
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
         let no_model = ModelState::at(R::ZERO);
-        match self.shell.admitted(sample, self.shell.uses_rate()) {
-            Ok(sample) => self.shell.step(state, sample, (self.gains, no_model)),
-            Err(fault) => self.shell.hold(state, fault, self.gains),
+        match self.config.admitted(sample, self.config.uses_rate()) {
+            Ok(sample) => self.config.step(state, sample, (self.gains, no_model)),
+            Err(fault) => self.config.hold(state, fault, self.gains),
         }
     }
 }
@@ -55,7 +55,7 @@ impl<R: Real> Pid<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fspid<R> {
     tuner: SelfTuner<R>,
-    shell: Shell<R>,
+    config: PidConfig<R>,
 }
 
 impl<R: Real> Fspid<R> {
@@ -64,10 +64,10 @@ impl<R: Real> Fspid<R> {
     /// # Errors
     /// [`ConfigError`] names the first setting that is not allowed; a leakage above one per sample
     /// period, which would throw the gains beyond their nominal values, is one.
-    pub fn new(tuner: SelfTuner<R>, shell: Shell<R>) -> Result<Self, ConfigError> {
-        shell.check()?;
-        tuner.check_period(shell.dt_s)?;
-        Ok(Self { tuner, shell })
+    pub fn new(tuner: SelfTuner<R>, config: PidConfig<R>) -> Result<Self, ConfigError> {
+        config.check()?;
+        tuner.check_period(config.dt_s)?;
+        Ok(Self { tuner, config })
     }
 
     /// Where the gains come from.
@@ -76,36 +76,36 @@ impl<R: Real> Fspid<R> {
     }
 
     /// Everything but the gains.
-    pub fn shell(&self) -> &Shell<R> {
-        &self.shell
+    pub fn config(&self) -> &PidConfig<R> {
+        &self.config
     }
 
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
         let nominal = self.tuner.nominal();
-        let sample = match self.shell.admitted(sample, self.uses_rate()) {
+        let sample = match self.config.admitted(sample, self.uses_rate()) {
             Ok(sample) => sample,
-            Err(fault) => return self.shell.hold(state, fault, nominal),
+            Err(fault) => return self.config.hold(state, fault, nominal),
         };
-        match self.tuner.tuned(state, sample, self.shell.dt_s) {
+        match self.tuner.tuned(state, sample, self.config.dt_s) {
             Ok(Tuned { gains, model, fault }) => {
                 state.latch(fault);
-                self.tuner.shell_at(&self.shell, gains).step(state, sample, (gains, model))
+                self.tuner.config_at(&self.config, gains).step(state, sample, (gains, model))
             }
-            Err(fault) => self.shell.hold(state, fault, nominal),
+            Err(fault) => self.config.hold(state, fault, nominal),
         }
     }
 
     /// True if a sample's pitch rate matters: to the rate loop, or to the supervisor.
     pub fn uses_rate(&self) -> bool {
-        self.shell.uses_rate()
+        self.config.uses_rate()
             || self.tuner.sees_rate()
-            || self.tuner.settings().followers.rate_gain != R::ZERO
+            || self.tuner.settings().gain_coupling.rate_gain != R::ZERO
     }
 
     /// Everything but the gains, as it is at these gains: with what follows them.
-    pub fn shell_at(&self, gains: Gains<R>) -> Shell<R> {
-        self.tuner.shell_at(&self.shell, gains)
+    pub fn config_at(&self, gains: Gains<R>) -> PidConfig<R> {
+        self.tuner.config_at(&self.config, gains)
     }
 }

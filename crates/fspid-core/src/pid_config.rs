@@ -7,7 +7,7 @@ use crate::gains::Gains;
 use crate::guard::{Faults, Guard};
 use crate::integral::{AntiWindup, IntegralForm, Integrator};
 use crate::limits::Limits;
-use crate::sees::ModelState;
+use crate::second_input::ModelState;
 use crate::state::{Previous, Sample, State, Step};
 
 /// Weights of the set-point in the proportional and derivative terms; 1 for plain error feedback.
@@ -59,7 +59,7 @@ impl<R: Real> Derivative<R> {
 /// Configuration of a PID controller without its gains. Public fields, checked when a controller
 /// is built from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shell<R> {
+pub struct PidConfig<R> {
     /// Sample period $T$, s.
     pub dt_s: R,
     /// Gain of the pitch-rate loop, s: subtracts `rate_gain · q`.
@@ -80,7 +80,7 @@ pub struct Shell<R> {
     pub guard: Guard<R>,
 }
 
-impl<R: Real> Shell<R> {
+impl<R: Real> PidConfig<R> {
     /// Plain error feedback, no filter, no limits, no anti-windup, no rate loop.
     pub fn sampled_every(dt_s: R) -> Self {
         Self {

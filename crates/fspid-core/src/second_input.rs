@@ -13,27 +13,27 @@ const MOST_DAMPING: f64 = 1.5;
 
 /// What the supervisor sees beside the error. The scale of the change belongs to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Sees<R> {
+pub enum SecondInput<R> {
     /// The change of the error, as [`Change`](crate::Change) says.
     #[default]
-    ErrorAndChange,
+    Change,
     /// The measured pitch rate with its sign turned, $-q$ in rad/s: the rate of the error wherever the
     /// set-point rests, without the noise of a difference and without the jump at a step.
-    ErrorAndRate,
+    Rate,
     /// How far the pitch is behind a reference model, $y_m - y$ in rad. Where it has the sign of the
     /// error the loop is slower than the model, else it is faster: an accumulating law with rules that
     /// tell the two apart adapts the gains to the plant.
-    ErrorAndModelError(ReferenceModel<R>),
+    ModelError(ReferenceModel<R>),
 }
 
-impl<R> Sees<R> {
+impl<R> SecondInput<R> {
     /// Name in files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::ErrorAndChange => "error-and-change",
-            Self::ErrorAndRate => "error-and-rate",
-            Self::ErrorAndModelError(_) => "error-and-model-error",
+            Self::Change => "error-and-change",
+            Self::Rate => "error-and-rate",
+            Self::ModelError(_) => "error-and-model-error",
         }
     }
 
@@ -41,9 +41,9 @@ impl<R> Sees<R> {
     #[must_use]
     pub const fn beside(&self) -> &'static str {
         match self {
-            Self::ErrorAndChange => "change of error",
-            Self::ErrorAndRate => "pitch rate, sign turned",
-            Self::ErrorAndModelError(_) => "error of the reference model",
+            Self::Change => "change of error",
+            Self::Rate => "pitch rate, sign turned",
+            Self::ModelError(_) => "error of the reference model",
         }
     }
 }
@@ -115,14 +115,14 @@ impl<R: Real> ReferenceModel<R> {
 /// even sets. Of the Gaussian sets here the grades at the centres and where neighbours cross are
 /// those of moved sets; the flanks are stretched with the distance to the neighbour on each side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SetPlaces<R> {
+pub struct SetCentres<R> {
     /// Of the small sets.
     small: R,
     /// Of the medium sets.
     medium: R,
 }
 
-impl<R: Real> SetPlaces<R> {
+impl<R: Real> SetCentres<R> {
     /// Centres at these fractions of the range.
     ///
     /// # Errors
@@ -147,10 +147,10 @@ impl<R: Real> SetPlaces<R> {
 
     /// The input as the even sets see it. One beyond the range stays as it is.
     #[inline(always)]
-    pub fn bent(&self, input: R, range: R) -> R {
+    pub fn warp(&self, input: R, range: R) -> R {
         let third = R::ONE / R::from_f64(3.0);
         let part = input.abs() / range;
-        let bent = if part <= self.small {
+        let warp = if part <= self.small {
             third * (part / self.small)
         } else if part <= self.medium {
             third + third * ((part - self.small) / (self.medium - self.small))
@@ -159,7 +159,7 @@ impl<R: Real> SetPlaces<R> {
         } else {
             part
         };
-        let size = if part < R::ONE { bent.smaller(R::ONE) * range } else { input.abs() };
+        let size = if part < R::ONE { warp.smaller(R::ONE) * range } else { input.abs() };
         if input < R::ZERO { -size } else { size }
     }
 }

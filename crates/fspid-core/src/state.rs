@@ -4,7 +4,7 @@ use fspid_numeric::Real;
 
 use crate::gains::Gains;
 use crate::guard::Faults;
-use crate::sees::ModelState;
+use crate::second_input::ModelState;
 
 /// What a controller is given at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use fspid_numeric::Real;
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
-use crate::sees::{ModelState, Sees, SetPlaces};
-use crate::shell::{SetpointWeights, Shell};
+use crate::pid_config::{PidConfig, SetpointWeights};
+use crate::second_input::{ModelState, SecondInput, SetCentres};
 use crate::state::{Previous, Sample, State};
 
 /// Which difference the supervisor sees as its error.
@@ -60,7 +60,7 @@ impl<R> Law<R> {
 pub struct InputScale<R> {
     /// Supervisor units per radian of error.
     pub error_per_rad: R,
-    /// Supervisor units per rad/s (or per rad and sample) of change, or of whatever it [`Sees`] in
+    /// Supervisor units per rad/s (or per rad and sample) of change, or of the other [`SecondInput`], in
     /// the place of the change.
     pub change_per_rad: R,
 }
@@ -82,14 +82,14 @@ pub struct DeadZone<R> {
 /// loop act alike, but the gyro has less noise than a difference of angles: with a small $k_d$ and a
 /// large $s_r$ the rules for $k_d$ move the rate loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followers<R> {
+pub struct GainCoupling<R> {
     /// $s_b$, of the set-point weight in the proportional term.
     pub setpoint_weight: R,
     /// $s_r$, of the gain of the pitch-rate loop.
     pub rate_gain: R,
 }
 
-impl<R: Real> Followers<R> {
+impl<R: Real> GainCoupling<R> {
     /// Nothing follows.
     pub const NONE: Self = Self { setpoint_weight: R::ZERO, rate_gain: R::ZERO };
 }
@@ -98,9 +98,9 @@ impl<R: Real> Followers<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputSets<R> {
     /// Of the error.
-    pub error: Option<SetPlaces<R>>,
+    pub error: Option<SetCentres<R>>,
     /// Of the change, or whatever is seen in its place.
-    pub change: Option<SetPlaces<R>>,
+    pub change: Option<SetCentres<R>>,
 }
 
 impl<R: Real> InputSets<R> {
@@ -119,7 +119,7 @@ pub struct TunerSettings<R> {
     /// Sign of the supervisor's error and its change.
     pub error_sign: ErrorSign,
     /// What the supervisor sees beside the error.
-    pub sees: Sees<R>,
+    pub second_input: SecondInput<R>,
     /// Rate or difference, where it sees the change.
     pub change: Change,
     /// Factors before the supervisor.
@@ -129,7 +129,7 @@ pub struct TunerSettings<R> {
     /// Factors behind the supervisor, gain by gain.
     pub output_scale: Gains<R>,
     /// What else moves with the gains.
-    pub followers: Followers<R>,
+    pub gain_coupling: GainCoupling<R>,
     /// Memoryless or accumulating.
     pub law: Law<R>,
     /// Bounds of the total gains.
@@ -143,12 +143,12 @@ impl<R: Real> TunerSettings<R> {
     pub fn literal() -> Self {
         Self {
             error_sign: ErrorSign::default(),
-            sees: Sees::ErrorAndChange,
+            second_input: SecondInput::Change,
             change: Change::default(),
             input_scale: InputScale { error_per_rad: R::ONE, change_per_rad: R::ONE },
             input_sets: InputSets::EVEN,
             output_scale: Gains { kp: R::ONE, ki: R::ONE, kd: R::ONE },
-            followers: Followers::NONE,
+            gain_coupling: GainCoupling::NONE,
             law: Law::Memoryless,
             gain_limits: None,
             dead_zone: None,
@@ -161,8 +161,8 @@ impl<R: Real> TunerSettings<R> {
         finite("output_scale kp", self.output_scale.kp)?;
         finite("output_scale ki", self.output_scale.ki)?;
         finite("output_scale kd", self.output_scale.kd)?;
-        finite("set-point weight per kp", self.followers.setpoint_weight)?;
-        finite("rate_gain per kd", self.followers.rate_gain)?;
+        finite("set-point weight per kp", self.gain_coupling.setpoint_weight)?;
+        finite("rate_gain per kd", self.gain_coupling.rate_gain)?;
         if let Law::Accumulating { leakage_per_s } = self.law {
             not_negative("leakage, 1/s", leakage_per_s)?;
         }
@@ -176,9 +176,9 @@ impl<R: Real> TunerSettings<R> {
     /// True where a change of the error is what the supervisor sees, its sets are even and nothing but
     /// the gains moves: the structure that proofs and gains along a trajectory are written for.
     pub fn is_plain(&self) -> bool {
-        self.sees == Sees::ErrorAndChange
+        self.second_input == SecondInput::Change
             && self.input_sets.are_even()
-            && self.followers == Followers::NONE
+            && self.gain_coupling == GainCoupling::NONE
     }
 }
 
@@ -241,7 +241,7 @@ impl<R: Real> SelfTuner<R> {
 
     /// Refuses a leakage that would overshoot within one sample, and a reference model too fast for it.
     pub(crate) fn check_period(&self, dt_s: R) -> Result<(), ConfigError> {
-        if let Sees::ErrorAndModelError(model) = self.settings.sees {
+        if let SecondInput::ModelError(model) = self.settings.second_input {
             model.check(dt_s)?;
         }
         if let Law::Accumulating { leakage_per_s } = self.settings.law {
@@ -277,7 +277,7 @@ impl<R: Real> SelfTuner<R> {
     /// Scaled increments for inputs as the supervisor sees them.
     #[inline(always)]
     fn inferred(&self, error: R, change: R) -> Result<(Gains<R>, Faults), Faults> {
-        let (error, change) = self.bent(error, change);
+        let (error, change) = self.warp(error, change);
         let Ok(inference) = self.supervisor.infer(error, change) else {
             return Err(Faults::OUT_OF_RANGE);
         };
@@ -288,12 +288,12 @@ impl<R: Real> SelfTuner<R> {
 
     /// Both inputs as the even sets see them.
     #[inline(always)]
-    fn bent(&self, error: R, change: R) -> (R, R) {
+    fn warp(&self, error: R, change: R) -> (R, R) {
         let (sets, range) = (self.settings.input_sets, self.supervisor.range());
-        let bent = |places: Option<SetPlaces<R>>, input| {
-            places.map_or(input, |places| places.bent(input, range))
+        let warp = |places: Option<SetCentres<R>>, input| {
+            places.map_or(input, |places| places.warp(input, range))
         };
-        (bent(sets.error, error), bent(sets.change, change))
+        (warp(sets.error, error), warp(sets.change, change))
     }
 
     /// Scaled increments $s \Delta k$ where the supervisor sees `error` and `change`, in its own units
@@ -316,16 +316,16 @@ impl<R: Real> SelfTuner<R> {
     ) -> Result<Tuned<R>, Faults> {
         let error_rad = sample.setpoint_rad - sample.measurement_rad;
         let mut model = ModelState::at(R::ZERO);
-        let change_rad = match self.settings.sees {
-            Sees::ErrorAndChange => {
+        let change_rad = match self.settings.second_input {
+            SecondInput::Change => {
                 let delta_rad = state.error_delta(error_rad);
                 match self.settings.change {
                     Change::Rate => delta_rad / dt_s,
                     Change::Delta => delta_rad,
                 }
             }
-            Sees::ErrorAndRate => -sample.rate_rad_s,
-            Sees::ErrorAndModelError(reference) => {
+            SecondInput::Rate => -sample.rate_rad_s,
+            SecondInput::ModelError(reference) => {
                 let rest = ModelState::at(sample.measurement_rad);
                 let now = state.previous.map_or(rest, |previous| previous.model);
                 model = reference.next(now, sample.setpoint_rad, dt_s);
@@ -379,23 +379,23 @@ impl<R: Real> SelfTuner<R> {
 
     /// True if the supervisor sees the measured pitch rate.
     pub fn sees_rate(&self) -> bool {
-        self.settings.sees == Sees::ErrorAndRate
+        self.settings.second_input == SecondInput::Rate
     }
 
-    /// A shell with what follows the gains.
+    /// A configuration with what follows the gains.
     #[inline(always)]
-    pub(crate) fn shell_at(&self, shell: &Shell<R>, gains: Gains<R>) -> Shell<R> {
-        let followers = self.settings.followers;
-        if followers == Followers::NONE {
-            return *shell;
+    pub(crate) fn config_at(&self, config: &PidConfig<R>, gains: Gains<R>) -> PidConfig<R> {
+        let gain_coupling = self.settings.gain_coupling;
+        if gain_coupling == GainCoupling::NONE {
+            return *config;
         }
-        let (weights, nominal) = (shell.setpoint_weights, self.nominal);
+        let (weights, nominal) = (config.setpoint_weights, self.nominal);
         let proportional =
-            weights.proportional + followers.setpoint_weight * (gains.kp - nominal.kp);
-        Shell {
+            weights.proportional + gain_coupling.setpoint_weight * (gains.kp - nominal.kp);
+        PidConfig {
             setpoint_weights: SetpointWeights { proportional, ..weights },
-            rate_gain_s: shell.rate_gain_s + followers.rate_gain * (gains.kd - nominal.kd),
-            ..*shell
+            rate_gain_s: config.rate_gain_s + gain_coupling.rate_gain * (gains.kd - nominal.kd),
+            ..*config
         }
     }
 

@@ -5,7 +5,7 @@
 use crate::common;
 
 use common::{NOMINAL, Random, T, error, integral_term, pid};
-use fspid_core::{AntiWindup, Gains, IntegralForm, Limits, Shell, State, Step};
+use fspid_core::{AntiWindup, Gains, IntegralForm, Limits, PidConfig, State, Step};
 use proptest::prelude::*;
 
 const FORMS: [IntegralForm; 2] = [IntegralForm::Bumpless, IntegralForm::Literal];
@@ -16,13 +16,18 @@ fn limits(lower: f64, upper: f64) -> Limits<f64> {
 }
 
 /// Command limits of one rad to both sides.
-fn shell(integral: IntegralForm, anti_windup: AntiWindup<f64>) -> Shell<f64> {
-    Shell { integral, anti_windup, limits: Some(limits(-1.0, 1.0)), ..Shell::sampled_every(T) }
+fn config(integral: IntegralForm, anti_windup: AntiWindup<f64>) -> PidConfig<f64> {
+    PidConfig {
+        integral,
+        anti_windup,
+        limits: Some(limits(-1.0, 1.0)),
+        ..PidConfig::sampled_every(T)
+    }
 }
 
 /// A memory whose integral term under [`ONLY_KI`] is `term_rad`, at a zero error.
 fn wound_to(term_rad: f64, integral: IntegralForm) -> State<f64> {
-    let bare = Shell { integral, ..Shell::sampled_every(T) };
+    let bare = PidConfig { integral, ..PidConfig::sampled_every(T) };
     let (controller, mut state) = (pid(ONLY_KI, bare), State::new());
     controller.step(&mut state, error(term_rad / (ONLY_KI.ki * T)));
     controller.step(&mut state, error(0.0));
@@ -32,13 +37,13 @@ fn wound_to(term_rad: f64, integral: IntegralForm) -> State<f64> {
 #[test]
 fn without_anti_windup_the_integral_winds_up_behind_the_limit() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::None);
-        let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+        let config = config(form, AntiWindup::None);
+        let (controller, mut state) = (pid(ONLY_KI, config), State::new());
         for _ in 0..1000 {
             controller.step(&mut state, error(1.0));
         }
         // Ten seconds of an error of one: 0.5 · 10, after a thousand roundings below 1e-15 each.
-        let term_rad = integral_term(&state, ONLY_KI.ki, shell);
+        let term_rad = integral_term(&state, ONLY_KI.ki, config);
         assert!((term_rad - 5.0).abs() < 1e-12, "{form:?}: {term_rad}");
     }
 }
@@ -46,14 +51,14 @@ fn without_anti_windup_the_integral_winds_up_behind_the_limit() {
 #[test]
 fn a_command_is_saturated_where_an_output_or_slew_limit_cut_it_to_either_side() {
     let (limited, mut slewed) =
-        (shell(IntegralForm::Bumpless, AntiWindup::None), Shell::sampled_every(T));
+        (config(IntegralForm::Bumpless, AntiWindup::None), PidConfig::sampled_every(T));
     slewed.slew_rad_s = Some(100.0);
     let only_kp = Gains { kp: 2.0, ..Gains::ZERO };
-    for shell in [limited, slewed] {
+    for config in [limited, slewed] {
         for (error_rad, command_rad, saturated) in
             [(0.5, 1.0, false), (0.6, 1.0, true), (-0.5, -1.0, false), (-0.6, -1.0, true)]
         {
-            let step = pid(only_kp, shell).step(&mut State::new(), error(error_rad));
+            let step = pid(only_kp, config).step(&mut State::new(), error(error_rad));
             assert_eq!((step.command_rad, step.saturated), (command_rad, saturated));
         }
     }
@@ -65,13 +70,13 @@ fn a_command_is_saturated_where_an_output_or_slew_limit_cut_it_to_either_side() 
 fn back_calculation_returns_to_the_limit_with_the_tracking_time_constant() {
     let tracking_s = 1.0;
     for form in FORMS {
-        let shell = shell(form, AntiWindup::BackCalculation { tracking_s });
-        let (controller, mut state) = (pid(ONLY_KI, shell), wound_to(5.0, form));
+        let config = config(form, AntiWindup::BackCalculation { tracking_s });
+        let (controller, mut state) = (pid(ONLY_KI, config), wound_to(5.0, form));
         let mut beyond_rad = 4.0;
         for k in 1..=1000 {
             assert_eq!(controller.step(&mut state, error(0.0)).command_rad, 1.0);
             beyond_rad *= 1.0 - T / tracking_s;
-            let found = integral_term(&state, ONLY_KI.ki, shell) - 1.0;
+            let found = integral_term(&state, ONLY_KI.ki, config) - 1.0;
             // A thousand samples, each with a few roundings of a number below 5.
             assert!((found - beyond_rad).abs() < 1e-12, "{form:?} {k}: {found} {beyond_rad}");
             if k == 100 {
@@ -88,12 +93,12 @@ fn back_calculation_returns_to_the_limit_with_the_tracking_time_constant() {
 fn back_calculation_rests_where_error_and_correction_balance() {
     let tracking_s = 0.5;
     for form in FORMS {
-        let shell = shell(form, AntiWindup::BackCalculation { tracking_s });
-        let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+        let config = config(form, AntiWindup::BackCalculation { tracking_s });
+        let (controller, mut state) = (pid(ONLY_KI, config), State::new());
         for _ in 0..5000 {
             controller.step(&mut state, error(0.8));
         }
-        let beyond_rad = integral_term(&state, ONLY_KI.ki, shell) - 1.0;
+        let beyond_rad = integral_term(&state, ONLY_KI.ki, config) - 1.0;
         let expected = ONLY_KI.ki * 0.8 * tracking_s * (1.0 - T / tracking_s);
         // (1 - T/Tt)^4000 is below 1e-35: only roundings are left.
         assert!((beyond_rad - expected).abs() < 1e-13, "{form:?}: {beyond_rad}");
@@ -103,10 +108,10 @@ fn back_calculation_rests_where_error_and_correction_balance() {
 #[test]
 fn back_calculation_within_one_period_takes_all_of_the_excess_back() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::BackCalculation { tracking_s: T });
-        let (controller, mut state) = (pid(ONLY_KI, shell), wound_to(5.0, form));
+        let config = config(form, AntiWindup::BackCalculation { tracking_s: T });
+        let (controller, mut state) = (pid(ONLY_KI, config), wound_to(5.0, form));
         controller.step(&mut state, error(0.0));
-        let term_rad = integral_term(&state, ONLY_KI.ki, shell);
+        let term_rad = integral_term(&state, ONLY_KI.ki, config);
         assert!((term_rad - 1.0).abs() < 1e-15, "{form:?}: {term_rad}");
     }
 }
@@ -116,9 +121,9 @@ fn back_calculation_within_one_period_takes_all_of_the_excess_back() {
 #[test]
 fn back_calculation_leaves_a_controller_without_integral_action_alone() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::BackCalculation { tracking_s: 0.1 });
+        let config = config(form, AntiWindup::BackCalculation { tracking_s: 0.1 });
         let (controller, mut state) =
-            (pid(Gains { ki: 0.0, kd: 0.0, ..NOMINAL }, shell), State::new());
+            (pid(Gains { ki: 0.0, kd: 0.0, ..NOMINAL }, config), State::new());
         for _ in 0..100 {
             assert_eq!(controller.step(&mut state, error(3.0)).command_rad, 1.0);
         }
@@ -130,8 +135,8 @@ fn back_calculation_leaves_a_controller_without_integral_action_alone() {
 /// the command with it for as long as it was cut.
 #[test]
 fn back_calculation_of_a_sum_with_a_tiny_gain_still_answers() {
-    let shell = shell(IntegralForm::Literal, AntiWindup::BackCalculation { tracking_s: 0.1 });
-    let (controller, mut state) = (pid(Gains { ki: 1e-310, ..NOMINAL }, shell), State::new());
+    let config = config(IntegralForm::Literal, AntiWindup::BackCalculation { tracking_s: 0.1 });
+    let (controller, mut state) = (pid(Gains { ki: 1e-310, ..NOMINAL }, config), State::new());
     let step = controller.step(&mut state, error(3.0));
     assert_eq!(step.command_rad, 1.0);
     assert!(step.saturated && step.faults.is_empty(), "{step:?}");
@@ -140,12 +145,12 @@ fn back_calculation_of_a_sum_with_a_tiny_gain_still_answers() {
 #[test]
 fn conditional_integration_stops_at_the_limit_and_turns_back_at_once() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::Conditional);
-        let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+        let config = config(form, AntiWindup::Conditional);
+        let (controller, mut state) = (pid(ONLY_KI, config), State::new());
         for _ in 0..1000 {
             controller.step(&mut state, error(1.0));
         }
-        let term_rad = integral_term(&state, ONLY_KI.ki, shell);
+        let term_rad = integral_term(&state, ONLY_KI.ki, config);
         // The last whole increment of 0.005 below the limit.
         assert!(term_rad <= 1.0 && term_rad > 0.995 - 1e-12, "{form:?}: {term_rad}");
         let step = controller.step(&mut state, error(-1.0));
@@ -157,22 +162,22 @@ fn conditional_integration_stops_at_the_limit_and_turns_back_at_once() {
 /// single precision an excess of 1e-25 rad let the integral go on outwards.
 #[test]
 fn conditional_integration_stops_for_the_smallest_excess() {
-    let shell = Shell {
+    let config = PidConfig {
         anti_windup: AntiWindup::Conditional,
         limits: Some(Limits::new("limits", -1.0, 1e-30).expect("lower is below upper")),
-        ..Shell::sampled_every(0.01_f32)
+        ..PidConfig::sampled_every(0.01_f32)
     };
     let only_ki = Gains { ki: 1.0, ..Gains::ZERO };
-    let (controller, mut state) = (pid(only_ki, shell), State::new());
+    let (controller, mut state) = (pid(only_ki, config), State::new());
     assert!(controller.step(&mut state, error(1e-23)).saturated);
-    assert_eq!(integral_term(&state, 1.0, shell), 0.0);
+    assert_eq!(integral_term(&state, 1.0, config), 0.0);
 }
 
 #[test]
 fn clamping_bounds_the_integral_term_of_the_very_sample() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::Clamping(limits(-0.1, 0.2)));
-        let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+        let config = config(form, AntiWindup::Clamping(limits(-0.1, 0.2)));
+        let (controller, mut state) = (pid(ONLY_KI, config), State::new());
         // Each sample would move the term by 50: with bounds it is at one or the other.
         for (error_rad, bound_rad) in [(1e4, 0.2), (1e4, 0.2), (-1e4, -0.1), (1e4, 0.2)] {
             let step = controller.step(&mut state, error(error_rad));
@@ -185,8 +190,8 @@ fn clamping_bounds_the_integral_term_of_the_very_sample() {
 #[test]
 fn a_command_that_clamping_keeps_within_its_limits_is_not_saturated() {
     for form in FORMS {
-        let shell = shell(form, AntiWindup::Clamping(limits(-0.1, 0.1)));
-        let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+        let config = config(form, AntiWindup::Clamping(limits(-0.1, 0.1)));
+        let (controller, mut state) = (pid(ONLY_KI, config), State::new());
         let step = controller.step(&mut state, error(1e4));
         assert!(!step.saturated, "{form:?}: {step:?}");
     }
@@ -196,10 +201,10 @@ fn a_command_that_clamping_keeps_within_its_limits_is_not_saturated() {
 /// its limit, far beside after a large error: 50 + (0.1 - 50) is 0.1 + 1.5e-15.
 #[test]
 fn a_clamped_integral_is_exactly_its_limit() {
-    let shell = shell(IntegralForm::Bumpless, AntiWindup::Clamping(limits(-0.1, 0.1)));
-    let (controller, mut state) = (pid(ONLY_KI, shell), State::new());
+    let config = config(IntegralForm::Bumpless, AntiWindup::Clamping(limits(-0.1, 0.1)));
+    let (controller, mut state) = (pid(ONLY_KI, config), State::new());
     controller.step(&mut state, error(1e4));
-    assert_eq!(integral_term(&state, ONLY_KI.ki, shell), 0.1);
+    assert_eq!(integral_term(&state, ONLY_KI.ki, config), 0.1);
 }
 
 fn anti_windups() -> impl Strategy<Value = AntiWindup<f64>> {
@@ -221,13 +226,13 @@ proptest! {
     fn conditional_integration_never_moves_the_integral_outwards(
         seed: u64, form in forms(), ki in -5.0..5.0,
     ) {
-        let shell = shell(form, AntiWindup::Conditional);
-        let controller = pid(Gains { ki, ..NOMINAL }, shell);
+        let config = config(form, AntiWindup::Conditional);
+        let controller = pid(Gains { ki, ..NOMINAL }, config);
         let (mut state, mut random) = (State::new(), Random(seed));
         for _ in 0..200 {
-            let before = integral_term(&state, ki, shell);
+            let before = integral_term(&state, ki, config);
             let step = controller.step(&mut state, error(2.0 * random.signed()));
-            let after = integral_term(&state, ki, shell);
+            let after = integral_term(&state, ki, config);
             if step.saturated {
                 let outwards = if step.command_rad > 0.0 { after > before } else { after < before };
                 prop_assert!(!outwards, "{before} {after} {step:?}");
@@ -238,14 +243,14 @@ proptest! {
     #[test]
     fn a_clamped_integral_stays_within_its_limits(seed: u64, form in forms(), ki in -50.0..50.0) {
         let bounds = limits(-0.4, 0.7);
-        let shell = shell(form, AntiWindup::Clamping(bounds));
-        let controller = pid(Gains { ki, ..Gains::ZERO }, Shell { limits: None, ..shell });
+        let config = config(form, AntiWindup::Clamping(bounds));
+        let controller = pid(Gains { ki, ..Gains::ZERO }, PidConfig { limits: None, ..config });
         let (mut state, mut random) = (State::new(), Random(seed));
         for _ in 0..200 {
             // Without other gains the command is the integral term.
             let term_rad = controller.step(&mut state, error(2.0 * random.signed())).command_rad;
             prop_assert_eq!(bounds.clamp(term_rad), term_rad);
-            let kept_rad = integral_term(&state, ki, shell);
+            let kept_rad = integral_term(&state, ki, config);
             // The sum of the literal form is a quotient: one rounding more than the term.
             prop_assert!((bounds.clamp(kept_rad) - kept_rad).abs() < 1e-15, "{}", kept_rad);
         }
@@ -258,13 +263,13 @@ proptest! {
         size in prop::sample::select(vec![1e-9, 1e-4, 0.1, 1.0, 1e3, 1e7]),
     ) {
         let within = limits(lower, lower + width);
-        let shell = Shell {
+        let config = PidConfig {
             limits: Some(within),
             slew_rad_s: slew,
             rate_gain_s: 0.5,
-            ..shell(form, anti_windup)
+            ..config(form, anti_windup)
         };
-        let controller = pid(NOMINAL, shell);
+        let controller = pid(NOMINAL, config);
         let (mut state, mut random) = (State::new(), Random(seed));
         let mut last_rad = within.clamp(0.0);
         for _ in 0..200 {

@@ -10,21 +10,21 @@ use common::{NOMINAL, Random, T, error, fspid, gains, pid, sample, supervisor};
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
     AntiWindup, Faults, Fspid, GainLimits, Gains, Guard, InputScale, IntegralForm, Law, Limits,
-    Pid, Sample, SelfTuner, Shell, State, Step, TunerSettings,
+    Pid, PidConfig, Sample, SelfTuner, State, Step, TunerSettings,
 };
 use fspid_numeric::Real;
 
 /// Every feature at once: rate loop, filter, limits, slew, back-calculation.
-fn full_shell<R: Real>(integral: IntegralForm) -> Shell<R> {
+fn full_config<R: Real>(integral: IntegralForm) -> PidConfig<R> {
     let number = R::from_f64;
-    let mut shell = Shell::sampled_every(number(T));
-    shell.rate_gain_s = number(0.3);
-    shell.derivative.filter_s = number(0.05);
-    shell.integral = integral;
-    shell.anti_windup = AntiWindup::BackCalculation { tracking_s: number(1.0) };
-    shell.limits = Limits::new("limits", number(-0.5), number(0.5)).ok();
-    shell.slew_rad_s = Some(number(20.0));
-    shell
+    let mut config = PidConfig::sampled_every(number(T));
+    config.rate_gain_s = number(0.3);
+    config.derivative.filter_s = number(0.05);
+    config.integral = integral;
+    config.anti_windup = AntiWindup::BackCalculation { tracking_s: number(1.0) };
+    config.limits = Limits::new("limits", number(-0.5), number(0.5)).ok();
+    config.slew_rad_s = Some(number(20.0));
+    config
 }
 
 fn accumulating<R: Real>() -> TunerSettings<R> {
@@ -39,11 +39,11 @@ enum Controller<R> {
 }
 
 impl<R: Real> Controller<R> {
-    fn all(shell: Shell<R>) -> [Self; 3] {
+    fn all(config: PidConfig<R>) -> [Self; 3] {
         [
-            Self::Fixed(pid(gains(NOMINAL), shell)),
-            Self::Tuned(Box::new(fspid(TunerSettings::literal(), shell))),
-            Self::Tuned(Box::new(fspid(accumulating(), shell))),
+            Self::Fixed(pid(gains(NOMINAL), config)),
+            Self::Tuned(Box::new(fspid(TunerSettings::literal(), config))),
+            Self::Tuned(Box::new(fspid(accumulating(), config))),
         ]
     }
 
@@ -66,7 +66,7 @@ fn with<R>(sample: Sample<R>, place: usize, value: R) -> Sample<R> {
 
 fn one_bad_sample<R: Real>(bad: &[(R, Faults)]) {
     for form in [IntegralForm::Bumpless, IntegralForm::Literal] {
-        for controller in Controller::all(full_shell::<R>(form)) {
+        for controller in Controller::all(full_config::<R>(form)) {
             for before in [0, 1, 60] {
                 for place in 0..3 {
                     for &(value, fault) in bad {
@@ -110,24 +110,24 @@ fn one_bad_sample_holds_the_output_and_the_next_good_one_is_answered_normally() 
         (-f64::NAN, Faults::NOT_FINITE),
         (f64::INFINITY, Faults::NOT_FINITE),
         (f64::NEG_INFINITY, Faults::NOT_FINITE),
-        (3e38, Faults::ABSURD),
-        (-3e38, Faults::ABSURD),
-        (f64::MAX, Faults::ABSURD),
-        (f64::MIN, Faults::ABSURD),
+        (3e38, Faults::IMPLAUSIBLE),
+        (-3e38, Faults::IMPLAUSIBLE),
+        (f64::MAX, Faults::IMPLAUSIBLE),
+        (f64::MIN, Faults::IMPLAUSIBLE),
     ]);
     one_bad_sample(&[
         (f32::NAN, Faults::NOT_FINITE),
         (f32::INFINITY, Faults::NOT_FINITE),
         (f32::NEG_INFINITY, Faults::NOT_FINITE),
-        (3e38, Faults::ABSURD),
-        (f32::MIN, Faults::ABSURD),
+        (3e38, Faults::IMPLAUSIBLE),
+        (f32::MIN, Faults::IMPLAUSIBLE),
     ]);
 }
 
 /// A denormal is a good sample: answered as zero but for its own size.
 #[test]
 fn a_denormal_sample_is_a_good_one() {
-    for controller in Controller::all(full_shell::<f64>(IntegralForm::Bumpless)) {
+    for controller in Controller::all(full_config::<f64>(IntegralForm::Bumpless)) {
         for place in 0..3 {
             let (mut state, mut at_zero) = (State::new(), State::new());
             let sample = sample(0.01, 0.02, 0.03);
@@ -143,7 +143,7 @@ fn a_denormal_sample_is_a_good_one() {
 /// sample was held as an overflow.
 #[test]
 fn a_rate_that_is_not_used_cannot_be_at_fault() {
-    for controller in Controller::all(Shell::sampled_every(T)) {
+    for controller in Controller::all(PidConfig::sampled_every(T)) {
         for rate in [f64::NAN, f64::INFINITY, 3e38, f64::MAX] {
             let (mut state, mut at_zero) = (State::new(), State::new());
             let step = controller.step(&mut state, sample(0.1, 0.0, rate));
@@ -156,9 +156,9 @@ fn a_rate_that_is_not_used_cannot_be_at_fault() {
 /// A command that overflowed used to be answered with the limit, and the memory moved on.
 #[test]
 fn an_overflow_is_held_even_where_a_limit_would_hide_it() {
-    let mut shell = full_shell::<f32>(IntegralForm::Bumpless);
-    shell.guard = Guard::new(3e38).expect("finite");
-    let huge = pid(Gains { kp: 2e37, ..gains(NOMINAL) }, shell);
+    let mut config = full_config::<f32>(IntegralForm::Bumpless);
+    config.guard = Guard::new(3e38).expect("finite");
+    let huge = pid(Gains { kp: 2e37, ..gains(NOMINAL) }, config);
     let mut state = State::new();
     let last = huge.step(&mut state, error(1e-38));
     let before = state;
@@ -174,22 +174,22 @@ fn an_overflow_is_held_even_where_a_limit_would_hide_it() {
 #[test]
 fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
     for form in [IntegralForm::Bumpless, IntegralForm::Literal] {
-        let (plain, mut dead_beat) = (Shell::sampled_every(0.01_f32), full_shell(form));
+        let (plain, mut dead_beat) = (PidConfig::sampled_every(0.01_f32), full_config(form));
         dead_beat.derivative.filter_s = 0.0;
         dead_beat.anti_windup = AntiWindup::BackCalculation { tracking_s: 0.01 };
-        let mut fast = Shell::sampled_every(1e-12_f32);
+        let mut fast = PidConfig::sampled_every(1e-12_f32);
         // The error and what the derivative acts on are then different numbers.
         fast.setpoint_weights.derivative = 0.0;
-        for mut shell in [plain, full_shell(form), dead_beat, fast] {
-            (shell.integral, shell.guard) = (form, Guard::new(3e38).expect("finite"));
+        for mut config in [plain, full_config(form), dead_beat, fast] {
+            (config.integral, config.guard) = (form, Guard::new(3e38).expect("finite"));
             let strong = Gains { kp: 1e9, ki: 1e9, kd: 1e9 };
             let input_scale = InputScale { error_per_rad: 1e9, change_per_rad: 1e9 };
             let keen = TunerSettings { input_scale, ..TunerSettings::literal() };
             let extreme = [
-                Controller::Fixed(pid(strong, shell)),
-                Controller::Tuned(Box::new(fspid(keen, shell))),
+                Controller::Fixed(pid(strong, config)),
+                Controller::Tuned(Box::new(fspid(keen, config))),
             ];
-            for controller in Controller::all(shell).iter().chain(&extreme) {
+            for controller in Controller::all(config).iter().chain(&extreme) {
                 // Every power of two up to 2^127, as an error and as an attitude that is commanded
                 // and measured, at the first sample and after a good one.
                 for n in 0..128_u32 {
@@ -205,7 +205,7 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
                         controller.step(&mut state, sample);
                         state.take_faults();
                         let step = controller.step(&mut state, error(0.1));
-                        assert!(step.faults.is_empty(), "2^{n}: {step:?} {shell:?}");
+                        assert!(step.faults.is_empty(), "2^{n}: {step:?} {config:?}");
                     }
                 }
             }
@@ -222,7 +222,7 @@ fn gains_that_overflow_are_held_even_where_their_limits_would_hide_it() {
         gain_limits: Some(GainLimits { kp: wide, ki: wide, kd: wide }),
         ..TunerSettings::literal()
     };
-    let (controller, mut state) = (fspid(settings, Shell::sampled_every(T)), State::new());
+    let (controller, mut state) = (fspid(settings, PidConfig::sampled_every(T)), State::new());
     let held = controller.step(&mut state, error(3.0));
     assert_eq!((held.command_rad, held.gains), (0.0, NOMINAL));
     assert_eq!(held.faults, Faults::OVERFLOW);
@@ -236,7 +236,7 @@ fn a_supervisor_input_that_overflows_holds_the_output() {
         input_scale: InputScale { error_per_rad: f64::MAX, change_per_rad: 1.0 },
         ..TunerSettings::literal()
     };
-    let (controller, mut state) = (fspid(settings, Shell::sampled_every(T)), State::new());
+    let (controller, mut state) = (fspid(settings, PidConfig::sampled_every(T)), State::new());
     let held = controller.step(&mut state, error(3.0));
     assert_eq!((held.command_rad, held.faults), (0.0, Faults::OVERFLOW));
     assert!(controller.step(&mut state, error(0.5)).command_rad != 0.0);
@@ -245,8 +245,8 @@ fn a_supervisor_input_that_overflows_holds_the_output() {
 #[test]
 fn a_supervisor_that_refuses_an_input_keeps_the_gains_and_the_loop_closed() {
     let tuner = SelfTuner::new(NOMINAL, supervisor(OutOfRange::Error), TunerSettings::literal());
-    let shell = Shell::sampled_every(T);
-    let controller = Fspid::new(tuner.expect("allowed"), shell).expect("allowed");
+    let config = PidConfig::sampled_every(T);
+    let controller = Fspid::new(tuner.expect("allowed"), config).expect("allowed");
     let mut state = State::new();
     let inside = controller.step(&mut state, error(1.0));
     assert!(inside.gains != NOMINAL && inside.faults.is_empty());
@@ -258,10 +258,10 @@ fn a_supervisor_that_refuses_an_input_keeps_the_gains_and_the_loop_closed() {
 
 #[test]
 fn a_supervisor_whose_rules_underflow_says_so_and_answers_as_clamped() {
-    let shell = Shell::sampled_every(T);
+    let config = PidConfig::sampled_every(T);
     let answers = [OutOfRange::Evaluate, OutOfRange::Clamp].map(|policy| {
         let tuner = SelfTuner::new(NOMINAL, supervisor(policy), TunerSettings::literal());
-        let controller = Fspid::new(tuner.expect("allowed"), shell).expect("allowed");
+        let controller = Fspid::new(tuner.expect("allowed"), config).expect("allowed");
         controller.step(&mut State::new(), error(1e3))
     });
     let [evaluated, clamped] = answers;
@@ -273,18 +273,18 @@ fn a_supervisor_whose_rules_underflow_says_so_and_answers_as_clamped() {
 /// The held command of a fresh memory used to be 0 even where the limits exclude it.
 #[test]
 fn a_bad_first_sample_is_answered_within_the_limits() {
-    let mut shell = Shell::sampled_every(T);
-    shell.limits = Limits::new("limits", 0.1, 0.2).ok();
-    let held = pid(NOMINAL, shell).step(&mut State::new(), error(f64::NAN));
+    let mut config = PidConfig::sampled_every(T);
+    config.limits = Limits::new("limits", 0.1, 0.2).ok();
+    let held = pid(NOMINAL, config).step(&mut State::new(), error(f64::NAN));
     assert_eq!(held.command_rad, 0.1);
 }
 
 #[test]
 fn faults_add_up_and_name_themselves() {
-    let (controller, mut state) = (pid(NOMINAL, Shell::sampled_every(T)), State::new());
+    let (controller, mut state) = (pid(NOMINAL, PidConfig::sampled_every(T)), State::new());
     controller.step(&mut state, error(f64::NAN));
     let step = controller.step(&mut state, error(3e38));
-    assert!(step.faults.contains(Faults::NOT_FINITE) && step.faults.contains(Faults::ABSURD));
+    assert!(step.faults.contains(Faults::NOT_FINITE) && step.faults.contains(Faults::IMPLAUSIBLE));
     assert_eq!(step.faults.to_string(), "sample not finite, sample beyond the guard");
     assert_eq!(step.faults.bits(), 3);
     assert_eq!(state.take_faults(), step.faults);
@@ -294,13 +294,13 @@ fn faults_add_up_and_name_themselves() {
 /// Feeds samples of random bits, every fourth of them a plausible one, and checks every answer.
 fn random_bits<R: Real>(guard: R, runs: u32, from_bits: impl Fn(u64) -> R) {
     for form in [IntegralForm::Bumpless, IntegralForm::Literal] {
-        let mut shell = full_shell::<R>(form);
-        shell.guard = Guard::new(guard).expect("finite and positive");
-        let mut unlimited = shell;
+        let mut config = full_config::<R>(form);
+        config.guard = Guard::new(guard).expect("finite and positive");
+        let mut unlimited = config;
         (unlimited.limits, unlimited.slew_rad_s) = (None, None);
         unlimited.anti_windup = AntiWindup::None;
         for (n, controller) in
-            Controller::all(shell).iter().chain(&Controller::all(unlimited)).enumerate()
+            Controller::all(config).iter().chain(&Controller::all(unlimited)).enumerate()
         {
             let (mut state, mut random) = (State::new(), Random(5));
             let mut answered = 0;

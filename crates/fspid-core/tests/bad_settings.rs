@@ -6,7 +6,7 @@ use common::{NOMINAL, T, supervisor, tuner};
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
     AntiWindup, ConfigError, DeadZone, Derivative, Fspid, GainLimits, Gains, Guard, Law, Limits,
-    Pid, SelfTuner, Shell, TunerSettings,
+    Pid, PidConfig, SelfTuner, TunerSettings,
 };
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -44,12 +44,12 @@ fn table<S: Copy, B>(
 
 #[test]
 fn every_bad_gain_is_refused_by_name_in_both_controllers() {
-    let shell = Shell::sampled_every(T);
+    let config = PidConfig::sampled_every(T);
     type Set = fn(&mut Gains<f64>, f64);
     let sets: [(&str, Set); 3] =
         [("kp", |g, v| g.kp = v), ("ki", |g, v| g.ki = v), ("kd", |g, v| g.kd = v)];
     for (name, set) in sets {
-        table(name, NOMINAL, set, &[], &[0.0, -1.0], |gains| Pid::new(gains, shell));
+        table(name, NOMINAL, set, &[], &[0.0, -1.0], |gains| Pid::new(gains, config));
         table(name, NOMINAL, set, &[], &[0.0, -1.0], |nominal| {
             SelfTuner::new(nominal, supervisor(OutOfRange::Clamp), TunerSettings::literal())
         });
@@ -59,8 +59,8 @@ fn every_bad_gain_is_refused_by_name_in_both_controllers() {
 /// A denormal period used to be accepted, and every derivative overflowed. So did a tracking time
 /// below the period, which corrects by more than the excess and may grow without bound.
 #[test]
-fn every_bad_setting_of_the_shell_is_refused_by_name_in_both_controllers() {
-    type Set = fn(&mut Shell<f64>, f64);
+fn every_bad_setting_of_the_configuration_is_refused_by_name_in_both_controllers() {
+    type Set = fn(&mut PidConfig<f64>, f64);
     /// Name, how to set it, what is refused and what is not.
     type Row = (&'static str, Set, &'static [f64], &'static [f64]);
     let not_positive: &[f64] = &[0.0, -0.0, -1.0, 5e-324];
@@ -88,12 +88,12 @@ fn every_bad_setting_of_the_shell_is_refused_by_name_in_both_controllers() {
         ),
         ("slew limit, rad/s", |s, v| s.slew_rad_s = Some(v), not_positive, &[1e-6, 1.0]),
     ];
-    let mut good = Shell::sampled_every(T);
+    let mut good = PidConfig::sampled_every(T);
     good.limits = Limits::new("limits", -1.0, 1.0).ok();
     for (name, set, bad, fine) in rows {
-        table(name, good, set, bad, fine, |shell| Pid::new(NOMINAL, shell));
-        table(name, good, set, bad, fine, |shell| {
-            Fspid::new(tuner(TunerSettings::literal()), shell)
+        table(name, good, set, bad, fine, |config| Pid::new(NOMINAL, config));
+        table(name, good, set, bad, fine, |config| {
+            Fspid::new(tuner(TunerSettings::literal()), config)
         });
     }
 }
@@ -133,7 +133,7 @@ fn a_leakage_above_one_per_period_is_refused() {
         let law = Law::Accumulating { leakage_per_s };
         let built = Fspid::new(
             tuner(TunerSettings { law, ..TunerSettings::literal() }),
-            Shell::sampled_every(T),
+            PidConfig::sampled_every(T),
         );
         assert_eq!(built.is_ok(), accepted, "{leakage_per_s}");
         if !accepted {
@@ -200,21 +200,21 @@ fn nominal_gains_outside_their_limits_are_refused_by_name() {
 #[test]
 fn an_anti_windup_without_a_limit_to_act_at_is_refused() {
     for anti_windup in [AntiWindup::Conditional, AntiWindup::BackCalculation { tracking_s: 1.0 }] {
-        let mut shell = Shell { anti_windup, ..Shell::sampled_every(T) };
-        assert!(matches!(Pid::new(NOMINAL, shell), Err(ConfigError::Conflict { .. })));
-        shell.slew_rad_s = Some(1.0);
-        assert!(Pid::new(NOMINAL, shell).is_ok());
-        shell.slew_rad_s = None;
-        shell.limits = Limits::new("limits", -1.0, 1.0).ok();
-        assert!(Pid::new(NOMINAL, shell).is_ok());
+        let mut config = PidConfig { anti_windup, ..PidConfig::sampled_every(T) };
+        assert!(matches!(Pid::new(NOMINAL, config), Err(ConfigError::Conflict { .. })));
+        config.slew_rad_s = Some(1.0);
+        assert!(Pid::new(NOMINAL, config).is_ok());
+        config.slew_rad_s = None;
+        config.limits = Limits::new("limits", -1.0, 1.0).ok();
+        assert!(Pid::new(NOMINAL, config).is_ok());
     }
 }
 
 #[test]
 fn a_refusal_reads_as_a_sentence() {
     let refusals = [
-        Pid::new(Gains { kp: f64::NAN, ..NOMINAL }, Shell::sampled_every(T)).err(),
-        Pid::new(NOMINAL, Shell::sampled_every(-0.5)).err(),
+        Pid::new(Gains { kp: f64::NAN, ..NOMINAL }, PidConfig::sampled_every(T)).err(),
+        Pid::new(NOMINAL, PidConfig::sampled_every(-0.5)).err(),
         Limits::new("limits", 2.0, 1.0).err(),
     ];
     let sentences = refusals.map(|error| error.expect("refused").to_string());

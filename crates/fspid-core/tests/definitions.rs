@@ -7,8 +7,8 @@ use crate::common;
 use common::{NOMINAL, Random, T, error, fspid, pid, sample, supervisor};
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    Change, Derivative, ErrorSign, Gains, InputScale, IntegralForm, Law, Sample, SetpointWeights,
-    Shell, State, TunerSettings,
+    Change, Derivative, ErrorSign, Gains, InputScale, IntegralForm, Law, PidConfig, Sample,
+    SetpointWeights, State, TunerSettings,
 };
 
 const OUTPUT_SCALE: Gains<f64> = Gains { kp: 0.2, ki: 0.05, kd: 0.1 };
@@ -23,15 +23,15 @@ const INPUT_SCALE: InputScale<f64> = InputScale {
 fn by_hand(
     samples: &[Sample<f64>],
     nominal: Gains<f64>,
-    shell: &Shell<f64>,
+    config: &PidConfig<f64>,
     tuning: Option<(Law<f64>, Change, f64)>,
 ) -> Vec<f64> {
     let supervisor = supervisor::<f64>(OutOfRange::Clamp);
     let Gains { mut kp, mut ki, mut kd } = nominal;
     let (mut sum, mut integral, mut d) = (0.0, 0.0, 0.0);
     let (mut e_prev, mut x_prev) = (f64::NAN, f64::NAN);
-    let SetpointWeights { proportional: b, derivative: c } = shell.setpoint_weights;
-    let tf = shell.derivative.filter_s;
+    let SetpointWeights { proportional: b, derivative: c } = config.setpoint_weights;
+    let tf = config.derivative.filter_s;
     let mut commands = Vec::new();
     for (k, &Sample { setpoint_rad: r, measurement_rad: y, rate_rad_s: q }) in
         samples.iter().enumerate()
@@ -51,7 +51,7 @@ fn by_hand(
             }
         }
         sum += e;
-        integral = if shell.integral == IntegralForm::Literal {
+        integral = if config.integral == IntegralForm::Literal {
             ki * sum * T
         } else {
             integral + ki * e * T
@@ -60,7 +60,7 @@ fn by_hand(
         if k > 0 {
             d = if tf > 0.0 { (tf * d + (x - x_prev)) / (tf + T) } else { (x - x_prev) / T };
         }
-        commands.push(kp * (b * r - y) + integral + kd * d - shell.rate_gain_s * q);
+        commands.push(kp * (b * r - y) + integral + kd * d - config.rate_gain_s * q);
         (e_prev, x_prev) = (e, x);
     }
     commands
@@ -70,26 +70,26 @@ fn bits(commands: impl IntoIterator<Item = f64>) -> Vec<u64> {
     commands.into_iter().map(f64::to_bits).collect()
 }
 
-fn assert_pid_as_by_hand(gains: Gains<f64>, shell: Shell<f64>) {
+fn assert_pid_as_by_hand(gains: Gains<f64>, config: PidConfig<f64>) {
     let samples = Random(1).samples(400);
-    let (controller, mut state) = (pid(gains, shell), State::new());
+    let (controller, mut state) = (pid(gains, config), State::new());
     let ours = samples.iter().map(|&s| controller.step(&mut state, s).command_rad);
-    assert_eq!(bits(ours), bits(by_hand(&samples, gains, &shell, None)), "{shell:?}");
+    assert_eq!(bits(ours), bits(by_hand(&samples, gains, &config, None)), "{config:?}");
 }
 
 #[test]
 fn a_proportional_controller_with_a_rate_loop_is_its_definition() {
-    let mut shell = Shell::sampled_every(T);
-    shell.rate_gain_s = 0.9144;
+    let mut config = PidConfig::sampled_every(T);
+    config.rate_gain_s = 0.9144;
     let kp = 3.5287;
-    assert_pid_as_by_hand(Gains { kp, ..Gains::ZERO }, shell);
+    assert_pid_as_by_hand(Gains { kp, ..Gains::ZERO }, config);
 }
 
 #[test]
 fn a_pid_is_its_definition_with_either_integral() {
     for integral in [IntegralForm::Bumpless, IntegralForm::Literal] {
-        let shell = Shell { integral, ..Shell::sampled_every(T) };
-        assert_pid_as_by_hand(NOMINAL, shell);
+        let config = PidConfig { integral, ..PidConfig::sampled_every(T) };
+        assert_pid_as_by_hand(NOMINAL, config);
     }
 }
 
@@ -97,13 +97,13 @@ fn a_pid_is_its_definition_with_either_integral() {
 fn set_point_weights_and_derivative_filter_are_their_definitions() {
     for (proportional, derivative) in [(1.0, 1.0), (0.6, 0.0), (0.0, 0.3)] {
         for filter_s in [0.0, 0.05] {
-            let shell = Shell {
+            let config = PidConfig {
                 setpoint_weights: SetpointWeights { proportional, derivative },
                 derivative: Derivative { filter_s },
                 rate_gain_s: 0.3,
-                ..Shell::sampled_every(T)
+                ..PidConfig::sampled_every(T)
             };
-            assert_pid_as_by_hand(NOMINAL, shell);
+            assert_pid_as_by_hand(NOMINAL, config);
         }
     }
 }
@@ -126,11 +126,12 @@ fn a_self_tuning_controller_is_its_definition_under_every_law_sign_and_change() 
                         law,
                         ..TunerSettings::literal()
                     };
-                    let shell = Shell { integral, rate_gain_s: 0.2, ..Shell::sampled_every(T) };
-                    let (controller, mut state) = (fspid(settings, shell), State::new());
+                    let config =
+                        PidConfig { integral, rate_gain_s: 0.2, ..PidConfig::sampled_every(T) };
+                    let (controller, mut state) = (fspid(settings, config), State::new());
                     let ours = samples.iter().map(|&s| controller.step(&mut state, s).command_rad);
                     let tuning = Some((law, change, sign));
-                    let theirs = by_hand(&samples, NOMINAL, &shell, tuning);
+                    let theirs = by_hand(&samples, NOMINAL, &config, tuning);
                     assert_eq!(bits(ours), bits(theirs), "{settings:?} {integral:?}");
                 }
             }
@@ -142,8 +143,8 @@ fn a_self_tuning_controller_is_its_definition_under_every_law_sign_and_change() 
 fn a_self_tuner_without_output_scale_is_the_fixed_controller_bit_for_bit() {
     for law in [Law::Memoryless, Law::Accumulating { leakage_per_s: 0.5 }] {
         let settings = TunerSettings { output_scale: Gains::ZERO, law, ..TunerSettings::literal() };
-        let shell = Shell::sampled_every(T);
-        let (tuned, fixed) = (fspid(settings, shell), pid(NOMINAL, shell));
+        let config = PidConfig::sampled_every(T);
+        let (tuned, fixed) = (fspid(settings, config), pid(NOMINAL, config));
         let (mut state_tuned, mut state_fixed) = (State::new(), State::new());
         for sample in Random(3).samples(400) {
             let (tuned, fixed) =
@@ -158,9 +159,9 @@ fn a_self_tuner_without_output_scale_is_the_fixed_controller_bit_for_bit() {
 /// The commands of two controllers that differ in `ki` alone, at a zero error and with the memory
 /// of a hundred samples at an error of 0.1 rad.
 fn commands_before_and_after_a_change_of_ki(integral: IntegralForm) -> [f64; 2] {
-    let shell = Shell { integral, ..Shell::sampled_every(T) };
-    let before = pid(NOMINAL, shell);
-    let after = pid(Gains { ki: 1.5, ..NOMINAL }, shell);
+    let config = PidConfig { integral, ..PidConfig::sampled_every(T) };
+    let before = pid(NOMINAL, config);
+    let after = pid(Gains { ki: 1.5, ..NOMINAL }, config);
     let mut state = State::new();
     for _ in 0..100 {
         before.step(&mut state, error(0.1));
@@ -202,9 +203,9 @@ fn the_isa_form_is_the_parallel_form_with_a_filter() {
 /// ki·Σe·T in the last digits: nobody could recompute a run to the bit.
 #[test]
 fn the_literal_integral_multiplies_in_the_order_of_its_definition() {
-    let shell = Shell { integral: IntegralForm::Literal, ..Shell::sampled_every(T) };
+    let config = PidConfig { integral: IntegralForm::Literal, ..PidConfig::sampled_every(T) };
     let ki = 0.3;
-    let controller = pid(Gains { ki, ..Gains::ZERO }, shell);
+    let controller = pid(Gains { ki, ..Gains::ZERO }, config);
     let (mut state, mut sum) = (State::new(), 0.0);
     for k in 0..1000 {
         let r = 0.1 + f64::from(k) * 1e-3;

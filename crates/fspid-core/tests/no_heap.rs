@@ -6,22 +6,22 @@
 use crate::common;
 
 use common::{NOMINAL, Random, T, fspid, pid};
-use fspid_core::{AntiWindup, Law, Limits, Shell, State, TunerSettings};
+use fspid_core::{AntiWindup, Law, Limits, PidConfig, State, TunerSettings};
 
 #[test]
 fn building_a_controller_and_stepping_it_allocates_nothing() {
     let samples = Random(7).samples::<f64>(1000);
     let settings =
         TunerSettings { law: Law::Accumulating { leakage_per_s: 0.1 }, ..TunerSettings::literal() };
-    let mut shell = Shell::sampled_every(T);
-    shell.limits = Limits::new("limits", -0.5, 0.5).ok();
-    shell.slew_rad_s = Some(1.0);
-    shell.anti_windup = AntiWindup::BackCalculation { tracking_s: 1.0 };
-    let tuned = fspid(settings, shell);
+    let mut config = PidConfig::sampled_every(T);
+    config.limits = Limits::new("limits", -0.5, 0.5).ok();
+    config.slew_rad_s = Some(1.0);
+    config.anti_windup = AntiWindup::BackCalculation { tracking_s: 1.0 };
+    let tuned = fspid(settings, config);
 
     let mut saturated = 0;
     let steps = allocation_counter::measure(|| {
-        let fixed = pid(NOMINAL, shell);
+        let fixed = pid(NOMINAL, config);
         let (mut state_fixed, mut state_tuned) = (State::new(), State::new());
         for &sample in &samples {
             saturated += u32::from(fixed.step(&mut state_fixed, sample).saturated);

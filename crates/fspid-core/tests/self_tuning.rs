@@ -9,7 +9,7 @@
 use crate::common;
 
 use common::{NOMINAL, T, error, fspid, tuner};
-use fspid_core::{DeadZone, GainLimits, Gains, Law, Limits, Shell, State, TunerSettings};
+use fspid_core::{DeadZone, GainLimits, Gains, Law, Limits, PidConfig, State, TunerSettings};
 
 /// What the printed table adds at the origin over a range of 5 (handbook; 40-digit polygons).
 const AT_REST: Gains<f64> = Gains { kp: 0.216_500_696_638, ki: 0.0, kd: -1.666_610_153_842 };
@@ -39,7 +39,7 @@ fn assert_near(ours: Gains<f64>, expected: Gains<f64>, tolerance: f64) {
 
 /// The gains after `samples` samples without any error.
 fn rested(settings: TunerSettings<f64>, samples: u32) -> Gains<f64> {
-    let (controller, mut state) = (fspid(settings, Shell::sampled_every(T)), State::new());
+    let (controller, mut state) = (fspid(settings, PidConfig::sampled_every(T)), State::new());
     let mut gains = NOMINAL;
     for _ in 0..samples {
         let step = controller.step(&mut state, error(0.0));
@@ -105,7 +105,7 @@ fn the_dead_zone_silences_both_laws() {
         let silent = TunerSettings { dead_zone, ..settings(law) };
         assert_eq!(rested(silent, 1000), NOMINAL);
         assert_eq!(tuner(silent).gains_at_rest(), NOMINAL);
-        let (controller, mut state) = (fspid(silent, Shell::sampled_every(T)), State::new());
+        let (controller, mut state) = (fspid(silent, PidConfig::sampled_every(T)), State::new());
         // Each of the two alone is not enough: 0.01 is the edge of the error, and from 0.001 to
         // 0.003 the change is 0.2 rad/s.
         assert_eq!(controller.step(&mut state, error(0.01)).gains, NOMINAL);

@@ -11,11 +11,13 @@ use crate::common;
 use std::f64::consts::PI;
 
 use common::{NOMINAL, Random, T, error, fspid, gains, pid};
-use fspid_core::{Derivative, Gains, InputScale, IntegralForm, Law, Shell, State, TunerSettings};
+use fspid_core::{
+    Derivative, Gains, InputScale, IntegralForm, Law, PidConfig, State, TunerSettings,
+};
 use fspid_numeric::Real;
 
-fn shell(filter_s: f64) -> Shell<f64> {
-    Shell { derivative: Derivative { filter_s }, ..Shell::sampled_every(T) }
+fn config(filter_s: f64) -> PidConfig<f64> {
+    PidConfig { derivative: Derivative { filter_s }, ..PidConfig::sampled_every(T) }
 }
 
 /// A complex number, as much of one as this needs.
@@ -45,7 +47,7 @@ fn transfer_function(n: u32, filter_s: f64) -> Complex {
 /// Fourier coefficient over one period after the filter's start has died away. The constant that
 /// the integral starts with is orthogonal to it.
 fn measured(n: u32, filter_s: f64) -> Complex {
-    let (controller, mut state) = (pid(NOMINAL, shell(filter_s)), State::new());
+    let (controller, mut state) = (pid(NOMINAL, config(filter_s)), State::new());
     let angle = |k: u32| 2.0 * PI * f64::from(k % n) / f64::from(n);
     let mut sum = Complex(0.0, 0.0);
     let settled = 3000 / n * n;
@@ -78,7 +80,7 @@ fn the_frequency_response_is_that_of_the_z_transfer_function() {
 #[test]
 fn the_answer_to_a_pulse_is_the_closed_form() {
     let filter_s = 0.05;
-    let (controller, mut state) = (pid(NOMINAL, shell(filter_s)), State::new());
+    let (controller, mut state) = (pid(NOMINAL, config(filter_s)), State::new());
     let Gains { kp, ki, kd } = NOMINAL;
     let rho = filter_s / (filter_s + T);
     assert_eq!(controller.step(&mut state, error(0.0)).command_rad, 0.0);
@@ -98,7 +100,7 @@ fn the_answer_to_a_pulse_is_the_closed_form() {
 /// $e = k T$ from zero: $u_k = k_p k T + k_i T^2 k (k + 1) / 2 + k_d$.
 #[test]
 fn the_answer_to_a_ramp_is_the_closed_form() {
-    let (controller, mut state) = (pid(NOMINAL, shell(0.0)), State::new());
+    let (controller, mut state) = (pid(NOMINAL, config(0.0)), State::new());
     let Gains { kp, ki, kd } = NOMINAL;
     for k in 0..500_u32 {
         let k = f64::from(k);
@@ -114,9 +116,9 @@ fn the_answer_to_a_ramp_is_the_closed_form() {
 fn distance_of_precisions(law: Option<Law<f64>>) -> f64 {
     fn commands<R: Real>(law: Option<Law<f64>>) -> Vec<f64> {
         let number = R::from_f64;
-        let mut shell = Shell::sampled_every(number(T));
-        shell.derivative.filter_s = number(0.05);
-        shell.integral = IntegralForm::Bumpless;
+        let mut config = PidConfig::sampled_every(number(T));
+        config.derivative.filter_s = number(0.05);
+        config.integral = IntegralForm::Bumpless;
         let settings = TunerSettings {
             input_scale: InputScale { error_per_rad: number(10.0), change_per_rad: number(2.0) },
             output_scale: gains(Gains { kp: 0.2, ki: 0.05, kd: 0.1 }),
@@ -128,7 +130,7 @@ fn distance_of_precisions(law: Option<Law<f64>>) -> f64 {
             },
             ..TunerSettings::literal()
         };
-        let (fixed, tuned) = (pid(gains(NOMINAL), shell), fspid(settings, shell));
+        let (fixed, tuned) = (pid(gains(NOMINAL), config), fspid(settings, config));
         let mut state = State::new();
         let step = |sample| match law {
             None => fixed.step(&mut state, sample),

@@ -9,10 +9,10 @@
 
 use std::time::Instant;
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, falls};
+use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, decreases};
 use fspid_sim::ElevatorSign;
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
 
@@ -36,10 +36,10 @@ fn main() {
     let sampled = plant.sampled().expect("a plant");
     println!("plant enclosed in {:.1?}", begin.elapsed());
 
-    let shell = Shell::sampled_every(DT_S);
+    let config = PidConfig::sampled_every(DT_S);
     let settings = LoopSettings {
-        shell,
-        memory: Memory::of_gains(GAINS, &shell),
+        config,
+        memory: Memory::of_gains(GAINS, &config),
         delay_samples: 2,
         pitch: Sensing::DIRECT,
         rate: Sensing::DIRECT,
@@ -53,7 +53,7 @@ fn main() {
 
     let p = lyapunov(&loops[0].midpoint());
     let begin = Instant::now();
-    let proved = loops.iter().filter(|matrix| falls(&p, RATE, matrix, None).is_ok()).count();
+    let proved = loops.iter().filter(|matrix| decreases(&p, RATE, matrix, None).is_ok()).count();
     let took = begin.elapsed();
     println!("{proved} of {checks} proved in {took:.1?}, {:.1?} each", took / checks);
 }

@@ -19,7 +19,7 @@ impl Asked {
         let steady = Steady { bias_rad: 0.0, ..scenario.steady() };
         let range = Range {
             setpoint_rad: steady.largest_setpoint_rad(),
-            load_rad: steady.load_with_offsets_rad(plant, description.controller.shell()),
+            load_rad: steady.load_with_offsets_rad(plant, description.controller.config()),
         };
         Self { range, left_out: left_out_of(scenario) }
     }

@@ -37,7 +37,7 @@ impl Certificate {
         }
         let is_fixed = matches!(self.description.controller, Controller::Fixed(_));
         match (&self.claim, rechecked.kept) {
-            (Claim::AnySpeed { .. } | Claim::Tied { .. }, _) => Bearing::Stable,
+            (Claim::CommonQuadratic { .. } | Claim::SProcedure { .. }, _) => Bearing::Stable,
             (Claim::BoundedRate(_), Some(Kept::Everywhere | Kept::WithinLevel)) => Bearing::Stable,
             (Claim::BoundedRate(_), None) => Bearing::RateNotKept,
             (Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }, _) if is_fixed => {

@@ -33,7 +33,7 @@ pub struct Certificate {
 pub enum Claim {
     /// For every gain that the tuner can produce, however fast gains move,
     /// $M(k)^T P M(k) \prec \rho^2 P$.
-    AnySpeed {
+    CommonQuadratic {
         /// P.
         form: Matrix,
         /// ρ, at most 1.
@@ -42,7 +42,7 @@ pub enum Claim {
     /// As the memoryless law ties the gains to error and change: with the plane of the supervisor's
     /// inputs in double cones $z^T Q_c z \ge 0$,
     /// $M(k)^T P M(k) + \tau_c Q_c \prec \rho^2 P$ for every gain that the law gives in cone c.
-    Tied {
+    SProcedure {
         /// P.
         form: Matrix,
         /// ρ, at most 1.
@@ -140,8 +140,8 @@ impl Claim {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::AnySpeed { .. } => "stable-at-any-speed",
-            Self::Tied { .. } => "stable-as-tied-to-the-error",
+            Self::CommonQuadratic { .. } => "stable-at-any-speed",
+            Self::SProcedure { .. } => "stable-as-tied-to-the-error",
             Self::BoundedRate(_) => "stable-at-bounded-rate",
             Self::FrozenGrowth { .. } => "unstable-with-frozen-gains",
             Self::SequenceGrowth { .. } => "unstable-with-a-sequence-of-gains",
@@ -152,8 +152,8 @@ impl Claim {
     #[must_use]
     pub const fn rate(&self) -> Option<f64> {
         match self {
-            Self::AnySpeed { rate, .. }
-            | Self::Tied { rate, .. }
+            Self::CommonQuadratic { rate, .. }
+            | Self::SProcedure { rate, .. }
             | Self::BoundedRate(BoundedRate { rate, .. }) => Some(*rate),
             Self::FrozenGrowth { .. } | Self::SequenceGrowth { .. } => None,
         }
@@ -162,6 +162,9 @@ impl Claim {
     /// True for a claim of stability.
     #[must_use]
     pub const fn is_of_stability(&self) -> bool {
-        matches!(self, Self::AnySpeed { .. } | Self::Tied { .. } | Self::BoundedRate(_))
+        matches!(
+            self,
+            Self::CommonQuadratic { .. } | Self::SProcedure { .. } | Self::BoundedRate(_)
+        )
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use fspid_core::{AntiWindup, Followers, Sees, SelfTuner, Shell, TunerSettings};
+use fspid_core::{AntiWindup, GainCoupling, PidConfig, SecondInput, SelfTuner, TunerSettings};
 use fspid_numeric::scalar::Interval;
 use fspid_sim::actuator::{Actuator, ActuatorParts};
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
@@ -112,14 +112,14 @@ fn beyond_proof(tuner: &SelfTuner<f64>) -> Option<&'static str> {
     let TunerSettings {
         // Covered: an error turned round is another cell of the same surface.
         error_sign: _,
-        sees,
+        second_input,
         // Covered by the rows of the supervisor's inputs.
         change: _,
         input_scale: _,
         input_sets,
         // Covered by the set of gains.
         output_scale: _,
-        followers,
+        gain_coupling,
         law: _,
         gain_limits: _,
         dead_zone: _,
@@ -127,17 +127,17 @@ fn beyond_proof(tuner: &SelfTuner<f64>) -> Option<&'static str> {
     if tuner.supervisor().numbers().is_some() {
         return Some("the supervisor's rules conclude numbers (Takagi and Sugeno)");
     }
-    match sees {
-        Sees::ErrorAndChange => {}
-        Sees::ErrorAndRate => return Some("the supervisor sees the measured pitch rate"),
-        Sees::ErrorAndModelError(_) => {
+    match second_input {
+        SecondInput::Change => {}
+        SecondInput::Rate => return Some("the supervisor sees the measured pitch rate"),
+        SecondInput::ModelError(_) => {
             return Some("the supervisor sees the error of a reference model");
         }
     }
     if !input_sets.are_even() {
         return Some("the sets of the supervisor's inputs are not even");
     }
-    let nothing = *followers == Followers::NONE;
+    let nothing = *gain_coupling == GainCoupling::NONE;
     (!nothing).then_some("set-point weight or rate gain follow the gains")
 }
 
@@ -175,7 +175,7 @@ impl LoopDescription {
     ) -> Result<Self, NotProvable> {
         let transfer_function = plant.transfer_function();
         let surroundings = &scenario.surroundings;
-        let dt_s = controller.shell().dt_s;
+        let dt_s = controller.config().dt_s;
         let erects = |sensor: &Sensor| sensor.model().erection_rad_s > 0.0;
         // A linear plant has no speed, and its apparent vertical is the true one.
         if scenario.plant.aircraft().is_some() && surroundings.pitch_sensor.iter().any(erects) {
@@ -206,7 +206,7 @@ impl LoopDescription {
         {
             return Err(NotProvable::Structure { what });
         }
-        let uses_rate = self.controller.shell().rate_gain_s != 0.0;
+        let uses_rate = self.controller.config().rate_gain_s != 0.0;
         if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {
             return Err(NotProvable::ChangingAge);
         }
@@ -220,19 +220,19 @@ impl LoopDescription {
     /// Everything of the loop but plant and gains.
     #[must_use]
     pub fn settings(&self) -> LoopSettings {
-        let shell = *self.controller.shell();
+        let config = *self.controller.config();
         let memory = match &self.controller {
-            Controller::Fixed(pid) => Memory::of_gains(pid.gains(), &shell),
+            Controller::Fixed(pid) => Memory::of_gains(pid.gains(), &config),
             Controller::SelfTuning(fspid) => {
                 let (nominal, scale) =
                     (fspid.tuner().nominal(), fspid.tuner().settings().output_scale);
                 let there = |nominal: f64, scale: f64| nominal != 0.0 || scale != 0.0;
                 let integral = there(nominal.ki, scale.ki);
-                Memory::of_terms(integral, there(nominal.kd, scale.kd), &shell).with_previous()
+                Memory::of_terms(integral, there(nominal.kd, scale.kd), &config).with_previous()
             }
         };
         LoopSettings {
-            shell,
+            config,
             memory,
             delay_samples: self.actuator.delay_samples(),
             pitch: self.pitch,
@@ -242,7 +242,7 @@ impl LoopDescription {
 
     /// True with a sample guard that a flight can reach before it counts as lost.
     pub(crate) fn is_guarded(&self) -> bool {
-        !(self.controller.shell().guard.limit_rad() >= LOST_RAD)
+        !(self.controller.config().guard.limit_rad() >= LOST_RAD)
     }
 
     /// The loop with every number enclosed.
@@ -255,7 +255,7 @@ impl LoopDescription {
             denominator: &self.denominator,
             elevator_sign: self.elevator_sign,
             lag: ActuatorLag::from(self.actuator.lag()),
-            dt_s: self.controller.shell().dt_s,
+            dt_s: self.controller.config().dt_s,
         };
         Ok(LoopModel::new(plant.sampled()?, self.settings()))
     }
@@ -264,7 +264,7 @@ impl LoopDescription {
     /// these out.
     #[must_use]
     pub fn limits(&self) -> Vec<&'static str> {
-        let Shell {
+        let PidConfig {
             // Covered by the model of the loop.
             dt_s: _,
             rate_gain_s: _,
@@ -277,7 +277,7 @@ impl LoopDescription {
             slew_rad_s,
             // Bounded, see `is_guarded`.
             guard: _,
-        } = self.controller.shell();
+        } = self.controller.config();
         let actuator = &self.actuator;
         let clamps = match anti_windup {
             AntiWindup::Clamping(_) => true,

@@ -31,6 +31,6 @@ pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use limits::{AtLimit, pitch_within};
 pub use prove::{Effort, Largest, Outcome, Verdict, certify};
-pub use recheck::{Doubt, Kept, Rechecked, Remains};
+pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};

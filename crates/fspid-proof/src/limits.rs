@@ -84,17 +84,17 @@ pub(crate) fn within_at_rest(
     rest: &Rest,
     range: Range,
 ) -> Result<(), AtLimit> {
-    let shell = description.controller.shell();
+    let config = description.controller.config();
     let actuator = &description.actuator;
-    let integral = match &shell.anti_windup {
+    let integral = match &config.anti_windup {
         AntiWindup::Clamping(limits) => Some(around_zero(limits)),
         AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => None,
     };
     let nearer = |(least, most): (f64, f64)| (-least).min(most);
-    let guard = description.is_guarded().then(|| shell.guard.limit_rad());
+    let guard = description.is_guarded().then(|| config.guard.limit_rad());
     let of_command = rest.command_rad;
     let asked = [
-        ("the controller's output limit", of_command, shell.limits.as_ref().map(around_zero)),
+        ("the controller's output limit", of_command, config.limits.as_ref().map(around_zero)),
         ("the limit of the integral", rest.integral_rad, integral),
         ("the servo's command limit", of_command, actuator.command_limits_rad().map(nearer)),
         ("the end of the actuator's travel", of_command, actuator.travel_rad().map(nearer)),
@@ -120,22 +120,22 @@ pub(crate) fn rows<T: Scalar + Magnitude>(
     gains: Gains<T>,
     rest: &Rest,
 ) -> Vec<(Vec<T>, f64)> {
-    let shell = description.controller.shell();
+    let config = description.controller.config();
     let actuator = &description.actuator;
     let mut rows = Vec::new();
     let command = || model.command_row(gains);
     let blur_rad = description.blur_of_command(model, gains);
     let around_rest = |limit: f64| less(limit, rest.command_rad, blur_rad);
-    if let Some(limits) = &shell.limits {
+    if let Some(limits) = &config.limits {
         rows.push((command(), around_rest(around_zero(limits))));
     }
-    if let Some(slew_rad_s) = shell.slew_rad_s {
+    if let Some(slew_rad_s) = config.slew_rad_s {
         // Two commands that are both within half of it differ by no more.
-        rows.push((command(), less(0.5 * slew_rad_s * shell.dt_s, 0.0, blur_rad)));
+        rows.push((command(), less(0.5 * slew_rad_s * config.dt_s, 0.0, blur_rad)));
     }
-    if let AntiWindup::Clamping(limits) = &shell.anti_windup {
+    if let AntiWindup::Clamping(limits) = &config.anti_windup {
         let [blur_of_pitch, _] = description.blurs();
-        let by_pitch = Interval::point(gains.ki.largest()) * Interval::point(shell.dt_s);
+        let by_pitch = Interval::point(gains.ki.largest()) * Interval::point(config.dt_s);
         let blur_rad = (by_pitch * Interval::point(blur_of_pitch)).upper();
         let limit = less(around_zero(limits), rest.integral_rad, blur_rad);
         rows.push((model.integral_row(gains), limit));
@@ -163,11 +163,11 @@ pub(crate) fn rows<T: Scalar + Magnitude>(
         rows.push((arriving.map(|(v, x)| v - x).collect(), limit));
     }
     if description.is_guarded() {
-        let limit_rad = shell.guard.limit_rad();
+        let limit_rad = config.guard.limit_rad();
         let [pitch, rate] = model.seen_rows();
         let [blur_of_pitch, blur_of_rate] = description.blurs();
         rows.push((pitch, less(limit_rad, rest.seen_rad, blur_of_pitch)));
-        if shell.rate_gain_s != 0.0 {
+        if config.rate_gain_s != 0.0 {
             rows.push((rate, less(limit_rad, 0.0, blur_of_rate)));
         }
     }
@@ -200,7 +200,7 @@ impl Magnitude for Interval {
 impl LoopDescription {
     /// How far the resolution of the sensors may take seen pitch and seen rate off, rad and rad/s.
     pub(crate) fn blurs(&self) -> [f64; 2] {
-        let uses_rate = self.controller.shell().rate_gain_s != 0.0;
+        let uses_rate = self.controller.config().rate_gain_s != 0.0;
         let rate = if uses_rate { 0.5 * self.rate.resolution } else { 0.0 };
         [0.5 * self.pitch.resolution, rate]
     }

@@ -123,7 +123,7 @@ impl<'a> Holding<'a> {
 
     /// Largest magnitude of (b - 1) r.
     fn by_weight(&self) -> Interval {
-        let weight = self.description.controller.shell().setpoint_weights.proportional;
+        let weight = self.description.controller.config().setpoint_weights.proportional;
         let off = (Interval::point(weight) - Interval::ONE).magnitude();
         Interval::point(off) * self.setpoint
     }
@@ -165,7 +165,7 @@ impl<'a> Holding<'a> {
         }
         let per = self.per_pitch?;
         let sum = kp + per;
-        let weight = self.description.controller.shell().setpoint_weights.proportional;
+        let weight = self.description.controller.config().setpoint_weights.proportional;
         let size = |value: Interval| Interval::point(value.magnitude());
         let known = !sum.contains(0.0) && sum.is_bounded();
         let beyond = size(per) * Interval::point(weight.abs()) * self.setpoint + self.load;
@@ -197,7 +197,7 @@ impl<'a> Holding<'a> {
         if !(least.lower() > 0.0) {
             return Err(NoRest::NoIntegralGain);
         }
-        let literal = fspid.shell().integral == IntegralForm::Literal;
+        let literal = fspid.config().integral == IntegralForm::Literal;
         let command_rad = self.command_rad();
         let kp = Interval::point(self.set.rest[0].magnitude());
         let integral = Interval::point(command_rad) + kp * self.by_weight();
@@ -226,7 +226,7 @@ impl<'a> Holding<'a> {
     }
 
     fn plain(&self) -> bool {
-        self.description.controller.shell().setpoint_weights.proportional - 1.0 == 0.0
+        self.description.controller.config().setpoint_weights.proportional - 1.0 == 0.0
     }
 
     fn without_integral(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {

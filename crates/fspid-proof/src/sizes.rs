@@ -123,8 +123,10 @@ fn most_inequalities(certificate: &Certificate) -> u64 {
     // Eight of a box, each with what is held either way.
     let corners = cells.saturating_mul(16);
     match &certificate.claim {
-        Claim::AnySpeed { .. } => corners,
-        Claim::Tied { multipliers, .. } => corners.saturating_mul(1 + multipliers.len() as u64),
+        Claim::CommonQuadratic { .. } => corners,
+        Claim::SProcedure { multipliers, .. } => {
+            corners.saturating_mul(1 + multipliers.len() as u64)
+        }
         Claim::BoundedRate(_) => BERNSTEIN.saturating_mul(8).saturating_add(corners),
         Claim::FrozenGrowth { .. } => 1,
         Claim::SequenceGrowth { inputs, .. } => inputs.len() as u64 + 1,
@@ -159,8 +161,8 @@ impl Sizes {
 
     fn of_claim(&mut self, claim: &Claim, states: usize) {
         match claim {
-            Claim::AnySpeed { form, .. } => self.of_form("claim.form", form, states),
-            Claim::Tied { form, multipliers, .. } => {
+            Claim::CommonQuadratic { form, .. } => self.of_form("claim.form", form, states),
+            Claim::SProcedure { form, multipliers, .. } => {
                 self.of_form("claim.form", form, states);
                 let place = ("claim.multipliers", "double cones");
                 self.within(place, multipliers.len(), [1, MOST_CONES]);

@@ -1,8 +1,8 @@
 //! From loops to proved, refuted, refused; and certificates that are tampered with.
 
 use fspid_core::{
-    Derivative, Followers, Fspid, GainLimits, Gains, InputScale, InputSets, Law, Limits, Pid,
-    ReferenceModel, Sees, SelfTuner, SetPlaces, Shell, TunerSettings,
+    Derivative, Fspid, GainCoupling, GainLimits, Gains, InputScale, InputSets, Law, Limits, Pid,
+    PidConfig, ReferenceModel, SecondInput, SelfTuner, SetCentres, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
@@ -25,8 +25,8 @@ PS PS PS PS PS PS PS
 PM PM PM PM PM PM PM
 PB PB PB PB PB PB PB";
 
-fn shell() -> Shell<f64> {
-    Shell { derivative: Derivative { filter_s: 0.05 }, ..Shell::sampled_every(0.01) }
+fn config() -> PidConfig<f64> {
+    PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) }
 }
 
 /// The paper's 747 behind its servo.
@@ -43,7 +43,7 @@ fn loop_of(controller: Controller) -> LoopDescription {
 }
 
 fn fixed(gains: Gains<f64>) -> Controller {
-    Controller::Fixed(Pid::new(gains, shell()).expect("allowed"))
+    Controller::Fixed(Pid::new(gains, config()).expect("allowed"))
 }
 
 /// Gains within ± 8/9 of `scale` times 5 around the nominal ones.
@@ -57,7 +57,7 @@ fn with_inputs(input_scale: InputScale<f64>, scale: Gains<f64>, law: Law<f64>) -
     let settings =
         TunerSettings { input_scale, output_scale: scale, law, ..TunerSettings::literal() };
     let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
-    Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed"))
+    Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"))
 }
 
 fn quick() -> Effort {
@@ -86,7 +86,7 @@ fn a_stable_loop_with_fixed_gains_is_proved_and_an_unstable_one_refuted() {
 fn gains_that_move_by_a_fifth_are_proved_at_any_speed() {
     let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
     let certificate = proved(&loop_of(tuned(scale, Law::Memoryless)));
-    assert!(matches!(certificate.claim, Claim::AnySpeed { rate, .. } if rate < 1.0));
+    assert!(matches!(certificate.claim, Claim::CommonQuadratic { rate, .. } if rate < 1.0));
     let rechecked = certificate.check().expect("it holds");
     assert!(rechecked.inequalities > rechecked.cells);
     assert!(rechecked.bounds[0].lower() < 1.65 && rechecked.bounds[0].upper() > 2.35);
@@ -113,7 +113,7 @@ fn growth_at_rest_refutes_the_flown_loop_itself() {
         SelfTuner::new(nominal, *tuner.supervisor(), *tuner.settings()).expect("allowed")
     };
     let unstable = supervisor(Gains { kp: 10.0, ki: 0.0, kd: 0.0 });
-    let fspid = Fspid::new(unstable, shell()).expect("allowed");
+    let fspid = Fspid::new(unstable, config()).expect("allowed");
     let description = loop_of(Controller::SelfTuning(fspid));
     let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
     let Verdict::Refuted(certificate, rechecked) = outcome.verdict else { panic!("{outcome:?}") };
@@ -138,7 +138,8 @@ fn with_an_integral_gain_of_zero_at_rest_nothing_is_proved() {
     let settings = TunerSettings { gain_limits: Some(limits), ..*fspid.tuner().settings() };
     let nominal = Gains { ki: 0.0, ..NOMINAL };
     let tuner = SelfTuner::new(nominal, *fspid.tuner().supervisor(), settings).expect("allowed");
-    let description = loop_of(Controller::SelfTuning(Fspid::new(tuner, shell()).expect("allowed")));
+    let description =
+        loop_of(Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed")));
     let outcome = certify(&description, &Asked::rest(), &quick()).expect("provable");
     assert_eq!(outcome.verdict, Verdict::Open);
     let because = outcome.open_because.expect("a reason").to_string();
@@ -184,7 +185,7 @@ fn a_certificate_of_another_loop_or_a_better_rate_does_not_hold() {
     other.description.denominator[1] = 0.1;
     assert!(other.check().is_err());
     let mut faster = good.clone();
-    if let Claim::AnySpeed { rate, .. } = &mut faster.claim {
+    if let Claim::CommonQuadratic { rate, .. } = &mut faster.claim {
         *rate = 0.999;
     }
     assert!(faster.check().is_err());
@@ -197,19 +198,19 @@ fn a_certificate_of_another_loop_or_a_better_rate_does_not_hold() {
 fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
     let description = loop_of(tuned(Gains { kp: 0.0, ki: 0.0, kd: 0.5 }, Law::Memoryless));
     let size = description.enclosed().expect("a model").size();
-    let tied = |multipliers| Certificate {
+    let s_procedure = |multipliers| Certificate {
         description: description.clone(),
         output_factor: 1.0,
         divisions: 4,
         range: Range::REST,
         left_out: Vec::new(),
-        claim: Claim::Tied { form: Matrix::identity(size), rate: 1.0, multipliers },
+        claim: Claim::SProcedure { form: Matrix::identity(size), rate: 1.0, multipliers },
         level: None,
     };
-    let refused = tied(vec![]).check().expect_err("no cones");
+    let refused = s_procedure(vec![]).check().expect_err("no cones");
     assert!(refused.to_string().contains("double cones"), "{refused}");
-    assert!(tied(vec![0.0]).check().is_err());
-    assert!(tied(vec![0.0; 1001]).check().is_err());
+    assert!(s_procedure(vec![0.0]).check().is_err());
+    assert!(s_procedure(vec![0.0; 1001]).check().is_err());
     let good = proved(&loop_of(fixed(NOMINAL)));
     for output_factor in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(Certificate { output_factor, ..good.clone() }.check().is_err());
@@ -239,7 +240,7 @@ fn rules_that_conclude_numbers_are_refused_and_bounded_by_the_range_alone() {
     let numbers = NumberTable::new([[[1.0; 7]; 7]; 3]).expect("finite");
     let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
     let tuner = SelfTuner::new(NOMINAL, supervisor, TunerSettings::literal()).expect("allowed");
-    let fspid = Fspid::new(tuner, shell()).expect("allowed");
+    let fspid = Fspid::new(tuner, config()).expect("allowed");
     let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
     let refused = refused.expect_err("another structure").to_string();
     assert!(refused.contains("conclude numbers"), "{refused}");
@@ -255,23 +256,25 @@ fn rules_that_conclude_numbers_are_refused_and_bounded_by_the_range_alone() {
 #[test]
 fn a_tuner_of_another_structure_is_refused_by_name() {
     let model = ReferenceModel { bandwidth_rad_s: 1.0, damping: 1.0 };
-    let uneven = InputSets { error: SetPlaces::new(0.2, 0.5).ok(), change: None };
+    let uneven = InputSets { error: SetCentres::new(0.2, 0.5).ok(), change: None };
     let refusal = |settings: TunerSettings<f64>| {
         let table = RuleTable::parse([RISING; 3]).expect("a table");
         let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
         let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings);
-        let fspid = Fspid::new(tuner.expect("allowed"), shell()).expect("allowed");
+        let fspid = Fspid::new(tuner.expect("allowed"), config()).expect("allowed");
         let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
         let refused = refused.expect_err("another structure");
         assert!(matches!(refused, NotProvable::Structure { .. }), "{refused}");
         refused.to_string()
     };
     let plain = TunerSettings::literal();
-    let followers = Followers { setpoint_weight: 0.1, rate_gain: 0.0 };
-    assert!(refusal(TunerSettings { sees: Sees::ErrorAndRate, ..plain }).contains("pitch rate"));
-    assert!(refusal(TunerSettings { followers, ..plain }).contains("follow the gains"));
-    let sees = Sees::ErrorAndModelError(model);
-    assert!(refusal(TunerSettings { sees, ..plain }).contains("reference model"));
+    let gain_coupling = GainCoupling { setpoint_weight: 0.1, rate_gain: 0.0 };
+    assert!(
+        refusal(TunerSettings { second_input: SecondInput::Rate, ..plain }).contains("pitch rate")
+    );
+    assert!(refusal(TunerSettings { gain_coupling, ..plain }).contains("follow the gains"));
+    let second_input = SecondInput::ModelError(model);
+    assert!(refusal(TunerSettings { second_input, ..plain }).contains("reference model"));
     assert!(refusal(TunerSettings { input_sets: uneven, ..plain }).contains("not even"));
 }
 
@@ -282,7 +285,7 @@ fn a_rate_that_the_law_is_not_known_to_keep_says_nothing_of_the_flown_loop() {
     let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
     let rechecked = good.check().expect("it holds");
     assert_eq!(good.bearing(&rechecked), Bearing::Stable);
-    let Claim::AnySpeed { form, .. } = &good.claim else { panic!("{:?}", good.claim) };
+    let Claim::CommonQuadratic { form, .. } = &good.claim else { panic!("{:?}", good.claim) };
     // A form that moves with kp by a hundred thousandth of itself falls as long as kp moves slowly.
     let none = Matrix::zeros(form.rows(), form.columns());
     let claim = BoundedRate {

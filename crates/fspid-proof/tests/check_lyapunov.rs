@@ -3,7 +3,7 @@
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{
-    IntervalMatrix, NotProved, falls, falls_between, inside_limit, is_positive,
+    IntervalMatrix, NotProved, decreases, decreases_between, inside_limit, is_positive,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -113,13 +113,13 @@ proptest! {
     fn the_rate_that_is_proved_is_that_of_the_slowest_mode_and_never_less(known in known()) {
         let (p, m, slowest) = (known.p(), point(&known.m()), known.slowest());
         // At the slowest mode's own rate the difference is singular, below it indefinite.
-        prop_assert!(falls(&p, slowest, &m, None).is_err());
-        prop_assert!(falls(&p, slowest * (1.0 - 1e-15), &m, None).is_err());
-        prop_assert!(falls(&p, slowest * (1.0 - 1e-6), &m, None).is_err());
+        prop_assert!(decreases(&p, slowest, &m, None).is_err());
+        prop_assert!(decreases(&p, slowest * (1.0 - 1e-15), &m, None).is_err());
+        prop_assert!(decreases(&p, slowest * (1.0 - 1e-6), &m, None).is_err());
         // Condition numbers up to some 10^9, whose root times rounding is below this.
         let above = slowest + 1e-8;
         prop_assume!(above <= 1.0);
-        prop_assert_eq!(falls(&p, above, &m, None), Ok(()));
+        prop_assert_eq!(decreases(&p, above, &m, None), Ok(()));
     }
 
     #[test]
@@ -128,7 +128,7 @@ proptest! {
         let (p, m, slowest) = (known.p(), point(&known.m()), known.slowest());
         prop_assume!(slowest < 1.0 - 1e-6);
         let weight = share * (1.0 - slowest * slowest);
-        let relaxed = |tau: f64| falls(&p, 1.0, &m, Some((tau, &point(&p))));
+        let relaxed = |tau: f64| decreases(&p, 1.0, &m, Some((tau, &point(&p))));
         let largest = 1.0 - slowest * slowest;
         prop_assert!(relaxed(largest * (1.0 + 1e-15)).is_err() && relaxed(largest).is_err());
         prop_assert_eq!(relaxed((weight - 1e-8).max(0.0)), Ok(()));
@@ -142,8 +142,8 @@ proptest! {
         let needed = known.slowest() * libm::sqrt(factor);
         prop_assume!(needed > 0.0 && needed <= 1.0 - 1e-8);
         let next = p.scaled(factor);
-        prop_assert!(falls_between(&p, &next, needed, &m, None).is_err());
-        prop_assert_eq!(falls_between(&p, &next, needed + 1e-8, &m, None), Ok(()));
+        prop_assert!(decreases_between(&p, &next, needed, &m, None).is_err());
+        prop_assert_eq!(decreases_between(&p, &next, needed + 1e-8, &m, None), Ok(()));
     }
 
     #[test]
@@ -162,9 +162,9 @@ proptest! {
         let entries: Vec<Interval> = entries.map(|(&low, &high)| Interval::between(low, high)).collect();
         let rows: Vec<&[Interval]> = entries.chunks(size).collect();
         let wide = IntervalMatrix::from_rows(&rows).expect("square");
-        if falls(&p, 1.0, &wide, None).is_ok() {
+        if decreases(&p, 1.0, &wide, None).is_ok() {
             for part in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-                prop_assert_eq!(falls(&p, 1.0, &point(&at(part)), None), Ok(()));
+                prop_assert_eq!(decreases(&p, 1.0, &point(&at(part)), None), Ok(()));
                 prop_assert!(fspid_lti::spectral_radius(&at(part)).expect("found") < 1.0 + 1e-9);
             }
         }
@@ -252,7 +252,7 @@ proptest! {
         let tau = exact(i64::try_from(weight).expect("P is below 1000")) * libm::exp2(-48.0);
         let loops = point(&m_float);
         let identity = Matrix::identity(size);
-        let relaxed = |tau: f64| falls(&p_float, 1.0, &loops, Some((tau, &point(&identity))));
+        let relaxed = |tau: f64| decreases(&p_float, 1.0, &loops, Some((tau, &point(&identity))));
         prop_assert!(relaxed(tau).is_err());
         prop_assert!(relaxed(tau * (1.0 + 1e-12)).is_err());
         // The direction is off by 2^-14, the least value by its square times the spread of S.
@@ -275,7 +275,7 @@ proptest! {
             let scaled: Vec<f64> = entries.iter().map(|&e| exact(e) * libm::exp2(-bits)).collect();
             matrix(size, &scaled)
         };
-        let accepted = falls(&float(&wrong, 24.0), 1.0, &point(&float(&m, 12.0)), None).is_ok();
+        let accepted = decreases(&float(&wrong, 24.0), 1.0, &point(&float(&m, 12.0)), None).is_ok();
         if accepted {
             // No whole vector of small numbers shows the contrary.
             let all = 5_usize.pow(u32::try_from(size).expect("small"));
@@ -322,8 +322,8 @@ fn forms_with_a_condition_number_of_ten_to_the_twelfth_are_checked_to_a_milliont
         let products = (0..3).map(|i| p.data()[4 * i] * inverse.data()[4 * i]);
         let least = products.fold(0.0, f64::max);
         assert!(least > condition, "{skew}: {least:e}");
-        assert_eq!(falls(&p, known.slowest() + 1e-6, &m, None), Ok(()), "{skew}");
-        assert!(falls(&p, known.slowest(), &m, None).is_err());
+        assert_eq!(decreases(&p, known.slowest() + 1e-6, &m, None), Ok(()), "{skew}");
+        assert!(decreases(&p, known.slowest(), &m, None).is_err());
     }
 }
 
@@ -343,8 +343,8 @@ fn badly_scaled_states_are_harmless() {
     };
     let p = scale(&known.p(), &|i, j| -powers[i] - powers[j]);
     let m = point(&scale(&known.m(), &|i, j| powers[i] - powers[j]));
-    assert_eq!(falls(&p, known.slowest() + 1e-8, &m, None), Ok(()));
-    assert!(falls(&p, known.slowest(), &m, None).is_err());
+    assert_eq!(decreases(&p, known.slowest() + 1e-8, &m, None), Ok(()));
+    assert!(decreases(&p, known.slowest(), &m, None).is_err());
     assert_eq!(is_positive(&p), Ok(()));
 }
 
@@ -353,11 +353,11 @@ fn a_relaxation_helps_on_its_cone_only() {
     // z1 grows, z2 falls: V = |z|² falls where |z2| is at least as large as |z1|.
     let (p, m) = (Matrix::identity(2), point(&matrix(2, &[1.1, 0.0, 0.0, 0.5])));
     let cone = matrix(2, &[-1.0, 0.0, 0.0, 1.0]);
-    assert!(falls(&p, 1.0, &m, None).is_err());
-    assert_eq!(falls(&p, 1.0, &m, Some((0.5, &point(&cone)))), Ok(()));
-    assert!(falls(&p, 1.0, &m, Some((0.5, &point(&cone.scaled(-1.0))))).is_err());
+    assert!(decreases(&p, 1.0, &m, None).is_err());
+    assert_eq!(decreases(&p, 1.0, &m, Some((0.5, &point(&cone)))), Ok(()));
+    assert!(decreases(&p, 1.0, &m, Some((0.5, &point(&cone.scaled(-1.0))))).is_err());
     // A negative weight would turn the cone around.
-    let turned = falls(&p, 1.0, &m, Some((-0.5, &point(&cone.scaled(-1.0)))));
+    let turned = decreases(&p, 1.0, &m, Some((-0.5, &point(&cone.scaled(-1.0)))));
     assert!(matches!(turned, Err(NotProved::Number { .. })));
 }
 
@@ -366,7 +366,7 @@ fn a_form_that_is_not_positive_proves_nothing() {
     // M² is zero and P negative: P - Mᵀ P M would fall, and says nothing.
     let m = point(&matrix(2, &[2.0, 0.0, 0.0, 2.0]));
     let negative = Matrix::identity(2).scaled(-1.0);
-    assert!(falls(&negative, 1.0, &m, None).is_err() && is_positive(&negative).is_err());
+    assert!(decreases(&negative, 1.0, &m, None).is_err() && is_positive(&negative).is_err());
     let indefinite = matrix(2, &[1.0, 2.0, 2.0, 1.0]);
     assert!(is_positive(&indefinite).is_err());
     assert!(inside_limit(&indefinite, 1.0, &[Interval::ZERO; 2], 1.0).is_err());
@@ -382,7 +382,7 @@ fn a_form_that_is_indefinite_by_less_than_rounding_proves_nothing() {
         let p = matrix(2, &[b - 1.0, b, b, b + 1.0]);
         let (v, w) = ([b, 1.0 - b], libm::exp2(-20.0));
         let runaway = matrix(2, &[v[0] * w, -v[0] * w, v[1] * w, -v[1] * w]);
-        assert!(falls(&p, 1.0, &point(&runaway), None).is_err(), "{b}");
+        assert!(decreases(&p, 1.0, &point(&runaway), None).is_err(), "{b}");
         assert!(is_positive(&p).is_err(), "{b}");
     }
 }
@@ -392,7 +392,7 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
     let (p, m) = (Matrix::identity(2), Matrix::identity(2).scaled(0.5));
     let loops = point(&m);
     let row = [Interval::ONE, Interval::ZERO];
-    assert_eq!(falls(&p, 0.9, &loops, Some((0.1, &point(&p)))), Ok(()));
+    assert_eq!(decreases(&p, 0.9, &loops, Some((0.1, &point(&p)))), Ok(()));
     assert_eq!(inside_limit(&p, 1.0, &row, 1.5), Ok(()));
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for place in 0..4 {
@@ -403,21 +403,24 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
             };
             let (broken_p, broken_m) = (broken(&p), point(&broken(&m)));
             assert!(is_positive(&broken_p).is_err());
-            assert!(falls(&broken_p, 0.9, &loops, None).is_err());
-            assert!(falls(&p, 0.9, &broken_m, None).is_err());
-            assert!(falls(&p, 0.9, &loops, Some((0.0, &point(&broken_p)))).is_err());
-            assert!(falls_between(&broken_p, &p, 0.9, &loops, None).is_err());
-            assert!(falls_between(&p, &broken_p, 0.9, &loops, None).is_err());
+            assert!(decreases(&broken_p, 0.9, &loops, None).is_err());
+            assert!(decreases(&p, 0.9, &broken_m, None).is_err());
+            assert!(decreases(&p, 0.9, &loops, Some((0.0, &point(&broken_p)))).is_err());
+            assert!(decreases_between(&broken_p, &p, 0.9, &loops, None).is_err());
+            assert!(decreases_between(&p, &broken_p, 0.9, &loops, None).is_err());
             assert!(inside_limit(&broken_p, 1.0, &row, 1.5).is_err());
         }
-        assert!(falls(&p, bad, &loops, None).is_err());
-        assert!(falls(&p, 0.9, &loops, Some((bad, &point(&p)))).is_err());
+        assert!(decreases(&p, bad, &loops, None).is_err());
+        assert!(decreases(&p, 0.9, &loops, Some((bad, &point(&p)))).is_err());
         assert!(inside_limit(&p, bad, &row, 1.5).is_err());
         assert!(inside_limit(&p, 1.0, &row, bad).is_err());
         assert!(inside_limit(&p, 1.0, &[Interval::point(bad), Interval::ZERO], 1.5).is_err());
     }
     for rate in [1.0_f64.next_up(), -1e-300, 2.0] {
-        assert!(matches!(falls(&p, rate, &loops, None), Err(NotProved::Number { .. })), "{rate}");
+        assert!(
+            matches!(decreases(&p, rate, &loops, None), Err(NotProved::Number { .. })),
+            "{rate}"
+        );
     }
     for level in [0.0, -1.0] {
         assert!(inside_limit(&p, level, &row, 1.5).is_err());
@@ -429,15 +432,15 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
 fn matrices_that_are_not_symmetric_or_do_not_fit_are_refused() {
     let (p, loops) = (Matrix::identity(2), IntervalMatrix::zeros(2, 2));
     let skewed = matrix(2, &[1.0, 1e-16, 0.0, 1.0]);
-    assert!(matches!(falls(&skewed, 1.0, &loops, None), Err(NotProved::NotSymmetric { .. })));
-    assert!(falls(&p, 1.0, &loops, Some((0.1, &point(&skewed)))).is_err());
-    assert!(falls_between(&p, &skewed, 1.0, &loops, None).is_err());
+    assert!(matches!(decreases(&skewed, 1.0, &loops, None), Err(NotProved::NotSymmetric { .. })));
+    assert!(decreases(&p, 1.0, &loops, Some((0.1, &point(&skewed)))).is_err());
+    assert!(decreases_between(&p, &skewed, 1.0, &loops, None).is_err());
     let (wide, three) = (Matrix::zeros(2, 3), Matrix::identity(3));
-    assert!(matches!(falls(&wide, 1.0, &loops, None), Err(NotProved::Shape(_))));
-    assert!(falls(&three, 1.0, &loops, None).is_err());
-    assert!(falls(&p, 1.0, &IntervalMatrix::zeros(2, 3), None).is_err());
-    assert!(falls(&p, 1.0, &loops, Some((0.1, &point(&three)))).is_err());
-    assert!(falls_between(&p, &three, 1.0, &loops, None).is_err());
+    assert!(matches!(decreases(&wide, 1.0, &loops, None), Err(NotProved::Shape(_))));
+    assert!(decreases(&three, 1.0, &loops, None).is_err());
+    assert!(decreases(&p, 1.0, &IntervalMatrix::zeros(2, 3), None).is_err());
+    assert!(decreases(&p, 1.0, &loops, Some((0.1, &point(&three)))).is_err());
+    assert!(decreases_between(&p, &three, 1.0, &loops, None).is_err());
     assert!(inside_limit(&p, 1.0, &[Interval::ONE], 1.0).is_err());
     assert!(is_positive(&wide).is_err());
 }

@@ -1,6 +1,6 @@
 //! The enclosed plant against the one that simulations fly.
 
-use fspid_core::{Gains, Pid, Shell};
+use fspid_core::{Gains, Pid, PidConfig};
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, NotProved, PrintedPlant, printed};
 use fspid_sim::actuator::{Actuator, Lag};
@@ -42,8 +42,8 @@ fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, by_servo: bool) -> SampledPl
         }
     };
     let actuator = Actuator::new(lag.expect("allowed"));
-    let shell = Shell::sampled_every(dt_s);
-    let pid = Pid::new(GAINS, shell).expect("allowed");
+    let config = PidConfig::sampled_every(dt_s);
+    let pid = Pid::new(GAINS, config).expect("allowed");
     let scenario = Scenario {
         name: "plant".into(),
         plant: plant.clone().into(),
@@ -58,8 +58,8 @@ fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, by_servo: bool) -> SampledPl
             ..Surroundings::default()
         },
     };
-    let memory = Memory::of_gains(GAINS, &shell);
-    LoopModel::of(&scenario, &plant, &shell, memory).expect("a loop").plant().clone()
+    let memory = Memory::of_gains(GAINS, &config);
+    LoopModel::of(&scenario, &plant, &config, memory).expect("a loop").plant().clone()
 }
 
 fn enclosed(plant: usize, lag: ActuatorLag, dt_s: f64) -> SampledPlant<Interval> {
@@ -102,10 +102,10 @@ fn the_plant_of_the_simulation_lies_inside_but_for_its_own_rounding() {
 
 #[test]
 fn the_enclosed_loop_holds_the_loop_in_floats() {
-    let shell = Shell::sampled_every(0.02);
+    let config = PidConfig::sampled_every(0.02);
     let settings = LoopSettings {
-        shell,
-        memory: Memory::of_gains(GAINS, &shell),
+        config,
+        memory: Memory::of_gains(GAINS, &config),
         delay_samples: 1,
         pitch: Sensing::DIRECT,
         rate: Sensing::DIRECT,

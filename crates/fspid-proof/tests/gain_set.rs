@@ -6,7 +6,7 @@ use crate::gain_set_common;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits, SelfTuner, Shell, State,
+    DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits, PidConfig, SelfTuner, State,
     TunerSettings,
 };
 use fspid_numeric::scalar::Interval;
@@ -129,7 +129,7 @@ fn increments_far_beyond_the_range_are_in_the_outer_cells() {
 /// Flies a controller over errors that jump about, and asks the set at each sample.
 fn fly(tuner: SelfTuner<f64>, samples: usize) {
     let set = IncrementMap::of(&tuner, 12).expect("bounded").gains(1.0);
-    let controller = Fspid::new(tuner, Shell::sampled_every(PERIOD_S)).expect("allowed");
+    let controller = Fspid::new(tuner, PidConfig::sampled_every(PERIOD_S)).expect("allowed");
     let (mut state, mut dice) = (State::new(), Dice(7));
     let mut last = None;
     for sample in 0..samples {
@@ -170,7 +170,7 @@ fn a_leaking_law_comes_as_near_to_its_bounds_as_one_likes_and_never_beyond() {
     let set = IncrementMap::of(&tuner, 24).expect("bounded").gains(1.0);
     let [all] = &set.cells[..] else { panic!("{set:?}") };
     assert!(around(all, [1e9, -1e9]));
-    let controller = Fspid::new(tuner, Shell::sampled_every(PERIOD_S)).expect("allowed");
+    let controller = Fspid::new(tuner, PidConfig::sampled_every(PERIOD_S)).expect("allowed");
     let mut state = State::new();
     let mut nearest = f64::INFINITY;
     // Down the corner where the printed table adds most to kp: error and change negative.
@@ -290,7 +290,7 @@ fn the_grid_holds_the_very_gains_that_are_flown() {
     assert_eq!((points[0].0, points[0].1, points[80].0), (-5.0, -5.0, 5.0));
     assert_eq!(grid(&tuner, 1)[0].2, tuner.gains_at_rest());
     // At the first sample the change is zero: the middle column.
-    let controller = Fspid::new(tuner, Shell::sampled_every(PERIOD_S)).expect("allowed");
+    let controller = Fspid::new(tuner, PidConfig::sampled_every(PERIOD_S)).expect("allowed");
     for &(at, _, gains) in points.iter().filter(|point| point.1 == 0.0) {
         assert_eq!(controller.step(&mut State::new(), error(at)).gains, gains, "{at}");
     }

@@ -1,8 +1,8 @@
 //! For which set-points and loads something is proved, and what remains.
 
 use fspid_core::{
-    Derivative, Fspid, Gains, Guard, InputScale, IntegralForm, Law, Pid, SelfTuner,
-    SetpointWeights, Shell, TunerSettings,
+    Derivative, Fspid, Gains, Guard, InputScale, IntegralForm, Law, Pid, PidConfig, SelfTuner,
+    SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_proof::{
@@ -23,13 +23,13 @@ PS PS PS PS PS PS PS
 PM PM PM PM PM PM PM
 PB PB PB PB PB PB PB";
 
-fn shell() -> Shell<f64> {
-    Shell { derivative: Derivative { filter_s: 0.05 }, ..Shell::sampled_every(0.01) }
+fn config() -> PidConfig<f64> {
+    PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) }
 }
 
-fn weighted(weight: f64) -> Shell<f64> {
+fn weighted(weight: f64) -> PidConfig<f64> {
     let setpoint_weights = SetpointWeights { proportional: weight, derivative: 1.0 };
-    Shell { setpoint_weights, ..shell() }
+    PidConfig { setpoint_weights, ..config() }
 }
 
 /// The paper's 747 behind its servo.
@@ -45,11 +45,11 @@ fn loop_of(controller: Controller) -> LoopDescription {
     }
 }
 
-fn fixed(shell: Shell<f64>) -> LoopDescription {
-    loop_of(Controller::Fixed(Pid::new(NOMINAL, shell).expect("allowed")))
+fn fixed(config: PidConfig<f64>) -> LoopDescription {
+    loop_of(Controller::Fixed(Pid::new(NOMINAL, config).expect("allowed")))
 }
 
-fn tuned(shell: Shell<f64>, law: Law<f64>, nominal: Gains<f64>) -> LoopDescription {
+fn tuned(config: PidConfig<f64>, law: Law<f64>, nominal: Gains<f64>) -> LoopDescription {
     let table = RuleTable::parse([RISING; 3]).expect("a table");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
@@ -59,7 +59,7 @@ fn tuned(shell: Shell<f64>, law: Law<f64>, nominal: Gains<f64>) -> LoopDescripti
         ..TunerSettings::literal()
     };
     let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), settings).expect("allowed");
-    loop_of(Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed")))
+    loop_of(Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed")))
 }
 
 fn asked(setpoint_deg: f64, load_deg: f64) -> Asked {
@@ -107,7 +107,7 @@ fn with_a_setpoint_weight_of_zero_little_is_proved_and_much_is_not() {
 
 #[test]
 fn with_a_weight_of_one_and_the_bumpless_integral_every_setpoint_and_load_is_proved() {
-    let description = tuned(shell(), Law::Memoryless, NOMINAL);
+    let description = tuned(config(), Law::Memoryless, NOMINAL);
     let (_, rechecked) = proved(answer(&description, &asked(300.0, 100.0)));
     assert!(rechecked.any_setpoint && rechecked.any_load);
     assert_eq!(rechecked.remains_rad.to_bits(), 0.0_f64.to_bits());
@@ -118,7 +118,7 @@ fn with_a_weight_of_one_and_the_bumpless_integral_every_setpoint_and_load_is_pro
 /// It used to be proved for every load.
 #[test]
 fn the_literal_integral_is_proved_for_small_loads_and_not_for_large_ones() {
-    let literal = Shell { integral: IntegralForm::Literal, ..shell() };
+    let literal = PidConfig { integral: IntegralForm::Literal, ..config() };
     let description = tuned(literal, Law::Memoryless, NOMINAL);
     let (certificate, rechecked) = proved(answer(&description, &asked(0.3, 0.1)));
     assert!(!rechecked.any_setpoint && !rechecked.any_load);
@@ -136,14 +136,14 @@ fn an_accumulating_law_with_a_weight_is_proved_to_return_to_rest_and_no_more() {
     assert_eq!(outcome.verdict, Verdict::Open);
     let (certificate, _) = outcome.instead.expect("return to rest");
     assert_eq!(certificate.range, Range::REST);
-    let (_, rechecked) = proved(answer(&tuned(shell(), law, NOMINAL), &asked(20.0, 5.0)));
+    let (_, rechecked) = proved(answer(&tuned(config(), law, NOMINAL), &asked(20.0, 5.0)));
     assert!(rechecked.any_setpoint && rechecked.any_load);
 }
 
 #[test]
 fn without_an_integral_the_error_that_stays_is_stated() {
     let nominal = Gains { ki: 0.0, ..NOMINAL };
-    let description = tuned(shell(), Law::Memoryless, nominal);
+    let description = tuned(config(), Law::Memoryless, nominal);
     let (_, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
     // 1 deg over 1 + kp G with a pitch of 1.36 per command.
     assert!(rechecked.rest_error_rad > 0.2 * DEG && rechecked.rest_error_rad < 0.6 * DEG);
@@ -154,7 +154,7 @@ fn without_an_integral_the_error_that_stays_is_stated() {
 /// swings.
 #[test]
 fn with_a_resolution_it_is_stated_what_remains() {
-    let mut description = fixed(shell());
+    let mut description = fixed(config());
     description.pitch.resolution = 0.01 * DEG;
     let (_, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
     assert!(rechecked.remains_rad > 0.005 * DEG, "{}", rechecked.remains_rad / DEG);
@@ -171,7 +171,7 @@ fn with_a_resolution_it_is_stated_what_remains() {
 
 #[test]
 fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
-    let mut description = fixed(shell());
+    let mut description = fixed(config());
     let actuator = description.actuator.with_command_limits(-0.35, 0.35).expect("allowed");
     description.actuator = actuator;
     let within = |description: &LoopDescription, setpoint_deg, load_deg| match answer(
@@ -190,7 +190,7 @@ fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
     // 747: 40 deg of pitch take more than 20 deg of elevator.
     assert_eq!(within(&description, 40.0, 0.0), None);
     let guard = Guard::new(10.0 * DEG).expect("allowed");
-    let guarded = fixed(Shell { guard, ..shell() });
+    let guarded = fixed(PidConfig { guard, ..config() });
     assert_eq!(guarded.limits(), ["sample guard of the controller"]);
     let pitch_rad = within(&guarded, 4.0, 0.0).expect("an ellipsoid");
     assert!(pitch_rad < 6.0 * DEG, "{}", pitch_rad / DEG);
@@ -201,7 +201,7 @@ fn set_points_loads_and_the_sample_guard_come_off_the_limits() {
 /// off: the servo does not hold it.
 #[test]
 fn what_a_limit_does_not_leave_at_rest_is_open_with_the_largest_range_that_it_does() {
-    let mut description = fixed(shell());
+    let mut description = fixed(config());
     let limit_rad = 15.0 * DEG;
     description.actuator =
         description.actuator.with_command_limits(-limit_rad, limit_rad).expect("allowed");
@@ -227,14 +227,14 @@ fn what_a_limit_does_not_leave_at_rest_is_open_with_the_largest_range_that_it_do
     description.actuator = travel.with_travel(-limit_rad, limit_rad).expect("allowed");
     assert_eq!(answer(&description, &asked(21.0, 0.0)).verdict, Verdict::Open);
     let guard = Guard::new(10.0 * DEG).expect("allowed");
-    let guarded = fixed(Shell { guard, ..shell() });
+    let guarded = fixed(PidConfig { guard, ..config() });
     assert_eq!(answer(&guarded, &asked(11.0, 0.0)).verdict, Verdict::Open);
 }
 
 /// It used to be proved, "the pitch angle may stay up to 6211 deg off rest".
 #[test]
 fn a_proof_that_leaves_more_than_a_flight_shows_is_open_with_the_number() {
-    let mut description = tuned(shell(), Law::Memoryless, NOMINAL);
+    let mut description = tuned(config(), Law::Memoryless, NOMINAL);
     description.pitch.resolution = 0.1 * DEG;
     let outcome = answer(&description, &asked(1.0, 0.0));
     assert_eq!(outcome.verdict, Verdict::Open);

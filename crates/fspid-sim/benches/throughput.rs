@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fspid_core::fuzzy::{Defuzzifier, Label, NumberTable, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{Fspid, Gains, InputScale, Pid, SelfTuner, Shell, TunerSettings};
+use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings};
 use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
@@ -135,7 +135,7 @@ fn scenario(seed: u64) -> Scenario {
         &[1.0, 1.17103, 1.55405, 0.012_538, 0.007_277_1],
         ElevatorSign::NoseDownPositive,
     );
-    let shell = Shell::sampled_every(0.01);
+    let config = PidConfig::sampled_every(0.01);
     let gains = Gains { kp: 2.0, ki: 0.05, kd: 0.5 };
     let settings = TunerSettings {
         input_scale: InputScale { error_per_rad: 1.0, change_per_rad: 0.02 },
@@ -144,9 +144,9 @@ fn scenario(seed: u64) -> Scenario {
     };
     let tuned = |supervisor| {
         let tuner = SelfTuner::new(gains, supervisor, settings).expect("allowed");
-        Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"))
+        Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
     };
-    let pid = Pid::new(gains, shell).expect("allowed");
+    let pid = Pid::new(gains, config).expect("allowed");
     let named = |name: &str, controller| NamedController { name: name.to_owned(), controller };
     Scenario {
         name: "throughput".to_owned(),

@@ -1,6 +1,6 @@
 //! The controllers a loop can be flown with.
 
-use fspid_core::{Fspid, Gains, Pid, Sample, Shell, State, Step};
+use fspid_core::{Fspid, Gains, Pid, PidConfig, Sample, State, Step};
 
 /// A controller of the loop; it sees radians and answers radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +27,10 @@ impl Controller {
 
     /// Everything but the gains.
     #[must_use]
-    pub fn shell(&self) -> &Shell<f64> {
+    pub fn config(&self) -> &PidConfig<f64> {
         match self {
-            Self::Fixed(pid) => pid.shell(),
-            Self::SelfTuning(fspid) => fspid.shell(),
+            Self::Fixed(pid) => pid.config(),
+            Self::SelfTuning(fspid) => fspid.config(),
         }
     }
 
@@ -45,10 +45,10 @@ impl Controller {
 
     /// Everything but the gains, as it is at these gains.
     #[must_use]
-    pub fn shell_at(&self, gains: Gains<f64>) -> Shell<f64> {
+    pub fn config_at(&self, gains: Gains<f64>) -> PidConfig<f64> {
         match self {
-            Self::Fixed(pid) => *pid.shell(),
-            Self::SelfTuning(fspid) => fspid.shell_at(gains),
+            Self::Fixed(pid) => *pid.config(),
+            Self::SelfTuning(fspid) => fspid.config_at(gains),
         }
     }
 
@@ -56,7 +56,7 @@ impl Controller {
     #[must_use]
     pub fn uses_rate(&self) -> bool {
         match self {
-            Self::Fixed(pid) => pid.shell().rate_gain_s != 0.0,
+            Self::Fixed(pid) => pid.config().rate_gain_s != 0.0,
             Self::SelfTuning(fspid) => fspid.uses_rate(),
         }
     }

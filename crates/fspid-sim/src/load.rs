@@ -3,7 +3,7 @@
 //! A trim that is off, a shifted centre of gravity, a biased servo: each is a constant at the servo. An integral takes
 //! its effect away in time; a controller without one, or whose integral is slow beside the flight, does not.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::{LtiError, Matrix};
 
 use crate::aircraft::AircraftPlant;
@@ -87,13 +87,13 @@ impl ConstantLoad {
 pub fn constant_load(
     scenario: &Scenario,
     gains: Gains<f64>,
-    shell: &Shell<f64>,
+    config: &PidConfig<f64>,
 ) -> Result<Option<ConstantLoad>, SimError> {
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let lasting = scenario.lasting_plants().into_iter().map(|(_, plant)| plant);
     let mut worst: Option<ConstantLoad> = None;
     for plant in trimmed.iter().chain(lasting) {
-        let load = with_plant(scenario, plant, (gains, shell))?;
+        let load = with_plant(scenario, plant, (gains, config))?;
         // Written so that NaN is the worst.
         if worst.is_none_or(|worst| !(load.share_left() <= worst.share_left())) {
             worst = Some(load);
@@ -105,10 +105,10 @@ pub fn constant_load(
 fn with_plant(
     scenario: &Scenario,
     plant: &LinearPlant,
-    (gains, shell): (Gains<f64>, &Shell<f64>),
+    (gains, config): (Gains<f64>, &PidConfig<f64>),
 ) -> Result<ConstantLoad, SimError> {
-    let memory = Memory::of_gains(gains, shell);
-    let model = LoopModel::of(scenario, plant, shell, memory)?.without_changing_ages();
+    let memory = Memory::of_gains(gains, config);
+    let model = LoopModel::of(scenario, plant, config, memory)?.without_changing_ages();
     let one = loaded(&model, gains)?;
     let samples = scenario.timing.rows().saturating_sub(1).max(1);
     let points = samples.min(POINTS);
@@ -220,7 +220,7 @@ fn power(matrix: &Matrix, mut exponent: usize) -> Result<Matrix, LtiError> {
 
 #[cfg(test)]
 mod tests {
-    use fspid_core::{Gains, Shell};
+    use fspid_core::{Gains, PidConfig};
 
     use super::*;
     use crate::controller::Controller;
@@ -249,7 +249,7 @@ mod tests {
     }
 
     fn asked(duration_s: f64, gains: Gains<f64>) -> ConstantLoad {
-        let load = constant_load(&integrator(duration_s), gains, &Shell::sampled_every(DT_S));
+        let load = constant_load(&integrator(duration_s), gains, &PidConfig::sampled_every(DT_S));
         load.expect("no overflow").expect("a plant")
     }
 
@@ -303,7 +303,7 @@ mod tests {
     fn a_pole_on_the_circle_grows_nothing_and_one_outside_does() {
         let asked = |kp| {
             let gains = Gains { kp, ki: 0.0, kd: 0.0 };
-            let pid = fspid_core::Pid::new(gains, Shell::sampled_every(DT_S)).expect("allowed");
+            let pid = fspid_core::Pid::new(gains, PidConfig::sampled_every(DT_S)).expect("allowed");
             growth_at_rest(&integrator(5.0), &Controller::Fixed(pid), gains)
                 .expect("eigenvalues")
                 .certain

@@ -3,7 +3,7 @@
 //! A loop that grows slowly looks good in a short window. This looks at its one-sample matrix
 //! instead, the [`loop_model`](crate::loop_model)'s.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
 use crate::aircraft::AircraftPlant;
@@ -50,14 +50,14 @@ pub fn instability(
     let Controller::Fixed(pid) = controller else {
         return Ok(None);
     };
-    if !pid.shell().is_linear() {
+    if !pid.config().is_linear() {
         return Ok(None);
     }
-    let (gains, shell) = (pid.gains(), pid.shell());
+    let (gains, config) = (pid.gains(), pid.config());
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
-        let spectral_radius = spectral_radius(&closed_loop(scenario, plant, gains, shell)?)?;
+        let spectral_radius = spectral_radius(&closed_loop(scenario, plant, gains, config)?)?;
         // What cannot be told from the edge counts as unstable here, and so does NaN.
         if !(spectral_radius < 1.0 - MARGIN) {
             let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
@@ -130,10 +130,10 @@ fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {
 pub fn loop_spectral_radius(
     scenario: &Scenario,
     gains: Gains<f64>,
-    shell: &Shell<f64>,
+    config: &PidConfig<f64>,
 ) -> Result<f64, SimError> {
     let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
-    Ok(spectral_radius(&closed_loop(scenario, plant, gains, shell)?)?)
+    Ok(spectral_radius(&closed_loop(scenario, plant, gains, config)?)?)
 }
 
 /// Poles of the sampled loop of one plant with fixed gains and no limits.
@@ -143,10 +143,10 @@ pub fn loop_spectral_radius(
 pub fn loop_poles(
     scenario: &Scenario,
     gains: Gains<f64>,
-    shell: &Shell<f64>,
+    config: &PidConfig<f64>,
 ) -> Result<Vec<Complex>, SimError> {
     let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
-    Ok(eigenvalues(&closed_loop(scenario, plant, gains, shell)?)?)
+    Ok(eigenvalues(&closed_loop(scenario, plant, gains, config)?)?)
 }
 
 /// The one-sample matrix of the loop with the set-point at zero.
@@ -154,8 +154,8 @@ pub(crate) fn closed_loop(
     scenario: &Scenario,
     plant: &LinearPlant,
     gains: Gains<f64>,
-    shell: &Shell<f64>,
+    config: &PidConfig<f64>,
 ) -> Result<Matrix, SimError> {
-    let model = LoopModel::of(scenario, plant, shell, Memory::of_gains(gains, shell))?;
+    let model = LoopModel::of(scenario, plant, config, Memory::of_gains(gains, config))?;
     model.without_changing_ages().closed_matrix(gains)
 }

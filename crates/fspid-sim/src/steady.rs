@@ -1,6 +1,6 @@
 //! What of a scenario stands still: the set-points and loads around which its loop comes to rest.
 
-use fspid_core::Shell;
+use fspid_core::PidConfig;
 
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
@@ -80,13 +80,13 @@ impl Steady {
     ///
     /// An offset of what is seen is a pitch that is off by as much, and one of the seen rate a command.
     #[must_use]
-    pub fn load_with_offsets_rad(&self, plant: &LinearPlant, shell: &Shell<f64>) -> f64 {
+    pub fn load_with_offsets_rad(&self, plant: &LinearPlant, config: &PidConfig<f64>) -> f64 {
         let of_offset = self.offset_rad / plant.steady_gain().abs();
         let of_offset = if self.offset_rad == 0.0 { 0.0 } else { of_offset };
         self.load_rad
             + self.bias_rad
             + of_offset
-            + (shell.rate_gain_s * self.rate_offset_rad_s).abs()
+            + (config.rate_gain_s * self.rate_offset_rad_s).abs()
     }
 
     /// The largest set-point in magnitude, rad.

@@ -6,7 +6,7 @@ mod describing;
 mod empirical;
 mod moving_air;
 mod reference;
-mod set_places;
+mod set_centres;
 #[path = "../../fspid-aircraft/tests/support/mod.rs"]
 mod support;
 mod surroundings;

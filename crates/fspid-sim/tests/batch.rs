@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits, Gains,
-    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner,
-    SetPlaces, SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
+    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
+    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_sim::batch::{Entrant, InstructionSet, Refusal, fly_group_by, fly_many};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -30,7 +30,7 @@ struct Structure {
     anti_windup: u8,
     accumulates: bool,
     /// What the supervisor sees: change, rate, model.
-    sees: u8,
+    second_input: u8,
     policy: OutOfRange,
     /// Faults, limits, changes of the plant, everything.
     wild: bool,
@@ -101,38 +101,38 @@ fn servo(random: &mut Random, wild: bool) -> Servo {
     servo.with_delay((random.bits() % 6) as usize).expect("allowed")
 }
 
-fn shell(random: &mut Random, structure: Structure) -> Shell<f64> {
-    let mut shell = Shell::sampled_every(0.02);
+fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
+    let mut config = PidConfig::sampled_every(0.02);
     if structure.literal {
-        shell.integral = IntegralForm::Literal;
+        config.integral = IntegralForm::Literal;
     }
     let limits = |size: f64| Limits::new("limits", -size, 0.8 * size).expect("allowed");
-    shell.anti_windup = match structure.anti_windup {
+    config.anti_windup = match structure.anti_windup {
         0 => AntiWindup::None,
         1 => AntiWindup::Clamping(limits(random.between(0.01, 0.3))),
         2 => AntiWindup::Conditional,
         _ => AntiWindup::BackCalculation { tracking_s: random.between(0.02, 2.0) },
     };
     if structure.anti_windup > 1 || (structure.wild && random.one_in(2)) {
-        shell.limits = Some(limits(random.between(0.05, 1.0)));
+        config.limits = Some(limits(random.between(0.05, 1.0)));
     }
     if !structure.wild {
-        return shell;
+        return config;
     }
-    shell.rate_gain_s = if random.one_in(2) { random.between(0.0, 0.5) } else { 0.0 };
-    shell.setpoint_weights = SetpointWeights {
+    config.rate_gain_s = if random.one_in(2) { random.between(0.0, 0.5) } else { 0.0 };
+    config.setpoint_weights = SetpointWeights {
         proportional: random.between(0.0, 1.0),
         derivative: random.between(0.0, 1.0),
     };
-    shell.derivative = Derivative { filter_s: random.between(0.0, 0.1) };
+    config.derivative = Derivative { filter_s: random.between(0.0, 0.1) };
     if random.one_in(2) {
-        shell.slew_rad_s = Some(random.between(0.1, 5.0));
+        config.slew_rad_s = Some(random.between(0.1, 5.0));
     }
     if random.one_in(4) {
         // So small that some samples are not believed.
-        shell.guard = Guard::new(random.between(0.3, 2.0)).expect("allowed");
+        config.guard = Guard::new(random.between(0.3, 2.0)).expect("allowed");
     }
-    shell
+    config
 }
 
 fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTuner<f64> {
@@ -157,10 +157,10 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
         },
         ..TunerSettings::literal()
     };
-    settings.sees = match structure.sees {
-        0 => Sees::ErrorAndChange,
-        1 => Sees::ErrorAndRate,
-        _ => Sees::ErrorAndModelError(ReferenceModel {
+    settings.second_input = match structure.second_input {
+        0 => SecondInput::Change,
+        1 => SecondInput::Rate,
+        _ => SecondInput::ModelError(ReferenceModel {
             bandwidth_rad_s: random.between(0.3, 10.0),
             damping: random.between(0.3, 1.5),
         }),
@@ -176,12 +176,12 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
             settings.change = Change::Delta;
         }
         let places = |random: &mut Random| {
-            let places = SetPlaces::new(random.between(0.05, 0.4), random.between(0.5, 0.95));
+            let places = SetCentres::new(random.between(0.05, 0.4), random.between(0.5, 0.95));
             random.one_in(2).then(|| places.expect("in order"))
         };
         settings.input_sets = InputSets { error: places(random), change: places(random) };
         if random.one_in(2) {
-            settings.followers = Followers {
+            settings.gain_coupling = GainCoupling {
                 setpoint_weight: random.between(-1.0, 1.0),
                 rate_gain: random.between(-1.0, 1.0),
             };
@@ -214,12 +214,12 @@ fn controller(random: &mut Random, structure: Structure) -> Controller {
         _ => random.between(0.0, 0.5),
     };
     let gains = Gains { kp: size * random.between(0.1, 2.0), ki, kd: random.between(0.0, 0.5) };
-    let shell = shell(random, structure);
+    let config = config(random, structure);
     if structure.self_tuning {
         let tuner = tuner(random, structure, gains);
-        return Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"));
+        return Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"));
     }
-    Controller::Fixed(Pid::new(gains, shell).expect("allowed"))
+    Controller::Fixed(Pid::new(gains, config).expect("allowed"))
 }
 
 fn scenario(random: &mut Random, structure: Structure) -> Scenario {
@@ -338,7 +338,7 @@ fn structure() -> impl Strategy<Value = Structure> {
     let kinds = (0_u8..4, 0_u8..3);
     (1_usize..=5, flags, kinds, policy).prop_map(|(order, flags, kinds, policy)| {
         let (self_tuning, literal, accumulates, wild, numbers) = flags;
-        let (anti_windup, sees) = kinds;
+        let (anti_windup, second_input) = kinds;
         Structure {
             order,
             self_tuning,
@@ -346,7 +346,7 @@ fn structure() -> impl Strategy<Value = Structure> {
             literal,
             anti_windup,
             accumulates,
-            sees,
+            second_input,
             policy,
             wild,
         }
@@ -376,7 +376,7 @@ const PLAIN: Structure = Structure {
     literal: false,
     anti_windup: 0,
     accumulates: false,
-    sees: 0,
+    second_input: 0,
     policy: OutOfRange::Clamp,
     wild: false,
 };
@@ -407,13 +407,13 @@ fn a_flight_that_diverges_leaves_its_neighbours_their_bits() {
     let mut flights = flights(PLAIN, 1, 16);
     let expected = singly(&flights);
     let wild = Gains { kp: 1e6, ki: 0.0, kd: 1e4 };
-    let mut shell = Shell::sampled_every(0.02);
-    shell.guard = Guard::new(f64::MAX).expect("allowed");
+    let mut config = PidConfig::sampled_every(0.02);
+    config.guard = Guard::new(f64::MAX).expect("allowed");
     let settings = TunerSettings::literal();
     let supervisor = Supervisor::new(&table(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let tuner = SelfTuner::new(wild, supervisor.expect("allowed"), settings).expect("allowed");
     for place in [0, 5, 15] {
-        flights[place].1 = Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"));
+        flights[place].1 = Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"));
     }
     for (place, (found, expected)) in side_by_side::<16>(&flights).iter().zip(&expected).enumerate()
     {
@@ -457,7 +457,7 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
     mixed[3] = flights(Structure { numbers: true, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });
-    mixed[3] = flights(Structure { sees: 1, ..PLAIN }, 1, 1).remove(0);
+    mixed[3] = flights(Structure { second_input: 1, ..PLAIN }, 1, 1).remove(0);
     let what = "what its supervisor sees";
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
 

@@ -4,7 +4,7 @@
 
 use core::ops::ControlFlow;
 
-use fspid_core::{Gains, Pid, Shell};
+use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
     Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange, Scenario, Servo,
@@ -27,8 +27,8 @@ fn navion(share: f64) -> LinearPlant {
 }
 
 fn pid(kp: f64, ki: f64, kd: f64) -> Controller {
-    let shell = Shell::sampled_every(0.01);
-    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, shell).expect("allowed"))
+    let config = PidConfig::sampled_every(0.01);
+    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, config).expect("allowed"))
 }
 
 fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Scenario {

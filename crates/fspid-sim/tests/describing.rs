@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
-use fspid_core::{Gains, Limits, Pid, Shell};
+use fspid_core::{Gains, Limits, Pid, PidConfig};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::describing::{
@@ -34,12 +34,12 @@ fn b747() -> LinearPlant {
     .expect("the paper's plant")
 }
 
-fn proportional(kp: f64, shell: Shell<f64>) -> Controller {
-    Controller::Fixed(Pid::new(Gains { kp, ki: 0.0, kd: 0.0 }, shell).expect("allowed"))
+fn proportional(kp: f64, config: PidConfig<f64>) -> Controller {
+    Controller::Fixed(Pid::new(Gains { kp, ki: 0.0, kd: 0.0 }, config).expect("allowed"))
 }
 
-fn plain() -> Shell<f64> {
-    Shell::sampled_every(DT_S)
+fn plain() -> PidConfig<f64> {
+    PidConfig::sampled_every(DT_S)
 }
 
 fn servo() -> Servo {
@@ -111,7 +111,7 @@ fn a_limit_of_the_position_has_the_textbook_describing_function() {
     };
     let servo = servo().with_position_limit(limit_rad).expect("allowed");
     let by_servo = scenario(servo, 0.1, 1.0, proportional(1.0, plain()));
-    let shell = Shell {
+    let config = PidConfig {
         limits: Some(Limits::new("u", -limit_rad, limit_rad).expect("allowed")),
         ..plain()
     };
@@ -120,7 +120,7 @@ fn a_limit_of_the_position_has_the_textbook_describing_function() {
         with_actuator(
             Actuator::new(Lag::NONE).with_travel(-limit_rad, limit_rad).expect("allowed"),
         ),
-        LimitedPath::of(&scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, shell)), &shell)
+        LimitedPath::of(&scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, config)), &config)
             .expect("a path"),
     ];
     for path in paths {
@@ -167,9 +167,9 @@ fn a_rate_limit_that_never_lets_go_makes_the_triangle_of_the_textbook() {
 
 #[test]
 fn a_slew_limit_of_the_controller_is_a_rate_limit() {
-    let shell = Shell { slew_rad_s: Some(0.5), ..plain() };
-    let scenario = scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, shell));
-    let path = LimitedPath::of(&scenario, &shell).expect("a path");
+    let config = PidConfig { slew_rad_s: Some(0.5), ..plain() };
+    let scenario = scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, config));
+    let path = LimitedPath::of(&scenario, &config).expect("a path");
     let n = path.describing_function(1.0, 2.0).expect("positive");
     near(modulus(n), 4.0 * 0.5 / (PI * 2.0), 1.0 / 512.0);
 }

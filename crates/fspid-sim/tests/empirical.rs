@@ -9,7 +9,7 @@ use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{Fspid, Gains, InputScale, Pid, SelfTuner, Shell, TunerSettings};
+use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::describing::OpenLoop;
 use fspid_sim::flown::empirical::{
@@ -43,8 +43,8 @@ fn unstable() -> LinearPlant {
         .expect("allowed")
 }
 
-fn plain() -> Shell<f64> {
-    Shell::sampled_every(DT_S)
+fn plain() -> PidConfig<f64> {
+    PidConfig::sampled_every(DT_S)
 }
 
 fn pid(kp: f64, ki: f64, kd: f64) -> Controller {

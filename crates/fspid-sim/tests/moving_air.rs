@@ -7,7 +7,7 @@ use crate::support;
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
-use fspid_core::{Gains, Pid, Shell};
+use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::air::{
     Follows, GRID_S, Intensity, Severity, Specification, Turbulence, Wind, WindKind,
 };
@@ -41,7 +41,7 @@ fn linear() -> LinearPlant {
 /// Nobody answers, so that what is seen is the air alone.
 fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -> Trace {
     let gains = Gains { kp: 0.0, ki: 0.0, kd: 0.0 };
-    let pid = Pid::new(gains, Shell::sampled_every(dt_s)).expect("allowed");
+    let pid = Pid::new(gains, PidConfig::sampled_every(dt_s)).expect("allowed");
     let scenario = Scenario {
         name: "air".into(),
         plant: plant.into(),

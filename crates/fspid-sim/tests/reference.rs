@@ -8,7 +8,7 @@ use std::path::Path;
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     AntiWindup, Change, Derivative, ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm,
-    Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights, TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
@@ -53,12 +53,12 @@ fn square(scenario: Scenario) -> Scenario {
     Scenario { setpoint: Profile::new(DEG, shape).expect("allowed"), ..scenario }
 }
 
-fn pid(kp: f64, ki: f64, kd: f64, shell: Shell<f64>) -> Controller {
-    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, shell).expect("allowed"))
+fn pid(kp: f64, ki: f64, kd: f64, config: PidConfig<f64>) -> Controller {
+    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, config).expect("allowed"))
 }
 
-fn plain() -> Shell<f64> {
-    Shell::sampled_every(0.01)
+fn plain() -> PidConfig<f64> {
+    PidConfig::sampled_every(0.01)
 }
 
 fn supervisor(range: f64) -> Supervisor<f64> {
@@ -72,11 +72,11 @@ fn fspid(
     nominal: [f64; 3],
     range: f64,
     settings: TunerSettings<f64>,
-    shell: Shell<f64>,
+    config: PidConfig<f64>,
 ) -> Controller {
     let [kp, ki, kd] = nominal;
     let tuner = SelfTuner::new(Gains { kp, ki, kd }, supervisor(range), settings).expect("allowed");
-    Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"))
+    Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
 }
 
 /// The example of the scenario file: factors in degrees.
@@ -136,8 +136,8 @@ const GROWING_TOLERANCE: f64 = 1e-9;
 
 #[test]
 fn a_proportional_loop_with_rate_gyro_flies_as_the_reference() {
-    let shell = Shell { rate_gain_s: 0.9144, ..plain() };
-    let trace = flown(&scenario(b747(), pid(3.5287, 0.0, 0.0, shell)));
+    let config = PidConfig { rate_gain_s: 0.9144, ..plain() };
+    let trace = flown(&scenario(b747(), pid(3.5287, 0.0, 0.0, config)));
     assert_agrees(&trace, "trace_747_p_rate.csv", TOLERANCE);
 }
 
@@ -157,8 +157,8 @@ fn a_self_tuning_loop_flies_as_the_reference() {
 
 #[test]
 fn the_paper_s_literal_reading_flies_as_the_reference() {
-    let shell = Shell { integral: IntegralForm::Literal, ..plain() };
-    let controller = fspid([0.7019, 0.0739, 0.0554], 40.0, figure_8b(), shell);
+    let config = PidConfig { integral: IntegralForm::Literal, ..plain() };
+    let controller = fspid([0.7019, 0.0739, 0.0554], 40.0, figure_8b(), config);
     let trace = flown(&square(scenario(navion(), controller)));
     assert_agrees(&trace, "trace_navion_fspid_8b.csv", TOLERANCE);
 }
@@ -177,14 +177,14 @@ fn an_accumulating_loop_flies_as_the_reference() {
 
 fn filtered(limit_deg: f64) -> Controller {
     let limit = limit_deg * DEG;
-    let shell = Shell {
+    let config = PidConfig {
         setpoint_weights: SetpointWeights { proportional: 0.7, derivative: 0.0 },
         derivative: Derivative { filter_s: 0.05 },
         limits: Some(Limits::new("command", -limit, limit).expect("allowed")),
         anti_windup: AntiWindup::BackCalculation { tracking_s: 0.5 },
         ..plain()
     };
-    pid(2.0, 0.5, 1.0, shell)
+    pid(2.0, 0.5, 1.0, config)
 }
 
 #[test]
@@ -214,12 +214,12 @@ fn the_spectral_radius_of_the_sampled_loop_agrees_with_forty_digits() {
         let words: Vec<&str> = line.split(',').collect();
         let number = |index: usize| words[index].parse::<f64>().expect("a number");
         let plant = if words[0] == "b747-paper" { b747() } else { navion() };
-        let shell = Shell { rate_gain_s: number(5), ..Shell::sampled_every(number(1)) };
-        let controller = pid(number(2), number(3), number(4), shell);
+        let config = PidConfig { rate_gain_s: number(5), ..PidConfig::sampled_every(number(1)) };
+        let controller = pid(number(2), number(3), number(4), config);
         let mut scenario = scenario(plant, controller);
         scenario.timing = Timing::new(number(1), 20.0).expect("allowed");
         let gains = controller.nominal();
-        let ours = loop_spectral_radius(&scenario, gains, &shell).expect("eigenvalues");
+        let ours = loop_spectral_radius(&scenario, gains, &config).expect("eigenvalues");
         assert!((ours - number(6)).abs() < 1e-9, "{line}: {ours}");
         let unstable = instability(&scenario, &controller).expect("eigenvalues").is_some();
         assert_eq!(unstable, words[7] == "unstable", "{line}: {ours}");
@@ -235,8 +235,8 @@ fn the_sampled_loop_turns_unstable_at_its_neutral_gain() {
         let number = |index: usize| words[index].parse::<f64>().expect("a number");
         let plant = if words[0] == "b747-paper" { b747() } else { navion() };
         for (factor, expected) in [(1.0 - 1e-6, false), (1.0 + 1e-6, true)] {
-            let shell = Shell::sampled_every(number(1));
-            let controller = pid(number(2) * factor, 0.0, 0.0, shell);
+            let config = PidConfig::sampled_every(number(1));
+            let controller = pid(number(2) * factor, 0.0, 0.0, config);
             let mut scenario = scenario(plant.clone(), controller);
             scenario.timing = Timing::new(number(1), 20.0).expect("allowed");
             let unstable = instability(&scenario, &controller).expect("eigenvalues").is_some();

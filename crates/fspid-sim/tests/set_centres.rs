@@ -1,7 +1,7 @@
 //! Bent inputs of a supervisor against general fuzzy systems whose triangles are moved.
 
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{Gains, InputSets, SelfTuner, SetPlaces, TunerSettings};
+use fspid_core::{Gains, InputSets, SelfTuner, SetCentres, TunerSettings};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{Answer, Membership, Parts, System};
 
@@ -38,14 +38,14 @@ fn bending_the_input_of_even_triangles_is_the_same_as_moving_the_triangles() {
         let moved = triangles([centres(small, medium), centres(other_small, other_medium)]);
         let fixed = triangles([even, even]);
         let places = [(small, medium), (other_small, other_medium)]
-            .map(|(small, medium)| SetPlaces::new(small, medium).expect("in order"));
+            .map(|(small, medium)| SetCentres::new(small, medium).expect("in order"));
         let (mut one, mut other) = (moved.workspace(), fixed.workspace());
         for row in -25..=25_i32 {
             for column in -25..=25_i32 {
                 let input = [row, column].map(|k| 0.2 * f64::from(k) - 0.01);
-                let bent = [0, 1].map(|k| places[k].bent(input[k], RANGE));
+                let warp = [0, 1].map(|k| places[k].warp(input[k], RANGE));
                 let expected = moved.evaluate(&input, &mut one).expect("inside");
-                let found = fixed.evaluate(&bent, &mut other).expect("inside");
+                let found = fixed.evaluate(&warp, &mut other).expect("inside");
                 for (found, expected) in found.iter().zip(expected) {
                     let value = |answer: &Answer| answer.value.expect("some rule fires");
                     let (found, expected) = (value(found), value(expected));
@@ -79,7 +79,7 @@ fn a_tuner_with_numbers_and_uneven_sets_answers_as_a_system_whose_triangles_are_
         }
     }
     let general = System::new(parts).expect("sound");
-    let places = |small, medium| SetPlaces::new(small, medium).ok();
+    let places = |small, medium| SetCentres::new(small, medium).ok();
     let settings = TunerSettings {
         input_sets: InputSets { error: places(0.1, 0.5), change: places(0.5, 0.9) },
         ..TunerSettings::literal()

@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::{Gains, Pid, Shell};
+use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::air::{Follows, Intensity, Severity, Specification, Turbulence, WindKind};
 use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel, SensorPreset};
@@ -34,8 +34,8 @@ fn navion() -> LinearPlant {
 }
 
 fn pid(kp: f64, ki: f64, kd: f64) -> Controller {
-    let shell = Shell::sampled_every(DT_S);
-    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, shell).expect("allowed"))
+    let config = PidConfig::sampled_every(DT_S);
+    Controller::Fixed(Pid::new(Gains { kp, ki, kd }, config).expect("allowed"))
 }
 
 fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Scenario {
@@ -233,13 +233,13 @@ fn a_slow_second_order_actuator_makes_a_stable_loop_unstable() {
 #[test]
 fn servo_and_equal_actuator_have_the_same_spectral_radius() {
     let mut flight = scenario(navion(), pid(1.0, 0.2, 0.3), 0.1);
-    let (gains, shell) = (Gains { kp: 1.0, ki: 0.2, kd: 0.3 }, Shell::sampled_every(DT_S));
+    let (gains, config) = (Gains { kp: 1.0, ki: 0.2, kd: 0.3 }, PidConfig::sampled_every(DT_S));
     for servo in [Servo::ideal(), Servo::first_order(0.1).expect("allowed")] {
         flight.servo = servo;
         flight.surroundings.actuator = None;
-        let by_servo = loop_spectral_radius(&flight, gains, &shell).expect("found");
+        let by_servo = loop_spectral_radius(&flight, gains, &config).expect("found");
         flight.surroundings.actuator = Some(servo.as_actuator().expect("allowed"));
-        let by_actuator = loop_spectral_radius(&flight, gains, &shell).expect("found");
+        let by_actuator = loop_spectral_radius(&flight, gains, &config).expect("found");
         assert!((by_servo - by_actuator).abs() < 1e-12, "{by_servo} {by_actuator}");
     }
 }

@@ -11,7 +11,7 @@ use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, Sees, SelfTuner, SetpointWeights, Shell,
+    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SecondInput, SelfTuner, SetpointWeights,
     TunerSettings,
 };
 use fspid_sim::actuator::{Actuator, Lag};
@@ -54,7 +54,7 @@ fn table() -> RuleTable {
 
 struct Case {
     settings: TunerSettings<f64>,
-    shell: Shell<f64>,
+    config: PidConfig<f64>,
     defuzzifier: Defuzzifier,
     out_of_range: OutOfRange,
     servo: Servo,
@@ -69,7 +69,7 @@ fn base() -> Case {
     };
     Case {
         settings,
-        shell: Shell::sampled_every(DT_S),
+        config: PidConfig::sampled_every(DT_S),
         defuzzifier: Defuzzifier::Exact,
         out_of_range: OutOfRange::Clamp,
         servo: Servo::first_order(0.1).expect("allowed"),
@@ -82,7 +82,7 @@ impl Case {
         let supervisor = Supervisor::new(&table(), 5.0, self.defuzzifier, self.out_of_range);
         let nominal = Gains { kp: 1.2, ki: 0.3, kd: 0.5 };
         let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), self.settings);
-        Controller::SelfTuning(Fspid::new(tuner.expect("allowed"), self.shell).expect("allowed"))
+        Controller::SelfTuning(Fspid::new(tuner.expect("allowed"), self.config).expect("allowed"))
     }
 
     fn scenario(&self) -> Scenario {
@@ -172,15 +172,15 @@ fn limits(size: f64) -> Option<Limits<f64>> {
 #[test]
 fn every_form_of_controller_and_every_part_of_the_loop_is_linearised() {
     let mut case = base();
-    case.shell.integral = IntegralForm::Literal;
+    case.config.integral = IntegralForm::Literal;
     agrees(&case, 0.8);
     case.settings.change = Change::Delta;
     case.settings.input_scale.change_per_rad = 2000.0 / PI;
     case.settings.error_sign = ErrorSign::MeasurementMinusSetpoint;
     agrees(&case, 0.8);
-    case.shell.derivative = Derivative { filter_s: 0.05 };
-    case.shell.setpoint_weights = SetpointWeights { proportional: 0.4, derivative: 0.0 };
-    case.shell.rate_gain_s = 0.3;
+    case.config.derivative = Derivative { filter_s: 0.05 };
+    case.config.setpoint_weights = SetpointWeights { proportional: 0.4, derivative: 0.0 };
+    case.config.rate_gain_s = 0.3;
     agrees(&case, 0.8);
     let lag = Lag::second_order(30.0, 0.7).expect("allowed");
     case.surroundings.actuator = Some(Actuator::new(lag).with_delay(2).expect("allowed"));
@@ -226,10 +226,11 @@ fn a_cut_command_is_linearised_with_every_anti_windup() {
             AntiWindup::Clamping(limits(0.5 * DEG).expect("given")),
         ] {
             let mut case = base();
-            case.shell = Shell { integral, anti_windup, limits: limits(3.0 * DEG), ..case.shell };
+            case.config =
+                PidConfig { integral, anti_windup, limits: limits(3.0 * DEG), ..case.config };
             let limited = agrees(&case, BEFORE_S);
             assert!(limited > 0.0, "{limited}");
-            case.shell = Shell { limits: None, slew_rad_s: Some(8.0 * DEG), ..case.shell };
+            case.config = PidConfig { limits: None, slew_rad_s: Some(8.0 * DEG), ..case.config };
             let limited = agrees(&case, BEFORE_S);
             assert!(limited > 0.0, "{limited}");
         }
@@ -270,7 +271,7 @@ fn a_change_of_the_plant_and_a_held_sample_are_linearised() {
     let (off, _) = error(&scenario, 0.8, 0);
     assert!(off < TOLERANCE, "{off:e}");
     let mut case = base();
-    case.shell.guard = Guard::new(5.0).expect("allowed");
+    case.config.guard = Guard::new(5.0).expect("allowed");
     let mut scenario = case.scenario();
     let glitch = Shape::Pulse { at_s: 1.0, width_s: 0.05 };
     scenario.disturbances =
@@ -303,11 +304,11 @@ fn frozen_gains_do_not_tell_what_gains_that_move_do_to_a_disturbance() {
 #[test]
 fn a_loop_with_fixed_gains_has_one_radius_and_shrinks_by_it() {
     let gains = Gains { kp: 2.0, ki: 0.3, kd: 0.4 };
-    let shell = Shell::sampled_every(DT_S);
-    let controller = Controller::Fixed(Pid::new(gains, shell).expect("allowed"));
+    let config = PidConfig::sampled_every(DT_S);
+    let controller = Controller::Fixed(Pid::new(gains, config).expect("allowed"));
     let mut scenario = base().scenario();
     scenario.timing = Timing::new(DT_S, 100.0).expect("allowed");
-    let radius = loop_spectral_radius(&scenario, gains, &shell).expect("found");
+    let radius = loop_spectral_radius(&scenario, gains, &config).expect("found");
     let flown = linearise_along(&scenario, &controller, 100).expect("flies");
     assert_eq!(flown.points.len(), 101);
     // The first sample has no last one, and so no derivative.
@@ -327,11 +328,11 @@ fn a_loop_with_fixed_gains_has_one_radius_and_shrinks_by_it() {
 #[test]
 fn a_loop_that_grows_says_how_fast_and_when_it_is_worst() {
     let gains = Gains { kp: 6.0, ki: 0.0, kd: 0.0 };
-    let shell = Shell::sampled_every(DT_S);
-    let controller = Controller::Fixed(Pid::new(gains, shell).expect("allowed"));
+    let config = PidConfig::sampled_every(DT_S);
+    let controller = Controller::Fixed(Pid::new(gains, config).expect("allowed"));
     let mut scenario = base().scenario();
     scenario.timing = Timing::new(DT_S, 60.0).expect("allowed");
-    let radius = loop_spectral_radius(&scenario, gains, &shell).expect("found");
+    let radius = loop_spectral_radius(&scenario, gains, &config).expect("found");
     let flown = linearise_along(&scenario, &controller, 1).expect("flies");
     assert_eq!(flown.above_one, 1.0);
     let (worst, growth) = (flown.worst.expect("free"), flown.growth);
@@ -364,7 +365,7 @@ fn the_flight_of_a_nonlinear_aircraft_is_linearised_where_it_flies() {
 #[test]
 fn a_tuner_that_sees_the_rate_has_no_small_signals_along_its_flight() {
     let mut case = base();
-    case.settings.sees = Sees::ErrorAndRate;
+    case.settings.second_input = SecondInput::Rate;
     let refused = linearise_along(&case.scenario(), &case.controller(), 10);
     assert!(matches!(refused, Err(SimError::Structure)), "{refused:?}");
 }
@@ -376,7 +377,7 @@ fn rules_that_conclude_numbers_have_no_small_signals_along_a_flight() {
     let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
     let Controller::SelfTuning(fspid) = case.controller() else { panic!("self-tuning") };
     let tuner = SelfTuner::new(fspid.tuner().nominal(), supervisor, *fspid.tuner().settings());
-    let fspid = Fspid::new(tuner.expect("allowed"), *fspid.shell()).expect("allowed");
+    let fspid = Fspid::new(tuner.expect("allowed"), *fspid.config()).expect("allowed");
     let refused = linearise_along(&case.scenario(), &Controller::SelfTuning(fspid), 10);
     assert!(matches!(refused, Err(SimError::Structure)), "{refused:?}");
 }

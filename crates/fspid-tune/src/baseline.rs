@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fspid_core::Shell;
+use fspid_core::PidConfig;
 use fspid_sim::Controller;
 use fspid_study::file::{Extra, SettingPath, Template};
 use fspid_study::tuning::Free;
@@ -48,8 +48,8 @@ impl Baseline {
             });
         }
         let found = study.scenario.controllers.iter().find(|named| named.name == controller);
-        let shell = found.map(|named| *shell_of(&named.controller));
-        let options = Options { shell, ..*options };
+        let config = found.map(|named| *config_of(&named.controller));
+        let options = Options { config, ..*options };
         let is_self_tuning =
             found.is_some_and(|named| matches!(named.controller, Controller::SelfTuning(_)));
         let names = study.scenario.controllers.iter().map(|named| named.name.clone());
@@ -136,7 +136,7 @@ impl Baseline {
     }
 
     fn changes(&self, template: &Template) -> Vec<String> {
-        let Design { gains, shell, given, .. } = &self.design;
+        let Design { gains, config, given, .. } = &self.design;
         let nominal = match template
             .study()
             .scenario
@@ -154,13 +154,13 @@ impl Baseline {
         numbers
             .retain(|(key, gain)| key.ends_with("kp") || *gain != 0.0 || self.has(template, key));
         if given.rate_gain {
-            numbers.push(("rate_gain".to_owned(), shell.rate_gain_s));
+            numbers.push(("rate_gain".to_owned(), config.rate_gain_s));
         }
         if given.derivative_filter {
-            numbers.push(("derivative_filter_s".to_owned(), shell.derivative.filter_s));
+            numbers.push(("derivative_filter_s".to_owned(), config.derivative.filter_s));
         }
         if given.setpoint_weights {
-            let weights = shell.setpoint_weights;
+            let weights = config.setpoint_weights;
             numbers.push(("setpoint_weights.proportional".to_owned(), weights.proportional));
             numbers.push(("setpoint_weights.derivative".to_owned(), weights.derivative));
         }
@@ -190,9 +190,9 @@ impl Baseline {
     }
 }
 
-fn shell_of(controller: &Controller) -> &Shell<f64> {
+fn config_of(controller: &Controller) -> &PidConfig<f64> {
     match controller {
-        Controller::Fixed(pid) => pid.shell(),
-        Controller::SelfTuning(fspid) => fspid.shell(),
+        Controller::Fixed(pid) => pid.config(),
+        Controller::SelfTuning(fspid) => fspid.config(),
     }
 }

@@ -1,6 +1,6 @@
 //! The classical rules: against independently computed values, closed forms, textbooks, and their own honesty.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::spectral_radius;
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_study::analysis::{Analysis, Question};
@@ -131,14 +131,14 @@ fn placed_poles_need_the_gains_of_forty_digits_and_are_poles_of_the_closed_loop(
     for plant in PLANTS {
         let wanted = &reference(plant)["poles"];
         let number = |name: &str| wanted[name].as_f64().expect("a number");
-        let mut shell = Shell::sampled_every(0.01);
-        shell.derivative.filter_s = number("filter_s");
+        let mut config = PidConfig::sampled_every(0.01);
+        config.derivative.filter_s = number("filter_s");
         let poles = PoleOptions {
             damping: number("damping"),
             frequency_rad_s: Some(number("frequency_rad_s")),
             third: number("third"),
         };
-        let options = Options { shell: Some(shell), poles, ..in_form(Form::Pid) };
+        let options = Options { config: Some(config), poles, ..in_form(Form::Pid) };
         let found = made(&preset(plant), Rule::PolePlacement, &options);
         let Gains { kp, ki, kd } = found.gains;
         for (gain, wanted) in
@@ -162,7 +162,7 @@ fn quadratic_costs_are_least_where_an_independent_search_finds_them_least() {
         let found = made(&preset(plant), Rule::Lqr, &Options::default());
         let search = found.identified.search.expect("a search");
         assert_close(search.cost, &wanted["cost"], 1e-9, plant);
-        let gains = [found.gains.kp, found.gains.ki, found.shell.rate_gain_s];
+        let gains = [found.gains.kp, found.gains.ki, found.config.rate_gain_s];
         for (gain, wanted) in gains.into_iter().zip(wanted["gains"].as_array().expect("gains")) {
             // Around a minimum a cost of nine digits tells four of the gains.
             assert_close(gain, wanted, 2e-4, plant);
@@ -311,7 +311,7 @@ fn the_itae_polynomial_is_that_of_the_closed_model() {
     for (found, wanted) in polynomial.into_iter().zip(wanted) {
         assert!(close(found, wanted, 1e-12), "{found} {wanted}");
     }
-    assert!(found.shell.setpoint_weights.proportional.abs() < f64::EPSILON);
+    assert!(found.config.setpoint_weights.proportional.abs() < f64::EPSILON);
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn every_design_says_of_its_loop_what_the_analysis_says_of_the_pasted_scenario()
                     panic!("{controller}")
                 };
                 assert_eq!(named.controller.nominal(), found.gains);
-                assert_eq!(named.controller.shell(), &found.shell);
+                assert_eq!(named.controller.config(), &found.config);
                 let stable = found.outcome.margins().is_ok();
                 let poor = found.outcome.margins().is_ok_and(|margins| margins.are_poor());
                 let place = match found.verdict {
@@ -388,8 +388,8 @@ fn a_relay_settles_behind_a_noisy_sensor_too() {
 
 #[test]
 fn a_rate_loop_is_part_of_the_process_and_lets_the_rules_go_further() {
-    let shell = Shell { rate_gain_s: 1.5, ..Shell::sampled_every(0.01) };
-    let with = Options { shell: Some(shell), ..in_form(Form::Pi) };
+    let config = PidConfig { rate_gain_s: 1.5, ..PidConfig::sampled_every(0.01) };
+    let with = Options { config: Some(config), ..in_form(Form::Pi) };
     let (bare, damped) = (
         made(&preset("ctms-pitch"), Rule::TyreusLuyben, &in_form(Form::Pi)),
         made(&preset("ctms-pitch"), Rule::TyreusLuyben, &with),
@@ -423,8 +423,8 @@ fn loops_without_what_a_rule_needs_are_refused_with_a_reason() {
     let mut quick = default;
     quick.relay.longest_s = 3.0;
     assert!(refused(&preset("b747-paper"), Rule::AutotuneRelay, &quick).contains("did not settle"));
-    let shell = Some(Shell::sampled_every(0.02));
-    let other = Options { shell, ..default };
+    let config = Some(PidConfig::sampled_every(0.02));
+    let other = Options { config, ..default };
     let found = design(&preset("b747-paper"), Rule::Lqr, &other);
     assert!(matches!(found, Err(RuleError::SamplePeriod { .. })), "{found:?}");
 }
@@ -446,7 +446,7 @@ fn a_plant_that_no_proportional_gain_holds_is_held_by_the_quadratic_cost() {
     let double = study(&coefficients("1.0", "1.0, 0.0, 0.0"), SERVO);
     let found = made(&double, Rule::Lqr, &Options::default());
     assert!(found.outcome.is_held() && found.identified.ultimate.is_none(), "{}", found.text());
-    assert!(found.shell.rate_gain_s > 0.0);
+    assert!(found.config.rate_gain_s > 0.0);
 }
 
 #[test]
@@ -515,10 +515,10 @@ proptest! {
             Ok(found) => found.identified.ultimate.expect("an ultimate point"),
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
         };
-        let shell = Shell::sampled_every(0.01);
+        let config = PidConfig::sampled_every(0.01);
         let plant = study.scenario.plant.linear().expect("linear");
-        let memory = Memory::of_gains(Gains::ZERO, &shell);
-        let model = LoopModel::of(&study.scenario, plant, &shell, memory).expect("a loop");
+        let memory = Memory::of_gains(Gains::ZERO, &config);
+        let model = LoopModel::of(&study.scenario, plant, &config, memory).expect("a loop");
         let radius = |factor: f64| {
             let gains = Gains { kp: factor * point.gain, ..Gains::ZERO };
             spectral_radius(&model.closed_matrix(gains).expect("finite")).expect("converges")

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{Fspid, Gains, Pid, Sample, SelfTuner, Shell, State, TunerSettings};
+use fspid_core::{Fspid, Gains, Pid, PidConfig, Sample, SelfTuner, State, TunerSettings};
 use fspid_numeric::Real;
 
 const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
@@ -48,19 +48,19 @@ pub(crate) fn error<R: Real>(error: R) -> Sample<R> {
     Sample { setpoint_rad: error, measurement_rad: R::ZERO, rate_rad_s: R::ZERO }
 }
 
-pub(crate) fn pid<R: Real>(gains: Gains<R>, shell: Shell<R>) -> Pid<R> {
-    Pid::new(gains, shell).expect("allowed settings")
+pub(crate) fn pid<R: Real>(gains: Gains<R>, config: PidConfig<R>) -> Pid<R> {
+    Pid::new(gains, config).expect("allowed settings")
 }
 
-pub(crate) fn fspid<R: Real>(settings: TunerSettings<R>, shell: Shell<R>) -> Fspid<R> {
-    Fspid::new(tuner(settings), shell).expect("allowed settings")
+pub(crate) fn fspid<R: Real>(settings: TunerSettings<R>, config: PidConfig<R>) -> Fspid<R> {
+    Fspid::new(tuner(settings), config).expect("allowed settings")
 }
 
 /// The integral's term of the command that `state` remembers: the answer to a zero error of a
 /// controller that has nothing but `ki` and no limits. Works on a copy.
-pub(crate) fn integral_term<R: Real>(state: &State<R>, ki: R, shell: Shell<R>) -> R {
-    let mut bare = Shell::sampled_every(shell.dt_s);
-    bare.integral = shell.integral;
+pub(crate) fn integral_term<R: Real>(state: &State<R>, ki: R, config: PidConfig<R>) -> R {
+    let mut bare = PidConfig::sampled_every(config.dt_s);
+    bare.integral = config.integral;
     let only_ki = Gains { ki, ..Gains::ZERO };
     let mut copy = *state;
     pid(only_ki, bare).step(&mut copy, error(R::ZERO)).command_rad

@@ -21,12 +21,12 @@ pub(super) fn order(
     let needs: Vec<_> =
         definitions.iter().map(|definition| needs(definition.kind, names)).collect();
     let mut waiting: Vec<usize> = needs.iter().map(BTreeSet::len).collect();
-    let followers = followers(&needs);
+    let gain_coupling = gain_coupling(&needs);
     let mut ready: BTreeSet<usize> = indices_of_zero(&waiting).collect();
     let mut order = Vec::with_capacity(needs.len());
     while let Some(next) = ready.pop_first() {
         order.push(next);
-        for &follower in followers.get(next).into_iter().flatten() {
+        for &follower in gain_coupling.get(next).into_iter().flatten() {
             if let Some(count) = waiting.get_mut(follower) {
                 *count -= 1;
                 if *count == 0 {
@@ -45,16 +45,16 @@ fn indices_of_zero(counts: &[usize]) -> impl Iterator<Item = usize> {
     counts.iter().enumerate().filter(|&(_, &count)| count == 0).map(|(index, _)| index)
 }
 
-fn followers(needs: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
-    let mut followers = vec![Vec::new(); needs.len()];
+fn gain_coupling(needs: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
+    let mut gain_coupling = vec![Vec::new(); needs.len()];
     for (index, needed) in needs.iter().enumerate() {
         for &need in needed {
-            if let Some(list) = followers.get_mut(need) {
+            if let Some(list) = gain_coupling.get_mut(need) {
                 list.push(index);
             }
         }
     }
-    followers
+    gain_coupling
 }
 
 /// Variables that a value is made of; unknown ones are told elsewhere.

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
 use super::error::{Problem, SystemError};
-use super::output::{Actors, Outline, Plan};
+use super::output::{Activations, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
     Variable,
@@ -72,7 +72,7 @@ pub(crate) struct ResolvedOutput {
     pub(crate) conclusions: Vec<usize>,
     pub(crate) plan: Plan,
     /// Who concludes what about it.
-    pub(crate) actors: Actors,
+    pub(crate) actors: Activations,
     /// Its sets, if they make a polygon.
     pub(crate) outline: Option<Outline>,
 }
@@ -115,7 +115,7 @@ impl System {
             let resolved: Vec<_> = own.iter().filter_map(|&i| conclusions.get(i)).collect();
             let blocks = resolved.iter().filter_map(|c| parts.blocks.get(c.block));
             let blocks: Vec<_> = blocks.collect();
-            let actors = Actors::of(output, &resolved, &blocks);
+            let actors = Activations::of(output, &resolved, &blocks);
             let outline = Outline::of(output, &actors);
             let plan = Plan::new(output, &actors, outline.as_ref());
             ResolvedOutput { plan, actors, outline, conclusions: own }

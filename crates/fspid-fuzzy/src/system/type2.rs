@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, SetReading};
 use super::firing::hedged;
-use super::output::{Joined, Outline, Room, roomy_clone, value};
+use super::output::{AggregatedSet, Outline, Room, roomy_clone, value};
 use super::parts::{Activation, Variable};
 use super::parts::{Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement};
 use super::program::{STACK, Step};
@@ -333,7 +333,7 @@ fn samples(output: &Output) -> Option<SampleGrid> {
     }
 }
 
-fn copy(joined: &Joined, straight: &mut Vec<Straight>) {
+fn copy(joined: &AggregatedSet, straight: &mut Vec<Straight>) {
     straight.clear();
     let pieces = joined.pieces().iter();
     straight.extend(pieces.map(|piece| Straight { x: piece.x, grade: piece.grade }));

@@ -1,4 +1,4 @@
-//! Joined sets as polygons, and what is read off them.
+//! AggregatedSet sets as polygons, and what is read off them.
 
 use fspid_fuzzy::norm::TNormKind;
 use fspid_fuzzy::system::{Defuzzifier, Parts, Sampling, Source};

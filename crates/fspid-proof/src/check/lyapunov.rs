@@ -32,7 +32,7 @@ pub fn is_positive(p: &Matrix) -> Result<(), NotProved> {
 /// # Errors
 /// [`NotProved`] where shapes do not fit, an entry is not finite, P or Q is not symmetric, rate or τ
 /// is not allowed, or the difference could not be shown to be positive definite.
-pub fn falls(
+pub fn decreases(
     p: &Matrix,
     rate: f64,
     matrix: &IntervalMatrix,
@@ -47,11 +47,11 @@ pub fn falls(
 /// $$ \rho^2 P_{\text{now}} - M^T P_{\text{next}} M - \tau Q \succ 0 $$
 ///
 /// for every M inside `matrix`; for Lyapunov functions that change with what changes in the loop. All
-/// else is as in [`falls`]; of the two matrices only the first is proved to be positive definite.
+/// else is as in [`decreases`]; of the two matrices only the first is proved to be positive definite.
 ///
 /// # Errors
-/// As [`falls`].
-pub fn falls_between(
+/// As [`decreases`].
+pub fn decreases_between(
     p_now: &Matrix,
     p_next: &Matrix,
     rate: f64,

@@ -234,7 +234,7 @@ impl<'a> Held<'a> {
 fn units(fspid: &Fspid<f64>) -> [Interval; 2] {
     let settings = fspid.tuner().settings();
     let time_s = match settings.change {
-        Change::Rate => Interval::point(fspid.shell().dt_s),
+        Change::Rate => Interval::point(fspid.config().dt_s),
         Change::Delta => Interval::ONE,
     };
     let scale = settings.input_scale;

@@ -83,7 +83,7 @@ impl Prover<'_> {
     fn changes_of_law(&self, set: &GainSet) -> Option<[f64; 3]> {
         let rates = set.rate_per_s?;
         let sides = Sides::of(set);
-        let dt_s = self.description.controller.shell().dt_s;
+        let dt_s = self.description.controller.config().dt_s;
         Some([0, 1, 2].map(|gain: usize| {
             let (_, half) = sides.centre_and_half(gain);
             if sides.moving.contains(&gain) { GRANTED * dt_s * rates[gain] / half } else { 0.0 }

@@ -6,9 +6,9 @@ use crate::certificate::{Certificate, Claim};
 impl Prover<'_> {
     /// The largest output scale that can be proved, by halving.
     pub(super) fn largest(&self, verdict: &Verdict) -> Largest {
-        let tied = !matches!(
+        let s_procedure = !matches!(
             verdict,
-            Verdict::Proved(Certificate { claim: Claim::AnySpeed { .. }, .. }, _)
+            Verdict::Proved(Certificate { claim: Claim::CommonQuadratic { .. }, .. }, _)
         );
         let mut largest = Largest { proved: 0.0, not_proved: None, certificate: None };
         if self.tuned().is_none() {
@@ -23,22 +23,22 @@ impl Prover<'_> {
             largest.not_proved = Some(1.0);
         }
         while largest.not_proved.is_none() && next <= self.effort.largest_factor {
-            self.ask(&mut largest, next, tied);
+            self.ask(&mut largest, next, s_procedure);
             next *= 2.0;
         }
         for _ in 0..self.effort.halvings {
             let Some(above) = largest.not_proved else { break };
             let middle = 0.5 * (largest.proved + above);
-            self.ask(&mut largest, middle, tied);
+            self.ask(&mut largest, middle, s_procedure);
         }
         largest
     }
 
-    pub(super) fn ask(&self, largest: &mut Largest, factor: f64, tied: bool) {
+    pub(super) fn ask(&self, largest: &mut Largest, factor: f64, s_procedure: bool) {
         let set = self.set(factor);
-        let at_any_speed = self.any_speed(&set, factor, false);
-        let found =
-            at_any_speed.or_else(|| if tied { self.tied(&set, factor, false) } else { None });
+        let common_quadratic = self.common_quadratic(&set, factor, false);
+        let found = common_quadratic
+            .or_else(|| if s_procedure { self.s_procedure(&set, factor, false) } else { None });
         match found {
             Some((certificate, _)) => {
                 largest.proved = factor;

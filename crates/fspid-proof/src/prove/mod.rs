@@ -18,7 +18,7 @@ use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
-use crate::recheck::{Doubt, Kept, Recheck, Rechecked};
+use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 
@@ -64,7 +64,7 @@ pub struct Outcome {
     /// largest that was found.
     pub instead: Option<(Certificate, Rechecked)>,
     /// Why the answer is neither, where that is known.
-    pub open_because: Option<Doubt>,
+    pub open_because: Option<RecheckError>,
     /// Bounds of every gain that the controller can have.
     pub bounds: [Interval; 3],
     /// The largest output scale that was proved, as a factor on the loop's own.
@@ -139,7 +139,7 @@ struct Prover<'a> {
     /// Found where they are asked for.
     slopes: KnownSlopes,
     /// The least remainder of a proof that was given up because too much remains.
-    too_much: RefCell<Option<Doubt>>,
+    too_much: RefCell<Option<RecheckError>>,
 }
 
 impl<'a> Prover<'a> {
@@ -248,17 +248,17 @@ impl<'a> Prover<'a> {
     }
 
     /// Why nothing is proved of the range, where that is known.
-    fn doubt(&self, set: &GainSet) -> Option<Doubt> {
-        self.rest(set).err().map(Doubt::Rest).or_else(|| self.too_much.borrow().clone())
+    fn doubt(&self, set: &GainSet) -> Option<RecheckError> {
+        self.rest(set).err().map(RecheckError::Rest).or_else(|| self.too_much.borrow().clone())
     }
 
     /// Keeps the doubt that too much remains in the loop as it is, over the whole range.
-    fn note(&self, factor: f64, doubt: &Doubt) {
-        let Doubt::Remains(remains) = doubt else { return };
+    fn note(&self, factor: f64, doubt: &RecheckError) {
+        let RecheckError::Remains(remains) = doubt else { return };
         let whole = factor.to_bits() == 1.0_f64.to_bits() && self.range == self.asked.range;
         let mut least = self.too_much.borrow_mut();
         let better = match &*least {
-            Some(Doubt::Remains(known)) => remains.remains_rad < known.remains_rad,
+            Some(RecheckError::Remains(known)) => remains.remains_rad < known.remains_rad,
             _ => true,
         };
         if whole && better {
@@ -273,10 +273,10 @@ impl<'a> Prover<'a> {
         factor: f64,
         best_rate: bool,
     ) -> Option<(Certificate, Rechecked)> {
-        if let Some(found) = self.any_speed(set, factor, best_rate) {
+        if let Some(found) = self.common_quadratic(set, factor, best_rate) {
             return Some(found);
         }
-        self.tied(set, factor, best_rate)
+        self.s_procedure(set, factor, best_rate)
     }
 
     /// The prover of the same loop for another range of set-points and loads.

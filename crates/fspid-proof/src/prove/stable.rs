@@ -14,7 +14,7 @@ use crate::solve::{self, Condition, Problem};
 const THINNED: f64 = 0.03;
 
 impl Prover<'_> {
-    pub(super) fn any_speed(
+    pub(super) fn common_quadratic(
         &self,
         set: &GainSet,
         factor: f64,
@@ -29,7 +29,7 @@ impl Prover<'_> {
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let form = solution.p;
             let level = self.level(&corners, (&form, &rest));
-            (Claim::AnySpeed { form, rate }, level)
+            (Claim::CommonQuadratic { form, rate }, level)
         })
     }
 
@@ -40,7 +40,7 @@ impl Prover<'_> {
     }
 
     /// As the memoryless law ties the gains to the error; not for gains that remember.
-    pub(super) fn tied(
+    pub(super) fn s_procedure(
         &self,
         set: &GainSet,
         factor: f64,
@@ -70,7 +70,7 @@ impl Prover<'_> {
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let solve::Solution { p: form, multipliers, .. } = solution;
             let level = self.level(&corners, (&form, &rest));
-            (Claim::Tied { form, rate, multipliers }, level)
+            (Claim::SProcedure { form, rate, multipliers }, level)
         })
     }
 

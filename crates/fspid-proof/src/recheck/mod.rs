@@ -13,7 +13,7 @@ use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
-use crate::check::{IntervalMatrix, NotProved, falls, is_positive, prove_growth};
+use crate::check::{IntervalMatrix, NotProved, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
@@ -68,7 +68,7 @@ struct Proved {
 
 /// Why a certificate is not believed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Doubt {
+pub enum RecheckError {
     /// The loop is not one that a proof can speak of.
     NotProvable(NotProvable),
     /// An inequality does not hold, or not with certainty.
@@ -93,7 +93,7 @@ pub enum Doubt {
     },
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for RecheckError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotProvable(reason) => reason.fmt(f),
@@ -113,39 +113,39 @@ impl fmt::Display for Doubt {
     }
 }
 
-impl core::error::Error for Doubt {}
+impl core::error::Error for RecheckError {}
 
-impl From<WrongSizes> for Doubt {
+impl From<WrongSizes> for RecheckError {
     fn from(wrong: WrongSizes) -> Self {
         Self::Sizes(wrong)
     }
 }
 
-impl From<NotProvable> for Doubt {
+impl From<NotProvable> for RecheckError {
     fn from(reason: NotProvable) -> Self {
         Self::NotProvable(reason)
     }
 }
 
-impl From<NoRest> for Doubt {
+impl From<NoRest> for RecheckError {
     fn from(reason: NoRest) -> Self {
         Self::Rest(reason)
     }
 }
 
-impl From<NoSlopes> for Doubt {
+impl From<NoSlopes> for RecheckError {
     fn from(reason: NoSlopes) -> Self {
         Self::Held(reason)
     }
 }
 
-impl From<Remains> for Doubt {
+impl From<Remains> for RecheckError {
     fn from(remains: Remains) -> Self {
         Self::Remains(remains)
     }
 }
 
-impl From<NotProved> for Doubt {
+impl From<NotProved> for RecheckError {
     fn from(reason: NotProved) -> Self {
         Self::Inequality { gains: None, reason }
     }
@@ -155,8 +155,8 @@ impl Certificate {
     /// Proves the claim anew, from the description alone.
     ///
     /// # Errors
-    /// [`Doubt`] with the first inequality that is not proved.
-    pub fn check(&self) -> Result<Rechecked, Doubt> {
+    /// [`RecheckError`] with the first inequality that is not proved.
+    pub fn check(&self) -> Result<Rechecked, RecheckError> {
         Recheck::of(self)?.run()
     }
 }
@@ -174,18 +174,18 @@ pub(crate) struct Recheck<'a> {
     off_rad: f64,
 }
 
-fn malformed(what: &'static str) -> Doubt {
-    Doubt::Malformed { what }
+fn malformed(what: &'static str) -> RecheckError {
+    RecheckError::Malformed { what }
 }
 
-fn allowed_rate(rate: f64) -> Result<(), Doubt> {
+fn allowed_rate(rate: f64) -> Result<(), RecheckError> {
     let good = rate > 0.0 && rate <= 1.0;
     good.then_some(()).ok_or(malformed("the rate is not above 0 and at most 1"))
 }
 
 impl<'a> Recheck<'a> {
     /// Everything enclosed anew from the description.
-    fn of(certificate: &'a Certificate) -> Result<Self, Doubt> {
+    fn of(certificate: &'a Certificate) -> Result<Self, RecheckError> {
         if !(certificate.output_factor >= 0.0 && certificate.output_factor.is_finite()) {
             return Err(malformed("the output factor is not 0 or more"));
         }
@@ -207,7 +207,7 @@ impl<'a> Recheck<'a> {
         model: LoopModel<Interval>,
         set: GainSet,
         known: &KnownSlopes,
-    ) -> Result<Self, Doubt> {
+    ) -> Result<Self, RecheckError> {
         if !certificate.range.is_allowed() {
             return Err(malformed("set-points and loads are not two finite numbers, 0 or more"));
         }
@@ -227,7 +227,7 @@ impl<'a> Recheck<'a> {
         Ok(Self { certificate, model, set, rest, held, off_rad })
     }
 
-    pub(crate) fn run(&self) -> Result<Rechecked, Doubt> {
+    pub(crate) fn run(&self) -> Result<Rechecked, RecheckError> {
         // Also of what the solver found: what is written must be read again.
         sizes::check(self.certificate)?;
         let description = &self.certificate.description;
@@ -251,15 +251,15 @@ impl<'a> Recheck<'a> {
         })
     }
 
-    fn proved(&self) -> Result<Proved, Doubt> {
+    fn proved(&self) -> Result<Proved, RecheckError> {
         let only = |inequalities| Proved { inequalities, ..Proved::default() };
         match &self.certificate.claim {
-            Claim::AnySpeed { form, rate } => {
-                let proved = self.any_speed(form, *rate)?;
+            Claim::CommonQuadratic { form, rate } => {
+                let proved = self.common_quadratic(form, *rate)?;
                 self.with_pitch(proved, (form, *rate))
             }
-            Claim::Tied { form, rate, multipliers } => {
-                let proved = self.tied(form, *rate, multipliers)?;
+            Claim::SProcedure { form, rate, multipliers } => {
+                let proved = self.s_procedure(form, *rate, multipliers)?;
                 self.with_pitch(proved, (form, *rate))
             }
             Claim::BoundedRate(claim) => self.bounded_rate(claim),
@@ -276,7 +276,7 @@ impl<'a> Recheck<'a> {
         &self,
         inequalities: usize,
         (form, rate): (&Matrix, f64),
-    ) -> Result<Proved, Doubt> {
+    ) -> Result<Proved, RecheckError> {
         let level = self.certificate.level;
         let within = |level| limits::pitch_within(&self.model, form, level);
         let pitch_within_rad = level.and_then(within);
@@ -286,11 +286,11 @@ impl<'a> Recheck<'a> {
     }
 
     /// The closed loop at gains.
-    fn closed(&self, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
+    fn closed(&self, gains: Gains<Interval>) -> Result<IntervalMatrix, RecheckError> {
         closed(&self.model, gains)
     }
 
-    fn form(&self, form: &Matrix, rate: f64) -> Result<(), Doubt> {
+    fn form(&self, form: &Matrix, rate: f64) -> Result<(), RecheckError> {
         allowed_rate(rate)?;
         if (form.rows(), form.columns()) != (self.model.size(), self.model.size()) {
             return Err(malformed("the form has another size than the loop's state"));
@@ -304,25 +304,30 @@ impl<'a> Recheck<'a> {
         HeldGains { gains, change_gain }: HeldGains,
         (form, rate): (&Matrix, f64),
         region: Option<(f64, &IntervalMatrix)>,
-    ) -> Result<usize, Doubt> {
-        let doubt = |reason| Doubt::Inequality { gains: Some(gains), reason };
+    ) -> Result<usize, RecheckError> {
+        let doubt = |reason| RecheckError::Inequality { gains: Some(gains), reason };
         let at = points(gains);
         let model = self.model.with_change_gain(Interval::point(change_gain));
-        falls(form, rate, &closed(&model, at)?, region).map_err(doubt)?;
+        decreases(form, rate, &closed(&model, at)?, region).map_err(doubt)?;
         let Some(level) = self.certificate.level else { return Ok(1) };
         let description = &self.certificate.description;
         let limits = limits::prove(description, &model, at, (form, level, &self.rest));
         Ok(1 + limits.map_err(doubt)?)
     }
 
-    fn any_speed(&self, form: &Matrix, rate: f64) -> Result<usize, Doubt> {
+    fn common_quadratic(&self, form: &Matrix, rate: f64) -> Result<usize, RecheckError> {
         self.form(form, rate)?;
         let holds = |(_, gains)| self.holds(gains, (form, rate), None);
-        let proved = self.held.held_corners().map(holds).sum::<Result<usize, Doubt>>()?;
+        let proved = self.held.held_corners().map(holds).sum::<Result<usize, RecheckError>>()?;
         Ok(1 + proved)
     }
 
-    fn tied(&self, form: &Matrix, rate: f64, multipliers: &[f64]) -> Result<usize, Doubt> {
+    fn s_procedure(
+        &self,
+        form: &Matrix,
+        rate: f64,
+        multipliers: &[f64],
+    ) -> Result<usize, RecheckError> {
         self.form(form, rate)?;
         let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
             return Err(malformed("fixed gains are tied to nothing"));
@@ -359,7 +364,7 @@ impl<'a> Recheck<'a> {
         inputs: &[[f64; 2]],
         factor: f64,
         (form, direction): (&Matrix, &[f64]),
-    ) -> Result<usize, Doubt> {
+    ) -> Result<usize, RecheckError> {
         if !(factor >= 1.0 && factor.is_finite()) {
             return Err(malformed("the factor of the growth is below 1"));
         }
@@ -378,7 +383,10 @@ impl<'a> Recheck<'a> {
     }
 }
 
-fn closed(model: &LoopModel<Interval>, gains: Gains<Interval>) -> Result<IntervalMatrix, Doubt> {
+fn closed(
+    model: &LoopModel<Interval>,
+    gains: Gains<Interval>,
+) -> Result<IntervalMatrix, RecheckError> {
     let rows = model.closed(gains);
     IntervalMatrix::from_rows(&rows).map_err(|error| NotProved::from(error).into())
 }
@@ -407,7 +415,7 @@ fn points(gains: Gains<f64>) -> Gains<Interval> {
 pub(crate) fn input_rows<T: Scalar>(model: &LoopModel<T>, fspid: &Fspid<f64>) -> [Vec<T>; 2] {
     let settings = fspid.tuner().settings();
     let time_s = match settings.change {
-        Change::Rate => T::constant(model.settings().shell.dt_s),
+        Change::Rate => T::constant(model.settings().config.dt_s),
         Change::Delta => T::one(),
     };
     let by_error = T::constant(settings.input_scale.error_per_rad);

@@ -8,7 +8,7 @@ use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 
-use super::{Doubt, Kept, Proved, Recheck, allowed_rate, input_rows, malformed};
+use super::{Kept, Proved, Recheck, RecheckError, allowed_rate, input_rows, malformed};
 use crate::certificate::BoundedRate;
 use crate::check::{
     Ends, IntervalMatrix, Moving, MovingProof, NotProved, NotProvedAt, falls_while_moving,
@@ -30,7 +30,7 @@ pub(crate) struct GainBox {
 
 impl GainBox {
     /// The box of a claim if it holds every gain of a set.
-    fn of(claim: &BoundedRate, set: &GainSet) -> Result<Self, Doubt> {
+    fn of(claim: &BoundedRate, set: &GainSet) -> Result<Self, RecheckError> {
         let side =
             |[lower, upper]: [f64; 2]| Interval::new(lower, upper).filter(|s| s.is_bounded());
         let [Some(kp), Some(ki), Some(kd)] = claim.ends.map(side) else {
@@ -86,7 +86,7 @@ impl GainBox {
 
     /// The loop at the centre of the gains that move, with all others between their ends; then what a half
     /// width of each gain that moves adds.
-    fn loops(&self, closed: &Closed<'_>) -> Result<Vec<IntervalMatrix>, Doubt> {
+    fn loops(&self, closed: &Closed<'_>) -> Result<Vec<IntervalMatrix>, RecheckError> {
         let mut centre = self.ends;
         let mut unit = [Interval::ZERO; 3];
         for &gain in &self.moving {
@@ -104,7 +104,7 @@ impl GainBox {
     }
 }
 
-type Closed<'a> = dyn Fn([Interval; 3]) -> Result<IntervalMatrix, Doubt> + 'a;
+type Closed<'a> = dyn Fn([Interval; 3]) -> Result<IntervalMatrix, RecheckError> + 'a;
 
 /// A moving form that was proved to fall.
 pub(crate) struct Fall {
@@ -126,7 +126,7 @@ impl Corner {
 
 impl Fall {
     /// The corners of all cells: what is affine in the gains and holds there holds for the whole set.
-    pub(crate) fn corners(&self, claim: &BoundedRate) -> Result<Vec<Corner>, Doubt> {
+    pub(crate) fn corners(&self, claim: &BoundedRate) -> Result<Vec<Corner>, RecheckError> {
         let moving = &self.gain_box.moving;
         let mut places: Vec<Vec<f64>> = Vec::new();
         for cell in &self.proof.cells {
@@ -143,7 +143,7 @@ impl Fall {
         places.iter().map(|place| self.corner(claim, place)).collect()
     }
 
-    fn corner(&self, claim: &BoundedRate, place: &[f64]) -> Result<Corner, Doubt> {
+    fn corner(&self, claim: &BoundedRate, place: &[f64]) -> Result<Corner, RecheckError> {
         let mut form = IntervalMatrix::from(&claim.forms[0]);
         for (&gain, &count) in self.gain_box.moving.iter().zip(place) {
             let by_gain = IntervalMatrix::from(&claim.forms[gain + 1]);
@@ -169,7 +169,7 @@ impl Fall {
 
 impl Recheck<'_> {
     /// Proves a claim with all that comes with it.
-    pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<Proved, Doubt> {
+    pub(super) fn bounded_rate(&self, claim: &BoundedRate) -> Result<Proved, RecheckError> {
         // With an error that stays, bounds of the inputs around zero are none around rest.
         if !self.rest.held.is_none() || self.rest.error_rad > 0.0 {
             return Err(malformed(
@@ -199,7 +199,7 @@ impl Recheck<'_> {
     }
 
     /// Proves the fall for every gain of the set and every motion that is as slow as claimed.
-    pub(crate) fn moving_fall(&self, claim: &BoundedRate) -> Result<Fall, Doubt> {
+    pub(crate) fn moving_fall(&self, claim: &BoundedRate) -> Result<Fall, RecheckError> {
         allowed_rate(claim.rate)?;
         let size = self.model.size();
         if claim.forms.iter().any(|form| (form.rows(), form.columns()) != (size, size)) {
@@ -221,7 +221,7 @@ impl Recheck<'_> {
     /// Whether the law itself keeps the gains to the rate, whatever the flight.
     fn keeps_everywhere(&self, claim: &BoundedRate, fall: &Fall) -> bool {
         let allowed = fall.allowed(claim);
-        let dt_s = Interval::point(self.model.settings().shell.dt_s);
+        let dt_s = Interval::point(self.model.settings().config.dt_s);
         let Some(rates) = self.set.rate_per_s else { return allowed.is_empty() };
         let keeps = |&(gain, most): &(usize, Interval)| {
             (dt_s * Interval::point(rates[gain])).upper() <= most.lower()
@@ -240,7 +240,7 @@ impl Recheck<'_> {
         fall: &Fall,
         corners: &[Corner],
         level: f64,
-    ) -> Result<usize, Doubt> {
+    ) -> Result<usize, RecheckError> {
         let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
             return Err(malformed("fixed gains have no rate"));
         };
@@ -269,13 +269,13 @@ impl Recheck<'_> {
             rows.retain(|(row, _)| row.iter().any(|entry| entry.magnitude() > 0.0));
             let gains = Some(middles(corner.gains));
             inside_limits(&corner.form, level, &rows)
-                .map_err(|reason| Doubt::Inequality { gains, reason })?;
+                .map_err(|reason| RecheckError::Inequality { gains, reason })?;
         }
         Ok(corners.len() * (2 + 4 * allowed.len()))
     }
 
     /// Proves that no limit acts within a level.
-    fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, Doubt> {
+    fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, RecheckError> {
         let mut proved = 0;
         for corner in corners {
             let rows =
@@ -283,7 +283,7 @@ impl Recheck<'_> {
             proved += rows.len();
             let gains = Some(middles(corner.gains));
             inside_limits(&corner.form, level, &rows)
-                .map_err(|reason| Doubt::Inequality { gains, reason })?;
+                .map_err(|reason| RecheckError::Inequality { gains, reason })?;
         }
         Ok(proved)
     }
@@ -337,12 +337,12 @@ pub(crate) fn part_in(cells: &[Ends], cell: &Ends) -> Option<Ends> {
     cells.iter().filter_map(common).reduce(hull)
 }
 
-fn doubt(gain_box: &GainBox, failed: NotProvedAt) -> Doubt {
+fn doubt(gain_box: &GainBox, failed: NotProvedAt) -> RecheckError {
     let NotProvedAt { gains, reason } = failed;
     if gains.is_empty() {
         return reason.into();
     }
     let sides: Vec<[f64; 2]> = gains.iter().map(|&gain| [gain, gain]).collect();
     let [kp, ki, kd] = gain_box.gains(&sides).map(|gain| gain.midpoint());
-    Doubt::Inequality { gains: Some(Gains { kp, ki, kd }), reason }
+    RecheckError::Inequality { gains: Some(Gains { kp, ki, kd }), reason }
 }

@@ -15,7 +15,7 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::BreakPoint;
 
-use super::{Doubt, Recheck, malformed, points};
+use super::{Recheck, RecheckError, malformed, points};
 use crate::check::{IntervalMatrix, NotProved, reach};
 use crate::gain_set::HeldGains;
 use crate::scope::Range;
@@ -78,7 +78,7 @@ impl Recheck<'_> {
     }
 
     /// Proves how far the pitch angle may stay from rest, rad.
-    pub(super) fn remains(&self, form: &Matrix, rate: f64) -> Result<f64, Doubt> {
+    pub(super) fn remains(&self, form: &Matrix, rate: f64) -> Result<f64, RecheckError> {
         if self.off_rad == 0.0 && !self.is_blurred() {
             return Ok(0.0);
         }
@@ -107,7 +107,7 @@ impl Recheck<'_> {
     }
 
     /// The same for gains that stand still, with what each sample leaves at all later ones; infinite for others.
-    fn sample_by_sample(&self, form: &Matrix, rate: f64) -> Result<f64, Doubt> {
+    fn sample_by_sample(&self, form: &Matrix, rate: f64) -> Result<f64, RecheckError> {
         let Controller::Fixed(pid) = &self.certificate.description.controller else {
             return Ok(f64::INFINITY);
         };
@@ -129,7 +129,7 @@ impl Recheck<'_> {
     }
 
     /// The most that a sample adds, in the norm of the form.
-    fn added(&self, form: &Matrix) -> Result<f64, Doubt> {
+    fn added(&self, form: &Matrix) -> Result<f64, RecheckError> {
         let own = Norm(IntervalMatrix::from(form));
         let norm = |column: &[Interval]| own.of(column);
         let of_command = norm(&self.model.by_command())? * Interval::point(self.off_rad);

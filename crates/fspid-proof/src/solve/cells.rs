@@ -97,7 +97,7 @@ pub(super) fn survey(
         let cell = Cell::between(&ends);
         let products = Products::of(family, forms, &cell);
         survey.cells += 1;
-        let failing = || motions.iter().find(|motion| !products.falls(motion, level));
+        let failing = || motions.iter().find(|motion| !products.decreases(motion, level));
         let motion = if products.is_positive() { failing() } else { motions.first() };
         let Some(motion) = motion else { continue };
         let point = cell.centre.iter().map(|&gain| [gain, gain]).collect();
@@ -190,7 +190,7 @@ impl<'a> Products<'a> {
     }
 
     /// Whether all Bernstein coefficients of the difference are positive definite.
-    fn falls(&self, motion: &Motion, level: f64) -> bool {
+    fn decreases(&self, motion: &Motion, level: f64) -> bool {
         let mut coefficients = self.powers(motion, level);
         for gain in 0..self.gains() {
             to_bernstein(&mut coefficients, POWERS.pow(gain as u32));
@@ -317,13 +317,13 @@ mod tests {
     fn a_form_that_moves_too_much_for_the_motion_does_not_fall() {
         // A loop that keeps 0.97 of its state; 1 + 0.9 κ grows from 0.1 to 0.37 when κ leaves -1 by 0.3.
         let moving = scalars(&[1.0, 0.9]);
-        let falls = |change: f64| {
+        let decreases = |change: f64| {
             let motions = Motion::extremes(&[change]);
             survey(&family(0.97, 0.97), &moving, &motions, 1.0, &|cell| Some(cell.clone()))
                 .failures
                 .is_empty()
         };
-        assert!(falls(0.0) && !falls(0.3));
+        assert!(decreases(0.0) && !decreases(0.3));
     }
 
     #[test]

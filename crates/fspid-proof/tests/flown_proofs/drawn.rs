@@ -2,7 +2,8 @@
 
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights,
+    TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_sim::actuator::{Actuator, Lag};
@@ -74,8 +75,8 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
     let (numerator, mut denominator) = (bent(numerator), bent(denominator));
     denominator[0] = 1.0;
     let plant = LinearPlant::new(&numerator, &denominator, ElevatorSign::NoseDownPositive);
-    let shell = shell(dice, dt_s, size);
-    let controller = controller(dice, shell, size);
+    let config = config(dice, dt_s, size);
+    let controller = controller(dice, config, size);
     let load =
         Disturbance::new(Entry::Elevator, dice.between(0.0, 5.0) * DEG, Shape::Step { at_s: 1.0 });
     // Up to what no servo here holds.
@@ -141,7 +142,7 @@ fn sensor(dice: &mut Dice) -> Option<Sensor> {
     Some(Sensor::new(model, seed, PITCH).expect("allowed"))
 }
 
-fn shell(dice: &mut Dice, dt_s: f64, size: f64) -> Shell<f64> {
+fn config(dice: &mut Dice, dt_s: f64, size: f64) -> PidConfig<f64> {
     let angle = |dice: &mut Dice, upper: f64| dice.between(5.0, upper) * DEG;
     let around_zero = |limit: f64| Limits::new("limits", -limit, limit).expect("allowed");
     let limits = if dice.happens(0.2) { Some(around_zero(angle(dice, 30.0))) } else { None };
@@ -153,7 +154,7 @@ fn shell(dice: &mut Dice, dt_s: f64, size: f64) -> Shell<f64> {
         3 if can_cut => AntiWindup::BackCalculation { tracking_s: 1.0 },
         _ => AntiWindup::None,
     };
-    Shell {
+    PidConfig {
         rate_gain_s: if dice.happens(0.3) { dice.between(0.0, 0.8 * size) } else { 0.0 },
         setpoint_weights: SetpointWeights {
             proportional: dice.one_of(&[0.0, 0.0, 0.3, 0.7, 1.0, 1.0, 1.3, -0.5]),
@@ -173,11 +174,11 @@ fn shell(dice: &mut Dice, dt_s: f64, size: f64) -> Shell<f64> {
         } else {
             Guard::default()
         },
-        ..Shell::sampled_every(dt_s)
+        ..PidConfig::sampled_every(dt_s)
     }
 }
 
-fn controller(dice: &mut Dice, shell: Shell<f64>, size: f64) -> Controller {
+fn controller(dice: &mut Dice, config: PidConfig<f64>, size: f64) -> Controller {
     let integral = !dice.happens(0.1);
     let nominal = Gains {
         kp: size * dice.between(0.7, 2.2),
@@ -185,11 +186,11 @@ fn controller(dice: &mut Dice, shell: Shell<f64>, size: f64) -> Controller {
         kd: size * dice.between(0.0, 1.0),
     };
     if dice.happens(0.1) {
-        return Controller::Fixed(Pid::new(nominal, shell).expect("allowed"));
+        return Controller::Fixed(Pid::new(nominal, config).expect("allowed"));
     }
     let tuner =
         SelfTuner::new(nominal, supervisor(dice), settings(dice, nominal)).expect("allowed");
-    Controller::SelfTuning(Fspid::new(tuner, shell).expect("allowed"))
+    Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
 }
 
 fn settings(dice: &mut Dice, nominal: Gains<f64>) -> TunerSettings<f64> {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::{AntiWindup, Fspid, Guard, Pid, Shell};
+use fspid_core::{AntiWindup, Fspid, Guard, Pid, PidConfig};
 use fspid_proof::{
     Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify,
 };
@@ -92,7 +92,7 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
     let room = (load
         - (own_load.load_with_offsets_rad(
             scenario.plant.linear().expect("linear"),
-            controller_shell(scenario),
+            controller_config(scenario),
         ) - own_load.load_rad
             - own_load.bias_rad))
         .max(0.0);
@@ -124,8 +124,8 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
     Answer::Settled { whole, flights, held }
 }
 
-fn controller_shell(scenario: &Scenario) -> &Shell<f64> {
-    scenario.controllers[0].controller.shell()
+fn controller_config(scenario: &Scenario) -> &PidConfig<f64> {
+    scenario.controllers[0].controller.config()
 }
 
 /// How a flight begins.
@@ -217,17 +217,19 @@ fn without_limits(scenario: &Scenario) -> Scenario {
     let plain = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples());
     let plain = plain.and_then(|plain| plain.with_bias(actuator.bias_rad())).expect("allowed");
     free.surroundings.actuator = Some(plain);
-    let shell = Shell {
+    let config = PidConfig {
         limits: None,
         slew_rad_s: None,
         anti_windup: AntiWindup::None,
         guard: Guard::default(),
-        ..*controller_shell(scenario)
+        ..*controller_config(scenario)
     };
     let controller = match &scenario.controllers[0].controller {
-        Controller::Fixed(pid) => Controller::Fixed(Pid::new(pid.gains(), shell).expect("allowed")),
+        Controller::Fixed(pid) => {
+            Controller::Fixed(Pid::new(pid.gains(), config).expect("allowed"))
+        }
         Controller::SelfTuning(fspid) => {
-            Controller::SelfTuning(Fspid::new(*fspid.tuner(), shell).expect("allowed"))
+            Controller::SelfTuning(Fspid::new(*fspid.tuner(), config).expect("allowed"))
         }
     };
     free.controllers = vec![NamedController { name: "C".to_owned(), controller }];

@@ -2,7 +2,7 @@
 
 use fspid_core::fuzzy::{Answers, Inference, OutOfRange, Supervisor};
 use fspid_core::{
-    Change, ErrorSign, Gains, InputSets, Law, ModelState, ReferenceModel, Sees, SelfTuner,
+    Change, ErrorSign, Gains, InputSets, Law, ModelState, ReferenceModel, SecondInput, SelfTuner,
 };
 use fspid_numeric::InstructionSet;
 
@@ -111,10 +111,10 @@ enum Second {
 
 impl Second {
     fn of(tuner: &SelfTuner<f64>) -> Self {
-        match tuner.settings().sees {
-            Sees::ErrorAndChange => Self::Change,
-            Sees::ErrorAndRate => Self::Rate,
-            Sees::ErrorAndModelError(_) => Self::ModelError,
+        match tuner.settings().second_input {
+            SecondInput::Change => Self::Change,
+            SecondInput::Rate => Self::Rate,
+            SecondInput::ModelError(_) => Self::ModelError,
         }
     }
 }
@@ -130,7 +130,7 @@ pub(super) struct SelfTuners<const W: usize> {
     own: Option<Box<[Supervisor<f64>; W]>>,
     instructions: InstructionSet,
     accumulates: bool,
-    sees: Second,
+    second_input: Second,
     /// Whether sets are uneven in some lane.
     bends: bool,
     /// Where the sets of each lane's inputs lie.
@@ -150,7 +150,7 @@ impl<const W: usize> SelfTuners<W> {
             own: supervisor.numbers().map(|_| Box::new([supervisor; W])),
             instructions,
             accumulates: matches!(tuner.settings().law, Law::Accumulating { .. }),
-            sees: Second::of(tuner),
+            second_input: Second::of(tuner),
             bends: false,
             sets: [InputSets::EVEN; W],
             models: [STILL; W],
@@ -165,7 +165,7 @@ impl<const W: usize> SelfTuners<W> {
         if accumulates != self.accumulates {
             return Some("the law of its gains");
         }
-        if Second::of(tuner) != self.sees {
+        if Second::of(tuner) != self.second_input {
             return Some("what its supervisor sees");
         }
         let (one, other) = (&self.supervisor, tuner.supervisor());
@@ -184,7 +184,7 @@ impl<const W: usize> SelfTuners<W> {
         let settings = tuner.settings();
         self.sets[lane] = settings.input_sets;
         self.bends |= !settings.input_sets.are_even();
-        if let Sees::ErrorAndModelError(model) = settings.sees {
+        if let SecondInput::ModelError(model) = settings.second_input {
             self.models[lane] = model;
         }
     }
@@ -238,7 +238,7 @@ impl<const W: usize> SelfTuners<W> {
     ) -> Lanes<W> {
         let mut seconds_rad = [0.0; W];
         for lane in 0..W {
-            seconds_rad[lane] = match self.sees {
+            seconds_rad[lane] = match self.second_input {
                 Second::Change => {
                     (error_rad[lane] - memories.error_rad[lane]) / self.numbers.change_divisor[lane]
                 }
@@ -255,9 +255,9 @@ impl<const W: usize> SelfTuners<W> {
         let range = self.supervisor.range();
         for lane in 0..W {
             let InputSets { error: of_error, change: of_change } = self.sets[lane];
-            error[lane] = of_error.map_or(error[lane], |places| places.bent(error[lane], range));
+            error[lane] = of_error.map_or(error[lane], |places| places.warp(error[lane], range));
             change[lane] =
-                of_change.map_or(change[lane], |places| places.bent(change[lane], range));
+                of_change.map_or(change[lane], |places| places.warp(change[lane], range));
         }
     }
 
@@ -271,7 +271,7 @@ impl<const W: usize> SelfTuners<W> {
         next: &mut Memories<W>,
         plain: &mut Mask<W>,
     ) {
-        if self.sees != Second::ModelError {
+        if self.second_input != Second::ModelError {
             return;
         }
         for lane in 0..W {

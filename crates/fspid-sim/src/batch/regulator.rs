@@ -1,6 +1,6 @@
 //! The controllers of all lanes.
 
-use fspid_core::{AntiWindup, Faults, Followers, Gains, IntegralForm, Sample, Shell, Step};
+use fspid_core::{AntiWindup, Faults, GainCoupling, Gains, IntegralForm, PidConfig, Sample, Step};
 use fspid_numeric::InstructionSet;
 
 use super::gains::SelfTuners;
@@ -16,9 +16,9 @@ pub(super) const FAR: f64 = 1e200;
 
 numbers! {
     /// One flight's numbers of a controller.
-    Regulator,
+    PidLane,
     /// Those of all lanes.
-    Regulators:
+    PidLanes:
     dt_s,
     rate_gain_s,
     /// 1 where the pitch rate is used, else 0.
@@ -48,7 +48,7 @@ numbers! {
     fixed_kd,
 }
 
-impl Regulator {
+impl PidLane {
     /// One that answers zeros by zeros.
     const PARKED: Self = Self {
         dt_s: 1.0,
@@ -74,35 +74,35 @@ impl Regulator {
     };
 
     fn new(controller: &Controller) -> Self {
-        let (shell, gains) = (controller.shell(), controller.nominal());
-        let filter_s = shell.derivative.filter_s;
+        let (config, gains) = (controller.config(), controller.nominal());
+        let filter_s = config.derivative.filter_s;
         let mut one = Self {
-            dt_s: shell.dt_s,
-            rate_gain_s: shell.rate_gain_s,
+            dt_s: config.dt_s,
+            rate_gain_s: config.rate_gain_s,
             uses_rate: if controller.uses_rate() { 1.0 } else { 0.0 },
-            proportional: shell.setpoint_weights.proportional,
-            derivative: shell.setpoint_weights.derivative,
+            proportional: config.setpoint_weights.proportional,
+            derivative: config.setpoint_weights.derivative,
             filter_s,
-            filter_and_dt_s: filter_s + shell.dt_s,
-            guard_rad: shell.guard.limit_rad(),
-            steep_rad: FAR * shell.dt_s.min(1.0),
+            filter_and_dt_s: filter_s + config.dt_s,
+            guard_rad: config.guard.limit_rad(),
+            steep_rad: FAR * config.dt_s.min(1.0),
             fixed_kp: gains.kp,
             fixed_ki: gains.ki,
             fixed_kd: gains.kd,
             ..Self::PARKED
         };
         if let Controller::SelfTuning(fspid) = controller {
-            let followers = fspid.tuner().settings().followers;
-            one.weight_per_kp = followers.setpoint_weight;
-            one.rate_gain_per_kd = followers.rate_gain;
+            let gain_coupling = fspid.tuner().settings().gain_coupling;
+            one.weight_per_kp = gain_coupling.setpoint_weight;
+            one.rate_gain_per_kd = gain_coupling.rate_gain;
         }
-        if let Some(limits) = shell.limits {
+        if let Some(limits) = config.limits {
             (one.lower_rad, one.upper_rad) = (limits.lower(), limits.upper());
         }
-        if let Some(slew_rad_s) = shell.slew_rad_s {
-            one.slew_rad = slew_rad_s * shell.dt_s;
+        if let Some(slew_rad_s) = config.slew_rad_s {
+            one.slew_rad = slew_rad_s * config.dt_s;
         }
-        match shell.anti_windup {
+        match config.anti_windup {
             AntiWindup::Clamping(limits) => {
                 (one.term_lower_rad, one.term_upper_rad) = (limits.lower(), limits.upper());
             }
@@ -144,7 +144,7 @@ pub(super) struct Steps<const W: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Controllers<'a, const W: usize> {
     singles: Vec<&'a Controller>,
-    numbers: Regulators<W>,
+    numbers: PidLanes<W>,
     form: IntegralForm,
     /// Whose numbers mean nothing.
     anti_windup: AntiWindup<f64>,
@@ -161,14 +161,14 @@ impl<'a, const W: usize> Controllers<'a, W> {
         singles: Vec<&'a Controller>,
         instructions: InstructionSet,
     ) -> Result<Self, Refusal> {
-        let first = singles.first().map(|controller| *controller.shell());
-        let first = first.unwrap_or_else(|| Shell::sampled_every(1.0));
+        let first = singles.first().map(|controller| *controller.config());
+        let first = first.unwrap_or_else(|| PidConfig::sampled_every(1.0));
         let tuners = singles.first().and_then(|controller| match controller {
             Controller::Fixed(_) => None,
             Controller::SelfTuning(fspid) => Some(SelfTuners::new(fspid.tuner(), instructions)),
         });
         let mut all = Self {
-            numbers: Regulators::same(Regulator::PARKED),
+            numbers: PidLanes::same(PidLane::PARKED),
             form: first.integral,
             anti_windup: first.anti_windup,
             tuners,
@@ -192,11 +192,12 @@ impl<'a, const W: usize> Controllers<'a, W> {
     fn load(&mut self, lane: usize) -> Result<(), Refusal> {
         let differs = |what| Refusal::Differs { flight: lane, what };
         let controller = self.singles[lane];
-        let shell = controller.shell();
-        if shell.integral != self.form {
+        let config = controller.config();
+        if config.integral != self.form {
             return Err(differs("the form of its integral"));
         }
-        if std::mem::discriminant(&shell.anti_windup) != std::mem::discriminant(&self.anti_windup) {
+        if std::mem::discriminant(&config.anti_windup) != std::mem::discriminant(&self.anti_windup)
+        {
             return Err(differs("its anti-windup"));
         }
         match (controller, &mut self.tuners) {
@@ -205,19 +206,19 @@ impl<'a, const W: usize> Controllers<'a, W> {
                 if let Some(what) = tuners.difference(fspid.tuner()) {
                     return Err(differs(what));
                 }
-                tuners.load(lane, fspid.tuner(), shell.dt_s);
-                self.follows |= fspid.tuner().settings().followers != Followers::NONE;
+                tuners.load(lane, fspid.tuner(), config.dt_s);
+                self.follows |= fspid.tuner().settings().gain_coupling != GainCoupling::NONE;
             }
             _ => return Err(differs("its kind of controller")),
         }
-        self.numbers.set(lane, Regulator::new(controller));
+        self.numbers.set(lane, PidLane::new(controller));
         self.memories.has_previous[lane] = NO;
         Ok(())
     }
 
     /// Makes a lane one that answers zeros by zeros.
     pub(super) fn park(&mut self, lane: usize) {
-        self.numbers.set(lane, Regulator::PARKED);
+        self.numbers.set(lane, PidLane::PARKED);
         if let Some(tuners) = &mut self.tuners {
             tuners.park(lane);
         }
@@ -265,7 +266,7 @@ impl<'a, const W: usize> Controllers<'a, W> {
         (plain, error_rad)
     }
 
-    /// As `Shell::step`, into the next memories; strikes lanes out of `plain` that come near overflow.
+    /// As `PidConfig::step`, into the next memories; strikes lanes out of `plain` that come near overflow.
     #[inline(always)]
     fn regulate(
         &mut self,

@@ -118,15 +118,15 @@ pub fn limit_cycles_at(
     search: &Search,
 ) -> Result<Vec<LimitCycles>, SimError> {
     let searched = search.checked()?;
-    let shell = controller.shell();
-    let path = LimitedPath::of(scenario, shell)?;
+    let config = controller.config();
+    let path = LimitedPath::of(scenario, config)?;
     if path.is_linear() {
         return Ok(vec![LimitCycles::NothingLimits; gains.len()]);
     }
     let plant = plant_around_rest(scenario)?;
     let mut table = Table::new(&path, searched);
     let answer = |gains: &Gains<f64>| {
-        let open = OpenLoop::of(scenario, &plant, &controller.shell_at(*gains), *gains)?;
+        let open = OpenLoop::of(scenario, &plant, &controller.config_at(*gains), *gains)?;
         let zeros = table.zeros(&open);
         let cycles: Vec<LimitCycle> =
             zeros.iter().filter_map(|zero| cycle(&open, &path, zero)).collect();

@@ -1,7 +1,7 @@
 //! Everything that limits a command on its way to the surface, and its describing function.
 
 use fspid_aircraft::ForceModel;
-use fspid_core::{Limits, Shell};
+use fspid_core::{Limits, PidConfig};
 use fspid_lti::{Complex, Matrix, quotient, zero_order_hold};
 
 use crate::actuator::{Actuator, ActuatorState, Lag};
@@ -46,7 +46,7 @@ impl LimitedPath {
     ///
     /// # Errors
     /// None: what a scenario has, an actuator allows.
-    pub fn of(scenario: &Scenario, shell: &Shell<f64>) -> Result<Self, SimError> {
+    pub fn of(scenario: &Scenario, config: &PidConfig<f64>) -> Result<Self, SimError> {
         let travel_rad = match &scenario.plant {
             Plant::Linear(_) => None,
             Plant::Aircraft(plant) => {
@@ -57,8 +57,8 @@ impl LimitedPath {
             }
         };
         Ok(Self {
-            slew_rad_s: shell.slew_rad_s,
-            limits: shell.limits,
+            slew_rad_s: config.slew_rad_s,
+            limits: config.limits,
             actuator: scenario.actuator()?.with_bias(0.0)?,
             travel_rad,
         })

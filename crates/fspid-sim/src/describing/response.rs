@@ -1,6 +1,6 @@
 //! The open loop without limits at a frequency.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::{Complex, Matrix, SampledLoop};
 
 use crate::error::SimError;
@@ -39,11 +39,11 @@ impl OpenLoop {
     pub fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
-        shell: &Shell<f64>,
+        config: &PidConfig<f64>,
         gains: Gains<f64>,
     ) -> Result<Self, SimError> {
-        let model = LoopModel::of(scenario, plant, shell, Memory::of_gains(gains, shell))?;
-        let delay_s = model.settings().delay_samples as f64 * shell.dt_s;
+        let model = LoopModel::of(scenario, plant, config, Memory::of_gains(gains, config))?;
+        let delay_s = model.settings().delay_samples as f64 * config.dt_s;
         // The queue would be as many states, and is nothing but a turn.
         let settings = LoopSettings { delay_samples: 0, ..model.settings().clone() };
         let prompt = LoopModel::new(model.plant().clone(), settings);
@@ -51,7 +51,7 @@ impl OpenLoop {
         let matrix = Matrix::from_rows(&parts.matrix)?;
         let state = |place: usize| {
             let exit = (0..matrix.rows()).map(|n| if n == place { 1.0 } else { 0.0 }).collect();
-            SampledLoop::new(matrix.clone(), parts.by_command.clone(), exit, shell.dt_s)
+            SampledLoop::new(matrix.clone(), parts.by_command.clone(), exit, config.dt_s)
         };
         Ok(Self {
             returned: prompt.open(gains, BreakPoint::Command)?,

@@ -195,7 +195,7 @@ fn gain_crossovers_rad_s(
 ) -> Result<Vec<f64>, SimError> {
     let plant = plant_around_rest(scenario)?;
     let gains = gains_around_rest(controller);
-    OpenLoop::of(scenario, &plant, &controller.shell_at(gains), gains)?.gain_crossovers_rad_s()
+    OpenLoop::of(scenario, &plant, &controller.config_at(gains), gains)?.gain_crossovers_rad_s()
 }
 
 /// The scenario in one length.

@@ -67,7 +67,7 @@ pub(super) struct Assembly<T> {
 
 /// A loop that is broken: next state by state and by the signal that enters, and what comes back.
 #[derive(Clone, Debug)]
-pub(super) struct Broken<T> {
+pub(super) struct OpenLoop<T> {
     pub(super) matrix: Vec<Vec<T>>,
     pub(super) entry: Vec<T>,
     pub(super) exit: Vec<T>,
@@ -101,7 +101,7 @@ impl<T: Scalar> LoopModel<T> {
         let plant = self.plant.states;
         let queue = settings.delay_samples;
         let pitch = settings.pitch.remembered();
-        let uses_rate = settings.shell.rate_gain_s != 0.0;
+        let uses_rate = settings.config.rate_gain_s != 0.0;
         let rate = if uses_rate { settings.rate.remembered() } else { 0 };
         let mut size = plant + queue + pitch + rate;
         let mut place = |there: bool| {
@@ -123,7 +123,7 @@ impl<T: Scalar> LoopModel<T> {
         let zeros = || vec![T::zero(); size];
         let pitch = seen(&self.settings.pitch, &unit(0, size), layout.pitch_from());
         let mut rate = zeros();
-        if self.settings.shell.rate_gain_s != 0.0 {
+        if self.settings.config.rate_gain_s != 0.0 {
             let mut now = zeros();
             now[..layout.plant].copy_from_slice(&self.plant.rate);
             rate = seen(&self.settings.rate, &now, layout.rate_from());
@@ -190,23 +190,23 @@ impl<T: Scalar> LoopModel<T> {
         }
     }
 
-    /// The controller of `Shell::step` with the set-point at zero, $e = -y$:
+    /// The controller of `PidConfig::step` with the set-point at zero, $e = -y$:
     ///
     /// $$ u = -k_p y + I + k_d d - K_r q, \quad I = I_{k-1} - k_i T y, \quad
     /// d = \frac{T_f d_{k-1} - y - c_{k-1}}{T_f + T}, \quad c = -y $$
     ///
     /// and, where there is a change gain g, $u + g (c - c_{k-1})$.
     fn controller(&self, gains: Gains<T>, layout: &Layout) -> ControllerRows<T> {
-        let shell = &self.settings.shell;
+        let config = &self.settings.config;
         let constant = T::constant;
         let size = layout.size;
         let mut command = vec![T::zero(); size];
         let mut command_by_pitch = -gains.kp;
         let mut memory = Vec::new();
         if let Some(place) = layout.integral {
-            let by_error = gains.ki * constant(shell.dt_s);
+            let by_error = gains.ki * constant(config.dt_s);
             // What is remembered is I in rad (bumpless) or the sum of errors (literal).
-            let (by_memory, by_sum) = match shell.integral {
+            let (by_memory, by_sum) = match config.integral {
                 IntegralForm::Bumpless => (T::one(), by_error),
                 IntegralForm::Literal => (by_error, T::one()),
             };
@@ -215,8 +215,8 @@ impl<T: Scalar> LoopModel<T> {
             memory.push((place, unit(place, size), -by_sum));
         }
         if let Some(previous) = layout.previous {
-            let filter_s = constant(shell.derivative.filter_s);
-            let time_s = filter_s + constant(shell.dt_s);
+            let filter_s = constant(config.derivative.filter_s);
+            let time_s = filter_s + constant(config.dt_s);
             let by_difference = T::one() / time_s;
             let mut derivative = vec![T::zero(); size];
             derivative[previous] = -by_difference;
@@ -234,7 +234,7 @@ impl<T: Scalar> LoopModel<T> {
             }
             memory.push((previous, vec![T::zero(); size], -T::one()));
         }
-        let command_by_rate = -constant(shell.rate_gain_s);
+        let command_by_rate = -constant(config.rate_gain_s);
         ControllerRows { command, command_by_pitch, command_by_rate, memory }
     }
 }
@@ -259,23 +259,23 @@ impl<T: Scalar> Assembly<T> {
         with(&remembering, &self.by_command, &self.command())
     }
 
-    pub(super) fn broken(&self, point: BreakPoint) -> Broken<T> {
+    pub(super) fn broken(&self, point: BreakPoint) -> OpenLoop<T> {
         let remembering = || with(&self.free, &self.memory_by_pitch, &self.pitch);
         match point {
-            BreakPoint::Command => Broken {
+            BreakPoint::Command => OpenLoop {
                 matrix: remembering(),
                 entry: self.by_command.clone(),
                 exit: self.command(),
             },
             BreakPoint::Pitch => {
                 let own = self.memory_by_pitch.iter().zip(&self.by_command);
-                Broken {
+                OpenLoop {
                     matrix: with(&self.free, &self.by_command, &self.command_through(false, true)),
                     entry: own.map(|(own, by)| *own + self.command_by_pitch * *by).collect(),
                     exit: self.pitch.clone(),
                 }
             }
-            BreakPoint::Rate => Broken {
+            BreakPoint::Rate => OpenLoop {
                 matrix: with(&remembering(), &self.by_command, &self.command_through(true, false)),
                 entry: self.by_command.iter().map(|by| self.command_by_rate * *by).collect(),
                 exit: self.rate.clone(),
@@ -312,9 +312,9 @@ impl<T: Scalar> Assembly<T> {
             return vec![T::zero(); self.layout.size];
         };
         // What is remembered next, by state, is the term itself (bumpless) or the sum of errors.
-        let factor = match settings.shell.integral {
+        let factor = match settings.config.integral {
             IntegralForm::Bumpless => T::one(),
-            IntegralForm::Literal => ki * T::constant(settings.shell.dt_s),
+            IntegralForm::Literal => ki * T::constant(settings.config.dt_s),
         };
         let by_pitch = self.memory_by_pitch[place];
         let next = self.free[place].iter().zip(&self.pitch);

@@ -1,6 +1,6 @@
 //! What of a controller's memory is part of the loop.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 
 /// Which parts of a controller's memory the loop has. A part that no gain lets out is left away: the
 /// pole of an integral without a gain stays at 1, and is not the loop's.
@@ -17,14 +17,14 @@ pub struct Memory {
 impl Memory {
     /// What fixed gains let out.
     #[must_use]
-    pub fn of_gains(gains: Gains<f64>, shell: &Shell<f64>) -> Self {
-        Self::of_terms(gains.ki != 0.0, gains.kd != 0.0, shell)
+    pub fn of_gains(gains: Gains<f64>, config: &PidConfig<f64>) -> Self {
+        Self::of_terms(gains.ki != 0.0, gains.kd != 0.0, config)
     }
 
     /// Everything that gains may let out which are not always zero: for gains that move.
     #[must_use]
-    pub fn of_terms(integral: bool, derivative: bool, shell: &Shell<f64>) -> Self {
-        let filtered = shell.derivative.filter_s > 0.0;
+    pub fn of_terms(integral: bool, derivative: bool, config: &PidConfig<f64>) -> Self {
+        let filtered = config.derivative.filter_s > 0.0;
         Self { integral, derivative: derivative && filtered, previous: derivative }
     }
 

@@ -22,7 +22,7 @@ mod sensing;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
@@ -52,7 +52,7 @@ pub struct SampledPlant<T> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopSettings {
     /// Everything of the controller but its gains.
-    pub shell: Shell<f64>,
+    pub config: PidConfig<f64>,
     /// What of the controller's memory is part of the loop.
     pub memory: Memory,
     /// Whole samples by which a command arrives late.
@@ -64,15 +64,15 @@ pub struct LoopSettings {
 }
 
 impl LoopSettings {
-    /// Those of a scenario with a controller's shell.
-    pub(crate) fn of(scenario: &Scenario, shell: &Shell<f64>, memory: Memory) -> Self {
+    /// Those of a scenario with a controller's configuration.
+    pub(crate) fn of(scenario: &Scenario, config: &PidConfig<f64>, memory: Memory) -> Self {
         let surroundings = &scenario.surroundings;
         Self {
-            shell: *shell,
+            config: *config,
             memory,
             delay_samples: scenario.delay_samples(),
-            pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), shell.dt_s),
-            rate: Sensing::through(surroundings.rate_sensor.as_ref(), shell.dt_s),
+            pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), config.dt_s),
+            rate: Sensing::through(surroundings.rate_sensor.as_ref(), config.dt_s),
         }
     }
 }
@@ -223,18 +223,18 @@ impl<T: Scalar> LoopModel<T> {
 }
 
 impl LoopModel<f64> {
-    /// The loop of one of a scenario's plants with a controller's shell.
+    /// The loop of one of a scenario's plants with a controller's configuration.
     ///
     /// # Errors
     /// [`SimError`] where the plant cannot be sampled.
     pub fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
-        shell: &Shell<f64>,
+        config: &PidConfig<f64>,
         memory: Memory,
     ) -> Result<Self, SimError> {
         let plant = SampledPlant::of(scenario, plant)?;
-        Ok(Self::new(plant, LoopSettings::of(scenario, shell, memory)))
+        Ok(Self::new(plant, LoopSettings::of(scenario, config, memory)))
     }
 
     /// The same loop with the digits of its slow modes, which the matrix of a sample has not beside its ones: for
@@ -243,7 +243,7 @@ impl LoopModel<f64> {
     /// # Errors
     /// [`SimError`] where the plant cannot be sampled.
     pub fn sharpened(self, scenario: &Scenario, plant: &LinearPlant) -> Result<Self, SimError> {
-        let propagation = scenario.propagation(plant, self.settings.shell.dt_s)?;
+        let propagation = scenario.propagation(plant, self.settings.config.dt_s)?;
         Ok(Self { change: propagation.linear_change(plant)?, ..self })
     }
 

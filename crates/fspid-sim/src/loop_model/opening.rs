@@ -3,7 +3,7 @@
 use fspid_core::Gains;
 use fspid_lti::{FineMatrix, LoopFamily, Matrix, SampledLoop, SeriesControl};
 
-use super::assembly::Broken;
+use super::assembly::OpenLoop;
 use super::{LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::error::SimError;
 
@@ -63,7 +63,7 @@ impl LoopModel<f64> {
         let matrix = Matrix::from_rows(&matrix)?;
         let control = settings.series_control()?;
         let outputs = [fixed.as_slice(), &plant.pitch];
-        let dt_s = settings.shell.dt_s;
+        let dt_s = settings.config.dt_s;
         Ok(Some(LoopFamily::new((&matrix, &plant.by_command), outputs, control, dt_s)?))
     }
 
@@ -72,9 +72,9 @@ impl LoopModel<f64> {
     /// # Errors
     /// Gains so large that an entry overflows.
     pub fn open(&self, gains: Gains<f64>, point: BreakPoint) -> Result<SampledLoop, SimError> {
-        let Broken { matrix, entry, exit } = self.assembly(gains).broken(point);
+        let OpenLoop { matrix, entry, exit } = self.assembly(gains).broken(point);
         let returned = exit.iter().map(|value| -value).collect();
-        let dt_s = self.settings.shell.dt_s;
+        let dt_s = self.settings.config.dt_s;
         let open = SampledLoop::new(Matrix::from_rows(&matrix)?, entry, returned, dt_s)?;
         match &self.change {
             Some(rows) => {
@@ -121,8 +121,8 @@ impl LoopSettings {
     ///
     /// $$ C = k_p + k_i \frac{T z}{z - 1} + \frac{k_d}{T_f + T} \frac{z - 1}{z - 1 + T/(T_f + T)} $$
     fn series_control(&self) -> Result<SeriesControl, SimError> {
-        let (dt_s, memory) = (self.shell.dt_s, self.memory);
-        let time_s = self.shell.derivative.filter_s + dt_s;
+        let (dt_s, memory) = (self.config.dt_s, self.memory);
+        let time_s = self.config.derivative.filter_s + dt_s;
         let pole = -dt_s / time_s;
         let (poles, by_gain) = match (memory.previous, memory.integral) {
             (false, false) => (vec![], [vec![], vec![]]),

@@ -2,7 +2,7 @@
 
 use fspid_core::Gains;
 
-use super::assembly::Broken;
+use super::assembly::OpenLoop;
 use super::{BreakPoint, LoopModel};
 
 /// A loop broken at the command.
@@ -24,7 +24,7 @@ pub(crate) struct LoopParts {
 impl LoopModel<f64> {
     pub(crate) fn parts(&self, gains: Gains<f64>) -> LoopParts {
         let assembly = self.assembly(gains);
-        let Broken { matrix, entry, .. } = assembly.broken(BreakPoint::Command);
+        let OpenLoop { matrix, entry, .. } = assembly.broken(BreakPoint::Command);
         let layout = &assembly.layout;
         LoopParts {
             matrix,

@@ -1,6 +1,6 @@
 //! The matrix must fly as the simulation does.
 
-use fspid_core::{Derivative, Gains, IntegralForm, Pid, SetpointWeights, Shell};
+use fspid_core::{Derivative, Gains, IntegralForm, Pid, PidConfig, SetpointWeights};
 use fspid_lti::{Matrix, spectral_radius};
 
 use super::{BreakPoint, LoopModel, Memory};
@@ -26,7 +26,7 @@ const PLANTS: [(&[f64], &[f64], ElevatorSign); 2] = [
 struct Case {
     plant: usize,
     gains: Gains<f64>,
-    shell: Shell<f64>,
+    config: PidConfig<f64>,
     surroundings: Surroundings,
     delay_samples: usize,
 }
@@ -38,7 +38,7 @@ impl Case {
     }
 
     fn scenario(&self) -> Scenario {
-        let pid = Pid::new(self.gains, self.shell).expect("allowed");
+        let pid = Pid::new(self.gains, self.config).expect("allowed");
         let kick = Shape::Pulse { at_s: 0.0, width_s: DT_S };
         let named = NamedController { name: "C".into(), controller: Controller::Fixed(pid) };
         let servo = Servo::first_order(0.1).and_then(|servo| servo.with_delay(self.delay_samples));
@@ -56,8 +56,8 @@ impl Case {
     }
 
     fn model(&self) -> LoopModel<f64> {
-        let memory = Memory::of_gains(self.gains, &self.shell);
-        LoopModel::of(&self.scenario(), &self.plant(), &self.shell, memory).expect("a loop")
+        let memory = Memory::of_gains(self.gains, &self.config);
+        LoopModel::of(&self.scenario(), &self.plant(), &self.config, memory).expect("a loop")
     }
 
     /// State after the kick of the first sample.
@@ -79,8 +79,8 @@ fn sensor(delay_s: f64, scale_error: f64, channel: u32) -> Option<Sensor> {
 }
 
 fn cases() -> Vec<Case> {
-    let plain = Shell::sampled_every(DT_S);
-    let rich = Shell {
+    let plain = PidConfig::sampled_every(DT_S);
+    let rich = PidConfig {
         rate_gain_s: 0.4,
         derivative: Derivative { filter_s: 0.05 },
         integral: IntegralForm::Literal,
@@ -98,13 +98,13 @@ fn cases() -> Vec<Case> {
     let calm = Surroundings::default;
     let gains = Gains { kp: 0.8, ki: 0.4, kd: 0.2 };
     vec![
-        Case { plant: 0, gains, shell: plain, surroundings: calm(), delay_samples: 0 },
-        Case { plant: 1, gains, shell: rich, surroundings: calm(), delay_samples: 2 },
-        Case { plant: 1, gains, shell: rich, surroundings: seen.clone(), delay_samples: 0 },
+        Case { plant: 0, gains, config: plain, surroundings: calm(), delay_samples: 0 },
+        Case { plant: 1, gains, config: rich, surroundings: calm(), delay_samples: 2 },
+        Case { plant: 1, gains, config: rich, surroundings: seen.clone(), delay_samples: 0 },
         Case {
             plant: 0,
             gains: Gains { ki: 0.0, kd: 0.0, ..gains },
-            shell: Shell { rate_gain_s: 0.9, ..plain },
+            config: PidConfig { rate_gain_s: 0.9, ..plain },
             surroundings: seen,
             delay_samples: 0,
         },
@@ -146,9 +146,9 @@ fn a_loop_that_is_closed_again_at_any_point_is_the_closed_loop() {
 fn the_literal_and_the_bumpless_integral_have_the_same_poles_for_fixed_gains() {
     let case = cases().remove(1);
     let radius = |integral| {
-        let shell = Shell { integral, ..case.shell };
-        let memory = Memory::of_gains(case.gains, &shell);
-        let model = LoopModel::of(&case.scenario(), &case.plant(), &shell, memory);
+        let config = PidConfig { integral, ..case.config };
+        let memory = Memory::of_gains(case.gains, &config);
+        let model = LoopModel::of(&case.scenario(), &case.plant(), &config, memory);
         let matrix: Matrix = model.expect("a loop").closed_matrix(case.gains).expect("finite");
         spectral_radius(&matrix).expect("found")
     };

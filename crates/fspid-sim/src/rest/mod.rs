@@ -24,7 +24,7 @@ mod stand;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, Sees, Shell};
+use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, PidConfig, SecondInput};
 
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -71,7 +71,7 @@ pub struct Rest {
     /// What the supervisor sees of a unit of error, and of what stands beside it.
     seen_per_unit: [f64; 2],
     /// What stands beside it.
-    sees: Sees<f64>,
+    second_input: SecondInput<f64>,
 }
 
 /// The loop at rest for motions to one side.
@@ -104,13 +104,13 @@ impl Side {
         Ok(self.around(scenario, &SampledPlant::of(scenario, plant)?, controller, false))
     }
 
-    fn shell(&self, controller: &Controller) -> Shell<f64> {
-        let shell = controller.shell_at(self.gains);
-        Shell { rate_gain_s: shell.rate_gain_s + self.rate_gain_s, ..shell }
+    fn config(&self, controller: &Controller) -> PidConfig<f64> {
+        let config = controller.config_at(self.gains);
+        PidConfig { rate_gain_s: config.rate_gain_s + self.rate_gain_s, ..config }
     }
 
     fn memory(&self, controller: &Controller) -> Memory {
-        let memory = Memory::of_gains(self.gains, &self.shell(controller));
+        let memory = Memory::of_gains(self.gains, &self.config(controller));
         if self.change_gain == 0.0 { memory } else { memory.with_previous() }
     }
 
@@ -124,7 +124,7 @@ impl Side {
     ) -> LoopModel<f64> {
         let memory = self.memory(controller);
         let memory = if beside_others { memory.with_previous() } else { memory };
-        let settings = LoopSettings::of(scenario, &self.shell(controller), memory);
+        let settings = LoopSettings::of(scenario, &self.config(controller), memory);
         LoopModel::new(plant.clone(), settings).with_change_gain(self.change_gain)
     }
 }
@@ -138,7 +138,7 @@ impl Rest {
             sides: vec![Side::still(gains)],
             of_direction: [0; DIRECTIONS],
             seen_per_unit: [1.0; 2],
-            sees: Sees::ErrorAndChange,
+            second_input: SecondInput::Change,
         }
     }
 
@@ -169,8 +169,8 @@ impl Rest {
             gains,
         };
         // A seen rate is no load here: it has its own place in the controller.
-        let shell = Shell { rate_gain_s: 0.0, ..*fspid.shell() };
-        let loads = either_way(steady.load_with_offsets_rad(plant, &shell));
+        let config = PidConfig { rate_gain_s: 0.0, ..*fspid.config() };
+        let loads = either_way(steady.load_with_offsets_rad(plant, &config));
         let mut found: Vec<Self> = Vec::new();
         for setpoint_rad in held.setpoints(&steady) {
             for &load_rad in &loads {
@@ -197,12 +197,12 @@ fn either_way(size: f64) -> Vec<f64> {
 
 /// True where no constant is multiplied by a gain that moves, and there is an integral that brings the error to zero.
 fn is_the_same_everywhere(fspid: &Fspid<f64>, rate_rad_s: f64) -> bool {
-    let (shell, settings) = (fspid.shell(), fspid.tuner().settings());
-    let followers = settings.followers;
-    let shows_rate = followers.rate_gain != 0.0 || settings.sees == Sees::ErrorAndRate;
-    let plain = (shell.setpoint_weights.proportional - 1.0) == 0.0
-        && followers.setpoint_weight == 0.0
-        && shell.integral == IntegralForm::Bumpless
+    let (config, settings) = (fspid.config(), fspid.tuner().settings());
+    let gain_coupling = settings.gain_coupling;
+    let shows_rate = gain_coupling.rate_gain != 0.0 || settings.second_input == SecondInput::Rate;
+    let plain = (config.setpoint_weights.proportional - 1.0) == 0.0
+        && gain_coupling.setpoint_weight == 0.0
+        && config.integral == IntegralForm::Bumpless
         && !(shows_rate && rate_rad_s != 0.0);
     plain && integrates(fspid)
 }
@@ -259,20 +259,20 @@ impl Holding<'_> {
         let centre = self.seen(error_rad, rate_rad_s);
         let is_zero = centre.iter().all(|seen| *seen == 0.0);
         let gains = if is_zero { self.gains } else { self.gains_at(centre) };
-        let shell = self.fspid.shell_at(gains);
-        let followers = self.fspid.tuner().settings().followers;
+        let config = self.fspid.config_at(gains);
+        let gain_coupling = self.fspid.tuner().settings().gain_coupling;
         let pitch_rad = setpoint_rad - error_rad;
-        let by_kp = shell.setpoint_weights.proportional * setpoint_rad - pitch_rad;
+        let by_kp = config.setpoint_weights.proportional * setpoint_rad - pitch_rad;
         let integral_rad = self.command_per_pitch * pitch_rad + load_rad - gains.kp * by_kp
-            + shell.rate_gain_s * rate_rad_s;
+            + config.rate_gain_s * rate_rad_s;
         let held = Held {
             // The error's own part of kp e is in the gains.
-            by_kp: by_kp + followers.setpoint_weight * gains.kp * setpoint_rad,
-            by_ki: match shell.integral {
+            by_kp: by_kp + gain_coupling.setpoint_weight * gains.kp * setpoint_rad,
+            by_ki: match config.integral {
                 IntegralForm::Literal if gains.ki != 0.0 => integral_rad / gains.ki,
                 _ => 0.0,
             },
-            by_kd: -followers.rate_gain * rate_rad_s,
+            by_kd: -gain_coupling.rate_gain * rate_rad_s,
         };
         let (mut sides, mut known): (Vec<Side>, Vec<Slopes>) = (Vec::new(), Vec::new());
         let around = self.slopes_around(centre, error_rad);
@@ -284,9 +284,9 @@ impl Holding<'_> {
                 known.len() - 1
             })
         });
-        let sees = self.fspid.tuner().settings().sees;
+        let second_input = self.fspid.tuner().settings().second_input;
         let seen_per_unit = self.seen_per_unit();
-        let mut rest = Rest { at, sides, of_direction, seen_per_unit, sees };
+        let mut rest = Rest { at, sides, of_direction, seen_per_unit, second_input };
         rest.join_equal_sides();
         rest
     }
@@ -300,12 +300,12 @@ impl Holding<'_> {
         let (of_error, beside) = (along(0), along(1));
         let mut side = Side::still(gains);
         side.gains.kp += of_error;
-        match self.fspid.tuner().settings().sees {
-            Sees::ErrorAndChange => side.change_gain = beside,
+        match self.fspid.tuner().settings().second_input {
+            SecondInput::Change => side.change_gain = beside,
             // What is seen is the rate with its sign turned, as the rate loop takes it off.
-            Sees::ErrorAndRate => side.rate_gain_s = beside,
+            SecondInput::Rate => side.rate_gain_s = beside,
             // The model has come to rest at the set-point.
-            Sees::ErrorAndModelError(_) => side.gains.kp += beside,
+            SecondInput::ModelError(_) => side.gains.kp += beside,
         }
         side
     }
@@ -315,12 +315,12 @@ impl Holding<'_> {
         let RestPoint { setpoint_rad, load_rad } = at;
         let missing = |error_rad: f64| {
             let gains = self.gains_at(self.seen(error_rad, rate_rad_s));
-            let shell = self.fspid.shell_at(gains);
+            let config = self.fspid.config_at(gains);
             let pitch_rad = setpoint_rad - error_rad;
-            gains.kp * (shell.setpoint_weights.proportional * setpoint_rad - pitch_rad)
+            gains.kp * (config.setpoint_weights.proportional * setpoint_rad - pitch_rad)
                 - self.command_per_pitch * pitch_rad
                 - load_rad
-                - shell.rate_gain_s * rate_rad_s
+                - config.rate_gain_s * rate_rad_s
         };
         let range = self.fspid.tuner().supervisor().range();
         let range_rad = (range / self.seen_per_unit()[0]).abs();
@@ -361,10 +361,10 @@ impl Holding<'_> {
     /// What the supervisor sees of a constant error and a constant rate.
     fn seen(&self, error_rad: f64, rate_rad_s: f64) -> [f64; 2] {
         let [per_error, beside] = self.seen_per_unit();
-        let second = match self.fspid.tuner().settings().sees {
-            Sees::ErrorAndChange => 0.0,
-            Sees::ErrorAndRate => -beside * rate_rad_s,
-            Sees::ErrorAndModelError(_) => beside * error_rad,
+        let second = match self.fspid.tuner().settings().second_input {
+            SecondInput::Change => 0.0,
+            SecondInput::Rate => -beside * rate_rad_s,
+            SecondInput::ModelError(_) => beside * error_rad,
         };
         [per_error * error_rad, second]
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use fspid_core::{Change, Sees};
+use fspid_core::{Change, SecondInput};
 
 use super::Holding;
 use crate::math::sin_cos;
@@ -91,8 +91,8 @@ impl Holding<'_> {
     pub(super) fn seen_per_unit(&self) -> [f64; 2] {
         let settings = self.fspid.tuner().settings();
         let scale = settings.input_scale;
-        let time_s = match (settings.sees, settings.change) {
-            (Sees::ErrorAndChange, Change::Rate) => self.fspid.shell().dt_s,
+        let time_s = match (settings.second_input, settings.change) {
+            (SecondInput::Change, Change::Rate) => self.fspid.config().dt_s,
             _ => 1.0,
         };
         [self.sign() * scale.error_per_rad, self.sign() * scale.change_per_rad / time_s]

@@ -1,6 +1,6 @@
 //! Whether a rest holds where the rules have a kink.
 
-use fspid_core::{Gains, Sees};
+use fspid_core::{Gains, SecondInput};
 use fspid_lti::{Matrix, spectral_radius};
 
 use super::{Rest, Side, slopes};
@@ -81,10 +81,10 @@ impl Rest {
         let models = self.models(scenario, plant, controller);
         let (first, _) = models.first()?;
         let [error, change] = first.error_rows();
-        let second = match self.sees {
-            Sees::ErrorAndChange => change,
-            Sees::ErrorAndRate => first.seen_rows()[1].iter().map(|rate| -rate).collect(),
-            Sees::ErrorAndModelError(_) => error.clone(),
+        let second = match self.second_input {
+            SecondInput::Change => change,
+            SecondInput::Rate => first.seen_rows()[1].iter().map(|rate| -rate).collect(),
+            SecondInput::ModelError(_) => error.clone(),
         };
         let closed: Vec<_> = models.iter().map(|(model, gains)| model.closed(*gains)).collect();
         // Sides with other states, such as one without an integral, are not one after the other in a motion.

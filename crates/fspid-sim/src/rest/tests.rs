@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 
 use fspid_core::{
-    Change, ErrorSign, Followers, Fspid, Gains, InputScale, IntegralForm, ReferenceModel, Sample,
-    Sees, SelfTuner, Shell, State, TunerSettings,
+    Change, ErrorSign, Fspid, GainCoupling, Gains, InputScale, IntegralForm, PidConfig,
+    ReferenceModel, Sample, SecondInput, SelfTuner, State, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 
@@ -42,10 +42,10 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
     let settings = TunerSettings {
         error_sign: dice
             .one_of(&[ErrorSign::SetpointMinusMeasurement, ErrorSign::MeasurementMinusSetpoint]),
-        sees: dice.one_of(&[
-            Sees::ErrorAndChange,
-            Sees::ErrorAndRate,
-            Sees::ErrorAndModelError(model),
+        second_input: dice.one_of(&[
+            SecondInput::Change,
+            SecondInput::Rate,
+            SecondInput::ModelError(model),
         ]),
         change: dice.one_of(&[Change::Rate, Change::Delta]),
         input_scale: InputScale {
@@ -57,20 +57,20 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
             ki: dice.between(-0.1, 0.1),
             kd: dice.between(-0.1, 0.1),
         },
-        followers: Followers {
+        gain_coupling: GainCoupling {
             setpoint_weight: dice.one_of(&[0.0, 0.5]),
             rate_gain: dice.one_of(&[0.0, 2.0]),
         },
         ..TunerSettings::literal()
     };
-    let mut shell = Shell::sampled_every(DT_S);
-    shell.setpoint_weights.proportional = dice.between(0.0, 1.3);
-    shell.derivative.filter_s = dice.one_of(&[0.0, 0.05]);
-    shell.rate_gain_s = 1.5;
-    shell.integral = dice.one_of(&[IntegralForm::Bumpless, IntegralForm::Literal]);
+    let mut config = PidConfig::sampled_every(DT_S);
+    config.setpoint_weights.proportional = dice.between(0.0, 1.3);
+    config.derivative.filter_s = dice.one_of(&[0.0, 0.05]);
+    config.rate_gain_s = 1.5;
+    config.integral = dice.one_of(&[IntegralForm::Bumpless, IntegralForm::Literal]);
     let nominal = Gains { kp: 1.2, ki: 0.4, kd: 0.3 };
     let tuner = SelfTuner::new(nominal, supervisor(), settings).expect("allowed");
-    Fspid::new(tuner, shell).expect("allowed")
+    Fspid::new(tuner, config).expect("allowed")
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         for _ in 0..3000 {
             fspid.step(&mut state, at_rest);
         }
-        state.integral = match fspid.shell().integral {
+        state.integral = match fspid.config().integral {
             IntegralForm::Bumpless => dice.between(-0.2, 0.2),
             IntegralForm::Literal => dice.between(-20.0, 20.0),
         };
@@ -102,10 +102,10 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         let error_rad = dice.between(-1.0, 1.0) * BESIDE / per_error.abs();
         let second = dice.between(-1.0, 1.0) * BESIDE / beside.abs();
         let (mut last_error_rad, mut rate_off_rad_s, mut second_seen) = (0.0, 0.0, second);
-        match fspid.tuner().settings().sees {
-            Sees::ErrorAndChange => last_error_rad = error_rad - second,
-            Sees::ErrorAndRate => rate_off_rad_s = -second,
-            Sees::ErrorAndModelError(_) => second_seen = error_rad,
+        match fspid.tuner().settings().second_input {
+            SecondInput::Change => last_error_rad = error_rad - second,
+            SecondInput::Rate => rate_off_rad_s = -second,
+            SecondInput::ModelError(_) => second_seen = error_rad,
         }
         let mut before = state;
         if let Some(previous) = &mut before.previous {
@@ -121,11 +121,11 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         );
         let direction = slopes::direction([per_error * error_rad, beside * second_seen]);
         let side = rest.sides[rest.of_direction[direction]];
-        let shell = fspid.shell_at(gains_of(&holding, rate_rad_s));
-        let by_derivative = side.gains.kd / (shell.derivative.filter_s + DT_S);
+        let config = fspid.config_at(gains_of(&holding, rate_rad_s));
+        let by_derivative = side.gains.kd / (config.derivative.filter_s + DT_S);
         let expected = (side.gains.kp + side.gains.ki * DT_S + by_derivative) * error_rad
             + side.change_gain * (error_rad - last_error_rad)
-            - (shell.rate_gain_s + side.rate_gain_s) * rate_off_rad_s;
+            - (config.rate_gain_s + side.rate_gain_s) * rate_off_rad_s;
         let found = flown.command_rad - held_rad;
         // Values near 1 are known to 10⁻¹⁶, and sides whose slopes differ by 10⁻⁴ are one.
         let allowed = 2e-4 * (side.gains.kp.abs() * error_rad.abs() + expected.abs()) + 2e-13;

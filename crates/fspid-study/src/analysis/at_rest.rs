@@ -115,7 +115,7 @@ impl AtRest {
         else {
             return at_rest;
         };
-        match constant_load(scenario, gains, &controller.shell_at(gains)) {
+        match constant_load(scenario, gains, &controller.config_at(gains)) {
             Ok(load) => Self { load, ..at_rest },
             Err(reason) => Self { not_asked: Some(reason), ..at_rest },
         }

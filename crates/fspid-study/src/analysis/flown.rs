@@ -1,6 +1,6 @@
 //! The way of a flight through the inputs of its supervisor.
 
-use fspid_core::{Change, ErrorSign, Sees};
+use fspid_core::{Change, ErrorSign, SecondInput};
 use fspid_sim::{Controller, simulate};
 
 use crate::file::Study;
@@ -18,7 +18,7 @@ pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
     let Controller::SelfTuning(fspid) = &named.controller else {
         return Vec::new();
     };
-    if fspid.tuner().settings().sees != Sees::ErrorAndChange {
+    if fspid.tuner().settings().second_input != SecondInput::Change {
         return Vec::new();
     }
     let mut alone = scenario.clone();
@@ -35,7 +35,7 @@ pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
         ErrorSign::MeasurementMinusSetpoint => -1.0,
     };
     let time_s = match settings.change {
-        Change::Rate => fspid.shell().dt_s,
+        Change::Rate => fspid.config().dt_s,
         Change::Delta => 1.0,
     };
     let scale = settings.input_scale;

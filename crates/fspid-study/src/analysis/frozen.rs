@@ -102,8 +102,8 @@ impl<'a> Mapper<'a> {
         question: Question,
     ) -> Result<Self, SimError> {
         let rest = producible(fspid.tuner(), 0.0, 0.0);
-        let shell = fspid.shell_at(rest);
-        let model = LoopModel::of(scenario, plant, &shell, Memory::of_gains(rest, &shell))?
+        let config = fspid.config_at(rest);
+        let model = LoopModel::of(scenario, plant, &config, Memory::of_gains(rest, &config))?
             .sharpened(scenario, plant)?;
         let family = model.family(question.point)?;
         Ok(Self { scenario, plant, fspid, question, model, family })
@@ -125,7 +125,7 @@ impl<'a> Mapper<'a> {
         let Some(worst) = worst_of(points.iter().chain(&nodes)) else { return Ok(None) };
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
         worst.margins = self.margins(worst.gains)?;
-        let beside = self.fspid.tuner().settings().sees.beside();
+        let beside = self.fspid.tuner().settings().second_input.beside();
         Ok(Some(FrozenMap { beside, side, points, nodes, worst }))
     }
 
@@ -180,8 +180,8 @@ impl<'a> Mapper<'a> {
         if self.question.every_point_in_full {
             return None;
         }
-        if !self.has_the_shell_at(gains)
-            || Memory::of_gains(gains, self.fspid.shell()) != self.model.settings().memory
+        if !self.has_the_config_at(gains)
+            || Memory::of_gains(gains, self.fspid.config()) != self.model.settings().memory
         {
             return None;
         }
@@ -191,18 +191,18 @@ impl<'a> Mapper<'a> {
 
     /// Whether the loop at these gains is the model's but for the gains: nothing follows them, or they are
     /// where the model was made.
-    fn has_the_shell_at(&self, gains: Gains<f64>) -> bool {
-        self.fspid.shell_at(gains) == self.model.settings().shell
+    fn has_the_config_at(&self, gains: Gains<f64>) -> bool {
+        self.fspid.config_at(gains) == self.model.settings().config
     }
 
     /// Margins of one loop by eigenvalues.
     fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
-        let shell = self.fspid.shell_at(gains);
-        let memory = Memory::of_gains(gains, &shell);
-        let open = if self.has_the_shell_at(gains) && memory == self.model.settings().memory {
+        let config = self.fspid.config_at(gains);
+        let memory = Memory::of_gains(gains, &config);
+        let open = if self.has_the_config_at(gains) && memory == self.model.settings().memory {
             self.model.open(gains, self.question.point)?
         } else {
-            let own = LoopModel::of(self.scenario, self.plant, &shell, memory)?
+            let own = LoopModel::of(self.scenario, self.plant, &config, memory)?
                 .sharpened(self.scenario, self.plant)?;
             own.open(gains, self.question.point)?
         };

@@ -82,7 +82,7 @@ impl AnalysedLoop {
         let Some(gains) = equilibrium.gains() else {
             return Ok(none(Absent::GainsDrift));
         };
-        if question.point == BreakPoint::Rate && controller.shell_at(gains).rate_gain_s == 0.0 {
+        if question.point == BreakPoint::Rate && controller.config_at(gains).rate_gain_s == 0.0 {
             return Ok(none(Absent::NoRateLoop));
         }
         let mut plants = Vec::new();
@@ -387,7 +387,8 @@ mod tests {
             for named in &study.scenario.controllers {
                 let gains = named.controller.nominal();
                 let scaled = Gains { kp: gains.kp * factor, ..gains };
-                let pid = fspid_core::Pid::new(scaled, *named.controller.shell()).expect("allowed");
+                let pid =
+                    fspid_core::Pid::new(scaled, *named.controller.config()).expect("allowed");
                 let fixed = NamedController {
                     name: named.name.clone(),
                     controller: Controller::Fixed(pid),

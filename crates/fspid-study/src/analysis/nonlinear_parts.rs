@@ -51,7 +51,7 @@ fn of_controllers(scenario: &Scenario) -> [LeftOut; 3] {
     });
     [
         (
-            controllers().any(|controller| !controller.shell().is_linear()),
+            controllers().any(|controller| !controller.config().is_linear()),
             "Limits of the controller's output and its anti-windup are left out; they act beyond small motions.",
         ),
         (

@@ -1,6 +1,6 @@
 //! The answer of the linear loop to a step of the command: no limit, no noise, gains at rest.
 
-use fspid_core::{AntiWindup, Pid, Shell};
+use fspid_core::{AntiWindup, Pid, PidConfig};
 use fspid_sim::actuator::Actuator;
 use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel};
 use fspid_sim::signal::{Profile, Shape};
@@ -54,13 +54,13 @@ pub(crate) fn step_responses(scenario: &Scenario) -> Result<Vec<StepResponse>, S
 /// The controller with the gains that it has at rest, without limits.
 fn at_rest(named: &NamedController) -> Option<NamedController> {
     let gains = equilibrium(&named.controller).gains()?;
-    let shell = Shell {
+    let config = PidConfig {
         limits: None,
         slew_rad_s: None,
         anti_windup: AntiWindup::None,
-        ..named.controller.shell_at(gains)
+        ..named.controller.config_at(gains)
     };
-    let controller = Controller::Fixed(Pid::new(gains, shell).ok()?);
+    let controller = Controller::Fixed(Pid::new(gains, config).ok()?);
     Some(NamedController { name: named.name.clone(), controller })
 }
 

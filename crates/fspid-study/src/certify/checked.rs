@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fspid_proof::{Bearing, Certificate, Doubt, Rechecked};
+use fspid_proof::{Bearing, Certificate, RecheckError, Rechecked};
 
 use super::against::Comparison;
 use super::file::{self, Origin, Seal};
@@ -18,7 +18,7 @@ pub struct CheckedFile {
     /// Whether it is as it was written.
     pub seal: Seal,
     /// What the re-check found.
-    pub result: Result<Rechecked, Doubt>,
+    pub result: Result<Rechecked, RecheckError>,
     /// What flies, beside what is certified; none without a scenario.
     pub against: Option<Comparison>,
 }

@@ -19,7 +19,7 @@ impl CheckedFile {
             origin.scenario,
             sentence(certificate)
         );
-        let dt_s = certificate.description.controller.shell().dt_s;
+        let dt_s = certificate.description.controller.config().dt_s;
         push_claim(&mut out, (certificate, self.result.as_ref().ok()), dt_s);
         if let Ok(rechecked) = &self.result {
             push_rechecked(&mut out, rechecked);

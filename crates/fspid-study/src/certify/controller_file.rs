@@ -2,7 +2,8 @@
 
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, SelfTuner, SetpointWeights, Shell, TunerSettings,
+    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights,
+    TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, Label, OutOfRange, Output, RuleTable, Supervisor};
 use fspid_sim::Controller;
@@ -129,18 +130,18 @@ impl GainsFile {
 
 impl ControllerFile {
     pub(super) fn of(controller: &Controller) -> Self {
-        let shell = controller.shell();
-        let weights = shell.setpoint_weights;
+        let config = controller.config();
+        let weights = config.setpoint_weights;
         Self {
             gains: GainsFile::of(controller.nominal()),
-            rate_gain_s: shell.rate_gain_s,
+            rate_gain_s: config.rate_gain_s,
             setpoint_weights: [weights.proportional, weights.derivative],
-            derivative_filter_s: shell.derivative.filter_s,
-            integral: match shell.integral {
+            derivative_filter_s: config.derivative.filter_s,
+            integral: match config.integral {
                 IntegralForm::Bumpless => IntegralFile::Bumpless,
                 IntegralForm::Literal => IntegralFile::Literal,
             },
-            anti_windup: match &shell.anti_windup {
+            anti_windup: match &config.anti_windup {
                 AntiWindup::None => AntiWindupFile::None,
                 AntiWindup::Clamping(limits) => {
                     AntiWindupFile::Clamping { limits_rad: ends(limits) }
@@ -150,9 +151,9 @@ impl ControllerFile {
                     AntiWindupFile::BackCalculation { tracking_s: *tracking_s }
                 }
             },
-            output_limits_rad: shell.limits.as_ref().map(ends),
-            slew_limit_rad_s: shell.slew_rad_s,
-            sample_guard_rad: shell.guard.limit_rad(),
+            output_limits_rad: config.limits.as_ref().map(ends),
+            slew_limit_rad_s: config.slew_rad_s,
+            sample_guard_rad: config.guard.limit_rad(),
             tuner: match controller {
                 Controller::Fixed(_) => None,
                 Controller::SelfTuning(fspid) => Some(TunerFile::of(fspid.tuner())),
@@ -162,7 +163,7 @@ impl ControllerFile {
 
     pub(super) fn build(&self, dt_s: f64) -> Result<Controller, String> {
         let [proportional, derivative] = self.setpoint_weights;
-        let shell = Shell {
+        let config = PidConfig {
             rate_gain_s: self.rate_gain_s,
             setpoint_weights: SetpointWeights { proportional, derivative },
             derivative: Derivative { filter_s: self.derivative_filter_s },
@@ -174,14 +175,14 @@ impl ControllerFile {
             limits: self.output_limits_rad.map(|ends| limits("output limits", ends)).transpose()?,
             slew_rad_s: self.slew_limit_rad_s,
             guard: Guard::new(self.sample_guard_rad).map_err(|error| error.to_string())?,
-            ..Shell::sampled_every(dt_s)
+            ..PidConfig::sampled_every(dt_s)
         };
         let gains = self.gains.build();
         match &self.tuner {
             None => {
-                Pid::new(gains, shell).map(Controller::Fixed).map_err(|error| error.to_string())
+                Pid::new(gains, config).map(Controller::Fixed).map_err(|error| error.to_string())
             }
-            Some(tuner) => Fspid::new(tuner.build(gains)?, shell)
+            Some(tuner) => Fspid::new(tuner.build(gains)?, config)
                 .map(Controller::SelfTuning)
                 .map_err(|error| error.to_string()),
         }

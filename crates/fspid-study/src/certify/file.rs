@@ -298,10 +298,10 @@ fn matrix(rows: &Rows) -> Result<Matrix, String> {
 
 fn claim_file(claim: &Claim) -> ClaimFile {
     match claim {
-        Claim::AnySpeed { form, rate } => {
+        Claim::CommonQuadratic { form, rate } => {
             ClaimFile::StableAtAnySpeed { rate: *rate, form: rows(form) }
         }
-        Claim::Tied { form, rate, multipliers } => ClaimFile::StableAsTiedToTheError {
+        Claim::SProcedure { form, rate, multipliers } => ClaimFile::StableAsTiedToTheError {
             rate: *rate,
             form: rows(form),
             multipliers: multipliers.clone(),
@@ -337,9 +337,11 @@ fn claim_file(claim: &Claim) -> ClaimFile {
 impl ClaimFile {
     fn build(self) -> Result<Claim, String> {
         Ok(match self {
-            Self::StableAtAnySpeed { rate, form } => Claim::AnySpeed { form: matrix(&form)?, rate },
+            Self::StableAtAnySpeed { rate, form } => {
+                Claim::CommonQuadratic { form: matrix(&form)?, rate }
+            }
             Self::StableAsTiedToTheError { rate, form, multipliers } => {
-                Claim::Tied { form: matrix(&form)?, rate, multipliers }
+                Claim::SProcedure { form: matrix(&form)?, rate, multipliers }
             }
             Self::StableAtBoundedRate { rate, ends, changes, forms, inputs } => {
                 let [constant, kp, ki, kd] = &forms;

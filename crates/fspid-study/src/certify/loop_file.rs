@@ -60,7 +60,7 @@ struct SensingFile {
 impl LoopFile {
     pub(super) fn of(description: &LoopDescription) -> Self {
         Self {
-            sample_period_s: description.controller.shell().dt_s,
+            sample_period_s: description.controller.config().dt_s,
             numerator: description.numerator.clone(),
             denominator: description.denominator.clone(),
             elevator_sign: match description.elevator_sign {

@@ -86,13 +86,13 @@ pub(super) fn refuted(bearing: Bearing) -> &'static str {
 /// What a claim says.
 pub(super) fn sentence(certificate: &Certificate) -> String {
     match &certificate.claim {
-        Claim::AnySpeed { .. } if is_fixed(certificate) => {
+        Claim::CommonQuadratic { .. } if is_fixed(certificate) => {
             "stable with its gains, which are fixed".to_owned()
         }
-        Claim::AnySpeed { .. } => {
+        Claim::CommonQuadratic { .. } => {
             "stable for every gain that the controller can have, however fast the gains move".to_owned()
         }
-        Claim::Tied { .. } => {
+        Claim::SProcedure { .. } => {
             "stable with gains that the law ties to error and change, as it does in flight".to_owned()
         }
         Claim::BoundedRate(_) => {
@@ -122,7 +122,7 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
     let [kp, ki, kd] = outcome.bounds.map(range);
     line(out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
     let dt_s = match certified.certificate() {
-        Some(certificate) => certificate.description.controller.shell().dt_s,
+        Some(certificate) => certificate.description.controller.config().dt_s,
         None => f64::NAN,
     };
     if let Some((certificate, rechecked)) = found(outcome) {
@@ -156,7 +156,7 @@ pub(super) fn push_claim(
 ) {
     let remains = rechecked.is_some_and(|rechecked| rechecked.remains_rad > 0.0);
     match &certificate.claim {
-        Claim::AnySpeed { rate, .. } | Claim::Tied { rate, .. } => {
+        Claim::CommonQuadratic { rate, .. } | Claim::SProcedure { rate, .. } => {
             push_rate(out, *rate, dt_s, remains);
         }
         Claim::BoundedRate(claim) => {

@@ -2,7 +2,7 @@
 //!
 //! Every number is written with the shortest digits that read back as the same bits.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_sim::ElevatorSign;
 
 use crate::file::document::{Item, Member, Value};
@@ -21,7 +21,7 @@ pub(crate) struct Replay<'a> {
     /// Name of the one controller; all of them for the aircraft alone.
     pub(crate) controller: Option<&'a str>,
     /// Gains that it is frozen at, and everything of it but its gains.
-    pub(crate) frozen: Option<(Gains<f64>, Shell<f64>)>,
+    pub(crate) frozen: Option<(Gains<f64>, PidConfig<f64>)>,
     /// The one plant: 0 for the first, otherwise the number of its change.
     pub(crate) plant: Option<usize>,
     /// Size of the one step of its command, deg, where it has a flight of its own.
@@ -153,20 +153,20 @@ fn keep_controller(members: &mut Vec<Member>, replay: &Replay<'_>) -> Option<usi
     let controllers = tables_of(members, "controller");
     let index = controllers.iter().position(is_meant)?;
     let mut controller = controllers.get(index)?.clone();
-    if let (Some((gains, shell)), Value::Table(keys)) = (replay.frozen, &mut controller.value) {
-        freeze(keys, gains, &shell);
+    if let (Some((gains, config)), Value::Table(keys)) = (replay.frozen, &mut controller.value) {
+        freeze(keys, gains, &config);
     }
     put(members, "controller", Value::Array(vec![controller]));
     Some(index)
 }
 
-/// A self-tuning controller with its gains held: a PID of the same shell.
-fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, shell: &Shell<f64>) {
+/// A self-tuning controller with its gains held: a PID of the same configuration.
+fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, config: &PidConfig<f64>) {
     let of_pid: Vec<&str> = controller_table().keys_of("pid").map(|key| key.name).collect();
     keys.retain(|member| of_pid.contains(&member.name.as_str()));
     put(keys, "kind", text_value("pid"));
     // The filter may have been given with gains in ISA form.
-    put(keys, "derivative_filter_s", Value::Float(shell.derivative.filter_s));
+    put(keys, "derivative_filter_s", Value::Float(config.derivative.filter_s));
     for (name, gain) in [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)] {
         put(keys, name, Value::Float(gain));
     }

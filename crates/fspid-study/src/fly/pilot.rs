@@ -16,7 +16,7 @@ const SAME_PERIOD: f64 = 1e-6;
 const NO_SAMPLE: Sample<f64> =
     Sample { setpoint_rad: f64::NAN, measurement_rad: f64::NAN, rate_rad_s: f64::NAN };
 /// Faults at which a controller holds its command.
-const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::ABSURD, Faults::OVERFLOW];
+const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
 
 /// Why no controller was chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,14 +92,14 @@ impl Pilot {
         angles: Angles,
     ) -> Result<Self, ChoiceError> {
         let controller = chosen(&scenario.controllers, name)?.controller;
-        let rate = RateFilter::new(controller.shell().dt_s);
+        let rate = RateFilter::new(controller.config().dt_s);
         Ok(Self { controller, angles, state: State::new(), rate, log: Log::default() })
     }
 
     /// The controller's sample period, s.
     #[must_use]
     pub fn period_s(&self) -> f64 {
-        self.controller.shell().dt_s
+        self.controller.config().dt_s
     }
 
     /// Answers a line; there is no answer to an empty one and to a comment.

@@ -1,6 +1,6 @@
 //! The report of a user's own scenario: verdict first.
 
-use fspid_core::{Followers, InputSets, Sees, TunerSettings};
+use fspid_core::{GainCoupling, InputSets, SecondInput, TunerSettings};
 use fspid_sim::Controller;
 use serde::Serialize;
 
@@ -274,12 +274,12 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
 fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
     let mut sentences = Vec::new();
     let instead = "What tables and figures call change of error is this.";
-    match settings.sees {
-        Sees::ErrorAndChange => {}
-        Sees::ErrorAndRate => sentences.push(format!(
+    match settings.second_input {
+        SecondInput::Change => {}
+        SecondInput::Rate => sentences.push(format!(
             "Beside the error the supervisor sees the measured pitch rate with its sign turned. {instead}"
         )),
-        Sees::ErrorAndModelError(model) => sentences.push(format!(
+        SecondInput::ModelError(model) => sentences.push(format!(
             "Beside the error the supervisor sees how far the pitch is behind a reference model of second \
              order with {} rad/s and a damping of {}. {instead}",
             significant(model.bandwidth_rad_s, 4),
@@ -287,7 +287,7 @@ fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
         )),
     }
     let InputSets { error, change } = settings.input_sets;
-    for (places, input) in [(error, "error"), (change, settings.sees.beside())] {
+    for (places, input) in [(error, "error"), (change, settings.second_input.beside())] {
         sentences.extend(places.map(|places| {
             format!(
                 "The small and the medium sets of the {input} lie at {} and {} of the range; figures show \
@@ -297,7 +297,7 @@ fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
             )
         }));
     }
-    let Followers { setpoint_weight, rate_gain } = settings.followers;
+    let GainCoupling { setpoint_weight, rate_gain } = settings.gain_coupling;
     for (factor, what, gain) in
         [(setpoint_weight, "set-point weight", "kp"), (rate_gain, "rate gain", "kd")]
     {

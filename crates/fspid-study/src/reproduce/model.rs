@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid, SelfTuner, Shell,
-    TunerSettings,
+    ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid, PidConfig,
+    SelfTuner, TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
@@ -164,11 +164,12 @@ impl FlightModel {
     ) -> Result<Controller, SimError> {
         let [kp, ki, kd] = model.gains;
         let gains = Gains { kp, ki, kd };
-        let shell = Shell { rate_gain_s: model.rate_gain, ..Shell::sampled_every(SAMPLE_PERIOD_S) };
+        let config =
+            PidConfig { rate_gain_s: model.rate_gain, ..PidConfig::sampled_every(SAMPLE_PERIOD_S) };
         let Some(scales) = model.scales else {
-            return Ok(Controller::Fixed(Pid::new(gains, shell)?));
+            return Ok(Controller::Fixed(Pid::new(gains, config)?));
         };
-        let shell = Shell { integral: IntegralForm::Literal, ..shell };
+        let config = PidConfig { integral: IntegralForm::Literal, ..config };
         let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
         let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
         let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
@@ -185,7 +186,7 @@ impl FlightModel {
             ..TunerSettings::literal()
         };
         let tuner = SelfTuner::new(gains, supervisor, settings)?;
-        Ok(Controller::SelfTuning(Fspid::new(tuner, shell)?))
+        Ok(Controller::SelfTuning(Fspid::new(tuner, config)?))
     }
 
     /// The scenario file, with a heading of comment lines.

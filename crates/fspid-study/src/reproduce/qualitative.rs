@@ -298,8 +298,8 @@ fn proportional_damping(flown: &FlownFigure) -> Option<(f64, f64)> {
     let Controller::Fixed(pid) = named.controller else {
         return None;
     };
-    let radius = stability::loop_spectral_radius(scenario, pid.gains(), pid.shell()).ok()?;
-    let poles = stability::loop_poles(scenario, pid.gains(), pid.shell()).ok()?;
+    let radius = stability::loop_spectral_radius(scenario, pid.gains(), pid.config()).ok()?;
+    let poles = stability::loop_poles(scenario, pid.gains(), pid.config()).ok()?;
     let dt_s = scenario.timing.dt_s();
     // The oscillation is the loop's, not the phugoid's: faster than a tenth of a radian per second.
     let damping = poles

@@ -172,7 +172,7 @@ pub(crate) fn too_large(error: SimError, named: &NamedController) -> SimError {
     };
     let gains = named.controller.nominal();
     let all = [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)];
-    let rate = ("rate_gain", named.controller.shell().rate_gain_s);
+    let rate = ("rate_gain", named.controller.config().rate_gain_s);
     let largest = all.into_iter().fold(rate, |a, b| if b.1.abs() > a.1.abs() { b } else { a });
     let key = match &named.controller {
         Controller::SelfTuning(_) if largest.0 != "rate_gain" => format!("nominal.{}", largest.0),

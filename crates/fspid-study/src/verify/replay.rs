@@ -43,9 +43,9 @@ impl Verification {
         let named = scenario.controllers.iter().find(|named| named.name == judgement.controller);
         let frozen = place.frozen.zip(named).map(|(frozen, named)| {
             let Controller::SelfTuning(_) = named.controller else {
-                return (named.controller.nominal(), *named.controller.shell());
+                return (named.controller.nominal(), *named.controller.config());
             };
-            (frozen.gains, named.controller.shell_at(frozen.gains))
+            (frozen.gains, named.controller.config_at(frozen.gains))
         });
         // A flight needs every plant; the loops and the aircraft are looked at one by one.
         let flown = matches!(judgement.requirement.measure.family(), Family::Step | Family::Flight);

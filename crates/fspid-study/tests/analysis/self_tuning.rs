@@ -51,16 +51,16 @@ fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
 #[test]
 fn a_supervisor_that_sees_the_rate_rests_where_one_that_sees_the_change_does() {
     let plain = analysed(TUNED, &[]);
-    let sees = analysed(TUNED, &["controller.C.supervisor.sees=\"error-and-rate\""]);
-    assert_eq!(sees.loops[0].equilibrium, plain.loops[0].equilibrium);
-    assert_eq!(sees.loops[0].margins(), plain.loops[0].margins());
+    let second_input = analysed(TUNED, &["controller.C.supervisor.sees=\"error-and-rate\""]);
+    assert_eq!(second_input.loops[0].equilibrium, plain.loops[0].equilibrium);
+    assert_eq!(second_input.loops[0].margins(), plain.loops[0].margins());
 }
 
 #[test]
 fn the_margins_at_rest_and_of_frozen_gains_are_those_of_the_rate_gain_that_has_followed() {
     // The rules take 0.16666 off kd at rest; the rate gain follows with a factor of -3.
-    let followers = "controller.C.followers={rate_gain_per_kd = -3.0}";
-    let analysis = analysed(TUNED, &[followers]);
+    let gain_coupling = "controller.C.followers={rate_gain_per_kd = -3.0}";
+    let analysis = analysed(TUNED, &[gain_coupling]);
     let rate_gain = format!("controller.C.rate_gain={:?}", {
         let Equilibrium::AtRest(gains) = analysis.loops[0].equilibrium else { panic!("at rest") };
         -3.0 * (gains.kd - 1.0)

@@ -1,9 +1,9 @@
 //! Every key of the file arrives where it belongs: the scenario built by hand is the one read.
 
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Followers, Fspid, GainLimits, Gains,
-    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner,
-    SetPlaces, SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
+    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
+    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
@@ -36,9 +36,9 @@ fn limits(lower: f64, upper: f64) -> Limits<f64> {
     Limits::new("limits", lower, upper).expect("allowed")
 }
 
-/// The shell of `pid` and `fspid`, which set everything.
-fn full_shell() -> Shell<f64> {
-    Shell {
+/// The configuration of `pid` and `fspid`, which set everything.
+fn full_config() -> PidConfig<f64> {
+    PidConfig {
         dt_s: 0.01,
         rate_gain_s: 0.1,
         setpoint_weights: SetpointWeights { proportional: 0.8, derivative: 0.5 },
@@ -51,18 +51,18 @@ fn full_shell() -> Shell<f64> {
     }
 }
 
-/// The shell of the two controllers in ISA form.
-fn isa_shell() -> Shell<f64> {
-    Shell {
+/// The configuration of the two controllers in ISA form.
+fn isa_config() -> PidConfig<f64> {
+    PidConfig {
         derivative: Derivative { filter_s: 0.1 / 10.0 },
         anti_windup: AntiWindup::BackCalculation { tracking_s: 0.7 },
         limits: Some(limits(-20.0 * DEG, 20.0 * DEG)),
-        ..Shell::sampled_every(0.01)
+        ..PidConfig::sampled_every(0.01)
     }
 }
 
-fn pid(gains: Gains<f64>, shell: Shell<f64>) -> Controller {
-    Controller::Fixed(Pid::new(gains, shell).expect("allowed"))
+fn pid(gains: Gains<f64>, config: PidConfig<f64>) -> Controller {
+    Controller::Fixed(Pid::new(gains, config).expect("allowed"))
 }
 
 const GAINS: Gains<f64> = Gains { kp: 1.0, ki: 0.2, kd: 0.1 };
@@ -73,14 +73,14 @@ fn tuned() -> Controller {
         Supervisor::new(&table, 5.0, Defuzzifier::Endpoints(101), OutOfRange::Evaluate);
     let settings = TunerSettings {
         error_sign: ErrorSign::MeasurementMinusSetpoint,
-        sees: Sees::ErrorAndChange,
+        second_input: SecondInput::Change,
         change: Change::Delta,
         input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 20.0 / DEG },
         input_sets: InputSets {
-            error: SetPlaces::new(0.2, 0.5).ok(),
-            change: SetPlaces::new(0.3, 0.7).ok(),
+            error: SetCentres::new(0.2, 0.5).ok(),
+            change: SetCentres::new(0.3, 0.7).ok(),
         },
-        followers: Followers { setpoint_weight: 0.3, rate_gain: 2.0 },
+        gain_coupling: GainCoupling { setpoint_weight: 0.3, rate_gain: 2.0 },
         output_scale: Gains { kp: 0.01, ki: 0.001, kd: 0.002 },
         law: Law::Accumulating { leakage_per_s: 0.1 },
         gain_limits: Some(GainLimits {
@@ -91,46 +91,49 @@ fn tuned() -> Controller {
         dead_zone: Some(DeadZone { error_rad: 0.01 * DEG, change_rad: 0.1 * DEG }),
     };
     let tuner = SelfTuner::new(GAINS, supervisor.expect("allowed"), settings).expect("allowed");
-    Controller::SelfTuning(Fspid::new(tuner, full_shell()).expect("allowed"))
+    Controller::SelfTuning(Fspid::new(tuner, full_config()).expect("allowed"))
 }
 
 fn tuned_isa(isa: Gains<f64>) -> Controller {
     let table = rule_table("printed").expect("carried");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
-        sees: Sees::ErrorAndModelError(ReferenceModel { bandwidth_rad_s: 1.5, damping: 0.8 }),
+        second_input: SecondInput::ModelError(ReferenceModel {
+            bandwidth_rad_s: 1.5,
+            damping: 0.8,
+        }),
         input_scale: InputScale { error_per_rad: 1.0 / DEG, change_per_rad: 1.0 / DEG },
         ..TunerSettings::literal()
     };
     let tuner = SelfTuner::new(isa, supervisor.expect("allowed"), settings).expect("allowed");
-    Controller::SelfTuning(Fspid::new(tuner, isa_shell()).expect("allowed"))
+    Controller::SelfTuning(Fspid::new(tuner, isa_config()).expect("allowed"))
 }
 
 fn regulator(anti_windup: AntiWindup<f64>) -> Controller {
     let model = DampedIntegrator { damping_per_s: 2.0, power_per_s2: 4.0 };
     let weights = IntegralWeights { integral_per_s2: 4.0, position: 5.0, rate_s2: 0.5 };
     let found = integral_regulator(model, weights).expect("allowed");
-    let shell = Shell {
+    let config = PidConfig {
         rate_gain_s: found.rate_s,
         anti_windup,
         setpoint_weights: SetpointWeights { proportional: 0.3, derivative: 1.0 },
         derivative: Derivative { filter_s: 0.0 },
-        ..full_shell()
+        ..full_config()
     };
-    pid(Gains { kp: found.position, ki: 2.0, kd: 0.0 }, shell)
+    pid(Gains { kp: found.position, ki: 2.0, kd: 0.0 }, config)
 }
 
 fn controllers() -> Vec<NamedController> {
     let isa = Gains { kp: 1.0, ki: 1.0 / 5.0, kd: 0.1 };
-    let p = Shell { rate_gain_s: 0.1, ..Shell::sampled_every(0.01) };
+    let p = PidConfig { rate_gain_s: 0.1, ..PidConfig::sampled_every(0.01) };
     vec![
         named("p", pid(Gains { kp: 1.0, ki: 0.0, kd: 0.0 }, p)),
-        named("pid", pid(GAINS, full_shell())),
-        named("isa", pid(isa, isa_shell())),
+        named("pid", pid(GAINS, full_config())),
+        named("isa", pid(isa, isa_config())),
         named("fspid", tuned()),
         named("fspid isa", tuned_isa(isa)),
-        named("lqi", regulator(full_shell().anti_windup)),
-        named("lqi tracking", regulator(isa_shell().anti_windup)),
+        named("lqi", regulator(full_config().anti_windup)),
+        named("lqi tracking", regulator(isa_config().anti_windup)),
     ]
 }
 
@@ -213,22 +216,22 @@ fn every_kind_of_set_point_arrives() {
 /// The words that the file with every key does not use.
 #[test]
 fn the_other_words_arrive_too() {
-    let shell = |change: (&str, &str)| {
+    let config = |change: (&str, &str)| {
         let text = whole().replacen(change.0, change.1, 1);
         assert_ne!(text, whole(), "{change:?}");
-        *read(&text).controllers[1].controller.shell()
+        *read(&text).controllers[1].controller.config()
     };
-    let literal = shell(("\"bumpless\"", "\"literal\""));
+    let literal = config(("\"bumpless\"", "\"literal\""));
     assert_eq!(literal.integral, IntegralForm::Literal);
     let clamping = "anti_windup.kind = \"clamping\"\nanti_windup.lower_deg = -5.0\nanti_windup.upper_deg = 5.0\n";
-    let none = shell((clamping, "anti_windup.kind = \"none\"\n"));
+    let none = config((clamping, "anti_windup.kind = \"none\"\n"));
     assert_eq!(none.anti_windup, AntiWindup::None);
-    let conditional = shell((clamping, "anti_windup.kind = \"conditional\"\n"));
+    let conditional = config((clamping, "anti_windup.kind = \"conditional\"\n"));
     assert_eq!(conditional.anti_windup, AntiWindup::Conditional);
     let weight = "setpoint_weights.derivative = 0.5\nderivative_on = \"error\"";
-    let measured = shell((weight, "derivative_on = \"measurement\""));
+    let measured = config((weight, "derivative_on = \"measurement\""));
     assert_eq!(measured.setpoint_weights, SetpointWeights { proportional: 0.8, derivative: 0.0 });
-    let both = shell((weight, "setpoint_weights.derivative = 0\nderivative_on = \"measurement\""));
+    let both = config((weight, "setpoint_weights.derivative = 0\nderivative_on = \"measurement\""));
     assert_eq!(both.setpoint_weights, measured.setpoint_weights);
 
     let down = whole().replacen("\"nose-up-positive\"", "\"nose-down-positive\"", 1);

@@ -47,7 +47,7 @@ fn pitch_deg(study: &Study) -> Vec<f64> {
 fn distance(dt_s: f64) -> f64 {
     let study = study(OWN_MODEL, &[&format!("loop.sample_period_s={dt_s:?}")]);
     let controller = &study.scenario.controllers[0].controller;
-    let (gains, rate_gain_s) = (controller.nominal(), controller.shell().rate_gain_s);
+    let (gains, rate_gain_s) = (controller.nominal(), controller.config().rate_gain_s);
     let (a, b) = (0.9, 2.0);
     let closed = TransferFunction::new(
         &[b * gains.ki],
@@ -78,7 +78,7 @@ fn the_set_point_acts_through_the_integral_alone_unless_it_is_weighted() {
     let plain = study(OWN_MODEL, &[]);
     assert_eq!(plain.scenario, study_of("0.0").scenario);
     let controller = &plain.scenario.controllers[0].controller;
-    assert_eq!(controller.shell().setpoint_weights.proportional, 0.0);
+    assert_eq!(controller.config().setpoint_weights.proportional, 0.0);
     assert_eq!((controller.nominal().ki, controller.nominal().kd), (3.0, 0.0));
     let overshoot = |study: &Study| pitch_deg(study).into_iter().fold(0.0, f64::max) - 1.0;
     let (without, with) = (overshoot(&plain), overshoot(&study_of("1.0")));
@@ -95,10 +95,10 @@ fn limits_and_anti_windup_are_those_of_a_pid() {
             "controller.LQI.anti_windup={ kind = \"back-calculation\", tracking_s = 0.5 }",
         ],
     );
-    let shell = study.scenario.controllers[0].controller.shell();
-    assert_eq!(shell.anti_windup, AntiWindup::BackCalculation { tracking_s: 0.5 });
-    assert_eq!(shell.integral, IntegralForm::Bumpless);
-    assert_eq!(shell.limits.map(|limits| limits.upper()), Some(2.0_f64.to_radians()));
+    let config = study.scenario.controllers[0].controller.config();
+    assert_eq!(config.anti_windup, AntiWindup::BackCalculation { tracking_s: 0.5 });
+    assert_eq!(config.integral, IntegralForm::Bumpless);
+    assert_eq!(config.limits.map(|limits| limits.upper()), Some(2.0_f64.to_radians()));
     let text = problems(&["controller.LQI.anti_windup={ kind = \"conditional\" }"]);
     assert!(text.contains("anti_windup: \"conditional\" has no limit to act at"), "{text}");
 }
@@ -129,6 +129,6 @@ fn the_gains_are_told_because_no_key_states_them() {
     assert_eq!(gains.source, GainSource::Regulator);
     let controller = &study.scenario.controllers[0].controller;
     assert_eq!(gains.gains, controller.nominal());
-    assert_eq!(gains.rate_gain_s, controller.shell().rate_gain_s);
+    assert_eq!(gains.rate_gain_s, controller.config().rate_gain_s);
     assert!(gains.to_string().starts_with("LQI: kp 4.168650, ki 3.000000 1/s"), "{gains}");
 }

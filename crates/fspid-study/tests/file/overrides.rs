@@ -38,7 +38,7 @@ fn a_key_or_table_that_the_file_leaves_out_can_be_set() {
     let problems = study.expect_err("kp and isa exclude each other").to_string();
     assert!(problems.contains("controller[0].isa: not together with `kp`"), "{problems}");
     let study = set(&["controller.PID.output_limits_deg=[-5, 5]"]).expect("allowed");
-    assert!(study.scenario.controllers[0].controller.shell().limits.is_some());
+    assert!(study.scenario.controllers[0].controller.config().limits.is_some());
 }
 
 #[test]

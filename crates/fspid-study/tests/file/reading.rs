@@ -127,7 +127,7 @@ fn the_rule_tables_are_the_printed_one_and_its_mirror_image() {
 fn degrees_of_the_file_are_radians_of_the_controller() {
     let study = file::load(&repository("scenarios/limits.toml"), &[]).expect("no problems");
     let controller = &study.scenario.controllers[1].controller;
-    let limits = controller.shell().limits.expect("has limits");
+    let limits = controller.config().limits.expect("has limits");
     assert!((limits.upper() - 8.0_f64.to_radians()).abs() < 1e-15);
     let fspid = parse(file::starter()).expect("no problems").scenario.controllers[1].controller;
     let Controller::SelfTuning(fspid) = fspid else { panic!("a self-tuning controller") };
@@ -157,26 +157,26 @@ fn the_isa_form_gives_the_parallel_gains_and_the_filter() {
     let isa = &study.scenario.controllers[3].controller;
     let parallel = &study.scenario.controllers[2].controller;
     assert_eq!(isa.nominal(), parallel.nominal());
-    assert_eq!(isa.shell().derivative, parallel.shell().derivative);
-    assert_eq!(isa.shell().setpoint_weights.derivative, 0.0);
-    assert_eq!(isa.shell().setpoint_weights.proportional, 0.5);
+    assert_eq!(isa.config().derivative, parallel.config().derivative);
+    assert_eq!(isa.config().setpoint_weights.derivative, 0.0);
+    assert_eq!(isa.config().setpoint_weights.proportional, 0.5);
 }
 
 #[test]
 fn what_is_left_out_takes_the_documented_default() {
     let study = file::load(&repository("scenarios/747-pitch-step.toml"), &[]).expect("no problems");
     for named in &study.scenario.controllers {
-        let shell = named.controller.shell();
-        let expected = fspid_core::Shell {
-            rate_gain_s: shell.rate_gain_s,
-            ..fspid_core::Shell::sampled_every(0.01)
+        let config = named.controller.config();
+        let expected = fspid_core::PidConfig {
+            rate_gain_s: config.rate_gain_s,
+            ..fspid_core::PidConfig::sampled_every(0.01)
         };
-        assert_eq!(*shell, expected, "{}", named.name);
+        assert_eq!(*config, expected, "{}", named.name);
     }
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     assert_eq!(names, ["PC", "CPID", "FSPID"]);
-    assert_eq!(study.scenario.controllers[0].controller.shell().rate_gain_s, 0.9144);
+    assert_eq!(study.scenario.controllers[0].controller.config().rate_gain_s, 0.9144);
 }
 
 #[test]

@@ -67,12 +67,12 @@ fn every_gain_falls_as_the_dynamic_pressure_rises() {
     assert!((pressure_pa / expected_pa - 1.0).abs() < 5e-6, "{pressure_pa} for {expected_pa}");
     assert!((factor - 1000.0 / pressure_pa).abs() < 1e-15, "{factor}");
     for named in &study.scenario.controllers {
-        let (gains, shell) = (named.controller.nominal(), named.controller.shell());
+        let (gains, config) = (named.controller.nominal(), named.controller.config());
         let (ki, kd) = if named.name == "P" { (0.0, 0.0) } else { (0.4, 0.2) };
         assert_eq!(gains, Gains { kp: 0.8 * factor, ki: ki * factor, kd: kd * factor });
-        assert_eq!(shell.rate_gain_s, 0.1 * factor);
+        assert_eq!(config.rate_gain_s, 0.1 * factor);
     }
-    assert_eq!(study.scenario.controllers[0].controller.shell().derivative.filter_s, 0.05);
+    assert_eq!(study.scenario.controllers[0].controller.config().derivative.filter_s, 0.05);
     let of_p = &study.derived_gains[1];
     assert_eq!((of_p.controller.as_str(), of_p.rate_gain_s), ("P", 0.1 * factor));
 }
@@ -92,7 +92,7 @@ fn gains_in_isa_form_are_scheduled_with_their_times_untouched() {
         controller.nominal(),
         Gains { kp: 0.8 * factor, ki: 0.4 * factor, kd: 0.2 * factor }
     );
-    assert_eq!(controller.shell().derivative.filter_s, 0.05);
+    assert_eq!(controller.config().derivative.filter_s, 0.05);
 }
 
 #[test]

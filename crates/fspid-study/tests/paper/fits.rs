@@ -23,7 +23,7 @@ fn the_cpid_and_the_fspid_of_a_figure_share_nominal_gains_and_gyro() {
         for (fixed, fuzzy) in pairs {
             let (fixed, fuzzy) = (controller(flown, fixed), controller(flown, fuzzy));
             assert_eq!(fixed.nominal(), fuzzy.nominal(), "Fig. {}", flown.figure.id);
-            assert_eq!(fixed.shell().rate_gain_s, fuzzy.shell().rate_gain_s);
+            assert_eq!(fixed.config().rate_gain_s, fuzzy.config().rate_gain_s);
         }
     }
 }

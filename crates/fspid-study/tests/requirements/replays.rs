@@ -123,7 +123,7 @@ fn frozen_gains_are_fixed_in_their_replay() {
     let fspid_sim::Controller::Fixed(pid) = named.controller else { panic!("fixed gains") };
     let frozen = verification.judgements[0].place().frozen.expect("frozen gains");
     assert_eq!(pid.gains(), frozen.gains);
-    assert_eq!(pid.shell().derivative.filter_s, 0.05);
+    assert_eq!(pid.config().derivative.filter_s, 0.05);
     assert!(replay.text.starts_with("# Replays line 1 of `fspid verify "), "{}", replay.text);
     assert!(replay.text.contains("# FAIL: found "), "{}", replay.text);
 }

@@ -1,6 +1,6 @@
 //! From a process to gains, rule by rule.
 
-use fspid_core::{Derivative, Gains, SetpointWeights, Shell};
+use fspid_core::{Derivative, Gains, PidConfig, SetpointWeights};
 use fspid_sim::Scenario;
 
 use super::formula::{self, Computed};
@@ -39,7 +39,7 @@ pub(super) fn derive(
     let mut own = *options;
     if rule == Rule::Lqr {
         // It gives the rate gain itself, for a plant without one.
-        own.shell = own.shell.map(|shell| Shell { rate_gain_s: 0.0, ..shell });
+        own.config = own.config.map(|config| PidConfig { rate_gain_s: 0.0, ..config });
     }
     let process = Process::of(scenario, &own)?;
     process.require_sign()?;
@@ -127,14 +127,14 @@ impl Work<'_> {
             }
             (None, Err(error)) => return Err(error.clone()),
         };
-        let base = self.process.shell;
+        let base = self.process.config;
         let own = base.derivative.filter_s;
         let filter_s = if own > 0.0 { own } else { PLACED_FILTER / omega };
         let aim = (self.form, omega);
         let (gains, poles) = place::placed(&self.process, self.options.poles, aim, filter_s)?;
         let filtered = self.form == Form::Pid && own == 0.0;
         let filter_s = if filtered { filter_s } else { own };
-        let shell = Shell {
+        let config = PidConfig {
             // No zero of the controller in the answer to the set-point: the poles alone shape it.
             setpoint_weights: SetpointWeights { proportional: 0.0, derivative: 0.0 },
             derivative: Derivative { filter_s },
@@ -145,7 +145,7 @@ impl Work<'_> {
         let identified = Identified { ultimate, poles: Some(poles), ..Identified::default() };
         let formula = "C(z) P(z) = -1 at each of the poles".to_owned();
         let warnings = Vec::new();
-        Ok(Derived { form: self.form, gains, shell, given, identified, formula, warnings })
+        Ok(Derived { form: self.form, gains, config, given, identified, formula, warnings })
     }
 
     fn by_cost(self) -> Result<Derived, RuleError> {
@@ -164,11 +164,11 @@ impl Work<'_> {
         starts.extend(ultimate.map(|point| lqr::calm_start(point.gain)));
         starts.extend(lqr::damped_starts());
         let ([kp, ki, rate_gain_s], search) = lqr::least_cost(&self.process, weights, &starts)?;
-        let shell = Shell {
+        let config = PidConfig {
             rate_gain_s,
             // The set-point enters through the integral alone, as in state feedback with an integral.
             setpoint_weights: SetpointWeights { proportional: 0.0, derivative: 0.0 },
-            ..self.process.shell
+            ..self.process.config
         };
         let given = Given { setpoint_weights: true, derivative_filter: false, rate_gain: true };
         let search = Some(search);
@@ -178,7 +178,7 @@ impl Work<'_> {
             weights.error, weights.rate, weights.integral, weights.command
         );
         let (gains, warnings) = (Gains { kp, ki, kd: 0.0 }, Vec::new());
-        Ok(Derived { form: self.form, gains, shell, given, identified, formula, warnings })
+        Ok(Derived { form: self.form, gains, config, given, identified, formula, warnings })
     }
 
     /// Gains of a formula, with set-point weight and filter.
@@ -189,7 +189,7 @@ impl Work<'_> {
         mut warnings: Vec<String>,
     ) -> Result<Derived, RuleError> {
         warnings.extend(given.warnings);
-        let base = self.process.shell;
+        let base = self.process.config;
         let Isa { td_s, .. } = given.isa;
         let filtered = td_s > 0.0 && base.derivative.filter_s == 0.0;
         let derivative = if filtered {
@@ -205,7 +205,7 @@ impl Work<'_> {
         Ok(Derived {
             form: self.form,
             gains: given.isa.gains()?,
-            shell: Shell { setpoint_weights, derivative, ..base },
+            config: PidConfig { setpoint_weights, derivative, ..base },
             given: Given {
                 setpoint_weights: given.setpoint_weight.is_some(),
                 derivative_filter: filtered,

@@ -40,10 +40,10 @@ pub enum RuleError {
         /// What was asked for.
         found: &'static str,
     },
-    /// A shell for another sample period.
+    /// A configuration for another sample period.
     #[error("the controller is sampled every {found:?} s; the scenario asks for {allowed:?} s")]
     SamplePeriod {
-        /// Of the shell, s.
+        /// Of the configuration, s.
         found: f64,
         /// Of the scenario, s.
         allowed: f64,

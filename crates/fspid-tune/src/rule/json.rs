@@ -15,8 +15,8 @@ impl Design {
     /// The answer for programs; a number that is infinite is `null`, a loop that is not held has no margins.
     #[must_use]
     pub fn json(&self) -> Value {
-        let shell = &self.shell;
-        let weights = shell.setpoint_weights;
+        let config = &self.config;
+        let weights = config.setpoint_weights;
         let isa =
             self.isa().map(|isa| json!({ "gain": isa.gain, "ti_s": isa.ti_s, "td_s": isa.td_s }));
         json!({
@@ -30,8 +30,8 @@ impl Design {
             "identified": identified(&self.identified),
             "gains": { "kp": self.gains.kp, "ki_per_s": self.gains.ki, "kd_s": self.gains.kd },
             "isa": isa,
-            "rate_gain_s": shell.rate_gain_s,
-            "derivative_filter_s": shell.derivative.filter_s,
+            "rate_gain_s": config.rate_gain_s,
+            "derivative_filter_s": config.derivative.filter_s,
             "setpoint_weights": {
                 "proportional": weights.proportional,
                 "derivative": weights.derivative,

@@ -5,7 +5,7 @@
 //! is computed exactly for the sampled loop, and the least is searched from the state feedback of a model whose states
 //! are all measured.
 
-use fspid_core::{Gains, IntegralForm, Shell};
+use fspid_core::{Gains, IntegralForm, PidConfig};
 use fspid_lti::{Matrix, regulator};
 use fspid_sim::loop_model::Memory;
 use fspid_study::tune::{Parameter, Scale, Space, polish};
@@ -88,9 +88,9 @@ pub(super) fn cost(
     [kp, ki, rate_gain_s]: [f64; 3],
 ) -> Result<f64, RuleError> {
     // The literal integral remembers the sum of errors, whatever its gain.
-    let shell = Shell { rate_gain_s, integral: IntegralForm::Literal, ..process.shell };
+    let config = PidConfig { rate_gain_s, integral: IntegralForm::Literal, ..process.config };
     let memory = Memory { integral: true, derivative: false, previous: false };
-    let model = process.model(&shell, memory)?;
+    let model = process.model(&config, memory)?;
     let gains = Gains { kp, ki, kd: 0.0 };
     let [error, _] = model.error_rows();
     let mut rate = vec![0.0; model.size()];
@@ -104,7 +104,7 @@ pub(super) fn cost(
         (weights.integral, integral),
         (weights.command, model.command_row(gains)),
     ];
-    let weight = weighted(&rows, shell.dt_s)?;
+    let weight = weighted(&rows, config.dt_s)?;
     let start = model.pitch_off(1.0);
     Ok(summed(model.closed_matrix(gains)?, weight, &start)?.unwrap_or(f64::INFINITY))
 }

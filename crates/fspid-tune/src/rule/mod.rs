@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The process is everything from command to seen pitch: servo, delays, plant, sensor and a closed rate loop if the
-//! shell has a rate gain. A nonlinear aircraft is taken at its trim; the relay flies it as it is.
+//! configuration has a rate gain. A nonlinear aircraft is taken at its trim; the relay flies it as it is.
 
 mod derive;
 mod error;
@@ -28,7 +28,7 @@ mod relay;
 mod text;
 mod ultimate;
 
-use fspid_core::{Gains, Pid, Shell};
+use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::{Controller, NamedController, Scenario};
 use fspid_study::analysis::{AnalysedLoop, Analysis, Question};
 use fspid_study::file::Study;
@@ -82,8 +82,8 @@ pub struct Design {
     /// The gains, in parallel form.
     pub gains: Gains<f64>,
     /// Everything of the controller but its gains; what the rule gave of it says `given`.
-    pub shell: Shell<f64>,
-    /// What of the shell the rule gave.
+    pub config: PidConfig<f64>,
+    /// What of the configuration the rule gave.
     pub given: Given,
     /// What the rule found out.
     pub identified: Identified,
@@ -103,7 +103,7 @@ pub struct Design {
 struct Derived {
     form: Form,
     gains: Gains<f64>,
-    shell: Shell<f64>,
+    config: PidConfig<f64>,
     given: Given,
     identified: Identified,
     formula: String,
@@ -128,8 +128,8 @@ pub fn design(study: &Study, rule: Rule, options: &Options) -> Result<Design, Ru
 pub fn design_for(scenario: &Scenario, rule: Rule, options: &Options) -> Result<Design, RuleError> {
     options.check()?;
     let derived = derive::derive(scenario, rule, options)?;
-    let Derived { form, gains, shell, given, identified, formula, mut warnings } = derived;
-    let pid = Pid::new(gains, shell)?;
+    let Derived { form, gains, config, given, identified, formula, mut warnings } = derived;
+    let pid = Pid::new(gains, config)?;
     let controller = Controller::Fixed(pid);
     let mut flown = scenario.clone();
     flown.controllers = vec![NamedController { name: rule.name().to_owned(), controller }];
@@ -144,7 +144,7 @@ pub fn design_for(scenario: &Scenario, rule: Rule, options: &Options) -> Result<
         rule,
         form,
         gains,
-        shell,
+        config,
         given,
         identified,
         formula,

@@ -1,6 +1,6 @@
 //! What may be asked of a rule.
 
-use fspid_core::Shell;
+use fspid_core::PidConfig;
 
 use super::{Form, Rule, RuleError};
 
@@ -82,8 +82,8 @@ pub struct Options {
     pub form: Option<Form>,
     /// Everything of the controller but its gains: limits, anti-windup, set-point weights, rate loop. A plain one if
     /// none. With a rate gain the rule tunes the pitch loop around the closed rate loop.
-    pub shell: Option<Shell<f64>>,
-    /// Filter of the derivative: time constant Td/N with this N. Only where the shell has no filter of its own.
+    pub config: Option<PidConfig<f64>>,
+    /// Filter of the derivative: time constant Td/N with this N. Only where the configuration has no filter of its own.
     pub filter_divisor: f64,
     /// Which kind of process a model is fitted to.
     pub process: ProcessKind,
@@ -110,7 +110,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             form: None,
-            shell: None,
+            config: None,
             filter_divisor: 10.0,
             process: ProcessKind::Auto,
             closed_loop_s: None,

@@ -1,6 +1,6 @@
 //! The process that a rule tunes for: everything from command to seen pitch, exactly sampled.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 use fspid_lti::{Complex, SampledLoop, modulus};
 use fspid_sim::loop_model::{BreakPoint, LoopModel, Memory};
 use fspid_sim::{AircraftPlant, LinearPlant, Scenario, SimError};
@@ -21,7 +21,7 @@ pub(super) struct Process {
     scenario: Scenario,
     plant: LinearPlant,
     /// Everything of the controller but its gains.
-    pub(super) shell: Shell<f64>,
+    pub(super) config: PidConfig<f64>,
     /// P, as the loop of a gain of 1.
     pub(super) open: SampledLoop,
     /// Poles at the origin.
@@ -36,13 +36,13 @@ impl Process {
     /// The process of the plant that a scenario starts with.
     pub(super) fn of(scenario: &Scenario, options: &Options) -> Result<Self, RuleError> {
         let dt_s = scenario.timing.dt_s();
-        let shell = options.shell.unwrap_or_else(|| Shell::sampled_every(dt_s));
-        if shell.dt_s.to_bits() != dt_s.to_bits() {
-            return Err(RuleError::SamplePeriod { found: shell.dt_s, allowed: dt_s });
+        let config = options.config.unwrap_or_else(|| PidConfig::sampled_every(dt_s));
+        if config.dt_s.to_bits() != dt_s.to_bits() {
+            return Err(RuleError::SamplePeriod { found: config.dt_s, allowed: dt_s });
         }
         let plant = first_plant(scenario)?;
-        let memory = Memory::of_gains(Gains::ZERO, &shell);
-        let open = LoopModel::of(scenario, &plant, &shell, memory)?
+        let memory = Memory::of_gains(Gains::ZERO, &config);
+        let open = LoopModel::of(scenario, &plant, &config, memory)?
             .open(Gains { kp: 1.0, ..Gains::ZERO }, BreakPoint::Pitch)?;
         let integrators = integrators(&plant);
         let spectral_radius = radius_without(&open.open_poles()?, integrators);
@@ -52,21 +52,21 @@ impl Process {
             _ => None,
         };
         let scenario = scenario.clone();
-        Ok(Self { scenario, plant, shell, open, integrators, spectral_radius, steady })
+        Ok(Self { scenario, plant, config, open, integrators, spectral_radius, steady })
     }
 
-    /// The loop around rest with a controller of this shell, gains and memory.
+    /// The loop around rest with a controller of this configuration, gains and memory.
     pub(super) fn model(
         &self,
-        shell: &Shell<f64>,
+        config: &PidConfig<f64>,
         memory: Memory,
     ) -> Result<LoopModel<f64>, SimError> {
-        LoopModel::of(&self.scenario, &self.plant, shell, memory)
+        LoopModel::of(&self.scenario, &self.plant, config, memory)
     }
 
     /// P times a gain, as an open loop.
     pub(super) fn scaled(&self, gain: f64) -> Result<SampledLoop, RuleError> {
-        let model = self.model(&self.shell, Memory::of_gains(Gains::ZERO, &self.shell))?;
+        let model = self.model(&self.config, Memory::of_gains(Gains::ZERO, &self.config))?;
         Ok(model.open(Gains { kp: gain, ..Gains::ZERO }, BreakPoint::Pitch)?)
     }
 

@@ -48,16 +48,16 @@ impl Design {
                 line(&mut out, format_args!("{name} = {gain:?}"));
             }
         }
-        // What the shell had before is in the scenario already; a plain controller has nothing to weigh.
+        // What the configuration had before is in the scenario already; a plain controller has nothing to weigh.
         if self.given.rate_gain {
-            line(&mut out, format_args!("rate_gain = {:?}", self.shell.rate_gain_s));
+            line(&mut out, format_args!("rate_gain = {:?}", self.config.rate_gain_s));
         }
         if self.given.derivative_filter {
-            let filter_s = self.shell.derivative.filter_s;
+            let filter_s = self.config.derivative.filter_s;
             line(&mut out, format_args!("derivative_filter_s = {filter_s:?}"));
         }
         if self.given.setpoint_weights {
-            let weights = self.shell.setpoint_weights;
+            let weights = self.config.setpoint_weights;
             line(
                 &mut out,
                 format_args!(
@@ -84,17 +84,17 @@ impl Design {
             format!(" (K {:.4}, Ti {:.4} s{derivative})", isa.gain, isa.ti_s)
         });
         line(out, format_args!("  gains              {text}{times}"));
-        let shell = &self.shell;
-        if shell.rate_gain_s != 0.0 {
+        let config = &self.config;
+        if config.rate_gain_s != 0.0 {
             let whose = if self.given.rate_gain { "" } else { ", as it was" };
-            line(out, format_args!("  rate loop          gain {:.4} s{whose}", shell.rate_gain_s));
+            line(out, format_args!("  rate loop          gain {:.4} s{whose}", config.rate_gain_s));
         }
         if self.given.derivative_filter {
-            let filter_s = shell.derivative.filter_s;
+            let filter_s = config.derivative.filter_s;
             line(out, format_args!("  derivative filter  time constant {filter_s:.4} s"));
         }
         if self.given.setpoint_weights {
-            let weights = shell.setpoint_weights;
+            let weights = config.setpoint_weights;
             line(
                 out,
                 format_args!(

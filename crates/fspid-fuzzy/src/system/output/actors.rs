@@ -12,16 +12,16 @@ use crate::norm::SNormKind;
 /// Conclusions about one term that differ by their strength only. Under maximum the strongest
 /// stands for all of them; otherwise each conclusion is an actor of its own.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Actor {
+pub(crate) struct Activation {
     pub(crate) term: usize,
     pub(crate) implication: TNorm,
 }
 
 /// The actors of an output.
 #[derive(Clone, Debug)]
-pub(crate) struct Actors {
+pub(crate) struct Activations {
     /// By term, then in the order of the conclusions.
-    list: Vec<Actor>,
+    list: Vec<Activation>,
     /// Those of each term.
     of_term: Vec<Range<usize>>,
     /// The conclusions of the first actor, then those of the second, …, each in their order: their
@@ -38,7 +38,7 @@ pub(crate) struct Level {
     pub(crate) conclusion: usize,
 }
 
-impl Actors {
+impl Activations {
     pub(crate) fn of(
         output: &Output,
         conclusions: &[&ResolvedConclusion],
@@ -46,14 +46,14 @@ impl Actors {
     ) -> Self {
         let strongest_stands = output.aggregation.is(SNormKind::Maximum);
         let mut of_conclusion = vec![0; conclusions.len()];
-        let mut list: Vec<Actor> = Vec::new();
+        let mut list: Vec<Activation> = Vec::new();
         let mut of_term = Vec::new();
         for term in 0..output.terms.len() {
             let begin = list.len();
             let about = conclusions.iter().zip(blocks).zip(&mut of_conclusion);
             for ((_, block), place) in about.filter(|((c, _), _)| c.term == term) {
-                let actor = Actor { term, implication: block.implication.clone() };
-                let alike = |known: &Actor| {
+                let actor = Activation { term, implication: block.implication.clone() };
+                let alike = |known: &Activation| {
                     strongest_stands
                         && *known == actor
                         && matches!(actor.implication, TNorm::Kind(_))
@@ -77,7 +77,7 @@ impl Actors {
         self.list.len()
     }
 
-    pub(crate) fn list(&self) -> &[Actor] {
+    pub(crate) fn list(&self) -> &[Activation] {
         &self.list
     }
 

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::super::norms::{SNorm, TNorm};
 use super::super::parts::{Conclusion, Membership};
-use super::actors::Actor;
+use super::actors::Activation;
 use super::sampled::Concluded;
 use crate::norm::{SNormKind, TNormKind};
 use fspid_numeric::quadrature::Curve;
@@ -18,7 +18,7 @@ const ROOM: usize = 8;
 #[derive(Clone, Copy)]
 pub(super) struct JoinedCurve<'a> {
     concluded: Concluded<'a>,
-    /// Actors that fire, those of one term from strong to weak.
+    /// Activations that fire, those of one term from strong to weak.
     order: &'a [usize],
     /// A power of two.
     scale: f64,
@@ -40,7 +40,7 @@ impl<'a> JoinedCurve<'a> {
     }
 
     /// An actor and what implication leaves of its set.
-    fn implied<S: Scalar>(&self, own: usize, x: S) -> Option<(&'a Actor, S)> {
+    fn implied<S: Scalar>(&self, own: usize, x: S) -> Option<(&'a Activation, S)> {
         let Concluded { output, actors, levels, inputs } = self.concluded;
         let (actor, level) = (actors.list().get(own)?, levels.get(own)?);
         match &output.terms.get(actor.term)?.conclusion {
@@ -56,7 +56,7 @@ impl<'a> JoinedCurve<'a> {
 impl Curve for JoinedCurve<'_> {
     fn at<S: Scalar>(&self, x: S) -> S {
         let norm = &self.concluded.output.aggregation;
-        let (mut joined, mut last): (Option<S>, Option<(&Actor, S)>) = (None, None);
+        let (mut joined, mut last): (Option<S>, Option<(&Activation, S)>) = (None, None);
         for (actor, grade) in self.order.iter().filter_map(|&own| self.implied(own, x)) {
             last = match last {
                 Some((before, strong)) if before == actor => {

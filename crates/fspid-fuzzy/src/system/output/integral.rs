@@ -1,4 +1,4 @@
-//! Joined sets with curved sides, integrated with an error bound that is proved.
+//! AggregatedSet sets with curved sides, integrated with an error bound that is proved.
 
 use alloc::vec::Vec;
 

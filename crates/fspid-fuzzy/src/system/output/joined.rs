@@ -63,7 +63,7 @@ impl Piece {
 /// The joined set of an output over its universe: straight pieces from left to right. Where there
 /// is no piece the grade is 0; where a set jumps two pieces meet at different heights.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Joined {
+pub struct AggregatedSet {
     pieces: Vec<Piece>,
     /// The highest grade.
     top: f64,
@@ -71,7 +71,7 @@ pub struct Joined {
     reference: f64,
 }
 
-impl Joined {
+impl AggregatedSet {
     /// Makes room for so many pieces.
     pub(super) fn reserve(&mut self, pieces: usize) {
         self.pieces.reserve(pieces);

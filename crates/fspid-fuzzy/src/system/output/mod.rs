@@ -21,9 +21,9 @@ use super::parts::{Conclusion, Membership, Output};
 use super::workspace::Workspace;
 use fspid_numeric::lanes::One;
 
-pub(crate) use actors::{Actors, Level};
+pub(crate) use actors::{Activations, Level};
 pub(crate) use integral::Integral;
-pub use joined::{Joined, Piece};
+pub use joined::{AggregatedSet, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
@@ -46,7 +46,7 @@ pub(crate) enum Plan {
 
 impl Plan {
     /// The plan for an output and what is concluded about it.
-    pub(crate) fn new(output: &Output, actors: &Actors, outline: Option<&Outline>) -> Self {
+    pub(crate) fn new(output: &Output, actors: &Activations, outline: Option<&Outline>) -> Self {
         if let Some(partition) = Partition::of(output, actors) {
             return Self::Partition(partition);
         }
@@ -68,7 +68,7 @@ pub(crate) struct Scratch {
     pub(crate) levels: Vec<Level>,
     /// Strengths of terms from left to right.
     pub(crate) sorted: Vec<One<f64>>,
-    /// Actors that fire, in the order in which they are joined.
+    /// Activations that fire, in the order in which they are joined.
     pub(crate) order: Vec<usize>,
     pub(crate) outline: Room,
     pub(crate) samples: Samples,
@@ -168,7 +168,11 @@ impl System {
     /// The outline of what the last evaluation in `workspace` concluded about an output: whatever
     /// the output's defuzzifier, as long as its sets are piecewise linear and minimum or product,
     /// maximum, bounded or unbounded sum keep them so; nothing otherwise.
-    pub fn outline<'w>(&self, output: usize, workspace: &'w mut Workspace) -> Option<&'w Joined> {
+    pub fn outline<'w>(
+        &self,
+        output: usize,
+        workspace: &'w mut Workspace,
+    ) -> Option<&'w AggregatedSet> {
         let ResolvedOutput { actors, outline, conclusions, .. } = self.outputs.get(output)?;
         let Scratch { levels, outline: room, .. } = &mut workspace.scratch;
         let levels = actors.levels(conclusions, &workspace.degrees, levels);
@@ -178,7 +182,7 @@ impl System {
 }
 
 /// What a method reads off an outline.
-fn read(method: Defuzzifier, joined: &Joined) -> Option<f64> {
+fn read(method: Defuzzifier, joined: &AggregatedSet) -> Option<f64> {
     match method {
         Defuzzifier::Centroid(_) => joined.centroid(),
         Defuzzifier::Bisector(_) => joined.bisector(),

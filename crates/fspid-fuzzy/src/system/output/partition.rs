@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::super::defuzzifier::Defuzzifier;
 use super::super::parts::{Conclusion, Membership, Output, OutputTerm};
-use super::actors::{Actors, Level};
+use super::actors::{Activations, Level};
 use crate::centroid::centroid;
 use crate::defuzzifier;
 use crate::membership::ShapeKind;
@@ -29,7 +29,7 @@ pub(crate) struct Partition {
 
 impl Partition {
     /// The partition that an output's terms make, if they do and are joined as the formula needs.
-    pub(crate) fn of(output: &Output, actors: &Actors) -> Option<Self> {
+    pub(crate) fn of(output: &Output, actors: &Activations) -> Option<Self> {
         let Defuzzifier::Centroid(sampling) = output.defuzzifier else { return None };
         let (rule, universe) = (sampling, output.universe?);
         let joined = output.aggregation.is(SNormKind::Maximum)

@@ -1,12 +1,12 @@
 //! A controller's sample, and what a small change of what it sees and remembers makes of it.
 
-use fspid_core::{AntiWindup, Faults, Gains, IntegralForm, Sample, Shell, State};
+use fspid_core::{AntiWindup, Faults, Gains, IntegralForm, PidConfig, Sample, State};
 
 use super::gains::GainSlopes;
 use crate::controller::Controller;
 
 /// Faults that hold the command and the whole memory.
-const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::ABSURD, Faults::OVERFLOW];
+const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
 
 /// What cut the command of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,15 +59,15 @@ impl<'a> Twin<'a> {
         // Faults of this sample only.
         self.memory.take_faults();
         let step = self.controller.step(&mut self.memory, sample);
-        let (shell, gains) = (self.controller.shell(), step.gains);
+        let (config, gains) = (self.controller.config(), step.gains);
         let held = HOLDING.iter().any(|fault| step.faults.contains(*fault));
         let error_rad = sample.setpoint_rad - sample.measurement_rad;
         let wound = before.integral()
-            + match shell.integral {
-                IntegralForm::Bumpless => gains.ki * error_rad * shell.dt_s,
+            + match config.integral {
+                IntegralForm::Bumpless => gains.ki * error_rad * config.dt_s,
                 IntegralForm::Literal => error_rad,
             };
-        let weight = shell.setpoint_weights.proportional;
+        let weight = config.setpoint_weights.proportional;
         let mut done = Done {
             error_rad,
             change_rad: self.last_error_rad.map_or(0.0, |last_rad| error_rad - last_rad),
@@ -77,12 +77,12 @@ impl<'a> Twin<'a> {
             derivative_rad_s: self.memory.derivative_rad_s(),
             wound,
             excess_rad: 0.0,
-            cut: cut(shell, step.saturated, step.command_rad),
+            cut: cut(config, step.saturated, step.command_rad),
             held,
             gains_held: step.faults.contains(Faults::OUT_OF_RANGE),
         };
         if step.saturated {
-            done.excess_rad = done.free_rad(shell, sample.rate_rad_s) - step.command_rad;
+            done.excess_rad = done.free_rad(config, sample.rate_rad_s) - step.command_rad;
         }
         if !held {
             self.last_error_rad = Some(error_rad);
@@ -93,8 +93,8 @@ impl<'a> Twin<'a> {
 
 /// Which limit cut a command.
 #[allow(clippy::float_cmp, reason = "a command that a limit cut is the limit itself")]
-fn cut(shell: &Shell<f64>, saturated: bool, command_rad: f64) -> Cut {
-    let at_limit = shell
+fn cut(config: &PidConfig<f64>, saturated: bool, command_rad: f64) -> Cut {
+    let at_limit = config
         .limits
         .is_some_and(|limits| command_rad == limits.lower() || command_rad == limits.upper());
     match (saturated, at_limit) {
@@ -158,21 +158,21 @@ pub(super) struct Inputs<'a> {
 
 impl Done {
     /// The command before any limit, rad.
-    fn free_rad(&self, shell: &Shell<f64>, rate_rad_s: f64) -> f64 {
-        let rate_rad_s = if shell.rate_gain_s == 0.0 { 0.0 } else { rate_rad_s };
+    fn free_rad(&self, config: &PidConfig<f64>, rate_rad_s: f64) -> f64 {
+        let rate_rad_s = if config.rate_gain_s == 0.0 { 0.0 } else { rate_rad_s };
         self.gains.kp * self.proportional_rad
-            + self.term_rad(shell).0
+            + self.term_rad(config).0
             + self.gains.kd * self.derivative_rad_s
-            - shell.rate_gain_s * rate_rad_s
+            - config.rate_gain_s * rate_rad_s
     }
 
     /// The integral's term of the command, rad, and whether its own limits hold it.
-    fn term_rad(&self, shell: &Shell<f64>) -> (f64, bool) {
-        let term_rad = match shell.integral {
+    fn term_rad(&self, config: &PidConfig<f64>) -> (f64, bool) {
+        let term_rad = match config.integral {
             IntegralForm::Bumpless => self.wound,
-            IntegralForm::Literal => self.gains.ki * shell.dt_s * self.wound,
+            IntegralForm::Literal => self.gains.ki * config.dt_s * self.wound,
         };
-        match shell.anti_windup {
+        match config.anti_windup {
             AntiWindup::Clamping(limits) => {
                 let kept_rad = limits.clamp(term_rad);
                 (kept_rad, (kept_rad - term_rad).abs() > 0.0)
@@ -181,7 +181,7 @@ impl Done {
         }
     }
 
-    /// The small-signal equations of `Shell::step`: with $e = -y$ and gains that move,
+    /// The small-signal equations of `PidConfig::step`: with $e = -y$ and gains that move,
     ///
     /// $$ \partial u = k_p\, \partial e + p\, \partial k_p + \partial I + k_d\, \partial d +
     /// d\, \partial k_d - K_r\, \partial q $$
@@ -190,7 +190,12 @@ impl Done {
     /// (bumpless; of the literal form $\partial I = T (k_i\, \partial S + S\, \partial k_i)$), p being
     /// what the proportional term acts on. A command that is cut moves with its limit, and the memory
     /// as the anti-windup moves it.
-    pub(super) fn rows(&self, shell: &Shell<f64>, places: &Places, inputs: &Inputs<'_>) -> Rows {
+    pub(super) fn rows(
+        &self,
+        config: &PidConfig<f64>,
+        places: &Places,
+        inputs: &Inputs<'_>,
+    ) -> Rows {
         if self.held {
             return places.held();
         }
@@ -201,21 +206,21 @@ impl Done {
         };
         let gains = self.gain_rows(places, inputs, (&error, &change));
         let [by_kp, by_ki, by_kd] = &gains;
-        let time_s = shell.derivative.filter_s + shell.dt_s;
+        let time_s = config.derivative.filter_s + config.dt_s;
         let derivative = match self.has_last {
             true => sum(&[
-                (shell.derivative.filter_s / time_s, &places.unit(places.derivative)),
+                (config.derivative.filter_s / time_s, &places.unit(places.derivative)),
                 (1.0 / time_s, &change),
             ]),
             false => places.zeros(),
         };
         let before = places.unit(places.integral);
-        let (wound, term) = self.integral_rows(shell, (&error, by_ki), &before);
+        let (wound, term) = self.integral_rows(config, (&error, by_ki), &before);
         let free = sum(&[
             (self.gains.kp, &error),
             (1.0, &term),
             (self.gains.kd, &derivative),
-            (-shell.rate_gain_s, inputs.rate),
+            (-config.rate_gain_s, inputs.rate),
             (self.proportional_rad, by_kp),
             (self.derivative_rad_s, by_kd),
         ]);
@@ -225,7 +230,7 @@ impl Done {
             Cut::Slew => places.unit(places.last_command),
         };
         let excess = sum(&[(1.0, &free), (-1.0, &command)]);
-        let kept = self.unwound_row(shell, (&before, &wound), (&excess, by_ki));
+        let kept = self.unwound_row(config, (&before, &wound), (&excess, by_ki));
         let mut memory = Vec::new();
         memory.extend(places.integral.map(|place| (place, kept)));
         memory.extend(places.derivative.map(|place| (place, derivative)));
@@ -256,12 +261,12 @@ impl Done {
     /// Rows of the integral's memory with this sample in it, and of its term.
     fn integral_rows(
         &self,
-        shell: &Shell<f64>,
+        config: &PidConfig<f64>,
         (error, by_ki): (&[f64], &[f64]),
         before: &[f64],
     ) -> (Vec<f64>, Vec<f64>) {
-        let (dt_s, ki) = (shell.dt_s, self.gains.ki);
-        let (wound, term) = match shell.integral {
+        let (dt_s, ki) = (config.dt_s, self.gains.ki);
+        let (wound, term) = match config.integral {
             IntegralForm::Bumpless => {
                 let wound =
                     sum(&[(1.0, before), (ki * dt_s, error), (self.error_rad * dt_s, by_ki)]);
@@ -273,21 +278,21 @@ impl Done {
                 (wound, term)
             }
         };
-        let (_, clamped) = self.term_rad(shell);
+        let (_, clamped) = self.term_rad(config);
         (wound, if clamped { vec![0.0; term.len()] } else { term })
     }
 
     /// Row of the memory that is kept, as `Integrator::unwound` keeps it.
     fn unwound_row(
         &self,
-        shell: &Shell<f64>,
+        config: &PidConfig<f64>,
         (before, wound): (&[f64], &[f64]),
         (excess, by_ki): (&[f64], &[f64]),
     ) -> Vec<f64> {
-        let (dt_s, ki) = (shell.dt_s, self.gains.ki);
-        match shell.anti_windup {
+        let (dt_s, ki) = (config.dt_s, self.gains.ki);
+        match config.anti_windup {
             AntiWindup::None => wound.to_vec(),
-            AntiWindup::Clamping(_) => match (self.term_rad(shell), shell.integral) {
+            AntiWindup::Clamping(_) => match (self.term_rad(config), config.integral) {
                 ((_, false), _) => wound.to_vec(),
                 ((_, true), IntegralForm::Bumpless) => vec![0.0; wound.len()],
                 // The memory is the limit over ki T.
@@ -302,7 +307,7 @@ impl Done {
                 if further_out { before.to_vec() } else { wound.to_vec() }
             }
             AntiWindup::BackCalculation { .. } if ki == 0.0 => wound.to_vec(),
-            AntiWindup::BackCalculation { tracking_s } => match shell.integral {
+            AntiWindup::BackCalculation { tracking_s } => match config.integral {
                 IntegralForm::Bumpless => sum(&[(1.0, wound), (-dt_s / tracking_s, excess)]),
                 IntegralForm::Literal => {
                     let by_excess = -1.0 / (ki * tracking_s);
@@ -314,8 +319,8 @@ impl Done {
     }
 
     /// True where nothing but the linear controller with these gains acted.
-    pub(super) fn is_free(&self, shell: &Shell<f64>) -> bool {
-        self.cut == Cut::Free && !self.held && !self.gains_held && !self.term_rad(shell).1
+    pub(super) fn is_free(&self, config: &PidConfig<f64>) -> bool {
+        self.cut == Cut::Free && !self.held && !self.gains_held && !self.term_rad(config).1
     }
 }
 

@@ -79,7 +79,7 @@ pub(super) fn walk(
     };
     let slopes = match (controller, &system) {
         (Controller::SelfTuning(fspid), Some(system)) => {
-            Some(TunerSlopes::new(fspid.tuner(), system, fspid.shell().dt_s))
+            Some(TunerSlopes::new(fspid.tuner(), system, fspid.config().dt_s))
         }
         _ => None,
     };
@@ -119,17 +119,17 @@ impl<'a> Walk<'a> {
         prepared: &Prepared,
         slopes: Option<TunerSlopes<'a>>,
     ) -> Result<Self, SimError> {
-        let shell = controller.shell();
+        let config = controller.config();
         let (memory, carries_gains) = match controller {
-            Controller::Fixed(pid) => (Memory::of_gains(pid.gains(), shell), false),
+            Controller::Fixed(pid) => (Memory::of_gains(pid.gains(), config), false),
             Controller::SelfTuning(fspid) => (memory_of(fspid), carries_gains(fspid)),
         };
         Ok(Self {
             controller,
-            settings: LoopSettings::of(scenario, shell, memory),
+            settings: LoopSettings::of(scenario, config, memory),
             twin: Twin::new(controller),
             slopes,
-            holds: shell.slew_rad_s.is_some() || !faults(prepared, controller)?.is_empty(),
+            holds: config.slew_rad_s.is_some() || !faults(prepared, controller)?.is_empty(),
             carries_gains,
             parts: None,
             names: Vec::new(),
@@ -161,12 +161,12 @@ impl<'a> Walk<'a> {
         let slopes = self.slopes.as_mut().map(|slopes| slopes.at(seen)).unwrap_or_default();
         let frozen = self.places(&parts, false);
         let moving = self.places(&parts, self.carries_gains);
-        let shell = self.controller.shell();
+        let config = self.controller.config();
         let small = SmallSignal {
             k: instant.k,
             time_s: prepared.timing.time_s(instant.k),
             gains: done.gains,
-            limited: cut || !done.is_free(shell),
+            limited: cut || !done.is_free(config),
             frozen: self.matrix(&parts, &frozen, (&done, GainSlopes::default())),
             matrix: self.matrix(&parts, &moving, (&done, slopes)),
             by_command: padded(&parts.by_command, moving.size),
@@ -225,7 +225,7 @@ impl<'a> Walk<'a> {
     ) -> Vec<Vec<f64>> {
         let (pitch, rate) = (padded(&parts.pitch, places.size), padded(&parts.rate, places.size));
         let inputs = Inputs { pitch: &pitch, rate: &rate, slopes };
-        let controller = done.rows(self.controller.shell(), places, &inputs);
+        let controller = done.rows(self.controller.config(), places, &inputs);
         let mut rows: Vec<Vec<f64>> =
             parts.matrix.iter().map(|row| padded(row, places.size)).collect();
         for (row, by) in rows.iter_mut().zip(&parts.by_command) {
@@ -248,7 +248,7 @@ fn memory_of(fspid: &Fspid<f64>) -> Memory {
     let (nominal, scale) = (fspid.tuner().nominal(), fspid.tuner().settings().output_scale);
     let ever = |nominal: f64, scale: f64| nominal != 0.0 || scale != 0.0;
     let integral = ever(nominal.ki, scale.ki);
-    Memory::of_terms(integral, ever(nominal.kd, scale.kd), fspid.shell()).with_previous()
+    Memory::of_terms(integral, ever(nominal.kd, scale.kd), fspid.config()).with_previous()
 }
 
 fn carries_gains(fspid: &Fspid<f64>) -> bool {

@@ -63,7 +63,7 @@ impl Autopilot {
 
     /// What the radius speaks of.
     pub(super) fn words(&self) -> String {
-        let (name, dt_s) = (&self.controller.name, self.controller.controller.shell().dt_s);
+        let (name, dt_s) = (&self.controller.name, self.controller.controller.config().dt_s);
         let gains = match self.controller.controller {
             Controller::Fixed(_) => "its gains",
             Controller::SelfTuning(_) => {
@@ -88,7 +88,7 @@ impl Autopilot {
     }
 
     fn dt_s(&self) -> f64 {
-        self.controller.controller.shell().dt_s
+        self.controller.controller.config().dt_s
     }
 
     /// Spectral radius with everything that the controller commands times a factor.
@@ -96,9 +96,9 @@ impl Autopilot {
         let controller = &self.controller.controller;
         let Gains { kp, ki, kd } = controller.nominal();
         let gains = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor };
-        let mut shell = *controller.shell();
-        shell.rate_gain_s *= factor;
-        loop_spectral_radius(scenario, gains, &shell).ok()
+        let mut config = *controller.config();
+        config.rate_gain_s *= factor;
+        loop_spectral_radius(scenario, gains, &config).ok()
     }
 
     /// First factor from 1 upwards at which the loop is not stable, in dB; the end of the search where there is none.

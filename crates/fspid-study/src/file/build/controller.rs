@@ -1,9 +1,9 @@
 //! Controllers.
 
 use fspid_core::{
-    AntiWindup, Change, ConfigError, DeadZone, Derivative, Followers, Fspid, GainLimits, Gains,
-    Guard, InputScale, InputSets, Law, Limits, Pid, ReferenceModel, Sees, SelfTuner, SetPlaces,
-    SetpointWeights, Shell, TunerSettings,
+    AntiWindup, Change, ConfigError, DeadZone, Derivative, Fspid, GainCoupling, GainLimits, Gains,
+    Guard, InputScale, InputSets, Law, Limits, Pid, PidConfig, ReferenceModel, SecondInput,
+    SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_sim::Controller;
 
@@ -13,7 +13,7 @@ use crate::file::files::Files;
 use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::controller::{
-    AntiWindupKind, ControllerKind, DerivativeOn, LawWord, SeesWord,
+    AntiWindupKind, ControllerKind, DerivativeOn, LawWord, SecondInputWord,
 };
 use crate::units::degrees;
 
@@ -29,23 +29,25 @@ pub(super) fn controller(
         ControllerKind::P => {
             let factor = schedule::factor(report, section, pressure);
             let gains = Gains { kp: section.number("kp")?, ..Gains::ZERO };
-            let shell =
-                Shell { rate_gain_s: section.number("rate_gain")?, ..Shell::sampled_every(dt_s) };
-            let (gains, shell) = schedule::scaled(report, section, factor?, (gains, shell))?;
-            judged(report, (section, "kp"), Pid::new(gains, shell)).map(Controller::Fixed)
+            let config = PidConfig {
+                rate_gain_s: section.number("rate_gain")?,
+                ..PidConfig::sampled_every(dt_s)
+            };
+            let (gains, config) = schedule::scaled(report, section, factor?, (gains, config))?;
+            judged(report, (section, "kp"), Pid::new(gains, config)).map(Controller::Fixed)
         }
         ControllerKind::Pid => {
             let factor = schedule::factor(report, section, pressure);
             let (gains, filter_s) = gains(report, section);
-            let shell = shell(report, section, (dt_s, filter_s));
-            let (gains, shell) = schedule::scaled(report, section, factor?, (gains?, shell?))?;
-            placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed)
+            let config = config(report, section, (dt_s, filter_s));
+            let (gains, config) = schedule::scaled(report, section, factor?, (gains?, config?))?;
+            placed(report, section, Pid::new(gains, config)).map(Controller::Fixed)
         }
         ControllerKind::Fspid => {
             let (gains, filter_s) = gains(report, section);
-            let shell = shell(report, section, (dt_s, filter_s));
+            let config = config(report, section, (dt_s, filter_s));
             let tuner = tuner(report, files, section, gains);
-            let fspid = Fspid::new(tuner?, shell?);
+            let fspid = Fspid::new(tuner?, config?);
             placed(report, section, fspid).map(Controller::SelfTuning)
         }
     }
@@ -93,15 +95,15 @@ fn from_isa(report: &mut Report, isa: &Section) -> (Option<Gains<f64>>, Option<f
     (gains, filter_s)
 }
 
-fn shell(
+fn config(
     report: &mut Report,
     section: &Section,
     (dt_s, isa_filter_s): (f64, Option<f64>),
-) -> Option<Shell<f64>> {
+) -> Option<PidConfig<f64>> {
     let ends = ends(report, section, dt_s);
     let weights = weights(report, section);
     let filter_s = filter(report, section, isa_filter_s);
-    Some(Shell {
+    Some(PidConfig {
         rate_gain_s: section.number("rate_gain")?,
         setpoint_weights: weights?,
         derivative: Derivative { filter_s: filter_s? },
@@ -110,8 +112,8 @@ fn shell(
     })
 }
 
-/// A shell with limits, anti-windup and guard alone.
-pub(super) fn ends(report: &mut Report, section: &Section, dt_s: f64) -> Option<Shell<f64>> {
+/// A configuration with limits, anti-windup and guard alone.
+pub(super) fn ends(report: &mut Report, section: &Section, dt_s: f64) -> Option<PidConfig<f64>> {
     let limits = match section.interval("output_limits_deg") {
         Some((lower, upper)) => {
             let limits = Limits::new("output limits", rad(lower), rad(upper));
@@ -122,12 +124,12 @@ pub(super) fn ends(report: &mut Report, section: &Section, dt_s: f64) -> Option<
     let guard = Guard::new(rad(section.number("sample_guard_deg")?));
     let guard = judged(report, (section, "sample_guard_deg"), guard);
     let anti_windup = anti_windup(report, section, limits.is_some());
-    Some(Shell {
+    Some(PidConfig {
         anti_windup: anti_windup?,
         limits,
         slew_rad_s: section.number("slew_limit_deg_s").map(rad),
         guard: guard?,
-        ..Shell::sampled_every(dt_s)
+        ..PidConfig::sampled_every(dt_s)
     })
 }
 
@@ -215,7 +217,7 @@ fn tuner(
     let law = law(report, section);
     let settings = TunerSettings {
         error_sign: part.word("error_sign")?,
-        sees: sees(report, part)?,
+        second_input: second_input(report, part)?,
         change: part.word("change")?,
         input_scale: input_scale(report, part)?,
         input_sets: InputSets {
@@ -223,7 +225,7 @@ fn tuner(
             change: set_places(report, part, "change_sets")?,
         },
         output_scale: output_scale(part),
-        followers: followers(section),
+        gain_coupling: gain_coupling(section),
         law: law?,
         gain_limits: match gain_limits {
             Some(limits) => Some(limits?),
@@ -258,34 +260,34 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
 }
 
 /// What the supervisor sees beside the error; what would go unused is refused.
-fn sees(report: &mut Report, part: &Section) -> Option<Sees<f64>> {
-    let (sees, model): (SeesWord, _) = (part.word("sees")?, part.section("model"));
-    if sees != SeesWord::ErrorAndChange && part.word("change") == Some(Change::Delta) {
-        let message = format!("the supervisor sees no change, but \"{}\"", sees.name());
+fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>> {
+    let (second_input, model): (SecondInputWord, _) = (part.word("sees")?, part.section("model"));
+    if second_input != SecondInputWord::Change && part.word("change") == Some(Change::Delta) {
+        let message = format!("the supervisor sees no change, but \"{}\"", second_input.name());
         let allowed = "only with sees = \"error-and-change\"";
         report.value(part.at("change"), &part.path("change"), message, allowed);
         return None;
     }
-    match (sees, model) {
-        (SeesWord::ErrorAndModelError, Some(model)) => {
-            Some(Sees::ErrorAndModelError(ReferenceModel {
+    match (second_input, model) {
+        (SecondInputWord::ModelError, Some(model)) => {
+            Some(SecondInput::ModelError(ReferenceModel {
                 bandwidth_rad_s: model.number("bandwidth_rad_s")?,
                 damping: model.number("damping")?,
             }))
         }
-        (SeesWord::ErrorAndModelError, None) => {
+        (SecondInputWord::ModelError, None) => {
             let (message, allowed) = ("it has no reference model", "together with `model`");
             report.missing(part.at("sees"), &part.path("sees"), message, allowed);
             None
         }
-        (SeesWord::ErrorAndRate | SeesWord::ErrorAndChange, Some(model)) => {
-            let message = format!("the supervisor sees no model, but \"{}\"", sees.name());
+        (SecondInputWord::Rate | SecondInputWord::Change, Some(model)) => {
+            let message = format!("the supervisor sees no model, but \"{}\"", second_input.name());
             let allowed = "only with sees = \"error-and-model-error\"";
             report.value(part.at("model"), &model.path, message, allowed);
             None
         }
-        (SeesWord::ErrorAndRate, None) => Some(Sees::ErrorAndRate),
-        (SeesWord::ErrorAndChange, None) => Some(Sees::ErrorAndChange),
+        (SecondInputWord::Rate, None) => Some(SecondInput::Rate),
+        (SecondInputWord::Change, None) => Some(SecondInput::Change),
     }
 }
 
@@ -295,19 +297,19 @@ fn set_places(
     report: &mut Report,
     part: &Section,
     key: &'static str,
-) -> Option<Option<SetPlaces<f64>>> {
+) -> Option<Option<SetCentres<f64>>> {
     match part.interval(key) {
         None => Some(None),
         Some((small, medium)) => {
-            judged(report, (part, key), SetPlaces::new(small, medium)).map(Some)
+            judged(report, (part, key), SetCentres::new(small, medium)).map(Some)
         }
     }
 }
 
-fn followers(section: &Section) -> Followers<f64> {
+fn gain_coupling(section: &Section) -> GainCoupling<f64> {
     let part = section.section("followers");
     let number = |key| part.and_then(|part| part.number(key)).unwrap_or(0.0);
-    Followers {
+    GainCoupling {
         setpoint_weight: number("setpoint_weight_per_kp"),
         rate_gain: number("rate_gain_per_kd"),
     }

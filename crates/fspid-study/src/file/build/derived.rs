@@ -66,7 +66,7 @@ pub(super) fn derived(
     Some(DerivedGains {
         controller: section.text("name")?.to_owned(),
         gains: controller.nominal(),
-        rate_gain_s: controller.shell().rate_gain_s,
+        rate_gain_s: controller.config().rate_gain_s,
         source,
     })
 }

@@ -1,6 +1,6 @@
 //! The linear-quadratic regulator with integral action, as a PID of the project.
 
-use fspid_core::{Gains, Pid, SetpointWeights, Shell};
+use fspid_core::{Gains, Pid, PidConfig, SetpointWeights};
 use fspid_lti::{DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator};
 use fspid_sim::Controller;
 
@@ -15,18 +15,18 @@ use crate::file::section::Section;
 /// with the gains that are optimal in continuous time; $b$, the set-point weight, is no part of the design.
 pub(super) fn controller(report: &mut Report, section: &Section, dt_s: f64) -> Option<Controller> {
     let found = regulator(report, section);
-    let shell = ends(report, section, dt_s);
-    let (found, shell) = (found?, shell?);
+    let config = ends(report, section, dt_s);
+    let (found, config) = (found?, config?);
     let gains = Gains { kp: found.position, ki: found.integral_per_s, kd: 0.0 };
-    let shell = Shell {
+    let config = PidConfig {
         rate_gain_s: found.rate_s,
         setpoint_weights: SetpointWeights {
             proportional: section.number("setpoint_weight")?,
-            ..shell.setpoint_weights
+            ..config.setpoint_weights
         },
-        ..shell
+        ..config
     };
-    placed(report, section, Pid::new(gains, shell)).map(Controller::Fixed)
+    placed(report, section, Pid::new(gains, config)).map(Controller::Fixed)
 }
 
 fn regulator(report: &mut Report, section: &Section) -> Option<IntegralRegulator> {

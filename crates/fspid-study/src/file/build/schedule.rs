@@ -1,6 +1,6 @@
 //! Gains that are scheduled by the dynamic pressure of the trim.
 
-use fspid_core::{Gains, Shell};
+use fspid_core::{Gains, PidConfig};
 
 use super::flight::Flown;
 use super::judged;
@@ -81,10 +81,10 @@ pub(super) fn scaled(
     report: &mut Report,
     section: &Section,
     factor: f64,
-    (gains, shell): (Gains<f64>, Shell<f64>),
-) -> Option<(Gains<f64>, Shell<f64>)> {
+    (gains, config): (Gains<f64>, PidConfig<f64>),
+) -> Option<(Gains<f64>, PidConfig<f64>)> {
     let Gains { kp, ki, kd } = gains;
     let scaled = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor }.checked();
     let gains = judged(report, (section, "schedule"), scaled)?;
-    Some((gains, Shell { rate_gain_s: shell.rate_gain_s * factor, ..shell }))
+    Some((gains, PidConfig { rate_gain_s: config.rate_gain_s * factor, ..config }))
 }

@@ -39,10 +39,10 @@ words! {
 
 words! {
     /// What the supervisor sees.
-    SeesWord {
-        ErrorAndChange = "error-and-change",
-        ErrorAndRate = "error-and-rate",
-        ErrorAndModelError = "error-and-model-error",
+    SecondInputWord {
+        Change = "error-and-change",
+        Rate = "error-and-rate",
+        ModelError = "error-and-model-error",
     }
 }
 
@@ -343,7 +343,7 @@ const SUPERVISOR_KEYS: &[Key] = &[
     ),
     defaulted(
         "sees",
-        Kind::Word(SeesWord::WORDS),
+        Kind::Word(SecondInputWord::WORDS),
         Default::Word("error-and-change"),
         "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
     ),

@@ -131,7 +131,9 @@ fn why(claim: &Claim) -> String {
         Claim::SequenceGrowth { .. } => {
             "a sequence of gains that the rules give lets the loop grow".to_owned()
         }
-        Claim::AnySpeed { .. } | Claim::Tied { .. } | Claim::BoundedRate(_) => String::new(),
+        Claim::CommonQuadratic { .. } | Claim::SProcedure { .. } | Claim::BoundedRate(_) => {
+            String::new()
+        }
     }
 }
 

@@ -80,7 +80,7 @@ impl<'a> Evidence<'a> {
     /// True for the verdict of a loop at rest whose gains move or whose command is limited.
     fn is_unstable_beyond_fixed_gains(&self) -> bool {
         let is_simple = match &self.named.controller {
-            Controller::Fixed(pid) => pid.shell().is_linear(),
+            Controller::Fixed(pid) => pid.config().is_linear(),
             Controller::SelfTuning(_) => false,
         };
         !is_simple && matches!(self.result.metrics.verdict, Verdict::Unstable { .. })

@@ -1,7 +1,7 @@
 //! Conclusions within a cell: where they are cut, how they join.
 
 use super::super::actors::Level;
-use super::super::joined::{Joined, Piece};
+use super::super::joined::{AggregatedSet, Piece};
 
 /// A conclusion within a cell.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ fn place([from, to]: [f64; 2], [begin, end]: [f64; 2], grade: f64) -> f64 {
 
 /// The upper envelope of straight lines over `x`: start on the highest and change to whichever
 /// crosses first.
-pub(super) fn highest(x: [f64; 2], edges: &[Edge], cell: usize, joined: &mut Joined) {
+pub(super) fn highest(x: [f64; 2], edges: &[Edge], cell: usize, joined: &mut AggregatedSet) {
     let higher = |a: &Edge, b: &Edge| {
         a.grade[0] > b.grade[0] || (a.grade[0] >= b.grade[0] && a.grade[1] > b.grade[1])
     };
@@ -102,7 +102,13 @@ pub(super) fn highest(x: [f64; 2], edges: &[Edge], cell: usize, joined: &mut Joi
 }
 
 /// The sum of straight lines over `x`, cut off at `limit`.
-pub(super) fn sum(x: [f64; 2], edges: &[Edge], limit: f64, cell: usize, joined: &mut Joined) {
+pub(super) fn sum(
+    x: [f64; 2],
+    edges: &[Edge],
+    limit: f64,
+    cell: usize,
+    joined: &mut AggregatedSet,
+) {
     let grade = [0, 1].map(|end| edges.iter().filter_map(|edge| edge.grade.get(end)).sum::<f64>());
     let (conclusion, cut) = match edges {
         [only] => (Some(only.conclusion), only.cut),

@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 use super::super::build::System;
 use super::super::norms::SNorm;
 use super::super::parts::Output;
-use super::actors::{Actors, Level};
-use super::joined::Joined;
+use super::actors::{Activations, Level};
+use super::joined::AggregatedSet;
 use super::roomy_clone;
 use crate::membership::Vertex;
 use crate::norm::{SNormKind, TNormKind};
@@ -59,7 +59,7 @@ pub(crate) struct Room {
     active: Vec<Active>,
     cuts: Vec<f64>,
     edges: Vec<Edge>,
-    pub(crate) joined: Joined,
+    pub(crate) joined: AggregatedSet,
 }
 
 impl Clone for Room {
@@ -76,7 +76,7 @@ impl Clone for Room {
 
 impl Outline {
     /// The outline of an output whose sets are all piecewise linear and stay so when joined.
-    pub(crate) fn of(output: &Output, actors: &Actors) -> Option<Self> {
+    pub(crate) fn of(output: &Output, actors: &Activations) -> Option<Self> {
         let (join, universe) = (Join::of(&output.aggregation)?, output.universe?);
         let polylines: Vec<Vec<Vertex>> =
             output.terms.iter().map(|term| polyline(&term.conclusion)).collect::<Option<_>>()?;
@@ -90,7 +90,7 @@ impl Outline {
     }
 
     /// Makes room for it.
-    pub(crate) fn reserve(&self, actors: &Actors, room: &mut Room) {
+    pub(crate) fn reserve(&self, actors: &Activations, room: &mut Room) {
         let of_cell = |cell: &Cell| -> usize {
             let lines = self.lines.get(cell.lines.clone()).unwrap_or_default();
             lines.iter().map(|line| actors.about(line.term).len()).sum()
@@ -105,14 +105,14 @@ impl Outline {
     }
 
     /// Joins what the actors conclude at their levels.
-    pub(crate) fn join(&self, actors: &Actors, levels: &[Level], room: &mut Room) {
+    pub(crate) fn join(&self, actors: &Activations, levels: &[Level], room: &mut Room) {
         room.joined.restart(self.middle);
         for cell in &self.cells {
             self.join_cell(cell, actors, levels, room);
         }
     }
 
-    fn join_cell(&self, cell: &Cell, actors: &Actors, levels: &[Level], room: &mut Room) {
+    fn join_cell(&self, cell: &Cell, actors: &Activations, levels: &[Level], room: &mut Room) {
         let Room { active, cuts, edges, joined } = room;
         active.clear();
         cuts.clear();

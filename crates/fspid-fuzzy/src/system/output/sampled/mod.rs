@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use super::super::defuzzifier::{Defuzzifier, Sampling};
 use super::super::norms::TNorm;
 use super::super::parts::{Conclusion, Membership, Output};
-use super::actors::{Actors, Level};
+use super::actors::{Activations, Level};
 use super::{roomy_clone, set_grade};
 use crate::defuzzifier::SampleGrid;
 use crate::norm::{SNormKind, TNormKind};
@@ -64,7 +64,7 @@ impl Clone for Samples {
 #[derive(Clone, Copy)]
 pub(crate) struct Concluded<'a> {
     pub(crate) output: &'a Output,
-    pub(crate) actors: &'a Actors,
+    pub(crate) actors: &'a Activations,
     pub(crate) levels: &'a [Level],
     pub(crate) inputs: &'a [f64],
 }
@@ -103,7 +103,7 @@ impl Sampled {
     }
 
     /// Makes room for an evaluation.
-    pub(crate) fn reserve(&self, actors: &Actors, samples: &mut Samples) {
+    pub(crate) fn reserve(&self, actors: &Activations, samples: &mut Samples) {
         let count = self.count as usize;
         samples.terms.resize(samples.terms.len().max(2 * self.terms), 0.0);
         samples.joined.reserve(count);

@@ -9,11 +9,11 @@
 use super::{Concluded, Sampled, Samples};
 use crate::norm::TNormKind;
 
-use super::super::actors::Actors;
+use super::super::actors::Activations;
 
 impl Sampled {
     /// Cuts that can lie between samples: one for each actor on each rise and fall of its term.
-    pub(super) fn most_cuts(&self, actors: &Actors) -> usize {
+    pub(super) fn most_cuts(&self, actors: &Activations) -> usize {
         let runs = |term: usize| {
             let grades = || self.grades.iter().skip(term).step_by(self.terms);
             let changes = grades().zip(grades().skip(1)).filter(|(a, b)| a < b || b < a).count();
