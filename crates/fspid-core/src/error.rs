@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use fspid_fuzzy::FuzzyError;
 use fspid_numeric::Real;
 
 /// Why a controller could not be built: which setting, what was found, what is allowed.
@@ -37,6 +38,8 @@ pub enum ConfigError {
         /// Highest allowed.
         upper: f64,
     },
+    /// A supervisor that could not be built.
+    Supervisor(FuzzyError),
     /// Two settings that exclude each other.
     Conflict {
         /// The sentence.
@@ -57,12 +60,19 @@ impl fmt::Display for ConfigError {
             Self::OutsideLimits { what, found, lower, upper } => {
                 write!(f, "{what} is {found:?}, outside its limits {lower:?} to {upper:?}")
             }
+            Self::Supervisor(error) => error.fmt(f),
             Self::Conflict { what } => f.write_str(what),
         }
     }
 }
 
 impl core::error::Error for ConfigError {}
+
+impl From<FuzzyError> for ConfigError {
+    fn from(error: FuzzyError) -> Self {
+        Self::Supervisor(error)
+    }
+}
 
 /// `value` if it is finite, above zero and not denormal: a quotient by it must not overflow.
 pub(crate) fn positive<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {

@@ -43,6 +43,7 @@ mod gains;
 mod guard;
 mod integral;
 mod limits;
+pub mod paper;
 mod pid;
 mod pid_config;
 mod second_input;

@@ -48,6 +48,29 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// A flight with an ideal servo in calm air, without anybody who answers yet.
+    #[must_use]
+    pub fn new(plant: impl Into<Plant>, timing: Timing, setpoint: Profile) -> Self {
+        Self {
+            name: String::new(),
+            plant: plant.into(),
+            plant_changes: Vec::new(),
+            servo: Servo::ideal(),
+            timing,
+            setpoint,
+            disturbances: Vec::new(),
+            controllers: Vec::new(),
+            surroundings: Surroundings::default(),
+        }
+    }
+
+    /// The same with one more controller, which flies alone as the others do.
+    #[must_use]
+    pub fn with_controller(mut self, name: &str, controller: Controller) -> Self {
+        self.controllers.push(NamedController { name: name.to_owned(), controller });
+        self
+    }
+
     /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.
     #[must_use]
     pub fn pushes_s(&self) -> Vec<f64> {

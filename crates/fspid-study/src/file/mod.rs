@@ -110,6 +110,26 @@ impl Study {
         Self { requirements: asked.cloned().collect(), ..self }
     }
 
+    /// A scenario that was built in Rust: nothing is required, dispersed, marked or tuned, and an aircraft that leaves the
+    /// range of its data fails.
+    #[must_use]
+    pub fn of(scenario: Scenario) -> Self {
+        let range_rule = match scenario.plant.aircraft() {
+            Some(_) => RangeRule::Fails,
+            None => RangeRule::NoRange,
+        };
+        Self::without_text(Built {
+            airframes: Airframe::unknown(&scenario),
+            scenario,
+            requirements: Vec::new(),
+            dispersions: Vec::new(),
+            derived_gains: Vec::new(),
+            tuning: None,
+            contest: None,
+            range_rule,
+        })
+    }
+
     /// What was built from other values than those of a text, without settings and digest.
     fn without_text(built: Built) -> Self {
         let Built {

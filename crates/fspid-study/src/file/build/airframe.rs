@@ -1,6 +1,7 @@
 //! What is known of the flight of each plant: flying qualities depend on it.
 
 use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
+use fspid_sim::Scenario;
 
 use super::flight::Flown;
 use crate::file::files::Files;
@@ -13,6 +14,14 @@ pub struct Airframe {
     pub airspeed_m_s: Option<f64>,
     /// Gravity, m/s².
     pub gravity_m_s2: f64,
+}
+
+impl Airframe {
+    /// Nobody said how fast the plants of this scenario fly.
+    pub(in crate::file) fn unknown(scenario: &Scenario) -> Vec<Self> {
+        let unknown = Self { airspeed_m_s: None, gravity_m_s2: STANDARD_GRAVITY_M_S2 };
+        vec![unknown; 1 + scenario.plant_changes.len()]
+    }
 }
 
 /// One for the plant at the start and one for each change, in the file's order.

@@ -1,0 +1,108 @@
+//! Fuzzy self-tuning PID flight controllers, from an idea to evidence: the front door of the workbench for programs.
+//!
+//! The program `fspid` answers a terminal; this crate answers Rust. It holds no code of its own: every room of the house
+//! under one name, and a [`prelude`] with what most programs need.
+//!
+//! # From the text of a scenario to measures
+//!
+//! ```
+//! use fspid::prelude::*;
+//!
+//! let text = r#"
+//! schema = 1
+//! name = "a step of five degrees"
+//! [plant]
+//! preset = "b747-paper"
+//! [loop]
+//! sample_period_s = 0.01
+//! duration_s = 20.0
+//! [setpoint]
+//! kind = "step"
+//! amplitude_deg = 5.0
+//! [[controller]]
+//! name = "PID"
+//! kind = "pid"
+//! kp = 2.0
+//! ki = 0.5
+//! kd = 1.0
+//! "#;
+//! let study = parse(text, "step.toml", None, &[])?;
+//! let simulation = Simulation::of(&study)?;
+//! let result = &simulation.results[0];
+//! let overshoot_pct = result.metrics.first_step().overshoot_pct.expect("the loop is stable");
+//! assert!(result.metrics.verdict.is_good() && overshoot_pct < 20.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Without any file
+//!
+//! ```
+//! use fspid::core::paper;
+//! use fspid::prelude::*;
+//!
+//! // Pitch per elevator of a short period with its integrator; angles in radians, times in seconds.
+//! let plant = LinearPlant::new(&[1.151, 0.1774], &[1.0, 0.739, 0.921, 0.0], ElevatorSign::NoseUpPositive)?;
+//! let supervisor = Supervisor::new(&paper::rules().mirrored(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp)?;
+//! let nominal = Gains { kp: 1.0, ki: 0.3, kd: 0.2 };
+//! let tuner = SelfTuner::new(nominal, supervisor, TunerSettings {
+//!     input_scale: InputScale { error_per_rad: 60.0, change_per_rad: 12.0 },
+//!     output_scale: Gains { kp: 0.05, ki: 0.01, kd: 0.01 },
+//!     ..TunerSettings::literal()
+//! })?;
+//! let controller = Fspid::new(tuner, PidConfig::sampled_every(0.01))?;
+//! let setpoint = Profile::new(5.0_f64.to_radians(), Shape::Step { at_s: 0.0 })?;
+//! let scenario = Scenario::new(plant, Timing::new(0.01, 20.0)?, setpoint)
+//!     .with_controller("FSPID", Controller::SelfTuning(controller));
+//! let study = Study::of(scenario);
+//!
+//! let simulation = Simulation::of(&study)?;
+//! println!("{}", simulation.text());
+//! let analysis = Analysis::of(&study, Question::default())?;
+//! assert!(analysis.all_held());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is where
+//!
+//! | module | what it is |
+//! | --- | --- |
+//! | [`core`](mod@core) | controllers that can fly; `no_std`, no heap, `step` cannot fail |
+//! | [`fuzzy`] | the supervisor, general fuzzy systems, audits |
+//! | [`sim`] | the sampled closed loop: scenario in, trace out |
+//! | [`study`] | files, measures, verdicts, margins, certificates, figures, reports |
+//! | [`campaign`], [`tune`] | many flights; optimisers, classical rules, contests |
+//! | [`lti`], [`aircraft`], [`proof`], [`numeric`] | linear systems, aircraft, proofs, numbers |
+//!
+//! Not here: the program and its arguments (`fspid-cli`), and firmware, which wants `fspid-core` alone.
+
+pub use fspid_aircraft as aircraft;
+pub use fspid_campaign as campaign;
+pub use fspid_core as core;
+pub use fspid_fuzzy as fuzzy;
+pub use fspid_lti as lti;
+pub use fspid_numeric as numeric;
+pub use fspid_proof as proof;
+pub use fspid_sim as sim;
+pub use fspid_study as study;
+pub use fspid_tune as tune;
+
+/// What most programs need: `use fspid::prelude::*;`.
+pub mod prelude {
+    pub use fspid_core::{
+        AntiWindup, ConfigError, Derivative, Fspid, GainLimits, Gains, InputScale, Law, Limits,
+        Pid, PidConfig, Sample, SelfTuner, SetpointWeights, State, TunerSettings,
+    };
+    pub use fspid_fuzzy::{
+        Defuzzifier, FuzzyError, Grid, Label, OutOfRange, RuleTable, Supervisor,
+    };
+    pub use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
+    pub use fspid_sim::{
+        Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Plant, Scenario, Servo,
+        SimError, Timing, Trace, simulate,
+    };
+    pub use fspid_study::analysis::{Analysis, Question};
+    pub use fspid_study::certify::Certification;
+    pub use fspid_study::file::{Study, load, parse};
+    pub use fspid_study::metrics::{FlightMetrics, Verdict};
+    pub use fspid_study::simulation::Simulation;
+}
