@@ -9,6 +9,7 @@ mod common;
 mod every_command;
 mod fly;
 mod fuzzy_system;
+mod guide;
 mod learn;
 mod no_clock;
 mod repository;

@@ -1,0 +1,102 @@
+//! Every command of the README and the guide, run, and what they print compared: no document can lie.
+
+use std::path::{Path, PathBuf};
+
+use crate::common::{code, fspid, text};
+
+/// What the documents write before the program's own words.
+const PROGRAM: &str = "cargo run --release -- ";
+/// Commands that are not run here, each with the reason.
+const NOT_RUN: [(&str, &str); 6] = [
+    ("reproduce", "the end-to-end check runs it"),
+    ("contest", "takes most of an hour"),
+    ("bench", "measures"),
+    ("campaign run", "ten thousand flights; the end-to-end check runs five hundred"),
+    ("campaign re", "of those flights"),
+    ("aircraft trim f16.toml", "NASA's files are not kept here"),
+];
+/// Commands that do not end with 0, and what they end with.
+const CODES: [(&str, i32); 1] = [("aircraft trim navion --speed 60kt", 2)];
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Blocks between fences: language and lines.
+fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut inside = false;
+    for line in page.lines() {
+        match (line.strip_prefix("```"), inside) {
+            (Some(language), false) => {
+                found.push((language, Vec::new()));
+                inside = true;
+            }
+            (Some(_), true) => inside = false,
+            (None, true) => found.last_mut().expect("a block").1.push(line),
+            (None, false) => {}
+        }
+    }
+    found
+}
+
+/// Runs the commands of a page in its order, in a folder that looks like the repository; how many.
+fn run(page: &Path, folder: &Path) -> usize {
+    let document = std::fs::read_to_string(page).expect("a page");
+    let (mut printed, mut ran, mut skipped) = (String::new(), 0, false);
+    for (language, lines) in blocks(&document) {
+        if language == "text" && !skipped {
+            for line in lines.iter().filter(|line| !line.is_empty() && !line.contains('→')) {
+                assert!(
+                    line.starts_with('#') || printed.contains(line.trim_end()),
+                    "{}: not printed: {line}\n{printed}",
+                    page.display()
+                );
+            }
+        }
+        if language != "sh" {
+            continue;
+        }
+        for command in lines.iter().filter_map(|line| line.strip_prefix(PROGRAM)) {
+            let command = command.split(" #").next().unwrap_or_default().trim();
+            skipped = NOT_RUN.iter().any(|(start, _)| command.starts_with(start));
+            if skipped {
+                continue;
+            }
+            // What a shell does.
+            let (command, into) = command.split_once(" > ").unwrap_or((command, ""));
+            let arguments: Vec<&str> = command.split_whitespace().collect();
+            let output = fspid(&arguments, folder);
+            let expected = CODES.iter().find(|(start, _)| command.starts_with(start));
+            let (out, err) = (text(&output.stdout), text(&output.stderr));
+            assert_eq!(code(&output), expected.map_or(0, |it| it.1), "{command}\n{out}\n{err}");
+            if !into.is_empty() {
+                std::fs::write(folder.join(into), &out).expect("written");
+            }
+            printed.push_str(&out);
+            printed.push_str(&err);
+            ran += 1;
+        }
+    }
+    ran
+}
+
+#[test]
+fn every_command_of_readme_and_guide_runs_and_prints_what_they_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["scenarios", "examples", "data", "crates"] {
+        let from = std::fs::canonicalize(repository().join(name)).expect("a folder");
+        std::os::unix::fs::symlink(from, folder.path().join(name)).expect("a link");
+    }
+    let mut ran = run(&repository().join("README.md"), folder.path());
+    std::fs::remove_file(folder.path().join("pitch.toml")).expect("written by init");
+    let guide = repository().join("docs/guide");
+    let mut pages: Vec<PathBuf> =
+        std::fs::read_dir(guide).expect("the guide").map(|it| it.expect("a page").path()).collect();
+    // Scenarios that later pages use are written by the first.
+    pages.sort_by_key(|page| (!page.ends_with("first-scenario.md"), page.clone()));
+    for page in &pages {
+        ran += run(page, folder.path());
+    }
+    assert!(ran > 40, "{ran}");
+}
