@@ -48,11 +48,11 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// A flight with an ideal servo in calm air, without anybody who answers yet.
+    /// A flight with an ideal servo in calm air, without anybody who answers yet; `name` is the title of reports.
     #[must_use]
-    pub fn new(plant: impl Into<Plant>, timing: Timing, setpoint: Profile) -> Self {
+    pub fn new(name: &str, plant: impl Into<Plant>, timing: Timing, setpoint: Profile) -> Self {
         Self {
-            name: String::new(),
+            name: name.to_owned(),
             plant: plant.into(),
             plant_changes: Vec::new(),
             servo: Servo::ideal(),

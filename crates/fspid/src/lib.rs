@@ -43,7 +43,7 @@
 //! // Pitch per elevator of a short period with its integrator; angles in radians, times in seconds.
 //! let plant = LinearPlant::new(&[1.151, 0.1774], &[1.0, 0.739, 0.921, 0.0], ElevatorSign::NoseUpPositive)?;
 //! let supervisor = Supervisor::new(&paper::rules().mirrored(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp)?;
-//! let nominal = Gains { kp: 1.0, ki: 0.3, kd: 0.2 };
+//! let nominal = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
 //! let tuner = SelfTuner::new(nominal, supervisor, TunerSettings {
 //!     input_scale: InputScale { error_per_rad: 60.0, change_per_rad: 12.0 },
 //!     output_scale: Gains { kp: 0.05, ki: 0.01, kd: 0.01 },
@@ -51,12 +51,13 @@
 //! })?;
 //! let controller = Fspid::new(tuner, PidConfig::sampled_every(0.01))?;
 //! let setpoint = Profile::new(5.0_f64.to_radians(), Shape::Step { at_s: 0.0 })?;
-//! let scenario = Scenario::new(plant, Timing::new(0.01, 20.0)?, setpoint)
+//! let scenario = Scenario::new("five degrees", plant, Timing::new(0.01, 40.0)?, setpoint)
 //!     .with_controller("FSPID", Controller::SelfTuning(controller));
 //! let study = Study::of(scenario);
 //!
 //! let simulation = Simulation::of(&study)?;
 //! println!("{}", simulation.text());
+//! assert!(simulation.results[0].metrics.verdict.is_good());
 //! let analysis = Analysis::of(&study, Question::default())?;
 //! assert!(analysis.all_held());
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -6,7 +6,7 @@ use crate::certificate::{Certificate, Claim};
 impl Prover<'_> {
     /// The largest output scale that can be proved, by halving.
     pub(super) fn largest(&self, verdict: &Verdict) -> Largest {
-        let s_procedure = !matches!(
+        let may_be_tied = !matches!(
             verdict,
             Verdict::Proved(Certificate { claim: Claim::CommonQuadratic { .. }, .. }, _)
         );
@@ -23,22 +23,22 @@ impl Prover<'_> {
             largest.not_proved = Some(1.0);
         }
         while largest.not_proved.is_none() && next <= self.effort.largest_factor {
-            self.ask(&mut largest, next, s_procedure);
+            self.ask(&mut largest, next, may_be_tied);
             next *= 2.0;
         }
         for _ in 0..self.effort.halvings {
             let Some(above) = largest.not_proved else { break };
             let middle = 0.5 * (largest.proved + above);
-            self.ask(&mut largest, middle, s_procedure);
+            self.ask(&mut largest, middle, may_be_tied);
         }
         largest
     }
 
-    pub(super) fn ask(&self, largest: &mut Largest, factor: f64, s_procedure: bool) {
+    pub(super) fn ask(&self, largest: &mut Largest, factor: f64, may_be_tied: bool) {
         let set = self.set(factor);
         let common_quadratic = self.common_quadratic(&set, factor, false);
         let found = common_quadratic
-            .or_else(|| if s_procedure { self.s_procedure(&set, factor, false) } else { None });
+            .or_else(|| if may_be_tied { self.s_procedure(&set, factor, false) } else { None });
         match found {
             Some((certificate, _)) => {
                 largest.proved = factor;

@@ -8,7 +8,7 @@ use fspid_numeric::InstructionSet;
 
 use super::lane::{Lanes, Mask, NO, YES, limited, mask, numbers};
 use super::memory::Memories;
-use super::regulator::{FAR, Samples};
+use super::pid_lanes::{FAR, Samples};
 
 numbers! {
     /// One flight's numbers of a self-tuner.

@@ -4,9 +4,9 @@ use fspid_numeric::InstructionSet;
 
 use super::Entrant;
 use super::lane::{Lanes, Mask, NO, YES, all, mask};
+use super::pid_lanes::{Controllers, Samples};
 use super::plant::Plants;
 use super::refusal::Refusal;
-use super::regulator::{Controllers, Samples};
 use super::row::Row;
 use crate::error::SimError;
 use crate::propagation::{DIVERGED_RAD, Propagation};

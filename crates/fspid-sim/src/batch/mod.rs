@@ -24,9 +24,9 @@ mod gains;
 mod group;
 mod lane;
 mod memory;
+mod pid_lanes;
 mod plant;
 mod refusal;
-mod regulator;
 mod row;
 
 pub use fspid_numeric::InstructionSet;

@@ -62,7 +62,7 @@ impl RestPoint {
 /// A controller at rest while a set-point and a load are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// What is held; of several points with the same loop the one nearest to the trim.
+    /// What is held; of several points with the same loop the first that was looked at, the trim before all others.
     pub at: RestPoint,
     /// The loops there: one, or one for each side of the kinks that the rules have there.
     pub sides: Vec<Side>,

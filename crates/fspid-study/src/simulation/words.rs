@@ -53,7 +53,7 @@ impl AtRest {
         let at = self.unstable?.at;
         (at != RestPoint::TRIM).then(|| {
             let held = held_in_words(at);
-            format!("unstable {held}: gains that move multiply the command that holds it")
+            format!("unstable {held}: where gains move, the loop is another one at each set-point and load")
         })
     }
 
