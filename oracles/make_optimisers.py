@@ -171,4 +171,4 @@ def rows(wanted):
 if __name__ == "__main__":
     made = list(rows(sys.argv[1:]))
     if not sys.argv[1:]:
-        write("fspid-study", "optimisers.csv", "optimiser,library,function,budget,seeds,lower_quartile,median,upper_quartile", made)
+        write("fspid-optimise", "optimisers.csv", "optimiser,library,function,budget,seeds,lower_quartile,median,upper_quartile", made)

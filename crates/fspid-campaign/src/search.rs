@@ -4,9 +4,9 @@
 //! by a simplex. Distributions without limits are searched within three standard deviations. What is
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
+use fspid_optimise::{LShade, NelderMead, Optimiser, Start, minimise};
 use fspid_study::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
 use fspid_study::file::known_words;
-use fspid_study::tune::optimiser::{LShade, NelderMead, Optimiser, Start, minimise};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 

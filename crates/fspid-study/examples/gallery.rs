@@ -2,7 +2,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use fspid_study::figure::{
+use fspid_plot::{
     Band, LineFigure, LinePanel, Mark, RatioFigure, RuleTable, SEVEN, Series, SeriesStyle, Surface,
     SurfaceKind, Svg, diagrams, memberships, page_style,
 };

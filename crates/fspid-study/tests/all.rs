@@ -7,7 +7,6 @@ mod file;
 mod fly;
 mod flying;
 mod fuzzy_system;
-mod optimisers;
 mod paper;
 mod report;
 mod requirements;

@@ -1,11 +1,11 @@
 //! A search, generation by generation: it can be stopped, written and gone on with, with the same bits.
 
 use fspid_campaign::Plan as Campaign;
-use fspid_study::file::known_words;
-use fspid_study::shell::word;
-use fspid_study::tune::optimiser::{
+use fspid_optimise::{
     Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
 };
+use fspid_study::file::known_words;
+use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
 
 use crate::error::TuneError;

@@ -1,8 +1,8 @@
 //! What a search found, for people and programs.
 
+use fspid_optimise::Stop;
 use fspid_study::digits::to_digits;
 use fspid_study::requirement::Requirement;
-use fspid_study::tune::optimiser::Stop;
 use fspid_study::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! The answer first: how often flights fail, and which requirements are not met.
 
-use fspid_study::figure::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
+use fspid_plot::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
 use fspid_study::report::analysis::{DataTable, Datum, Item, Standing, Verdict};
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
@@ -80,7 +80,7 @@ fn mark(column: usize, controller: usize, found: &Probability) -> Option<Interva
     Some(IntervalMark { column, style: style(controller), value, lower, upper })
 }
 
-fn failing(source: &Source<'_>) -> fspid_study::figure::Svg {
+fn failing(source: &Source<'_>) -> fspid_plot::Svg {
     let controllers = source.summary.controllers.iter().enumerate();
     let row = |(n, it): (usize, &ControllerSummary)| IntervalRow {
         name: source.name(n),
@@ -115,7 +115,7 @@ fn of_each<'a>(
     found.filter(|(_, requirement)| requirement.not_met.of > 0)
 }
 
-fn requirement_figure(source: &Source<'_>) -> Option<fspid_study::figure::Svg> {
+fn requirement_figure(source: &Source<'_>) -> Option<fspid_plot::Svg> {
     let row = |(place, requirement): (usize, &&RequirementSummary)| IntervalRow {
         name: cut(&requirement.id, 60),
         words: cut(&requirement.required, 40),

@@ -1,6 +1,6 @@
 //! How measures are distributed: histograms first, all numbers in a table.
 
-use fspid_study::figure::{DistributionFigure, DistributionRow, LimitLine};
+use fspid_plot::{DistributionFigure, DistributionRow, LimitLine};
 use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item, Picture};
 
 use super::measures::{self, Measure};

@@ -1,9 +1,9 @@
 //! Maps of failures over the parameters that matter most.
 
-use fspid_study::dispersion::Distribution;
-use fspid_study::figure::{
+use fspid_plot::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, RunScatter, ShareCell, ShareMap,
 };
+use fspid_study::dispersion::Distribution;
 use fspid_study::report::analysis::{Chapter, Item, Picture};
 
 use super::by_parameter::{ByParameter, Counted, Counts, Event, counted, pairs};

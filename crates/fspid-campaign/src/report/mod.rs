@@ -25,7 +25,7 @@ mod worst;
 
 use std::path::Path;
 
-use fspid_study::figure::{SeriesStyle, Svg};
+use fspid_plot::{SeriesStyle, Svg};
 use fspid_study::report::analysis::{Item, Picture};
 use fspid_study::report::campaign::CampaignPage;
 

@@ -1,6 +1,6 @@
 //! What failing and the main measures depend on.
 
-use fspid_study::figure::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
+use fspid_plot::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
 use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item, Picture};
 
 use super::measures;

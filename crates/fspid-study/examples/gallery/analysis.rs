@@ -8,7 +8,7 @@ use fspid_lti::{
     Complex, Matrix, TransferFunction, eigenvalues, modulus, quotient, spectral_radius,
     zero_order_hold,
 };
-use fspid_study::figure::{
+use fspid_plot::{
     BodeFigure, CLOSED_LOOP_DB, CellState, Crossing, Exclusion, GainCell, GainMap, GainSet,
     GainSurface, LocusSample, LoopCurve, LoopPoint, MapCell, MapPoint, Margin, MarginDisk,
     MarginMark, NicholsFigure, NyquistFigure, PeakMark, PoleZeroMap, RadiusFigure, RootLocus,

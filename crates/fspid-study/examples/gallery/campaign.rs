@@ -1,6 +1,6 @@
 //! Figures of campaigns; their numbers stand for those of a few thousand flights.
 
-use fspid_study::figure::{
+use fspid_plot::{
     DistributionFigure, DistributionRow, EnvelopeBand, EnvelopeFigure, EnvelopePanel,
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, LimitLine, RunScatter, SeriesStyle,
     ShareCell, ShareMap, Svg,

@@ -1,6 +1,6 @@
 //! A page of a loop analysis; its numbers stand for those that a study would compute.
 
-use fspid_study::figure::Svg;
+use fspid_plot::Svg;
 use fspid_study::report::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
 };

@@ -7,7 +7,7 @@ use fspid_sim::flown::trajectory::{TrajectoryLinearisation, TrajectoryPoint};
 use super::answer::{Margins, decibels};
 use super::frozen::{FrozenMap, FrozenPoint};
 use super::{AnalysedLoop, Analysis, PlantLoop};
-use crate::figure::{
+use fspid_plot::{
     BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, GainSurface, LocusSample, LoopCurve,
     LoopPoint, MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure,
     PeakMark, PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle,

@@ -9,8 +9,8 @@ use crate::file::problem::{Problems, nearest};
 use crate::file::report::{Place, Report};
 use crate::file::setting::{grid_text, named_step};
 use crate::file::{NewValue, SettingPath, Template};
-use crate::tune::Scale;
 use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
+use fspid_optimise::Scale;
 
 /// The key that makes a table a mark.
 const KEY: &str = "tune";

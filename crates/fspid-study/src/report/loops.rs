@@ -10,9 +10,9 @@ use crate::analysis::figures::{
     LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
-use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::file::Study;
 use crate::metrics::Absent;
+use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 
 /// Beyond this a step response has run away.
 const RUN_AWAY: f64 = 10.0;

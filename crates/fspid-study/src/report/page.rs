@@ -4,9 +4,9 @@ use minijinja::value::Value;
 use serde::Serialize;
 
 use super::{html, markdown, number};
-use crate::figure::{Svg, page_style};
 use crate::metrics::Measured;
 use crate::reproduce::Status;
+use fspid_plot::{Svg, page_style};
 
 /// A figure with its caption.
 #[derive(Clone, Debug, Serialize)]

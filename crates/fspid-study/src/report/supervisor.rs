@@ -7,7 +7,7 @@ use fspid_fuzzy::{
 
 use super::number;
 use super::page::Figure;
-use crate::figure::{self, Mark, SEVEN, Surface, SurfaceKind, memberships};
+use fspid_plot::{Mark, SEVEN, Surface, SurfaceKind, memberships};
 
 /// Nodes of a gain surface along each input.
 const NODES: u32 = 31;
@@ -141,7 +141,7 @@ pub(super) fn rule_tables(
         let cells = Label::ALL
             .iter()
             .map(|row| Label::ALL.iter().map(|column| label(row, column)).collect());
-        let drawn = figure::RuleTable {
+        let drawn = fspid_plot::RuleTable {
             title: format!("Rules for {symbol}, {name}"),
             row_header: "error e".to_owned(),
             column_header: "change of error ec".to_owned(),
@@ -168,7 +168,7 @@ pub(super) fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> V
     };
     let figure = |(output, letter, symbol): (Output, &str, &str)| {
         let grid = table.grid(output);
-        let drawn = figure::RuleTable {
+        let drawn = fspid_plot::RuleTable {
             title: format!("Rules for {symbol}, {name}"),
             row_header: "error e".to_owned(),
             column_header: "change of error ec".to_owned(),

@@ -2,9 +2,9 @@
 
 use fspid_sim::{Controller, Outcome, Scenario, Trace};
 
-use crate::figure::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use crate::simulation::{ControllerResult, Simulation};
 use crate::units::degrees;
+use fspid_plot::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
 
 /// How a flight is drawn.
 pub(super) struct Drawing<'a> {

@@ -10,10 +10,10 @@ use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor;
 use super::traces::{Drawing, fails, is_cut_short};
 use super::{measures, settings};
-use crate::figure::SurfaceKind;
 use crate::file::{Setting, Study};
 use crate::metrics::Verdict;
 use crate::simulation::{ControllerResult, Simulation};
+use fspid_plot::SurfaceKind;
 
 #[derive(Clone, Copy)]
 struct User<'a> {

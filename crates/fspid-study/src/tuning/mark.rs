@@ -2,7 +2,7 @@
 
 use super::{GridMark, NumbersMark};
 use crate::file::{NewValue, SettingPath};
-use crate::tune::Scale;
+use fspid_optimise::Scale;
 
 /// A place that is marked free.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,8 @@
 
 use fspid_core::{Gains, IntegralForm, PidConfig};
 use fspid_lti::{Matrix, regulator};
+use fspid_optimise::{Parameter, Scale, Space, polish};
 use fspid_sim::loop_model::Memory;
-use fspid_study::tune::{Parameter, Scale, Space, polish};
 
 use super::RuleError;
 use super::model::Model;

@@ -5,7 +5,7 @@ use super::autopilot::is_stable;
 use super::column::Column;
 use super::point::{Point, short_period};
 use crate::aircraft::units::{Kind, Units};
-use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
+use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
 
 /// What a hatched place means.
 const MISSING: &str = "no trim there; the CSV says why";

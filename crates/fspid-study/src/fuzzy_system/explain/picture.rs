@@ -6,8 +6,8 @@ use fspid_fuzzy::system::{Conclusion, Membership, Output, Universe};
 
 use super::share::{Share, Shares};
 use super::{Basis, Explanation};
-use crate::figure::{ConclusionFigure, Part, Svg};
 use crate::fuzzy_system::words;
+use fspid_plot::{ConclusionFigure, Part, Svg};
 
 /// Rules that are drawn each in a colour of its own.
 const OWN_COLOUR: usize = 6;

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::figure::Svg;
 use crate::report::html::{self, context};
 use crate::report::page::{Cell, Figure, Table};
+use fspid_plot::Svg;
 
 /// A chapter of a page.
 #[derive(Clone, Debug, Default, PartialEq)]

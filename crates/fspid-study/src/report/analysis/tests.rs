@@ -1,7 +1,7 @@
 //! What holds for the page of an analysis.
 
 use super::*;
-use crate::figure::{LineFigure, LinePanel};
+use fspid_plot::{LineFigure, LinePanel};
 
 fn picture(name: &str, caption: &str) -> Picture {
     let figure = LineFigure {

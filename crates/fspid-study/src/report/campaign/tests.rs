@@ -1,8 +1,8 @@
 //! What holds for the page of a campaign.
 
 use super::*;
-use crate::figure::{IntervalFigure, ShareMap};
 use crate::report::analysis::{DataTable, Datum, Picture, Standing};
+use fspid_plot::{IntervalFigure, ShareMap};
 
 const HOSTILE: &str = "<script>alert('x')</script>\" & 日本";
 

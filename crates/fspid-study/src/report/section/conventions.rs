@@ -1,9 +1,9 @@
 //! Axes, signs, and the loops as block diagrams.
 
-use crate::figure::diagrams;
 use crate::report::html::context;
 use crate::report::page::{Figure, Section};
 use crate::report::paper::Paper;
+use fspid_plot::diagrams;
 
 /// Figs 1 to 3 of the paper, redrawn with the signs that hold here.
 pub(super) fn section(_: &Paper<'_>) -> Section {

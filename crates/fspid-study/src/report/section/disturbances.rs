@@ -3,7 +3,6 @@
 use fspid_sim::Controller;
 use serde::Serialize;
 
-use crate::figure::{RatioFigure, Series, SeriesStyle};
 use crate::file::Study;
 use crate::report::html::context;
 use crate::report::number::capital;
@@ -18,6 +17,7 @@ use crate::reproduce::disturbance::{
     scenario_name,
 };
 use crate::simulation::Simulation;
+use fspid_plot::{RatioFigure, Series, SeriesStyle};
 
 /// A comparison: who, over whom, and what it is called.
 pub(super) struct Match {

@@ -2,13 +2,13 @@
 
 use fspid_fuzzy::{Output, RuleTable};
 
-use crate::figure::SurfaceKind;
 use crate::file;
 use crate::report::html::context;
 use crate::report::number::{significant, with_sign};
 use crate::report::page::{Cell, Figure, Row, Section, Table};
 use crate::report::paper::Paper;
 use crate::report::supervisor::{self, Marks, OddCell};
+use fspid_plot::SurfaceKind;
 
 /// Half ranges that the paper names.
 const RANGES: [f64; 2] = [5.0, 40.0];

@@ -2,7 +2,6 @@
 
 use fspid_sim::Controller;
 
-use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle};
 use crate::report::html::context;
 use crate::report::measures;
 use crate::report::number::fixed;
@@ -11,6 +10,7 @@ use crate::report::paper::Paper;
 use crate::reproduce::{FIGURES, Fit, FlownFigure};
 use crate::simulation::Simulation;
 use crate::units::degrees;
+use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
 
 /// Figures whose printed and mirrored flights are drawn.
 const DRAWN: [&str; 2] = ["8a", "8b"];

@@ -19,7 +19,7 @@ use self::staged::{Effort, SeedResult, Set};
 use super::figures::{FIGURES, Fit, Library, Stored};
 use super::model::{Command, FULL_MODEL, SHORT_PERIOD, Scales};
 use crate::file;
-use crate::tune::{Budget, Parameter, Scale, Space, search};
+use fspid_optimise::{Budget, Parameter, Scale, Space, search};
 
 /// Two upward and two downward steps are shown of a square wave.
 const SHOWN_HALF_PERIODS: u32 = 4;

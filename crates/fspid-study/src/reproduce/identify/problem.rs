@@ -14,8 +14,8 @@ use super::super::model::{
 };
 use super::super::reading::{FigureFlight, figure_of, number, readings};
 use crate::metrics::{EdgeMetrics, FlightMetrics, Measure, StepMetrics, StepWindow};
-use crate::tune::{Parameter, Scale};
 use crate::units::degrees;
+use fspid_optimise::{Parameter, Scale};
 
 /// Reading time of Figs 5 and 6, s (assumption A15).
 pub(super) const WINDOW_S: f64 = 12.0;

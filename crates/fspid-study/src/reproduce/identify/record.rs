@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::Options;
 use super::staged::SeedResult;
-use crate::tune::Space;
+use fspid_optimise::Space;
 
 /// What one seed found.
 #[derive(Clone, Debug, PartialEq)]

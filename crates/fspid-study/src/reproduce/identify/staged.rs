@@ -2,7 +2,7 @@
 //! together, tried again with other random numbers until the claims are met or the attempts used up.
 
 use super::problem::{Bench, Cost, FigureProblem, HALF_PERIOD, Weighing, scale_parameters, scales};
-use crate::tune::{Budget, Found, Space, polish, search};
+use fspid_optimise::{Budget, Found, Space, polish, search};
 
 /// A cost below this is as good as nothing: every number of the fit rounds to the printed digits.
 pub(super) const ACCEPTED: f64 = 0.02;

@@ -1,6 +1,6 @@
 //! Differences with intervals, and error against activity.
 
-use fspid_study::figure::{
+use fspid_plot::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, TradeFigure, TradeSeries,
 };
 use fspid_study::report::analysis::{Chapter, Item};
@@ -40,7 +40,7 @@ pub(super) fn where_chapter(outcome: &Outcome) -> Chapter {
     chapter("where", "Who wins where", items)
 }
 
-fn differences(outcome: &Outcome) -> fspid_study::figure::Svg {
+fn differences(outcome: &Outcome) -> fspid_plot::Svg {
     let groups = outcome.judged.groups();
     let all = counted(outcome.judged.cases.len(), "case", "cases");
     let mut rows = vec![IntervalRow {

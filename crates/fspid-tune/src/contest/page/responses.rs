@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
 use fspid_sim::fly;
-use fspid_study::figure::{LineFigure, LinePanel, Series, SeriesStyle};
 use fspid_study::report::analysis::{Chapter, Item, Picture};
 use fspid_study::units::degrees;
 

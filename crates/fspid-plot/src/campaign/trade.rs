@@ -1,0 +1,92 @@
+//! Two quantities against each other, a sign for each thing that has both: error against activity.
+
+use super::areas::{self, abscissa, fitted, name_abscissa, ordinate, sign};
+use super::scatter::SIDE;
+use crate::axis::{Axis, extent, short_number};
+use crate::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
+use crate::sign::Sign;
+use crate::style::SeriesStyle;
+use crate::svg::{Canvas, Paint, Rect, Svg};
+
+/// Two quantities against each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TradeFigure {
+    /// Printed above the figure and read out by screen readers.
+    pub title: String,
+    /// Name and unit along the abscissa.
+    pub x_label: String,
+    /// Name and unit along the ordinate.
+    pub y_label: String,
+    /// Whose points they are, in the order in which they are drawn.
+    pub series: Vec<TradeSeries>,
+}
+
+/// Points of one thing; a point that is not finite is not drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TradeSeries {
+    /// Name in the legend.
+    pub name: String,
+    /// How its points are drawn.
+    pub style: SeriesStyle,
+    /// The points.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Width of the plot area (px), wider than high so that the legend has room.
+const WIDTH: f64 = 560.0;
+
+impl TradeFigure {
+    /// Draws the figure.
+    #[must_use]
+    pub fn render(&self) -> Svg {
+        let all = || self.series.iter().flat_map(|it| &it.points);
+        let shown = || all().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let x = Axis::linear(extent(shown().map(|point| point.0)), 0.06, 7);
+        let y = Axis::linear(extent(shown().map(|point| point.1)), 0.06, 6);
+        let left = EDGE + page::upright_room(1) + page::tick_room(&y);
+        let width = left + WIDTH + 30.0;
+        let entries = self.series.iter().map(|it| Entry {
+            name: fitted(&it.name, LABEL_PX, WIDTH / 2.0),
+            swatch: Swatch::Sign(sign(it.style), it.style.role()),
+        });
+        let legend = Legend::set(entries.collect(), WIDTH);
+        let title_text = areas::title(&self.title, width);
+        let title = page::title_height(&title_text, width);
+        let top = title + legend.height() + 2.0;
+        let mut canvas = Canvas::new(width, top + SIDE + 50.0);
+        page::title(&mut canvas, &title_text);
+        legend.draw(&mut canvas, left, title);
+        let area = Rect { x: left, y: top, width: WIDTH, height: SIDE };
+        abscissa(&mut canvas, area, &x, true);
+        ordinate(&mut canvas, area, &y);
+        for series in &self.series {
+            let finite = series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+            for (px, py) in finite {
+                let at =
+                    (area.x + x.fraction(*px) * WIDTH, area.y + (1.0 - y.fraction(*py)) * SIDE);
+                let role = series.style.role();
+                match sign(series.style) {
+                    // A dot is for lines; alone it would be the smallest of all signs.
+                    Sign::Dot => canvas.circle(at, 4.2, &Paint::face(role)),
+                    other => other.draw(&mut canvas, at, role),
+                }
+            }
+        }
+        name_abscissa(&mut canvas, area, &self.x_label);
+        let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
+        page::upright_label(&mut canvas, EDGE + LABEL_PX, area.y + SIDE / 2.0, &label);
+        canvas.finish(&self.title, &self.describe())
+    }
+
+    fn describe(&self) -> String {
+        let mut text = format!("{} over {}.", self.y_label, self.x_label);
+        for series in &self.series {
+            let points = series.points.iter();
+            let points: Vec<String> = points
+                .map(|(x, y)| format!("{} at {}", short_number(*y), short_number(*x)))
+                .collect();
+            text.push_str(&format!(" {}: {}.", series.name, points.join(", ")));
+        }
+        text
+    }
+}
