@@ -1,6 +1,6 @@
 //! Problems and notes while they are collected: by byte, and turned into lines and columns at the end.
 
-use fspid_formats::{Note, Place, Problem, Problems};
+use fspid_diagnostics::{LineStarts, Note, Problem, Problems};
 
 /// Most problems and most notes that are kept.
 const MAX_FINDINGS: usize = 100;
@@ -38,8 +38,7 @@ impl Findings {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) {
-        let (message, expected) = (message.into(), expected.into());
-        let what = Problem { place: None, word: shortened(word), message, expected };
+        let what = Problem { found: shortened(word), ..Problem::whole(message, expected) };
         keep(&mut self.problems, Finding { at, what });
     }
 
@@ -56,13 +55,16 @@ impl Findings {
 
     /// The notes, or the problems if there are any, with their places in the text.
     pub(crate) fn finish(mut self, text: &str) -> Result<Vec<Note>, Problems> {
-        let lines = Lines::of(text);
+        let lines = LineStarts::of(text);
+        let place = |at: Origin| at.0.map(|byte| lines.place(text, byte));
         self.problems.sort_by_key(|finding| finding.at.0);
         self.notes.sort_by_key(|finding| finding.at.0);
         if self.problems.is_empty() {
-            Ok(self.notes.into_iter().map(|found| lines.placed_note(found)).collect())
+            let placed = |found: Finding<Note>| Note { place: place(found.at), ..found.what };
+            Ok(self.notes.into_iter().map(placed).collect())
         } else {
-            Err(Problems(self.problems.into_iter().map(|found| lines.placed(found)).collect()))
+            let placed = |found: Finding<Problem>| Problem { place: place(found.at), ..found.what };
+            Err(Problems::of_text(self.problems.into_iter().map(placed).collect()))
         }
     }
 }
@@ -81,47 +83,9 @@ fn shortened(word: &str) -> String {
     }
 }
 
-/// Where the lines of a text begin.
-struct Lines<'a> {
-    text: &'a str,
-    starts: Vec<usize>,
-}
-
-impl<'a> Lines<'a> {
-    fn of(text: &'a str) -> Self {
-        let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
-        let starts = core::iter::once(0).chain(ends.map(|(index, _)| index + 1)).collect();
-        Self { text, starts }
-    }
-
-    fn place(&self, byte: usize) -> Place {
-        let line = self.starts.partition_point(|&start| start <= byte);
-        let start = line.checked_sub(1).and_then(|index| self.starts.get(index)).copied();
-        let before = self.text.get(start.unwrap_or(0)..byte).unwrap_or_default();
-        Place { line, column: before.chars().count() + 1 }
-    }
-
-    fn placed(&self, finding: Finding<Problem>) -> Problem {
-        let place = finding.at.0.map(|byte| self.place(byte));
-        Problem { place, ..finding.what }
-    }
-
-    fn placed_note(&self, finding: Finding<Note>) -> Note {
-        let place = finding.at.0.map(|byte| self.place(byte));
-        Note { place, ..finding.what }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_byte_becomes_a_line_and_a_column_in_characters() {
-        let lines = Lines::of("α b\nsecond");
-        assert_eq!(lines.place(3), Place { line: 1, column: 3 });
-        assert_eq!(lines.place(5), Place { line: 2, column: 1 });
-    }
 
     #[test]
     fn problems_come_in_the_order_of_their_places_and_at_most_a_hundred() {
@@ -129,7 +93,7 @@ mod tests {
         for byte in (0..200).rev() {
             findings.problem(Origin(Some(byte)), "x", "wrong", "");
         }
-        let problems = findings.finish(&" ".repeat(300)).expect_err("there are problems").0;
+        let problems = findings.finish(&" ".repeat(300)).expect_err("there are problems").list;
         assert_eq!(problems.len(), MAX_FINDINGS);
         assert!(problems.is_sorted_by_key(|problem| problem.place));
     }

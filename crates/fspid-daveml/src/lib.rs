@@ -51,7 +51,7 @@ mod xml;
 
 pub use document::Document;
 pub use expression::{Expression, Function, One, Two};
-pub use fspid_formats::{Note, Place, Problem, Problems};
+pub use fspid_diagnostics::{Note, Place, Problem, Problems};
 pub use model::{Bounds, CheckReport, Deviation, EvaluateError, Model, Port, ShotReport};
 pub use number::Number;
 pub use xml::{Reading, read};

@@ -2,8 +2,9 @@
 
 use fspid_fuzzy::system::{Parts, System};
 
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
 use crate::report::Report;
+use fspid_diagnostics::Problems;
 
 /// The reading, unless there are problems; what only the system as a whole shows is found here.
 pub(crate) fn complete(parts: Parts, mut report: Report) -> Result<Reading, Problems> {

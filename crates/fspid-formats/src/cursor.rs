@@ -1,8 +1,9 @@
 //! A place in a text that moves forward: lines and columns are counted while reading, so that a
 //! text is read in linear time however many places are told.
 
-use crate::note::{MAX_INPUT_BYTES, Place, Problem};
+use crate::note::MAX_INPUT_BYTES;
 use crate::work;
+use fspid_diagnostics::{Place, Problem};
 
 /// The rest of a text, and where it begins.
 ///
@@ -20,12 +21,8 @@ impl<'a> Cursor<'a> {
     /// A text of more than [`MAX_INPUT_BYTES`].
     pub(crate) fn new(text: &'a str) -> Result<Self, Problem> {
         if text.len() > MAX_INPUT_BYTES {
-            return Err(Problem {
-                place: None,
-                word: String::new(),
-                message: format!("the text has {} bytes", text.len()),
-                expected: format!("at most {MAX_INPUT_BYTES}"),
-            });
+            let message = format!("the text has {} bytes", text.len());
+            return Err(Problem::whole(message, format!("at most {MAX_INPUT_BYTES}")));
         }
         let rest = text.strip_prefix('\u{feff}').unwrap_or(text);
         Ok(Self { rest, place: Place { line: 1, column: 1 } })

@@ -3,8 +3,9 @@
 //! A text is read or refused; what is read and can be written comes back as itself.
 
 use crate::fcl::{self, Dialect, ReadOptions};
-use crate::note::{Problems, Reading, WriteOptions, Writing};
+use crate::note::{Reading, WriteOptions, Writing};
 use crate::{Note, fll, fml};
+use fspid_diagnostics::Problems;
 use fspid_fuzzy::system::Parts;
 
 /// Any bytes as FCL.

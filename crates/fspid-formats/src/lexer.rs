@@ -1,7 +1,7 @@
 //! Words, numbers and signs of a text, one at a time.
 
 use crate::cursor::Cursor;
-use crate::note::Place;
+use fspid_diagnostics::Place;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -42,4 +42,5 @@ mod tokens;
 mod vocabulary;
 mod work;
 
-pub use note::{MAX_INPUT_BYTES, Note, Place, Problem, Problems, Reading, WriteOptions, Writing};
+pub use fspid_diagnostics::{Note, Place, Problem, Problems};
+pub use note::{MAX_INPUT_BYTES, Reading, WriteOptions, Writing};

@@ -2,7 +2,8 @@
 
 use fspid_fuzzy::system::{Parts, System};
 
-use crate::note::{Note, Problem, Problems, WriteOptions, Writing};
+use crate::note::{WriteOptions, Writing};
+use fspid_diagnostics::{Note, Problem, Problems};
 
 /// Points at which answers are compared.
 const POINTS: u32 = 200;
@@ -23,7 +24,7 @@ impl Loss {
         let mut loss = Self { lossy: options.lossy, ..Self::default() };
         if let Err(errors) = System::new(parts.clone()) {
             errors.iter().for_each(|error| loss.cannot("", error.to_string(), ""));
-            return Err(Problems(loss.problems));
+            return Err(Problems::of_text(loss.problems));
         }
         Ok(loss)
     }
@@ -35,8 +36,8 @@ impl Loss {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) {
-        let (word, message, expected) = (what.into(), message.into(), expected.into());
-        self.problems.push(Problem { place: None, word, message, expected });
+        let found = what.to_owned();
+        self.problems.push(Problem { found, ..Problem::whole(message, expected) });
     }
 
     /// `what` has no words in the format; if losses are allowed, `instead` is written.
@@ -62,7 +63,7 @@ impl Loss {
         written: &Parts,
     ) -> Result<Writing, Problems> {
         if !self.problems.is_empty() {
-            return Err(Problems(self.problems));
+            return Err(Problems::of_text(self.problems));
         }
         if self.changed {
             self.note(difference(original, written));

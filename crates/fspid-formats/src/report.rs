@@ -1,6 +1,6 @@
 //! What a reader has to say, collected while it goes on reading.
 
-use crate::note::{Note, Place, Problem, Problems};
+use fspid_diagnostics::{Note, Place, Problem, Problems, nearest};
 
 /// Most problems, and most notes, that are told one by one.
 const MOST: usize = 50;
@@ -36,8 +36,7 @@ impl Report {
 
     /// The text as a whole is wrong.
     pub(crate) fn whole(&mut self, message: impl Into<String>) {
-        let (word, expected) = (String::new(), String::new());
-        self.push(Problem { place: None, word, message: message.into(), expected });
+        self.push(Problem::whole(message, ""));
     }
 
     /// Adds a problem.
@@ -85,12 +84,10 @@ impl Report {
     pub(crate) fn finish(mut self) -> Result<Vec<Note>, Problems> {
         self.problems.sort_by_key(|problem| problem.place);
         if self.full {
-            let (word, expected) = (String::new(), String::new());
-            let message = "and more problems".into();
-            self.problems.push(Problem { place: None, word, message, expected });
+            self.problems.push(Problem::whole("and more problems", ""));
         }
         if !self.problems.is_empty() {
-            return Err(Problems(self.problems));
+            return Err(Problems::of_text(self.problems));
         }
         self.notes.sort_by_key(|note| note.place);
         if self.more_notes > 0 {
@@ -108,8 +105,7 @@ pub(crate) fn wrong(
     message: impl Into<String>,
     expected: impl Into<String>,
 ) -> Problem {
-    let (place, word) = (Some(place), clipped(word));
-    Problem { place, word, message: message.into(), expected: expected.into() }
+    Problem::at(place, &clipped(word), message, expected)
 }
 
 /// The beginning of a word, with control characters shown as escapes.
@@ -125,61 +121,15 @@ fn visible(character: char) -> char {
     if character.is_control() { '\u{fffd}' } else { character }
 }
 
-/// Known words as a sentence lists them, with the nearest one asked for first:
+/// Known words as a sentence lists them, with the one that was probably meant asked for:
 /// ``one of `min`, `prod`; did you mean `min`?``
-pub(crate) fn one_of<'k>(known: impl Iterator<Item = &'k str> + Clone, found: &str) -> String {
-    let list = known.clone().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
-    match nearest(known, found) {
+pub(crate) fn one_of<'k>(known: impl Iterator<Item = &'k str>, found: &str) -> String {
+    let known: Vec<&str> = known.collect();
+    let list = known.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    match nearest(found, &known) {
         Some(word) => format!("one of {list}; did you mean `{word}`?"),
         None => format!("one of {list}"),
     }
-}
-
-/// The known word that takes fewest single-character changes, if they are few.
-pub(crate) fn nearest<'k>(known: impl Iterator<Item = &'k str>, found: &str) -> Option<&'k str> {
-    if found.len() > LONGEST_WORD {
-        return None;
-    }
-    let found = found.to_lowercase();
-    let most = (found.chars().count() / 3).max(1);
-    known
-        .map(|word| (distance(&word.to_lowercase(), &found), word))
-        .filter(|(changes, _)| *changes <= most)
-        .min_by_key(|(changes, _)| *changes)
-        .map(|(_, word)| word)
-}
-
-/// Single characters that must be changed, put in, left out or swapped with their neighbour.
-fn distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut rows: Vec<Vec<usize>> = vec![(0..=to.len()).collect()];
-    let mut before = None;
-    for left in from.chars() {
-        let row = next_row(&rows, &to, left, before);
-        rows.push(row);
-        before = Some(left);
-    }
-    rows.last().and_then(|row| row.last()).copied().unwrap_or_default()
-}
-
-/// One more row of the table of distances: from the words up to `left` to each beginning of `to`.
-fn next_row(rows: &[Vec<usize>], to: &[char], left: char, before: Option<char>) -> Vec<usize> {
-    let cell = |up: usize, column: usize| {
-        let row = rows.len().checked_sub(up).and_then(|row| rows.get(row));
-        row.and_then(|row| row.get(column)).copied().unwrap_or(usize::MAX - 1)
-    };
-    let mut row = vec![rows.len()];
-    let mut behind = None;
-    for (column, &right) in to.iter().enumerate() {
-        let changed = cell(1, column) + usize::from(left != right);
-        let left_out = cell(1, column + 1) + 1;
-        let put_in = row.last().map_or(usize::MAX, |count| count + 1);
-        let swaps = column > 0 && before == Some(right) && behind == Some(left);
-        let swapped = if swaps { cell(2, column - 1) + 1 } else { usize::MAX };
-        row.push(changed.min(left_out).min(put_in).min(swapped));
-        behind = Some(right);
-    }
-    row
 }
 
 #[cfg(test)]
@@ -187,19 +137,6 @@ mod tests {
     use super::*;
 
     const HERE: Place = Place { line: 1, column: 1 };
-
-    #[test]
-    fn distances_count_changes() {
-        for (from, to, changes) in [
-            ("", "", 0),
-            ("", "ab", 2),
-            ("kitten", "sitting", 3),
-            ("min", "mni", 1),
-            ("abcd", "badc", 2),
-        ] {
-            assert_eq!(distance(from, to), changes, "{from} {to}");
-        }
-    }
 
     #[test]
     fn a_near_word_is_asked_for_and_a_far_one_is_not() {
@@ -212,7 +149,7 @@ mod tests {
     fn beyond_fifty_it_is_only_told_that_there_are_more() {
         let mut report = Report::default();
         (0..60).for_each(|_| report.problem(HERE, "x", "is wrong", ""));
-        let problems = report.finish().unwrap_err().0;
+        let problems = report.finish().unwrap_err().list;
         assert_eq!(problems.len(), 51);
         assert_eq!(problems.last().unwrap().to_string(), "and more problems");
     }

@@ -5,10 +5,10 @@ use fspid_fuzzy::system::{Input, Output, Parts, Rule};
 use crate::cursor::Cursor;
 use crate::lexer::Lexer;
 use crate::names::Names;
-use crate::note::{Problem, Problems};
 use crate::report::Report;
 use crate::rule::{Reader, Style, written};
 use crate::tokens::Tokens;
+use fspid_diagnostics::{Problem, Problems};
 
 /// Reads rules about the variables of one system; case matters in names, not in keywords.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl RuleReader {
     /// # Errors
     /// What is wrong, with its line and column in the text.
     pub fn read(&self, text: &str) -> Result<Rule, Problems> {
-        let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
+        let cursor = Cursor::new(text).map_err(|problem| Problems::of_text(vec![problem]))?;
         let mut report = Report::default();
         let tokens = Tokens::new(Lexer::words(cursor));
         let mut reader = Reader::new(tokens, &self.names, &mut report, |_| false);
@@ -48,14 +48,13 @@ impl RuleReader {
             report.problem(rest.place(), rest.text, "does not fit here", expected);
         }
         report.finish()?;
-        rule.ok_or_else(|| Problems(vec![no_rule()]))
+        rule.ok_or_else(|| Problems::of_text(vec![no_rule()]))
     }
 }
 
 /// Without a problem there is a rule; the other case would be a mistake in the reader.
 fn no_rule() -> Problem {
-    let message = "no rule".to_owned();
-    Problem { place: None, word: String::new(), message, expected: "if … then …".to_owned() }
+    Problem::whole("no rule", "if … then …")
 }
 
 /// The rule in words, from `if` on.

@@ -5,10 +5,10 @@ use fspid_fuzzy::system::{Conclusion, Membership};
 use fspid_fuzzy::{Formula, FuzzyError};
 
 use crate::lexer::Token;
-use crate::note::Place;
 use crate::number;
 use crate::report::Report;
 use crate::vocabulary::shapes::Row;
+use fspid_diagnostics::Place;
 
 /// A number with its place.
 #[derive(Clone, Copy, Debug)]

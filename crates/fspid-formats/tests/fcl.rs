@@ -426,7 +426,7 @@ fn the_paper_s_controller_answers_by_fuzzylite_s_rule_after_reading() {
 #[test]
 fn a_gaussian_is_refused_in_the_standard_s_dialect_unless_a_loss_is_allowed() {
     let told = fcl::write(&paper(Sampling::Exact), Dialect::Iec, EXACT).unwrap_err();
-    let first = told.0[0].to_string();
+    let first = told.list[0].to_string();
     assert!(
         first.starts_with(
             "`error.NB`: gaussian has no words in the dialect of IEC 61131-7; expected a loss"

@@ -9,7 +9,7 @@ const PAPER: &str = include_str!("data/fis/paper.fis");
 
 /// The first problem of a text that is refused.
 fn refused(text: &str) -> String {
-    let problems = fis::read(text).expect_err("no system").0;
+    let problems = fis::read(text).expect_err("no system").list;
     assert!(problems.len() <= 51, "{} problems", problems.len());
     problems.iter().for_each(|problem| assert!(problem.to_string().len() < 1000, "{problem}"));
     problems[0].to_string()

@@ -300,7 +300,7 @@ fn exact_integrals_are_refused_unless_a_loss_is_allowed_and_then_measured() {
     let parts = paper(Sampling::Exact);
     let told = fll::write(&parts, EXACT).unwrap_err();
     assert_eq!(
-        told.0[0].to_string(),
+        told.list[0].to_string(),
         "`delta_kp`: integrals are computed by `exact`, which has no words here; expected a loss to \
          be allowed, then written: `midpoint:1000`"
     );

@@ -12,7 +12,7 @@ use crate::MAX_VARIABLES;
 use crate::document::Document;
 use crate::finding::{Findings, Origin};
 use crate::model::{Axis, Grid, Model, Step};
-use fspid_formats::Problems;
+use fspid_diagnostics::Problems;
 use names::Names;
 use variables::Definition;
 
@@ -25,7 +25,7 @@ impl Model {
         let mut findings = Findings::default();
         let model = compile(document, &mut findings);
         findings.finish("")?;
-        model.ok_or_else(|| Problems(Vec::new()))
+        model.ok_or_else(|| Problems::of_text(Vec::new()))
     }
 }
 

@@ -37,7 +37,7 @@ use crate::compile::compile;
 use crate::document::{Breakpoints, Document, Header, Shot, Table, TableFunction, Variable};
 use crate::finding::{Findings, Origin};
 use crate::xml::Reading;
-use fspid_formats::Problems;
+use fspid_diagnostics::Problems;
 
 pub(crate) use formula::{is_name, text_of_formula};
 
@@ -117,7 +117,7 @@ pub fn read(text: &str) -> Result<Reading, Problems> {
     let notes = findings.finish(text)?;
     let both = document.zip(model);
     both.map(|(document, model)| Reading { document, model, notes })
-        .ok_or_else(|| Problems(Vec::new()))
+        .ok_or_else(|| Problems::of_text(Vec::new()))
 }
 
 fn parsed(text: &str, findings: &mut Findings) -> Option<Document> {

@@ -2,18 +2,18 @@
 //!
 //! Entities that a file declares could blow up a short text; a model needs none of them.
 
-use fspid_formats::{Place, Problem};
+use fspid_diagnostics::{LineStarts, Problem};
 
 /// Refuses a document type with declarations inside the file, which begin with `[`.
 pub(super) fn check(text: &str) -> Result<(), Problem> {
     match declarations(text) {
         None => Ok(()),
-        Some(byte) => Err(Problem {
-            place: Some(place(text, byte)),
-            word: "[".into(),
-            message: "declarations inside the file are not read".into(),
-            expected: "a <!DOCTYPE …> without [ … ], and numbers instead of entities".into(),
-        }),
+        Some(byte) => Err(Problem::at(
+            LineStarts::of(text).place(text, byte),
+            "[",
+            "declarations inside the file are not read",
+            "a <!DOCTYPE …> without [ … ], and numbers instead of entities",
+        )),
     }
 }
 
@@ -58,15 +58,10 @@ fn bracket(text: &str, start: usize) -> Option<usize> {
     None
 }
 
-fn place(text: &str, byte: usize) -> Place {
-    let before = text.get(..byte).unwrap_or_default();
-    let line_start = before.rfind('\n').map_or(0, |index| index + 1);
-    let column = before.get(line_start..).unwrap_or_default().chars().count() + 1;
-    Place { line: before.matches('\n').count() + 1, column }
-}
-
 #[cfg(test)]
 mod tests {
+    use fspid_diagnostics::Place;
+
     use super::*;
 
     #[test]

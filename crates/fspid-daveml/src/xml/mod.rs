@@ -18,7 +18,7 @@ use crate::finding::{Findings, Origin};
 use crate::model::Model;
 use crate::{MAX_DEPTH, MAX_INPUT_BYTES};
 use element::Element;
-use fspid_formats::{Note, Place, Problem, Problems};
+use fspid_diagnostics::{Note, Place, Problem, Problems};
 
 /// Most elements and texts of a file; each takes some hundred bytes of memory.
 const MAX_NODES: u32 = 2_000_000;
@@ -40,12 +40,12 @@ pub struct Reading {
 /// Every problem of the text with its place; if each element can be read, every problem of what they mean together: XML
 /// numbers that are none, names that nothing has, tables of the wrong size, calculations that go in a circle.
 pub fn read(text: &str) -> Result<Reading, Problems> {
-    let tree = parse(text).map_err(|problem| Problems(vec![problem]))?;
+    let tree = parse(text).map_err(|problem| Problems::of_text(vec![problem]))?;
     let mut findings = Findings::default();
     let document = document(&tree, &mut findings);
     let model = if findings.good() { compile(&document, &mut findings) } else { None };
     let notes = findings.finish(text)?;
-    let model = model.ok_or_else(|| Problems(Vec::new()))?;
+    let model = model.ok_or_else(|| Problems::of_text(Vec::new()))?;
     Ok(Reading { document, model, notes })
 }
 
@@ -60,20 +60,15 @@ fn parse(text: &str) -> Result<Tree<'_>, Problem> {
 }
 
 fn too_long(bytes: usize) -> Problem {
-    let expected = format!("at most {MAX_INPUT_BYTES} bytes");
-    Problem { place: None, word: String::new(), message: format!("{bytes} bytes"), expected }
+    Problem::whole(format!("{bytes} bytes"), format!("at most {MAX_INPUT_BYTES} bytes"))
 }
 
 fn not_well_formed(error: &roxmltree::Error) -> Problem {
     let at = error.pos();
     let sentence = error.to_string();
     let sentence = sentence.split(" at ").next().unwrap_or_default();
-    Problem {
-        place: Some(Place { line: at.row as usize, column: at.col as usize }),
-        word: String::new(),
-        message: format!("this is not well-formed XML: {sentence}"),
-        expected: String::new(),
-    }
+    let place = Place { line: at.row as usize, column: at.col as usize };
+    Problem::at(place, "", format!("this is not well-formed XML: {sentence}"), "")
 }
 
 fn document(tree: &Tree<'_>, findings: &mut Findings) -> Document {

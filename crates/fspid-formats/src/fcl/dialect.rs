@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::Sampling;
 
 use crate::lexer::Comments;
-use crate::note::Place;
+use fspid_diagnostics::Place;
 
 /// A dialect of FCL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

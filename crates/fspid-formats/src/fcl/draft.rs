@@ -8,11 +8,11 @@ use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 use super::dialect::Evidence;
 use crate::lexer::Token;
 use crate::names::Index;
-use crate::note::Place;
 use crate::report::Report;
 use crate::term::Number;
 use crate::tokens::Tokens;
 use crate::vocabulary::methods;
+use fspid_diagnostics::Place;
 
 /// A function block.
 #[derive(Debug, Default)]

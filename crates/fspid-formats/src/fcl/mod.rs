@@ -31,7 +31,8 @@ mod section;
 mod set;
 mod write;
 
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
+use fspid_diagnostics::Problems;
 
 pub use dialect::Dialect;
 pub use write::write;

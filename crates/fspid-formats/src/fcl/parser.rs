@@ -3,10 +3,10 @@
 use super::draft::Draft;
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer, Token};
-use crate::note::Problems;
 use crate::report::Report;
 use crate::tokens::Tokens;
 use crate::vocabulary::known;
+use fspid_diagnostics::Problems;
 
 /// The parser of a text. A method that answers `None` has reported why.
 pub(super) struct Parser<'a> {
@@ -42,7 +42,7 @@ pub(super) fn is_section_word(name: &str) -> bool {
 
 /// Reads a text as far as it can be read, and what is wrong with it.
 pub(super) fn parse<'a>(text: &'a str, block: Option<&str>) -> Result<Draft<'a>, Problems> {
-    let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
+    let cursor = Cursor::new(text).map_err(|problem| Problems::of_text(vec![problem]))?;
     let tokens = Tokens::new(Lexer::fcl(cursor));
     let mut parser = Parser { tokens, draft: Draft::default(), current: 0 };
     parser.text(block);

@@ -212,7 +212,9 @@ impl<'a> Parser<'a> {
     }
 
     /// `: norm;`
-    pub(super) fn accu(&mut self) -> Option<Option<(fspid_fuzzy::SNormKind, crate::note::Place)>> {
+    pub(super) fn accu(
+        &mut self,
+    ) -> Option<Option<(fspid_fuzzy::SNormKind, fspid_diagnostics::Place)>> {
         self.assign()?;
         let place = self.next().place();
         let none = self.tokens.eat("NONE");

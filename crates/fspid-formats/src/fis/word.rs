@@ -4,8 +4,8 @@ use fspid_fuzzy::system::{Defuzzifier, Sampling, SetReading};
 use fspid_fuzzy::{SNormKind, TNormKind};
 
 use crate::cursor::Cursor;
-use crate::note::Problem;
 use crate::report::{one_of, wrong};
+use fspid_diagnostics::Problem;
 
 /// A word and what it stands for.
 #[derive(Debug)]

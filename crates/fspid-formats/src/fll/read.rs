@@ -12,20 +12,21 @@ use super::sections::{HEADINGS, Kindred, Section};
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer, Token};
 use crate::names::Names;
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
 use crate::report::Report;
 use crate::term::{formula, shape};
 use crate::tokens::Tokens;
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{known, norms};
 use crate::{check, rule, term};
+use fspid_diagnostics::Problems;
 
 /// Reads a system in the FuzzyLite Language.
 ///
 /// # Errors
 /// Every problem of the text, each with its place.
 pub fn read(text: &str) -> Result<Reading, Problems> {
-    let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
+    let cursor = Cursor::new(text).map_err(|problem| Problems::of_text(vec![problem]))?;
     let mut report = Report::default();
     let sections = sections(cursor, &mut report);
     let parts = assembled(&sections, &mut report);

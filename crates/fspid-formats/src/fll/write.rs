@@ -11,11 +11,12 @@ use super::{activation, readable};
 use crate::adapt;
 use crate::identifiers;
 use crate::loss::Loss;
-use crate::note::{Problems, WriteOptions, Writing};
+use crate::note::{WriteOptions, Writing};
 use crate::number::{written as number, written_all};
 use crate::rule::{self, Style};
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{methods, norms};
+use fspid_diagnostics::Problems;
 
 /// Writes a system in the FuzzyLite Language, with every digit that a number needs.
 ///

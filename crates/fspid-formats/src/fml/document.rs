@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
 use super::{MAX_DEPTH, MAX_NODES};
-use crate::note::{MAX_INPUT_BYTES, Place, Problem};
+use crate::note::MAX_INPUT_BYTES;
 use crate::number;
 use crate::report::{Report, wrong};
 use crate::vocabulary::known;
 use crate::work;
+use fspid_diagnostics::{Place, Problem};
 
 /// An element. Names of elements and attributes are found in any case.
 #[derive(Clone, Copy)]
@@ -20,7 +21,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Problem> {
     if text.len() > MAX_INPUT_BYTES {
         let message = format!("the text has {} bytes", text.len());
         let expected = format!("at most {MAX_INPUT_BYTES}");
-        return Err(Problem { place: None, word: String::new(), message, expected });
+        return Err(Problem::whole(message, expected));
     }
     work::add(text.len());
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

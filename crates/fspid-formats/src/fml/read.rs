@@ -9,14 +9,15 @@ use super::document::{Context, Element, parse};
 use super::knowledge::{self, Knowledge};
 use super::rules::{BASES, Reader};
 use crate::check;
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
+use fspid_diagnostics::Problems;
 
 /// Reads a system in the Fuzzy Markup Language.
 ///
 /// # Errors
 /// Every problem of the text, each with its place.
 pub fn read(text: &str) -> Result<Reading, Problems> {
-    let document = parse(text).map_err(|problem| Problems(vec![problem]))?;
+    let document = parse(text).map_err(|problem| Problems::of_text(vec![problem]))?;
     let mut context = Context::of(text);
     let root = Element::root(&document);
     let parts = match root.too_deep() {

@@ -6,11 +6,11 @@ use fspid_fuzzy::system::{Antecedent, Consequent, Rule, Statement, Variable};
 use super::{MAX_DEPTH, RESERVED};
 use crate::lexer::{Kind, Token};
 use crate::names::{Found, Index, Names};
-use crate::note::Place;
 use crate::number;
 use crate::report::Report;
 use crate::tokens::Tokens;
 use crate::vocabulary::known;
+use fspid_diagnostics::Place;
 
 /// Reads rules from tokens. What it cannot read is reported; then it answers nothing.
 pub(crate) struct Reader<'r, 'a> {

@@ -5,7 +5,7 @@ pub(crate) mod methods;
 pub(crate) mod norms;
 pub(crate) mod shapes;
 
-use crate::report::nearest;
+use fspid_diagnostics::nearest;
 
 /// Most words that a message lists.
 const MOST_LISTED: usize = 30;
@@ -21,7 +21,8 @@ pub(crate) fn known<'k>(words: impl Iterator<Item = &'k str> + Clone, found: &st
     };
     let more = if listed.len() > MOST_LISTED { ", …" } else { "" };
     let word = Some(found).filter(|found| !found.is_empty());
-    let near = word.and_then(|found| nearest(words.take(MOST_COMPARED), found));
+    let compared: Vec<&str> = words.take(MOST_COMPARED).collect();
+    let near = word.and_then(|found| nearest(found, &compared));
     let asked = near.map_or(String::new(), |word| format!("; did you mean `{word}`?"));
     format!("one of {}{more}{asked}", first.join(", "))
 }

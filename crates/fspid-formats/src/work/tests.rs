@@ -1,8 +1,9 @@
 //! Reading takes work in proportion to the length of a text, whatever stands in it.
 
 use super::of;
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
 use crate::{fcl, fis, fll, fml};
+use fspid_diagnostics::Problems;
 
 type Read = fn(&str) -> Result<Reading, Problems>;
 

@@ -9,8 +9,8 @@ use fspid_aircraft::{AircraftError, Departure, Quantity, TrimFailure};
 use super::number::{short, significant};
 use super::units::{Kind, Units};
 use crate::file::Problems;
-use crate::file::problem::nearest;
 use crate::inference::Refused;
+use fspid_diagnostics::nearest;
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq)]

@@ -46,8 +46,8 @@ impl fmt::Display for ImportFailure {
         match self {
             Self::Unreadable(failure) => failure.fmt(f),
             Self::Problems { file, problems } => {
-                problems.0.iter().try_for_each(|problem| located(f, file, problem))?;
-                write!(f, "{} problem(s) in {file}", problems.0.len())
+                problems.list.iter().try_for_each(|problem| located(f, file, problem))?;
+                write!(f, "{} problem(s) in {file}", problems.list.len())
             }
             Self::Checks { file, report } => {
                 let failed = report.shots.iter().filter(|shot| !shot.passed());

@@ -13,12 +13,12 @@ use fspid_aircraft::{Range, Travel, Validity};
 use crate::file::check;
 use crate::file::document::{self, Item};
 use crate::file::files::Files;
-use crate::file::problem::Problems;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
 use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
+use fspid_diagnostics::Problems;
+use fspid_diagnostics::Report;
 
 /// Aircraft by name.
 const AIRCRAFT: [(&str, &str); 7] = [

@@ -5,13 +5,13 @@ use crate::dispersion::{
     Uniform,
 };
 use crate::file::document::{Item, Value};
-use crate::file::problem::Problems;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::dispersion::{
     DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
 };
 use crate::file::{NewValue, SettingPath, Template};
+use fspid_diagnostics::Problems;
+use fspid_diagnostics::Report;
 
 /// Most values that a choice is made from.
 const MOST_VALUES: usize = 1000;

@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::report::{Place, Report};
+use fspid_diagnostics::{Report, Span};
 
 /// Largest file, in bytes.
 pub(crate) const FILE_LIMIT: u64 = 10 * 1024 * 1024;
@@ -13,7 +13,7 @@ const DEPTH_LIMIT: usize = 64;
 /// A value and where it stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Item {
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) value: Value,
 }
 
@@ -89,7 +89,7 @@ impl Item {
 pub(crate) struct Member {
     pub(crate) name: String,
     /// Where the key stands.
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) item: Item,
 }
 
@@ -108,7 +108,7 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
         Err(error) => return report_syntax(report, source, text, &error),
     };
     let end = text.len().min(1);
-    let place = Place { source, start: 0, end };
+    let place = Span { source, start: 0, end };
     let value = Value::Table(members(source, table.get_ref()));
     Some(Item { place, value })
 }
@@ -123,7 +123,7 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
     };
     let bare = |c: char| c.is_alphanumeric() || "-_./: ".contains(c);
     if text.trim().starts_with(char::is_alphabetic) && text.chars().all(bare) {
-        let place = Place { source, start: 0, end: text.len() };
+        let place = Span { source, start: 0, end: text.len() };
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
@@ -158,7 +158,7 @@ fn is_decimal_comma(text: &str, at: usize) -> bool {
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.
 fn check_shape(report: &mut Report, source: usize, text: &str) -> Option<()> {
-    let at = |start| Place { source, start, end: start };
+    let at = |start| Span { source, start, end: start };
     if let Some(position) = text.find('\0') {
         let message = "a NUL byte; this is no text file";
         report.missing(at(position), "", message, "text in UTF-8");
@@ -262,8 +262,8 @@ fn item(source: usize, value: &Spanned<DeValue<'_>>) -> Item {
     Item { place, value }
 }
 
-fn place(source: usize, span: std::ops::Range<usize>) -> Place {
-    Place { source, start: span.start, end: span.end }
+fn place(source: usize, span: std::ops::Range<usize>) -> Span {
+    Span { source, start: span.start, end: span.end }
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use crate::file::check;
 use crate::file::document::{self, Item, Member, Value};
 use crate::file::files::Files;
-use crate::file::problem::nearest;
-use crate::file::report::{Place, Report, excerpt};
 use crate::file::spec::REQUIREMENT_FILE;
 use crate::requirement::SET_NAMES;
+use fspid_diagnostics::nearest;
+use fspid_diagnostics::{Report, Span, excerpt};
 
 /// Everything that comes from outside of a scenario's file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +65,7 @@ fn set_entry(report: &mut Report, text: &str) -> Option<Item> {
     let (name, choices) = text.split_once(':').unwrap_or((text, ""));
     let name = name.trim();
     let source = report.add_source(Some(origin.clone()), text);
-    let place = Place { source, start: 0, end: text.len() };
+    let place = Span { source, start: 0, end: text.len() };
     if !SET_NAMES.contains(&name) {
         let meant = nearest(name, &SET_NAMES).map(|meant| format!("; did you mean \"{meant}\"?"));
         let message = format!("unknown set{}", meant.unwrap_or_default());

@@ -8,9 +8,9 @@ use sha2::{Digest as _, Sha256};
 
 use crate::file::document::{FILE_LIMIT, Item};
 use crate::file::overrides::Change;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::Table;
+use fspid_diagnostics::Report;
 
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
 pub(crate) struct Files<'a> {

@@ -5,11 +5,11 @@ use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
 use crate::file::check::number_grid;
 use crate::file::document::{Item, Member, Value};
-use crate::file::problem::{Problems, nearest};
-use crate::file::report::{Place, Report};
 use crate::file::setting::{grid_text, named_step};
 use crate::file::{NewValue, SettingPath, Template};
 use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
+use fspid_diagnostics::{Problems, nearest};
+use fspid_diagnostics::{Report, Span};
 use fspid_optimise::Scale;
 
 /// The key that makes a table a mark.
@@ -152,7 +152,7 @@ impl Walk<'_> {
 
 /// What stands where a mark is wrong: a value of the kind that is meant, so that the mark's problem is the only
 /// one. The start says it, or else the word behind `tune`.
-fn stand_in(members: &[Member], place: Place) -> Value {
+fn stand_in(members: &[Member], place: Span) -> Value {
     let of = |key: &str| members.iter().find(|it| it.name == key).map(|it| &it.item.value);
     let is_list = |item: &Item| matches!(item.value, Value::Array(_));
     let is_word = |known: &str| matches!(of(KEY), Some(Value::Text(word)) if word == known);
@@ -174,7 +174,7 @@ fn rest() -> Value {
 }
 
 /// A grid of numbers as a list of lists.
-fn rows(grid: &NumberGrid<f64>, place: Place) -> Value {
+fn rows(grid: &NumberGrid<f64>, place: Span) -> Value {
     let item = |value| Item { place, value };
     let row = |row: &[f64; LABEL_COUNT]| {
         item(Value::Array(row.iter().map(|number| item(Value::Float(*number))).collect()))
@@ -202,7 +202,7 @@ fn name_of(item: &Item) -> &str {
 struct Fields<'a> {
     report: &'a mut Report,
     members: &'a [Member],
-    place: Place,
+    place: Span,
     path: &'a str,
 }
 

@@ -26,8 +26,6 @@ mod mark;
 mod overrides;
 mod paths;
 mod preset;
-pub(crate) mod problem;
-pub(crate) mod report;
 mod requirement;
 mod rewrite;
 pub(crate) mod schema;
@@ -47,9 +45,9 @@ use fspid_sim::Scenario;
 use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::fuzzy_system::other_kind;
 use crate::tuning::{Contest, Mark, Tuning};
+use fspid_diagnostics::{Place, Report, Span};
 
 pub use crate::requirement::Requirement;
 pub(crate) use aircraft::parse_aircraft_at;
@@ -57,12 +55,12 @@ pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
 pub use extra::Extra;
 pub use files::unread_in_words;
+pub use fspid_diagnostics::{Problem, Problems, known_words};
 pub use paths::{PathRow, paths, paths_json, paths_text};
 pub use preset::{
     Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
     rule_table_names,
 };
-pub use problem::{Problem, Problems, known_words};
 pub(crate) use requirement::requirement_set;
 pub(crate) use rewrite::{Replay, replay};
 pub use schema::schema;
@@ -217,15 +215,11 @@ fn not_utf8(name: &str, bytes: &[u8], position: usize) -> Problems {
     let line_start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
     let in_line = String::from_utf8_lossy(before.get(line_start..).unwrap_or_default());
     let found = bytes.get(position).map(|byte| format!("byte 0x{byte:02X}"));
-    let problem = Problem {
-        origin: None,
-        path: String::new(),
+    let place = Place {
         line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
         column: in_line.chars().count() + 1,
-        message: "not UTF-8".to_owned(),
-        found: found.unwrap_or_default(),
-        allowed: "text in UTF-8".to_owned(),
     };
+    let problem = Problem::at(place, &found.unwrap_or_default(), "not UTF-8", "text in UTF-8");
     Problems::new(name, vec![problem], 0)
 }
 
@@ -288,13 +282,13 @@ fn changed_document(
 ) -> Option<(document::Item, Vec<Mark>)> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
-        let place = report::Place { source, start: 0, end: 0 };
+        let place = Span { source, start: 0, end: 0 };
         report.missing(place, "", "the file is too large", "up to 10 MiB");
         return None;
     }
     if let Some(what) = other_kind(text) {
         let source = report.add_source(None, "");
-        let place = report::Place { source, start: 0, end: 0 };
+        let place = Span { source, start: 0, end: 0 };
         let allowed = "a scenario; `check` and `infer` read fuzzy systems and rule tables";
         report.missing(place, "", format!("this is {what}, and not a scenario"), allowed);
         return None;

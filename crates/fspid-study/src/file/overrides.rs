@@ -5,8 +5,8 @@
 
 use crate::file::document::{Item, Member, Value, read_value};
 use crate::file::files::Files;
-use crate::file::problem::nearest;
-use crate::file::report::{Place, Report, excerpt};
+use fspid_diagnostics::nearest;
+use fspid_diagnostics::{Report, Span, excerpt};
 
 /// A step of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,9 +139,9 @@ impl Change {
     }
 }
 
-fn whole(report: &mut Report, origin: &str, text: &str) -> Place {
+fn whole(report: &mut Report, origin: &str, text: &str) -> Span {
     let source = report.add_source(Some(origin.to_owned()), text);
-    Place { source, start: 0, end: text.len() }
+    Span { source, start: 0, end: text.len() }
 }
 
 /// The steps of `controller[0].nominal.kp` or `controller."my PID".kp`.
@@ -254,7 +254,7 @@ fn join(path: &str, name: &str) -> String {
 }
 
 /// The member of that name; an empty table is put there if there is none, for the check to judge.
-fn member<'a>(members: &'a mut Vec<Member>, name: &str, place: Place) -> &'a mut Member {
+fn member<'a>(members: &'a mut Vec<Member>, name: &str, place: Span) -> &'a mut Member {
     let known = members.iter().position(|member| member.name == name);
     let index = known.unwrap_or_else(|| {
         let value = Value::Table(Vec::new());

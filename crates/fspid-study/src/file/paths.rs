@@ -7,12 +7,12 @@ use serde_json::{Map, Value, json};
 use super::check::{self, allowed};
 use super::files::Files;
 use super::mark::FIXED;
-use super::report::Report;
 use super::schema::kind as schema_of;
 use super::section::{Checked, Entry, Section};
 use super::setting::{join, number, quoted, step, written};
 use super::spec::{Key, Kind, Presence, SCENARIO, Table, Way};
 use super::{LoadError, build, changed_document, extra::Extra, read_text};
+use fspid_diagnostics::Report;
 
 /// Top-level keys whose numbers cannot differ from run to run.
 pub(super) const NEVER_DRAWN: [&str; 4] = ["dispersion", "requirement", "schema", "set"];

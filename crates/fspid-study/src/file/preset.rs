@@ -9,10 +9,10 @@ use crate::file::build::{data, elevator_sign};
 use crate::file::check;
 use crate::file::document;
 use crate::file::files::Files;
-use crate::file::problem::Problems;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::PLANT_FILE;
+use fspid_diagnostics::Problems;
+use fspid_diagnostics::Report;
 
 /// Plants by name.
 const PLANTS: [(&str, &str); 5] = [

@@ -4,8 +4,6 @@ use crate::file::check;
 use crate::file::dispersion::texts;
 use crate::file::document;
 use crate::file::files::Files;
-use crate::file::problem::Problems;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::{NOT_IN, ONLY_IN, SET_FILE, names_in_words};
 use crate::metrics::Measure;
@@ -13,6 +11,8 @@ use crate::requirement::{
     Air, AskedIn, Choices, Conditions, Confidence, Origin, Requirement, RequirementSet, SET_NAMES,
     SetLine, set, set_text,
 };
+use fspid_diagnostics::Problems;
+use fspid_diagnostics::Report;
 
 /// The requirements of a scenario whose controllers have these names.
 pub(crate) fn requirements(

@@ -10,9 +10,9 @@ use crate::file::extra::Extra;
 use crate::file::files::Files;
 use crate::file::overrides::{self, Change};
 use crate::file::preset::rule_table_names;
-use crate::file::report::{Place, Report};
 use crate::file::spec::{Kind, SCENARIO, Table};
 use crate::requirement::Requirement;
+use fspid_diagnostics::{Report, Span};
 
 /// What is left of a scenario in a replay.
 pub(crate) struct Replay<'a> {
@@ -75,7 +75,7 @@ pub(crate) fn replay(
     Some(out)
 }
 
-const NOWHERE: Place = Place { source: 0, start: 0, end: 0 };
+const NOWHERE: Span = Span { source: 0, start: 0, end: 0 };
 
 fn item(value: Value) -> Item {
     Item { place: NOWHERE, value }

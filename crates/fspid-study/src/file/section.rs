@@ -3,8 +3,8 @@
 use fspid_fuzzy::{Defuzzifier, Grid};
 
 use crate::file::document::Item;
-use crate::file::report::Place;
 use crate::file::spec::word::Word;
+use fspid_diagnostics::Span;
 
 /// A checked table.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Section {
     /// Path in the file.
     pub(crate) path: String,
     /// Where it begins.
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     /// Its kind, if it has kinds; empty otherwise.
     pub(crate) kind: &'static str,
     /// Values by key.
@@ -25,7 +25,7 @@ pub(crate) struct Section {
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) value: Checked,
     /// Written in the file, not a default.
     pub(crate) given: bool,
@@ -38,10 +38,10 @@ pub(crate) enum Checked {
     Integer(i64),
     Boolean(bool),
     Text(String),
-    Numbers(Vec<(f64, Place)>),
+    Numbers(Vec<(f64, Span)>),
     Grid(Grid),
     /// The cells of a grid of numbers, row by row.
-    NumberGrid(Vec<(f64, Place)>),
+    NumberGrid(Vec<(f64, Span)>),
     Defuzzifier(Defuzzifier),
     /// As written; its reader checks it.
     Item(Item),
@@ -60,7 +60,7 @@ impl Section {
     }
 
     /// Where the value stands; the table's own place if it does not.
-    pub(crate) fn at(&self, name: &str) -> Place {
+    pub(crate) fn at(&self, name: &str) -> Span {
         self.entry(name).map_or(self.place, |entry| entry.place)
     }
 
@@ -108,7 +108,7 @@ impl Section {
     }
 
     /// Numbers with their places.
-    pub(crate) fn placed_numbers(&self, name: &str) -> Option<&[(f64, Place)]> {
+    pub(crate) fn placed_numbers(&self, name: &str) -> Option<&[(f64, Span)]> {
         match &self.entry(name)?.value {
             Checked::Numbers(numbers) => Some(numbers),
             _ => None,
@@ -136,7 +136,7 @@ impl Section {
     }
 
     /// The cells of a grid of numbers with their places, row by row.
-    pub(crate) fn number_grid(&self, name: &str) -> Option<&[(f64, Place)]> {
+    pub(crate) fn number_grid(&self, name: &str) -> Option<&[(f64, Span)]> {
         match &self.entry(name)?.value {
             Checked::NumberGrid(cells) => Some(cells),
             _ => None,

@@ -10,8 +10,8 @@ use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};
 use crate::file::files::{Files, STANDARD_INPUT};
-use crate::file::report::{Place, Report};
 use crate::file::section::Section;
+use fspid_diagnostics::{Report, Span};
 
 /// What each file of tables may be.
 const ALLOWED: &str =
@@ -81,7 +81,7 @@ fn model(
         Ok(reading) => checked(report, (part, key), reading.model),
         Err(problems) => {
             let source = report.add_source(Some(name), &text);
-            problems.0.iter().for_each(|problem| located(report, (source, &text), problem));
+            problems.list.iter().for_each(|problem| located(report, (source, &text), problem));
             None
         }
     }
@@ -99,22 +99,13 @@ fn checked(report: &mut Report, (part, key): (&Section, &str), model: Model) -> 
 
 /// A problem of a model at its place in the text of its file.
 fn located(report: &mut Report, (source, text): (usize, &str), problem: &Problem) {
-    let at = problem.place.map_or(0, |place| offset(text, place));
-    let message = match problem.word.as_str() {
+    let at = problem.place.map_or(0, |place| place.byte_in(text));
+    let message = match problem.found.as_str() {
         "" => problem.message.clone(),
         word => format!("`{word}`: {}", problem.message),
     };
-    let place = Place { source, start: at, end: at };
-    report.missing(place, "", message, problem.expected.clone());
-}
-
-/// Bytes before a line and column.
-fn offset(text: &str, place: fspid_daveml::Place) -> usize {
-    let before = text.split_inclusive('\n').take(place.line.saturating_sub(1));
-    let begin: usize = before.map(str::len).sum();
-    let line = text.get(begin..).unwrap_or_default();
-    let column = line.chars().take(place.column.saturating_sub(1));
-    begin + column.map(char::len_utf8).sum::<usize>()
+    let place = Span { source, start: at, end: at };
+    report.missing(place, "", message, problem.allowed.clone());
 }
 
 fn body(

@@ -8,9 +8,9 @@ use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::Files;
 use super::overrides::{self, Found, Setting, Step};
-use super::problem::Problems;
-use super::report::{Place, Report};
 use crate::tuning::Mark;
+use fspid_diagnostics::Problems;
+use fspid_diagnostics::{Report, Span};
 
 use super::{LoadError, Study, changed_document, check, spec};
 
@@ -61,7 +61,7 @@ pub enum NewValue {
 }
 
 impl NewValue {
-    fn value(&self, place: Place) -> Value {
+    fn value(&self, place: Span) -> Value {
         let item = |value| Item { place, value };
         match self {
             Self::Number(number) => Value::Float(*number),
@@ -153,7 +153,7 @@ impl Template {
     }
 
     /// Where a part of the scenario stands; its beginning if it is not there.
-    pub(super) fn place_of(&self, path: &str) -> Place {
+    pub(super) fn place_of(&self, path: &str) -> Span {
         let steps = overrides::steps(path).unwrap_or_default();
         match overrides::find(&self.document, &steps, "") {
             Found::Here(item) => item.place,
@@ -260,7 +260,7 @@ fn setting(report: &mut Report, path: &SettingPath, value: &NewValue) -> Setting
     let text = value.to_string();
     let origin = format!("--set {}={text}", path.text);
     let source = report.add_source(Some(origin.clone()), &text);
-    let place = Place { source, start: 0, end: text.len() };
+    let place = Span { source, start: 0, end: text.len() };
     Setting { origin, item: Item { place, value: value.value(place) } }
 }
 

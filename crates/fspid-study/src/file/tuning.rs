@@ -2,7 +2,6 @@
 
 use crate::file::dispersion::texts;
 use crate::file::overrides;
-use crate::file::report::Report;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
@@ -10,6 +9,7 @@ use crate::file::spec::tuning::{ConstantLoadWord, OverWord};
 use crate::metrics::Measure;
 use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
+use fspid_diagnostics::Report;
 
 /// Share of the flights that counts in a tail, unless another is asked for.
 const USUAL_SHARE: f64 = 0.2;

@@ -8,7 +8,7 @@ use fspid_sim::{Controller, NamedController, Scenario};
 use super::line::{Angles, Line, Request};
 use super::log::{Log, Summary};
 use super::rate::RateFilter;
-use crate::file::problem::known_words;
+use fspid_diagnostics::known_words;
 
 /// Of the period: how far `dt_s` may lie beside it and still be kept. As for events in a scenario.
 const SAME_PERIOD: f64 = 1e-6;

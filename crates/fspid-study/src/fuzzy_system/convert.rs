@@ -132,7 +132,8 @@ fn not_type_2(path: &Path) -> ConvertError {
 /// What the format cannot say, and how to go on.
 fn unwritable(path: &Path, problems: &Problems, target: Target) -> ConvertError {
     let path = path.display();
-    let mut told: Vec<String> = problems.0.iter().map(|found| format!("{path}: {found}")).collect();
+    let mut told: Vec<String> =
+        problems.list.iter().map(|found| format!("{path}: {found}")).collect();
     let nearest = match target.lossy {
         false => "--lossy writes the nearest that can be said, and ",
         true => "",

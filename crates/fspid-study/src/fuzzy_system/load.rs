@@ -11,7 +11,7 @@ use fspid_fuzzy::{LABEL_COUNT, NumberTable, Supervisor};
 
 use super::{scenario, toml_file};
 use crate::file::files::{STANDARD_INPUT, read_regular};
-use crate::file::{Problem, Problems, rule_table_names};
+use crate::file::{Problems, rule_table_names};
 use crate::inference::{Question, Refused};
 
 /// How a system is to answer, where its file shall not decide.
@@ -271,9 +271,9 @@ pub fn read(
 /// The system that a reader of another tool's format found.
 fn of_tool(
     name: &str,
-    reading: Result<fspid_formats::Reading, fspid_formats::Problems>,
+    reading: Result<fspid_formats::Reading, Problems>,
 ) -> Result<Loaded, LoadError> {
-    let reading = reading.map_err(|problems| LoadError::Problems(in_our_words(name, problems)))?;
+    let reading = reading.map_err(|problems| LoadError::Problems(problems.in_file(name)))?;
     let note = |note: fspid_formats::Note| match note.place {
         Some(place) => format!("{name}:{place}: {}", note.message),
         None => format!("{name}: {}", note.message),
@@ -284,20 +284,6 @@ fn of_tool(
         LoadError::Refused(Refused::all(told.collect()))
     })?;
     Ok(Loaded { system, notes })
-}
-
-/// The problems of a reader as those of our own files are told.
-fn in_our_words(name: &str, problems: fspid_formats::Problems) -> Problems {
-    let problem = |found: fspid_formats::Problem| Problem {
-        origin: None,
-        path: String::new(),
-        line: found.place.map_or(1, |place| place.line),
-        column: found.place.map_or(1, |place| place.column),
-        message: found.message,
-        found: found.word,
-        allowed: found.expected,
-    };
-    Problems::new(name, problems.0.into_iter().map(problem).collect(), 0)
 }
 
 fn no_scenario() -> LoadError {

@@ -9,8 +9,8 @@ use super::load::{LoadError, Loaded, built};
 use super::toml_file;
 use crate::file;
 use crate::file::document::{Item, Value, read as read_document};
-use crate::file::report::Report;
 use crate::inference::Refused;
+use fspid_diagnostics::Report;
 
 /// True for a text with controllers, however they are written.
 ///

@@ -31,7 +31,7 @@ fn nesting_up_to_the_limit_is_a_matter_of_the_specification() {
 #[test]
 fn a_nul_byte_is_refused_with_its_place() {
     let found = problems("schema = 1\nname = \"a\0b\"\n");
-    assert_eq!((found.list[0].line, found.list[0].column), (2, 10));
+    assert_eq!(found.list[0].line_and_column(), (2, 10));
     assert!(found.to_string().contains("NUL"), "{found}");
 }
 
@@ -41,7 +41,7 @@ fn bytes_that_are_no_utf_8_are_refused_with_their_place() {
     let path = folder.path().join("latin.toml");
     std::fs::write(&path, b"schema = 1\nname = \"caf\xe9\"\n").expect("written");
     let Err(LoadError::Problems(found)) = file::load(&path, &[]) else { panic!("it is not UTF-8") };
-    assert_eq!((found.list[0].line, found.list[0].column), (2, 12));
+    assert_eq!(found.list[0].line_and_column(), (2, 12));
     assert_eq!(found.list[0].found, "byte 0xE9");
 }
 
@@ -60,9 +60,7 @@ fn a_byte_order_mark_and_carriage_returns_change_nothing() {
     assert_eq!(unix, dos);
     let first = &problems("\u{feff}nmae = 1").list;
     assert!(
-        first
-            .iter()
-            .any(|problem| problem.path == "nmae" && (problem.line, problem.column) == (1, 1))
+        first.iter().any(|problem| problem.path == "nmae" && problem.line_and_column() == (1, 1))
     );
 }
 
@@ -227,7 +225,10 @@ fn a_damaged_scenario_is_refused_with_a_reason_or_accepted() {
                 assert!(!found.list.is_empty(), "{text}");
                 let lines = text.lines().count() + 1;
                 assert!(
-                    found.list.iter().all(|problem| (1..=lines).contains(&problem.line)),
+                    found
+                        .list
+                        .iter()
+                        .all(|problem| (1..=lines).contains(&problem.line_and_column().0)),
                     "{found}"
                 );
                 refused += 1;

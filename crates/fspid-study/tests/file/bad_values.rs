@@ -146,8 +146,9 @@ fn refuse(text: &str, number: &Number, value: &str) -> String {
         panic!("{}{value} was accepted", number.head);
     };
     let key = number.head.trim_end_matches(" = ");
-    let at_line =
-        |problem: &&file::Problem| problem.line == number.line + 1 && problem.path.contains(key);
+    let at_line = |problem: &&file::Problem| {
+        problem.line_and_column().0 == number.line + 1 && problem.path.contains(key)
+    };
     let found = problems.list.iter().find(at_line);
     let found = found
         .unwrap_or_else(|| panic!("{}{value}, line {}: {problems}", number.head, number.line + 1));

@@ -308,8 +308,8 @@ fn a_problem_in_another_file_is_told_with_that_files_name_and_line() {
         file::parse(&scenario, "s.toml", Some(folder.path()), &[]).expect_err("a bad cell");
     let [problem] = problems.list.as_slice() else { panic!("{problems}") };
     assert_eq!(
-        (problem.origin.as_deref(), problem.line, problem.column),
-        (Some("rules.toml"), line, 13)
+        (problem.origin.as_deref(), problem.line_and_column()),
+        (Some("rules.toml"), (line, 13))
     );
     assert!(problem.message.contains("row 4 (error ZO), column 5 (change PS)"), "{problems}");
     assert_eq!(problem.found, "XX");

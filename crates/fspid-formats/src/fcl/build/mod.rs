@@ -15,9 +15,10 @@ use super::draft::{Block, Draft, Role, Set, Variable};
 use super::parser::is_section_word;
 use crate::lexer::Token;
 use crate::names::{Index, Names};
-use crate::note::{Place, Problems, Reading};
+use crate::note::Reading;
 use crate::report::Report;
 use crate::{check, rule, term};
+use fspid_diagnostics::{Place, Problems};
 
 /// The system that a draft means in a dialect.
 pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading, Problems> {

@@ -7,9 +7,9 @@ use crate::fcl::draft::Block;
 use crate::fcl::parser::is_section_word;
 use crate::lexer::{Kind, Token};
 use crate::names::Names;
-use crate::note::Place;
 use crate::report::Report;
 use crate::rule;
+use fspid_diagnostics::Place;
 
 /// A rule block with its rules; `missing_sign` becomes the place of the first rule without `;`.
 pub(super) fn block(

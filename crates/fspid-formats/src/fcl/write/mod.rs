@@ -10,7 +10,8 @@ use fspid_fuzzy::system::Parts;
 
 use super::Dialect;
 use crate::loss::Loss;
-use crate::note::{Problems, WriteOptions, Writing};
+use crate::note::{WriteOptions, Writing};
+use fspid_diagnostics::Problems;
 
 /// Writes a system in a dialect of FCL, with every digit that a number needs.
 ///

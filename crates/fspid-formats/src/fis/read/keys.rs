@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::source::{Entry, Section};
-use crate::note::Problem;
 use crate::report::{Report, one_of, wrong};
+use fspid_diagnostics::Problem;
 
 /// Keys of `[System]`.
 pub(super) const SYSTEM: &[&str] = &[

@@ -8,8 +8,8 @@ use super::source::Entry;
 use super::value::{Number, list, over, quoted, sign};
 use crate::cursor::Cursor;
 use crate::fis::shape::{Row, SHAPES, by_name};
-use crate::note::{Place, Problem};
 use crate::report::{Report, one_of, wrong};
+use fspid_diagnostics::{Place, Problem};
 
 /// A membership function as it is written.
 #[derive(Debug)]

@@ -16,8 +16,9 @@ use std::collections::BTreeMap;
 use fspid_fuzzy::system::{Parts, RuleBlock, System};
 
 use crate::cursor::Cursor;
-use crate::note::{Problems, Reading};
+use crate::note::Reading;
 use crate::report::Report;
+use fspid_diagnostics::Problems;
 use source::{Section, Source};
 use system::Header;
 use variable::Variable;
@@ -28,7 +29,7 @@ use variable::Variable;
 /// Every problem of the file (up to fifty, then that there are more), each with line, column and what
 /// was expected.
 pub fn read(text: &str) -> Result<Reading, Problems> {
-    let cursor = Cursor::new(text).map_err(|problem| Problems(vec![problem]))?;
+    let cursor = Cursor::new(text).map_err(|problem| Problems::of_text(vec![problem]))?;
     let mut report = Report::default();
     let source = Source::of(cursor, &mut report);
     let parts = parts(&source, &mut report);

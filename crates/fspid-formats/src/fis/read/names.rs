@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use fspid_fuzzy::system::{Input, Output};
 
 use super::source::Source;
-use crate::note::Place;
 use crate::report::{Report, clipped};
+use fspid_diagnostics::Place;
 
 /// Names what has no name, and renames what has the name of something before it.
 pub(super) fn settle(

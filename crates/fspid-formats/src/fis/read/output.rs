@@ -7,8 +7,8 @@ use super::membership::Written;
 use super::value::Number;
 use super::variable::{Set, Variable};
 use crate::fis::word::Engine;
-use crate::note::Problem;
 use crate::report::{Report, wrong};
+use fspid_diagnostics::Problem;
 
 /// What the system says about every output.
 #[derive(Clone, Copy, Debug)]

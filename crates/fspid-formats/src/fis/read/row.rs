@@ -2,9 +2,9 @@
 
 use crate::cursor::Cursor;
 use crate::fis::hedge::{Coded, NONE};
-use crate::note::{Place, Problem};
 use crate::number;
 use crate::report::wrong;
+use fspid_diagnostics::{Place, Problem};
 
 use super::value::{not_a_number, over, sign};
 

@@ -11,9 +11,9 @@ use super::row::{Index, Row, row};
 use super::source::Source;
 use crate::fis::hedge::{Coded, NONE, of_code};
 use crate::hedged;
-use crate::note::{Place, Problem};
 use crate::number::written;
 use crate::report::{Report, wrong};
+use fspid_diagnostics::{Place, Problem};
 
 /// Every rule of the file that can be read; the others are noted down as problems. A hedge in a
 /// conclusion adds a term to its output.

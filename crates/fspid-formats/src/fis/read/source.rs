@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::cursor::Cursor;
-use crate::note::{Place, Problem};
 use crate::report::{Report, one_of, wrong};
+use fspid_diagnostics::{Place, Problem};
 
 /// `key = value`.
 #[derive(Clone, Copy, Debug)]

@@ -11,8 +11,8 @@ use super::variable::told;
 use crate::fis::word::{
     DEFUZZIFIERS, ENGINES, Engine, MATLAB, REDUCERS, S_NORMS, T_NORMS, Word, look_up,
 };
-use crate::note::Problem;
 use crate::report::{Report, wrong};
+use fspid_diagnostics::Problem;
 
 /// `[System]`, read.
 pub(super) struct Header<'a> {

@@ -1,9 +1,9 @@
 //! The pieces of a value: quoted words, numbers, lists of numbers.
 
 use crate::cursor::Cursor;
-use crate::note::{Place, Problem};
 use crate::number::{self, Refused};
 use crate::report::wrong;
+use fspid_diagnostics::{Place, Problem};
 
 /// A number and the word that it was written as.
 #[derive(Clone, Copy, Debug)]

@@ -8,9 +8,9 @@ use super::keys::{Keys, Side, VARIABLE};
 use super::membership::{self, Written};
 use super::source::{Entry, Section};
 use super::value;
-use crate::note::{Place, Problem};
 use crate::number;
 use crate::report::{Report, wrong};
+use fspid_diagnostics::{Place, Problem};
 
 /// A variable before its sets are looked at.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! What the format cannot say: refused, or written otherwise with a note.
 
-use crate::note::{Note, Problem, Problems};
+use fspid_diagnostics::{Note, Problem, Problems};
 
 /// Collects what is lost on the way.
 #[derive(Debug)]
@@ -33,8 +33,7 @@ impl Losses {
     }
 
     fn problem(&mut self, message: impl Into<String>, expected: &str) {
-        let (message, expected) = (message.into(), expected.into());
-        self.problems.push(Problem { place: None, word: String::new(), message, expected });
+        self.problems.push(Problem::whole(message, expected));
     }
 
     /// Something that changes no answer.
@@ -47,7 +46,11 @@ impl Losses {
     /// # Errors
     /// The problems, if there are any.
     pub(super) fn finish(self) -> Result<Vec<Note>, Problems> {
-        if self.problems.is_empty() { Ok(self.notes) } else { Err(Problems(self.problems)) }
+        if self.problems.is_empty() {
+            Ok(self.notes)
+        } else {
+            Err(Problems::of_text(self.problems))
+        }
     }
 
     /// True if nothing stands in the way of writing.

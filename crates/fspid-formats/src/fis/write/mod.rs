@@ -11,8 +11,9 @@ mod variable;
 
 use fspid_fuzzy::system::{Conclusion, Parts, System};
 
-use crate::note::{Problem, Problems, WriteOptions, Writing};
+use crate::note::{WriteOptions, Writing};
 use crate::number::written;
+use fspid_diagnostics::{Problem, Problems};
 use losses::Losses;
 use method::Methods;
 
@@ -37,13 +38,10 @@ pub fn write(parts: &Parts, options: WriteOptions) -> Result<Writing, Problems> 
 
 /// Only what can be built is written.
 fn buildable(parts: &Parts) -> Result<(), Problems> {
-    let problem = |error: &fspid_fuzzy::system::SystemError| {
-        let (word, expected) = (String::new(), String::new());
-        Problem { place: None, word, message: error.to_string(), expected }
-    };
+    let problem = |error: &fspid_fuzzy::system::SystemError| Problem::whole(error.to_string(), "");
     match System::new(parts.clone()) {
         Ok(_) => Ok(()),
-        Err(errors) => Err(Problems(errors.iter().map(problem).collect())),
+        Err(errors) => Err(Problems::of_text(errors.iter().map(problem).collect())),
     }
 }
 

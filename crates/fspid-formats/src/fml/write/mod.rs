@@ -6,7 +6,8 @@ mod text;
 use fspid_fuzzy::system::Parts;
 
 use crate::loss::Loss;
-use crate::note::{Problems, WriteOptions, Writing};
+use crate::note::{WriteOptions, Writing};
+use fspid_diagnostics::Problems;
 
 /// Writes a system in the Fuzzy Markup Language of IEEE 1855, with every digit that a number needs.
 ///

@@ -5,10 +5,10 @@ use fspid_lti::Matrix;
 use fspid_sim::ElevatorSign;
 
 use super::quantity;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::aircraft::StateWord;
 use crate::units::FOOT_M;
+use fspid_diagnostics::Report;
 
 /// Velocities become metres in the states and in their rates; angles stay.
 pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData> {

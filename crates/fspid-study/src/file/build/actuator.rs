@@ -4,8 +4,8 @@ use fspid_sim::actuator::{Actuator, Lag, Preset};
 use fspid_sim::{Servo, SimError};
 
 use super::{judged, rad};
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// Keys that a plain servo does not have.
 const MORE: [&str; 7] = [

@@ -10,9 +10,9 @@ use super::flight::{Flown, Way};
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::air::{GustKind, WindKind};
+use fspid_diagnostics::Report;
 
 /// The air that the file lets move, `None` for calm air around a linear plant.
 ///

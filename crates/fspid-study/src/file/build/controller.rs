@@ -10,12 +10,12 @@ use fspid_sim::Controller;
 use super::schedule::{self, Pressure};
 use super::{judged, lqi, rad, supervisor};
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::controller::{
     AntiWindupKind, ControllerKind, DerivativeOn, LawWord, SecondInputWord,
 };
 use crate::units::degrees;
+use fspid_diagnostics::Report;
 
 /// The controller of a sound section.
 pub(super) fn controller(

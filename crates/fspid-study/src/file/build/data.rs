@@ -9,9 +9,9 @@ use crate::file::check;
 use crate::file::document;
 use crate::file::files::Files;
 use crate::file::preset::{plant_text, rule_table_text};
-use crate::file::report::{Place, Report};
 use crate::file::section::Section;
 use crate::file::spec::{PLANT_FILE, RULE_FILE, Table};
+use fspid_diagnostics::{Report, Span};
 
 /// The plant of a table with `preset`, `file` or coefficients.
 pub(super) fn plant(
@@ -74,7 +74,7 @@ pub(crate) fn coefficients(
 }
 
 /// The coefficient whose size is farthest from that of the others: where numbers overflow, it is the one.
-fn farthest_coefficient(section: &Section) -> Option<(Place, String)> {
+fn farthest_coefficient(section: &Section) -> Option<(Span, String)> {
     let named = |key: &'static str| {
         let numbers = section.placed_numbers(key).unwrap_or_default().iter().enumerate();
         numbers.map(move |(index, (number, place))| (*number, *place, key, index))
@@ -161,7 +161,7 @@ pub(crate) fn rules_named(
     }
     let source = report.add_source(None, name);
     let end = name.len();
-    let place = Place { source, start: 0, end };
+    let place = Span { source, start: 0, end };
     rule_table(&referred(report, files, &RULE_FILE, (name, (place, String::new())))?)
 }
 
@@ -191,7 +191,7 @@ pub(super) fn referred(
     report: &mut Report,
     files: &mut Files<'_>,
     spec: &'static Table,
-    (name, (place, path)): (&str, (Place, String)),
+    (name, (place, path)): (&str, (Span, String)),
 ) -> Option<Section> {
     let text = match files.read(name) {
         Ok(text) => text,

@@ -4,9 +4,9 @@ use fspid_core::Gains;
 use fspid_sim::Controller;
 
 use super::schedule::{self, Pressure};
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::controller::ControllerKind;
+use fspid_diagnostics::Report;
 
 /// The gains that a controller flies with, where they are not those of its file.
 #[derive(Clone, Debug, PartialEq)]

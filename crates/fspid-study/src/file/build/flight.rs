@@ -11,11 +11,11 @@ use super::{data, judged, linear_aircraft, loading, rad};
 use crate::aircraft::{AircraftFailure, Units};
 use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
 use crate::file::spec::flight::{AtmosphereWord, ModelWord};
 use crate::flyer::flyer;
+use fspid_diagnostics::Report;
 
 /// A plant and what the air around it depends on.
 pub(super) struct Flown {

@@ -6,10 +6,10 @@ use fspid_sim::{ElevatorSign, LinearPlant};
 
 use super::flight::{self, Flown, Way};
 use super::judged;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::flight::ModelWord;
 use crate::units::{FOOT_M, KNOT_M_S};
+use fspid_diagnostics::Report;
 
 /// How far an airspeed may be from that of the model, as a share of it: the dynamic pressure changes by 1 %, less than
 /// the derivatives of any source are good for, and speeds rounded to whole knots fit in above 100 kt.

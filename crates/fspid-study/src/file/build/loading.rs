@@ -4,8 +4,8 @@ use fspid_aircraft::AircraftError;
 use fspid_aircraft::data::{AircraftData, Loading, Moment};
 
 use crate::file::aircraft::quantity;
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// Ends of the keys of a moment of inertia, of which one may be given.
 const MOMENT_ENDS: [&str; 3] = ["kg_m2", "slug_ft2", "gyration_m"];

@@ -5,8 +5,8 @@ use fspid_lti::{DampedIntegrator, IntegralRegulator, IntegralWeights, integral_r
 use fspid_sim::Controller;
 
 use super::controller::{ends, placed};
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// The controller of a sound section.
 ///

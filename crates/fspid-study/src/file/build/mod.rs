@@ -30,13 +30,13 @@ use crate::dispersion::Dispersion;
 use crate::file::dispersion::dispersions;
 use crate::file::files::Files;
 use crate::file::overrides;
-use crate::file::report::Report;
 use crate::file::requirement::requirements;
 use crate::file::section::Section;
 use crate::file::tuning::{contest, tuning};
 use crate::requirement::Requirement;
 use crate::tuning::{Contest, Tuning};
 use crate::units::radians as rad;
+use fspid_diagnostics::Report;
 
 /// A scenario with what is asked of it.
 pub(crate) struct Built {

@@ -4,8 +4,8 @@ use fspid_core::{Gains, PidConfig};
 
 use super::flight::Flown;
 use super::judged;
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// What is known of the dynamic pressure of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]

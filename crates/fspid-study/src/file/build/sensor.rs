@@ -4,8 +4,8 @@ use fspid_sim::SimError;
 use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel, SensorPreset};
 
 use super::{judged, rad};
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// Sensors of pitch and pitch rate, none where no sensor is asked for.
 pub(super) type Sensors = (Option<Sensor>, Option<Sensor>);

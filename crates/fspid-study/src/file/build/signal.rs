@@ -4,9 +4,9 @@ use fspid_sim::SimError;
 use fspid_sim::signal::{Disturbance, Profile, Shape};
 
 use super::{judged, rad};
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::signal::SignalKind;
+use fspid_diagnostics::Report;
 
 pub(super) fn setpoint(report: &mut Report, section: &Section) -> Option<Profile> {
     let Some(shape) = shape(section)? else {

@@ -4,9 +4,9 @@ use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Output, Sup
 
 use super::{data, judged};
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::fuzzy_system::{Format, LoadError, Options, numbers_of, read};
+use fspid_diagnostics::Report;
 
 /// How far the range of a system may be from that of the supervisor, as a part of it: a range that was
 /// printed with ten digits and read again.
@@ -113,7 +113,8 @@ fn of_system(
         Ok(loaded) => loaded,
         Err(LoadError::Problems(problems)) => {
             for found in &problems.list {
-                let message = format!("{name}:{}:{}: {}", found.line, found.column, found.message);
+                let (line, column) = found.line_and_column();
+                let message = format!("{name}:{line}:{column}: {}", found.message);
                 report.missing(place, &path, message, found.allowed.clone());
             }
             return None;

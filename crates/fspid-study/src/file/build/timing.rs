@@ -4,8 +4,8 @@ use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, Servo, SimError, Surr
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
-use crate::file::report::Report;
 use crate::file::section::Section;
+use fspid_diagnostics::Report;
 
 /// Most samples that ramps of the plant may take, each with a discretisation of its own.
 const MOST_RAMP_SAMPLES: f64 = 100_000.0;

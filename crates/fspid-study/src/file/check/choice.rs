@@ -2,9 +2,9 @@
 
 use super::value;
 use crate::file::document::Member;
-use crate::file::report::Report;
 use crate::file::section::Section;
 use crate::file::spec::{Choice, Key, Way};
+use fspid_diagnostics::Report;
 
 /// Exactly one of the ways must be used, and completely.
 pub(super) fn check(

@@ -4,8 +4,8 @@ use fspid_fuzzy::{Grid, GridError, LABEL_COUNT, Label};
 
 use super::value::wrong_type;
 use crate::file::document::{Item, Value};
-use crate::file::report::{Place, Report};
 use crate::file::spec::Kind;
+use fspid_diagnostics::{Report, Span};
 
 pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Grid> {
     let Value::Text(text) = &item.value else {
@@ -66,7 +66,7 @@ fn hole(text: &str, error: GridError) -> Option<Hole> {
 }
 
 /// The place of the row or cell that is wrong; of the whole text where it cannot be told.
-fn place_of(report: &Report, whole: Place, error: GridError, hole: Option<Hole>) -> Place {
+fn place_of(report: &Report, whole: Span, error: GridError, hole: Option<Hole>) -> Span {
     let (row, column) = match error {
         GridError::UnknownLabel { row, column } => (row, Some(column)),
         GridError::RowLength { row, .. } => (row, None),
@@ -89,7 +89,7 @@ fn place_of(report: &Report, whole: Place, error: GridError, hole: Option<Hole>)
         },
     };
     let start = whole.start + quotes + line_start + start;
-    Place { start, end: start + length, ..whole }
+    Span { start, end: start + length, ..whole }
 }
 
 /// The line of that number among those that are not empty, and where it begins.

@@ -8,10 +8,10 @@ mod value;
 pub(super) use value::allowed;
 
 use crate::file::document::{Item, Member, Value};
-use crate::file::problem::nearest;
-use crate::file::report::{Place, Report, excerpt};
 use crate::file::section::{Checked, Entry, Section};
 use crate::file::spec::{Default, Key, Presence, Table, Variant};
+use fspid_diagnostics::nearest;
+use fspid_diagnostics::{Report, Span, excerpt};
 
 /// Checks a table. What comes back holds the sound values and says whether all were.
 pub(crate) fn table(
@@ -153,14 +153,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn put(&mut self, key: &'static Key, place: Place, value: Checked, given: bool) {
+    fn put(&mut self, key: &'static Key, place: Span, value: Checked, given: bool) {
         let name = key.name;
         self.section.entries.push(Entry { name, place, value, given });
     }
 }
 
 /// The place of the value; that of the key where the value is a table without a place of its own.
-fn value_place(member: &Member) -> Place {
+fn value_place(member: &Member) -> Span {
     let place = member.item.place;
     if place.end > place.start { place } else { member.place }
 }

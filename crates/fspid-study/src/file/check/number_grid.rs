@@ -4,15 +4,15 @@ use fspid_fuzzy::LABEL_COUNT;
 
 use super::value::{number, wrong_type};
 use crate::file::document::{Item, Value};
-use crate::file::report::{Place, Report};
 use crate::file::spec::{Kind, Range};
+use fspid_diagnostics::{Report, Span};
 
 pub(crate) const ALLOWED: &str =
     "seven lists of seven numbers, one list for each error from NB to PB";
 const ROW: &str = "seven numbers, one for each change from NB to PB";
 
 /// The cells row by row, each with its place; every problem in them is reported.
-pub(crate) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Vec<(f64, Place)>> {
+pub(crate) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Vec<(f64, Span)>> {
     let Value::Array(rows) = &item.value else {
         return wrong_type(report, item, path, &Kind::NumberGrid);
     };

@@ -5,10 +5,10 @@ use fspid_fuzzy::Defuzzifier;
 use crate::file::check::{grid, in_words, number_grid, quoted, table};
 use crate::file::document::{Item, Value};
 use crate::file::preset::rule_table_names;
-use crate::file::problem::nearest;
-use crate::file::report::{Place, Report};
 use crate::file::section::Checked;
 use crate::file::spec::{Kind, Range, Table};
+use fspid_diagnostics::nearest;
+use fspid_diagnostics::{Report, Span};
 
 /// The value if it is of its kind; otherwise its problems are reported.
 pub(super) fn check(
@@ -164,7 +164,7 @@ fn numbers(
     path: &str,
     (range, unit): (Range, &'static str),
     (least, most): (usize, usize),
-) -> Option<Vec<(f64, Place)>> {
+) -> Option<Vec<(f64, Span)>> {
     let kind = Kind::Numbers { unit, range, least, most };
     let Value::Array(items) = &item.value else {
         return wrong_type(report, item, path, &kind);
@@ -192,7 +192,7 @@ fn interval(
     item: &Item,
     path: &str,
     (range, unit): (Range, &'static str),
-) -> Option<Vec<(f64, Place)>> {
+) -> Option<Vec<(f64, Span)>> {
     let kind = Kind::Interval { unit, range };
     let Value::Array(items) = &item.value else {
         return wrong_type(report, item, path, &kind);

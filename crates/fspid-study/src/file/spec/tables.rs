@@ -43,7 +43,7 @@ static TABLE_BODY: Table = Table {
         optional(
             "centre_of_mass_pct",
             finite("%"),
-            "Place along the mean chord; where the tables have it if left out.",
+            "Span along the mean chord; where the tables have it if left out.",
         ),
     ]],
     choices: &[one_of!("gravity_ft_s2", "gravity_m_s2")],

@@ -3,8 +3,8 @@
 use fspid_fuzzy::system::{Input, Membership, System, Universe};
 
 use super::{Question, Slice};
-use crate::file::problem::known_words;
 use crate::fuzzy_system::answer::named;
+use fspid_diagnostics::known_words;
 
 /// Nodes along each input of a surface.
 const NODES: usize = 81;

@@ -8,7 +8,7 @@ use super::fields::{Fields, any_number, below, in_order};
 use super::formula::formula;
 use super::membership::{self, Names};
 use crate::file::document::{Item, Value as Written};
-use crate::file::report::Report;
+use fspid_diagnostics::Report;
 
 /// The variables that a conclusion may name.
 #[derive(Clone, Copy)]

@@ -1,8 +1,8 @@
 //! Tables whose keys depend on what is in them: checked key by key, with every problem reported.
 
 use crate::file::document::{Item, Member, Value};
-use crate::file::problem::nearest;
-use crate::file::report::{Place, Report, excerpt};
+use fspid_diagnostics::nearest;
+use fspid_diagnostics::{Report, Span, excerpt};
 
 /// The members of a table in the order in which they are written.
 pub(super) fn in_order(members: &[Member]) -> Vec<&Member> {
@@ -25,7 +25,7 @@ pub(super) fn below(path: &str, name: &str) -> String {
 pub(super) struct Fields<'a> {
     pub(super) report: &'a mut Report,
     pub(super) members: &'a [Member],
-    pub(super) place: Place,
+    pub(super) place: Span,
     pub(super) path: &'a str,
 }
 
@@ -118,7 +118,7 @@ pub(super) fn any_number(item: &Item) -> Option<f64> {
 /// A word out of a list; an unknown one is reported with the one that was probably meant.
 pub(super) fn word<'k>(
     report: &mut Report,
-    (place, path): (Place, &str),
+    (place, path): (Span, &str),
     text: &str,
     (what, known): (&str, &[&'k str]),
 ) -> Option<&'k str> {

@@ -4,7 +4,7 @@ use fspid_fuzzy::formula::Formula;
 use serde_json::{Value, json};
 
 use super::fields::{Fields, below};
-use crate::file::report::Place;
+use fspid_diagnostics::Span;
 
 /// The formula at a key that must be there, in these variables.
 pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -> Option<Formula> {
@@ -28,14 +28,14 @@ pub(super) fn formula(fields: &mut Fields<'_>, name: &str, variables: &[&str]) -
 pub(super) fn within(
     written: &str,
     text: &str,
-    whole: Place,
+    whole: Span,
     (position, length): (usize, usize),
-) -> Place {
+) -> Span {
     match written.find(text) {
         Some(begin) if !text.is_empty() => {
             let start = whole.start + begin + position;
             let end = (start + length).min(whole.start + begin + text.len());
-            Place { start, end, ..whole }
+            Span { start, end, ..whole }
         }
         _ => whole,
     }

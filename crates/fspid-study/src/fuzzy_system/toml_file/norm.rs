@@ -8,7 +8,7 @@ use super::fields::{Fields, word};
 use super::formula::{formula, formula_schema};
 use super::write::quoted;
 use crate::file::document::{Item, Value as Written};
-use crate::file::report::Report;
+use fspid_diagnostics::Report;
 
 /// The two grades of a norm's formula.
 const GRADES: [&str; 2] = ["a", "b"];

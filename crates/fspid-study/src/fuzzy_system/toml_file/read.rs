@@ -14,12 +14,12 @@ use super::rules::Vocabulary;
 use super::spec::{FUZZY_SYSTEM, fallback_in_words, sampling_in_words};
 use super::{activation, membership, norm, rules};
 use crate::file::document::{self, Value as Written};
-use crate::file::report::{Place, Report};
 use crate::file::section::Section;
 use crate::file::{Problems, check};
+use fspid_diagnostics::{Report, Span};
 
 /// Where the things of a file stand, by what [`System::new`] calls them.
-type Places = BTreeMap<String, Place>;
+type Places = BTreeMap<String, Span>;
 
 /// Reads a system from a text that is called `name` in messages.
 ///
@@ -46,7 +46,7 @@ fn read(report: &mut Report, text: &str) -> Option<System> {
 }
 
 /// Problems of the parts among each other, told where the parts stand.
-fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Place) {
+fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Span) {
     for error in errors {
         let place = places.get(&error.place).copied().unwrap_or(whole);
         let text = error.problem.to_string();

@@ -8,8 +8,8 @@ use super::super::fields::{Fields, below, in_order, word};
 use super::super::write::{key, quoted};
 use super::Vocabulary;
 use crate::file::document::{Item, Value as Written};
-use crate::file::report::{Place, Report};
 use crate::file::section::Section;
+use fspid_diagnostics::{Report, Span};
 
 /// The cell that stands for no rule.
 const NO_RULE: &str = "-";
@@ -27,7 +27,7 @@ pub(super) fn read(
     report: &mut Report,
     table: &Section,
     vocabulary: Vocabulary<'_>,
-) -> Option<Vec<(Rule, Place)>> {
+) -> Option<Vec<(Rule, Span)>> {
     let rows = axis(report, table, "rows", vocabulary.inputs);
     let columns = axis(report, table, "columns", vocabulary.inputs);
     let (rows, columns) = (rows?, columns?);
@@ -58,15 +58,15 @@ pub(super) fn read(
 }
 
 /// A cell: the position of its term, if it holds a rule, and its place.
-type Cell = (Option<usize>, Place);
+type Cell = (Option<usize>, Span);
 
 /// A rule for each pair of terms of which some output has a cell, row by row.
-fn expand(axes: [usize; 2], size: [usize; 2], grids: &[(usize, Vec<Cell>)]) -> Vec<(Rule, Place)> {
+fn expand(axes: [usize; 2], size: [usize; 2], grids: &[(usize, Vec<Cell>)]) -> Vec<(Rule, Span)> {
     let pairs = (0..size[0]).flat_map(|row| (0..size[1]).map(move |column| [row, column]));
     pairs
         .enumerate()
         .filter_map(|(cell, pair)| {
-            let consequents: Vec<(Consequent, Place)> = grids
+            let consequents: Vec<(Consequent, Span)> = grids
                 .iter()
                 .filter_map(|(output, cells)| {
                     let (term, place) = *cells.get(cell)?;
@@ -132,7 +132,7 @@ fn cells(
         }
         for (at, text) in words {
             let start = place.start + at;
-            let place = Place { start, end: start + text.len(), ..place };
+            let place = Span { start, end: start + text.len(), ..place };
             let term = word(report, (place, path), &text, ("term", &known));
             found.push((term.and_then(|t| terms.iter().position(|known| *known == t)), place));
         }
@@ -141,7 +141,7 @@ fn cells(
 }
 
 /// The lines of a text in the file that are not empty, with their places.
-pub(super) fn lines_of(written: &str, whole: Place) -> Vec<(Place, String)> {
+pub(super) fn lines_of(written: &str, whole: Span) -> Vec<(Span, String)> {
     let inner = written.trim_start_matches(['"', '\'']);
     let mut start = whole.start + (written.len() - inner.len());
     let inner = inner.trim_end_matches(['"', '\'']);
@@ -149,7 +149,7 @@ pub(super) fn lines_of(written: &str, whole: Place) -> Vec<(Place, String)> {
     for line in inner.split_inclusive('\n') {
         let text = line.trim_end_matches(['\n', '\r']);
         if !text.trim().is_empty() {
-            let place = Place { start, end: start + text.len(), ..whole };
+            let place = Span { start, end: start + text.len(), ..whole };
             lines.push((place, text.to_owned()));
         }
         start += line.len();

@@ -8,7 +8,7 @@ use super::super::formula::within;
 use super::super::write::quoted;
 use super::{Vocabulary, grid, tree};
 use crate::file::document::{Item, Value as Written};
-use crate::file::report::{Place, Report};
+use fspid_diagnostics::{Report, Span};
 
 /// The rules of a text or list, with their places.
 pub(super) fn read(
@@ -16,7 +16,7 @@ pub(super) fn read(
     item: &Item,
     path: &str,
     vocabulary: Vocabulary<'_>,
-) -> Option<Vec<(Rule, Place)>> {
+) -> Option<Vec<(Rule, Span)>> {
     let before = report.count();
     let mut rules = Vec::new();
     match &item.value {
@@ -78,32 +78,25 @@ fn one(report: &mut Report, item: &Item, path: &str, vocabulary: Vocabulary<'_>)
 /// A rule in words; what is wrong is told at its own word.
 fn in_words(
     report: &mut Report,
-    (place, path): (Place, &str),
+    (place, path): (Span, &str),
     text: &str,
     vocabulary: Vocabulary<'_>,
 ) -> Option<Rule> {
     let problems = match vocabulary.reader.read(text) {
         Ok(rule) => return Some(rule),
-        Err(problems) => problems.0,
+        Err(problems) => problems.list,
     };
     for problem in problems {
-        let position = problem.place.map_or(0, |at| byte(text, at.line, at.column));
-        let word = problem.word.len();
+        let position = problem.place.map_or(0, |at| at.byte_in(text));
+        let word = problem.found.len();
         let place = within(report.text(place), text, place, (position, word));
-        if problem.word.is_empty() {
-            report.missing(place, path, problem.message, problem.expected);
+        if problem.found.is_empty() {
+            report.missing(place, path, problem.message, problem.allowed);
         } else {
-            report.value(place, path, problem.message, problem.expected);
+            report.value(place, path, problem.message, problem.allowed);
         }
     }
     None
-}
-
-/// The byte at a line and column of a text.
-fn byte(text: &str, line: usize, column: usize) -> usize {
-    let before: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
-    let rest = text.get(before..).unwrap_or_default();
-    before + rest.char_indices().nth(column - 1).map_or(rest.len(), |(at, _)| at)
 }
 
 /// The rules of a block as a list.

@@ -8,8 +8,8 @@ use fspid_formats::rule_text::RuleReader;
 use fspid_fuzzy::system::{Input, Output, Parts, Rule, RuleBlock};
 use serde_json::{Value, json};
 
-use crate::file::report::{Place, Report};
 use crate::file::section::Section;
+use fspid_diagnostics::{Report, Span};
 
 pub(super) use grid::in_words as cells_in_words;
 
@@ -26,7 +26,7 @@ pub(super) fn read(
     report: &mut Report,
     block: &Section,
     vocabulary: Vocabulary<'_>,
-) -> Option<Vec<(Rule, Place)>> {
+) -> Option<Vec<(Rule, Span)>> {
     if let Some(table) = block.section("table") {
         return grid::read(report, table, vocabulary);
     }

@@ -9,7 +9,7 @@ use super::super::fields::{Fields, any_number, below, word};
 use super::super::write::{number, quoted};
 use super::Vocabulary;
 use crate::file::document::{Item, Value as Written};
-use crate::file::report::Report;
+use fspid_diagnostics::Report;
 
 /// Deepest nesting that is read; the system's own limit is lower.
 const DEPTH: usize = 200;

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::file::problem::{Problem, Problems};
+use crate::place::LineStarts;
+use crate::problem::{Problem, Problems};
 
 /// Longest excerpt of a file in a message, in characters.
 const EXCERPT: usize = 60;
@@ -12,13 +13,13 @@ const MOST: usize = 200;
 
 /// A stretch of one of the texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
+pub struct Span {
     /// Which text: 0 is the file itself.
-    pub(crate) source: usize,
+    pub source: usize,
     /// First byte.
-    pub(crate) start: usize,
+    pub start: usize,
     /// Byte after the last.
-    pub(crate) end: usize,
+    pub end: usize,
 }
 
 /// A text and what it is called; `None` for the file itself.
@@ -26,13 +27,12 @@ pub(crate) struct Place {
 struct Source {
     origin: Option<String>,
     text: String,
-    /// First byte of each line.
-    lines: Vec<usize>,
+    lines: LineStarts,
 }
 
 /// What is known about the files so far.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Report {
+pub struct Report {
     sources: Vec<Arc<Source>>,
     /// With the number of the text that each is in.
     problems: Vec<(usize, Problem)>,
@@ -42,34 +42,32 @@ pub(crate) struct Report {
 
 impl Report {
     /// Adds a text and returns its number.
-    pub(crate) fn add_source(&mut self, origin: Option<String>, text: &str) -> usize {
-        let after_breaks = text.match_indices('\n').map(|(at, _)| at + 1);
-        let lines = std::iter::once(0).chain(after_breaks).collect();
-        let text = text.to_owned();
+    pub fn add_source(&mut self, origin: Option<String>, text: &str) -> usize {
+        let (lines, text) = (LineStarts::of(text), text.to_owned());
         self.sources.push(Arc::new(Source { origin, text, lines }));
         self.sources.len() - 1
     }
 
     /// The text of a stretch.
-    pub(crate) fn text(&self, place: Place) -> &str {
+    pub fn text(&self, place: Span) -> &str {
         let source = self.sources.get(place.source);
         source.and_then(|source| source.text.get(place.start..place.end)).unwrap_or_default()
     }
 
     /// How many problems there are so far.
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.problems.len() + self.omitted
     }
 
     /// True when further problems are only counted.
-    pub(crate) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.problems.len() >= MOST
     }
 
     /// A problem with a value, which is quoted.
-    pub(crate) fn value(
+    pub fn value(
         &mut self,
-        place: Place,
+        place: Span,
         path: &str,
         message: impl Into<String>,
         allowed: impl Into<String>,
@@ -79,9 +77,9 @@ impl Report {
     }
 
     /// A problem with something that is not there or too long to quote.
-    pub(crate) fn missing(
+    pub fn missing(
         &mut self,
-        place: Place,
+        place: Span,
         path: &str,
         message: impl Into<String>,
         allowed: impl Into<String>,
@@ -90,7 +88,7 @@ impl Report {
     }
 
     /// A problem with the line in which a place lies.
-    pub(crate) fn line(&mut self, place: Place, message: String) {
+    pub fn line(&mut self, place: Span, message: String) {
         let source = self.sources.get(place.source);
         let text = source.map(|source| source.text.as_str()).unwrap_or_default();
         let before = text.get(..place.start).unwrap_or_default();
@@ -100,40 +98,30 @@ impl Report {
         self.push(place, "", message, found, String::new());
     }
 
-    fn push(&mut self, place: Place, path: &str, message: String, found: String, allowed: String) {
+    fn push(&mut self, place: Span, path: &str, message: String, found: String, allowed: String) {
         if self.is_full() {
             self.omitted += 1;
             return;
         }
-        let (line, column) = self.line_and_column(place);
-        let origin = self.sources.get(place.source).and_then(|source| source.origin.clone());
+        let source = self.sources.get(place.source);
+        let origin = source.and_then(|source| source.origin.clone());
+        let at = source.map(|source| source.lines.place(&source.text, place.start));
         let path = path.to_owned();
-        let problem = Problem { origin, path, line, column, message, found, allowed };
+        let problem = Problem { origin, path, place: at, message, found, allowed };
         self.problems.push((place.source, problem));
     }
 
-    fn line_and_column(&self, place: Place) -> (usize, usize) {
-        let Some(source) = self.sources.get(place.source) else {
-            return (1, 1);
-        };
-        let line = source.lines.partition_point(|&start| start <= place.start);
-        let begin =
-            line.checked_sub(1).and_then(|index| source.lines.get(index)).copied().unwrap_or(0);
-        let before = source.text.get(begin..place.start).unwrap_or_default();
-        (line, before.chars().count() + 1)
-    }
-
     /// Something that is allowed and probably not meant.
-    pub(crate) fn warn(&mut self, warning: String) {
+    pub fn warn(&mut self, warning: String) {
         self.warnings.push(warning);
     }
 
     /// The warnings, or the problems if there are any: in the order of the texts, each once.
-    pub(crate) fn finish(mut self, file: &str) -> Result<Vec<String>, Problems> {
+    pub fn finish(mut self, file: &str) -> Result<Vec<String>, Problems> {
         if self.problems.is_empty() {
             return Ok(self.warnings);
         }
-        let place = |(source, problem): &(usize, Problem)| (*source, problem.line, problem.column);
+        let place = |(source, problem): &(usize, Problem)| (*source, problem.place);
         self.problems.sort_by_key(place);
         let mut list: Vec<Problem> = Vec::with_capacity(self.problems.len());
         for (_, problem) in self.problems {
@@ -146,7 +134,7 @@ impl Report {
 }
 
 /// The first line of a text, shortened; control characters are made visible.
-pub(crate) fn excerpt(text: &str) -> String {
+pub fn excerpt(text: &str) -> String {
     let line = text.lines().next().unwrap_or_default();
     let mut short: String = line
         .chars()

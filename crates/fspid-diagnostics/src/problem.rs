@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
+use crate::place::Place;
+
 /// Most problems that are kept; a file with more has the same mistake many times over.
 const MOST: usize = 100;
 
@@ -14,10 +16,8 @@ pub struct Problem {
     pub origin: Option<String>,
     /// Path of the value, such as `controller[1].supervisor.range`; empty for the file as a whole.
     pub path: String,
-    /// Line, counted from 1.
-    pub line: usize,
-    /// Column in characters, counted from 1.
-    pub column: usize,
+    /// Where in the text; `None` where the whole is meant.
+    pub place: Option<Place>,
     /// What is wrong.
     pub message: String,
     /// What was found, as written; empty where nothing was.
@@ -26,10 +26,59 @@ pub struct Problem {
     pub allowed: String,
 }
 
+impl Problem {
+    /// Something wrong at a place of the text itself, and what would be right there.
+    pub fn at(
+        place: Place,
+        found: &str,
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self { place: Some(place), found: found.to_owned(), ..Self::whole(message, allowed) }
+    }
+
+    /// Something wrong with the text as a whole.
+    pub fn whole(message: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self {
+            origin: None,
+            path: String::new(),
+            place: None,
+            message: message.into(),
+            found: String::new(),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// Its line and column; the beginning of the text where the whole is meant.
+    #[must_use]
+    pub fn line_and_column(&self) -> (usize, usize) {
+        self.place.map_or((1, 1), |place| (place.line, place.column))
+    }
+}
+
+impl fmt::Display for Problem {
+    /// One line, without the name of the file.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = self.place {
+            write!(f, "{place}: ")?;
+        }
+        if !self.found.is_empty() {
+            write!(f, "`{}`: ", self.found)?;
+        }
+        f.write_str(&self.message)?;
+        if !self.allowed.is_empty() {
+            write!(f, "; expected {}", self.allowed)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problem {}
+
 /// Everything that is wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problems {
-    /// Name of the file.
+    /// Name of the file; empty where a text is read that has none.
     pub file: String,
     /// The problems, in the order of the file; never empty.
     pub list: Vec<Problem>,
@@ -39,11 +88,24 @@ pub struct Problems {
 
 impl Problems {
     /// As many of the problems as anybody would read.
-    pub(crate) fn new(file: &str, mut list: Vec<Problem>, omitted: usize) -> Self {
+    #[must_use]
+    pub fn new(file: &str, mut list: Vec<Problem>, omitted: usize) -> Self {
         let omitted = omitted + list.len().saturating_sub(MOST);
         list.truncate(MOST);
         let file = file.to_owned();
         Self { file, list, omitted }
+    }
+
+    /// The problems of a text without a name.
+    #[must_use]
+    pub fn of_text(list: Vec<Problem>) -> Self {
+        Self::new("", list, 0)
+    }
+
+    /// The same problems, of a file with this name.
+    #[must_use]
+    pub fn in_file(self, name: &str) -> Self {
+        Self { file: name.to_owned(), ..self }
     }
 
     /// The first problem in one line, without its place.
@@ -63,8 +125,9 @@ impl Problems {
     #[must_use]
     pub fn to_json(&self) -> Value {
         let problem = |p: &Problem| {
+            let (line, column) = p.line_and_column();
             json!({
-                "origin": p.origin, "path": p.path, "line": p.line, "column": p.column,
+                "origin": p.origin, "path": p.path, "line": line, "column": column,
                 "message": p.message, "found": p.found, "allowed": p.allowed,
             })
         };
@@ -72,8 +135,8 @@ impl Problems {
         json!({ "file": self.file, "problems": problems, "omitted": self.omitted })
     }
 
-    fn write(&self, f: &mut fmt::Formatter<'_>, problem: &Problem) -> fmt::Result {
-        let Problem { line, column, .. } = problem;
+    fn write_block(&self, f: &mut fmt::Formatter<'_>, problem: &Problem) -> fmt::Result {
+        let (line, column) = problem.line_and_column();
         match &problem.origin {
             Some(origin) if origin.starts_with("--set") => write!(f, "{origin}: ")?,
             Some(file) => write!(f, "{file}:{line}:{column}: ")?,
@@ -94,10 +157,14 @@ impl Problems {
 }
 
 impl fmt::Display for Problems {
-    /// A block for each problem and a last line with their number.
+    /// A block for each problem and a last line with their number; a line for each where the text has no name.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.file.is_empty() {
+            let lines: Vec<String> = self.list.iter().map(Problem::to_string).collect();
+            return f.write_str(&lines.join("\n"));
+        }
         for problem in &self.list {
-            self.write(f, problem)?;
+            self.write_block(f, problem)?;
         }
         match self.list.len() + self.omitted {
             1 => write!(f, "1 problem in {}", self.file)?,
@@ -111,68 +178,3 @@ impl fmt::Display for Problems {
 }
 
 impl std::error::Error for Problems {}
-
-/// Shortest name whose mistyped form is recognised without its unit.
-const LEAST_BARE: usize = 6;
-
-/// What follows "there is no `word`": the word that was probably meant, and those that are known.
-#[must_use]
-pub fn known_words(word: &str, known: &[&str]) -> String {
-    let all = known.join(", ");
-    match nearest(word, known) {
-        Some(meant) => format!("; did you mean `{meant}`? Known are {all}"),
-        None => format!("; known are {all}"),
-    }
-}
-
-/// The known word that was probably meant.
-pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
-    if word.len() > 64 {
-        return None;
-    }
-    let likeness = |candidate: &str| {
-        let (a, b) = (word.to_lowercase(), candidate.to_lowercase());
-        let whole = strsim::jaro_winkler(&a, &b);
-        let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
-        // The beginning is meant as the whole: `duration` for `duration_s`, `b747` for `b747-paper`.
-        let beginning = b.strip_prefix(a.as_str()).is_some_and(|rest| rest.starts_with(['_', '-']));
-        // A measure without its unit, mistyped: `overshot` for `overshoot_pct`.
-        let bare = b.rsplit_once('_').map_or("", |(bare, _)| bare);
-        let without_unit = bare.len() >= LEAST_BARE && strsim::osa_distance(&a, bare) <= 1;
-        if beginning {
-            2.0
-        } else if typing || without_unit {
-            1.0 + whole
-        } else {
-            whole
-        }
-    };
-    let scored = known.iter().map(|candidate| (likeness(candidate), *candidate));
-    scored
-        .filter(|(score, _)| *score >= 1.0)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mistyped_word_is_recognised_and_a_foreign_one_is_not() {
-        let known = ["sample_period_s", "duration_s", "kp", "kd"];
-        assert_eq!(nearest("sample_perod_s", &known), Some("sample_period_s"));
-        assert_eq!(nearest("duration", &known), Some("duration_s"));
-        assert_eq!(nearest("Kp", &known), Some("kp"));
-        assert_eq!(nearest("colour", &known), None);
-        assert_eq!(nearest("overshot", &["overshoot_pct", "peak_deg"]), Some("overshoot_pct"));
-    }
-
-    /// What used to follow the question mark began in small letters: "did you mean food? known are …".
-    #[test]
-    fn a_new_sentence_begins_with_a_capital_letter() {
-        let known = ["service", "food"];
-        assert_eq!(known_words("fod", &known), "; did you mean `food`? Known are service, food");
-        assert_eq!(known_words("colour", &known), "; known are service, food");
-    }
-}
