@@ -160,9 +160,9 @@ def normal():
         z = quantile(mpf(p), 1 - mpf(p))
         assert abs(above(-z) - mpf(p)) < mpf(p) * mpf(10) ** -45
         rows.append((p, exact(z)))
-    write("fspid-study", "normal_quantile.csv", "probability,quantile", rows)
+    write("fspid-scenario", "normal_quantile.csv", "probability,quantile", rows)
     points = [0.0, 1e-20, -1e-9, *[k / 4 for k in range(-32, 33) if k], -37.5, -30.0, -20.0, -12.3, 12.3, 20.0, 37.5]
-    write("fspid-study", "normal_cdf.csv", "z,below,above", [(z, exact(above(-z)), exact(above(z))) for z in points])
+    write("fspid-scenario", "normal_cdf.csv", "z,below,above", [(z, exact(above(-z)), exact(above(z))) for z in points])
 
 
 def truncated():
@@ -182,7 +182,7 @@ def truncated():
             near = truncnorm.ppf(u, float(a), float(b), loc=mean, scale=deviation)
             assert abs(near - value) <= 1e-7 * abs(value), (mean, deviation, lower, upper, u)
             rows.append((mean, deviation, lower, upper, u, exact(value)))
-    write("fspid-study", "truncated_normal.csv", "mean,standard_deviation,lower,upper,u,value", rows)
+    write("fspid-scenario", "truncated_normal.csv", "mean,standard_deviation,lower,upper,u,value", rows)
 
 
 if __name__ == "__main__":

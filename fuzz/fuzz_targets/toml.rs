@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use fspid_study::fuzzy_system::{parse, write};
+use fspid_scenario::fuzzy_system::{parse, write};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else { return };

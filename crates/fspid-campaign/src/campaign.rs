@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use fspid_study::dispersion::Drawn;
-use fspid_study::file::{Study, Template};
+use fspid_scenario::dispersion::Drawn;
+use fspid_scenario::file::{Study, Template};
 use rayon::prelude::*;
 
 use crate::draws::Draws;

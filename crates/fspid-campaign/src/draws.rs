@@ -1,7 +1,7 @@
 //! What each run of a dispersed scenario draws, from seed and run alone.
 
-use fspid_study::dispersion::{Dispersion, Distribution, Drawn};
-use fspid_study::file::{NewValue, SettingPath, Template};
+use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn};
+use fspid_scenario::file::{NewValue, SettingPath, Template};
 
 use crate::error::CampaignError;
 use crate::sample::{Cube, Sampling};

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use fspid_study::file::Problems;
+use fspid_scenario::file::Problems;
 use fspid_study::output::{OutputError, in_words};
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ pub enum CampaignError {
     Scenario(Problems),
     /// The scenario cannot be read.
     #[error("{0}")]
-    Unreadable(#[from] fspid_study::file::LoadError),
+    Unreadable(#[from] fspid_scenario::file::LoadError),
     /// Nothing differs from run to run.
     #[error(
         "{path}: nothing differs from run to run\n    add what shall, for instance:\n\n        [[dispersion]]\n        path = \"controller[0].kp\"\n        distribution = \"uniform\"\n        lower = 0.8\n        upper = 1.2\n        relative = true\n"

@@ -11,7 +11,7 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use fspid_study::file::read_text;
+use fspid_scenario::file::read_text;
 use fspid_study::output::{self, UNFINISHED};
 
 use crate::error::CampaignError;

@@ -6,7 +6,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use fspid_study::file::{Extra, Template};
+use fspid_scenario::file::{Extra, Template};
 use serde_json::{Value, json};
 
 use crate::error::CampaignError;

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use fspid_study::file::{Extra, LoadError, Template, read_text};
+use fspid_scenario::file::{Extra, LoadError, Template, read_text};
 
 use crate::campaign::Campaign;
 use crate::error::CampaignError;

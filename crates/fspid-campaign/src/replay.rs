@@ -1,7 +1,7 @@
 //! One run of a campaign flown again by itself, as `simulate` flies it.
 
-use fspid_study::dispersion::Drawn;
-use fspid_study::file::Study;
+use fspid_scenario::dispersion::Drawn;
+use fspid_scenario::file::Study;
 use fspid_study::shell;
 use fspid_study::simulation::Simulation;
 use serde_json::{Value, json};

@@ -5,11 +5,12 @@
 
 use std::sync::Arc;
 
-use fspid_study::dispersion::{Dispersion, Drawn};
-use fspid_study::file::Study;
+use fspid_scenario::dispersion::{Dispersion, Drawn};
+use fspid_scenario::file::Study;
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::units::degrees;
+use fspid_study::judgement::Judgement;
 use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
-use fspid_study::requirement::{Judgement, Requirement};
-use fspid_study::units::degrees;
 
 use crate::engine::FlightResult;
 use crate::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, TableError};

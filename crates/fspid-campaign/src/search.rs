@@ -5,8 +5,8 @@
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
 use fspid_optimise::{LShade, NelderMead, Optimiser, Start, minimise};
-use fspid_study::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
-use fspid_study::file::known_words;
+use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
+use fspid_scenario::file::known_words;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -209,7 +209,7 @@ impl<'a> Target<'a> {
         self.flight_of(vec![study]).pop().flatten()
     }
 
-    fn flight_of(&self, studies: Vec<fspid_study::file::Study>) -> Vec<Option<FlightResult>> {
+    fn flight_of(&self, studies: Vec<fspid_scenario::file::Study>) -> Vec<Option<FlightResult>> {
         let flown = engine::fly(&studies).into_iter();
         flown.map(|flights| flights.ok()?.into_iter().nth(self.place)).collect()
     }

@@ -191,7 +191,7 @@ fn a_row_holds_what_was_drawn_and_a_replay_gives_the_same_numbers() {
     // The changes make it the run's scenario for anybody.
     let mut changes = vec!["loop.duration_s=10.0".to_owned()];
     changes.extend(replay.changes);
-    let study = fspid_study::file::load(&scenario(), &changes).expect("a scenario");
+    let study = fspid_scenario::file::load(&scenario(), &changes).expect("a scenario");
     assert_eq!(study.scenario, replay.study.scenario);
 }
 

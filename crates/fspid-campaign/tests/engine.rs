@@ -1,8 +1,8 @@
 //! Flights of a campaign are those of `simulate`, whatever flies beside them.
 
 use fspid_campaign::engine::{self, FlightResult};
+use fspid_scenario::file::{Extra, NewValue, SettingPath, Study, Template};
 use fspid_sim::batch::{Entrant, LANES, fly_group};
-use fspid_study::file::{Extra, NewValue, SettingPath, Study, Template};
 use fspid_study::simulation::Simulation;
 
 const STEP: &str = include_str!("../../../scenarios/747-pitch-step.toml");

@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::search::{self, Worst};
 use fspid_campaign::{Campaign, CampaignError, Folder, Question, local, plan};
-use fspid_study::dispersion::Drawn;
+use fspid_scenario::dispersion::Drawn;
 
 fn campaign() -> Campaign {
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign.toml");

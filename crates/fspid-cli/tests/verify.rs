@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use fspid_study::metrics::Measure;
-use fspid_study::requirement::SET_NAMES;
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::SET_NAMES;
 use serde_json::Value;
 
 fn fspid(arguments: &[&str], folder: &Path) -> Output {

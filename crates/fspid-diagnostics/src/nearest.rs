@@ -22,7 +22,10 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let likeness = |candidate: &str| {
         let (a, b) = (word.to_lowercase(), candidate.to_lowercase());
         let whole = strsim::jaro_winkler(&a, &b);
-        let typing = strsim::osa_distance(&a, &b) <= 1 + b.len() / 5;
+        let changes = strsim::osa_distance(&a, &b);
+        // A word of which no letter is left is another word.
+        let is_another = changes >= a.chars().count().max(b.chars().count());
+        let typing = changes <= 1 + b.len() / 5 && !is_another;
         // The beginning is meant as the whole: `duration` for `duration_s`, `b747` for `b747-paper`.
         let beginning = b.strip_prefix(a.as_str()).is_some_and(|rest| rest.starts_with(['_', '-']));
         // A measure without its unit, mistyped: `overshot` for `overshoot_pct`.
@@ -36,7 +39,8 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
             whole
         }
     };
-    let scored = known.iter().map(|candidate| (likeness(candidate), *candidate));
+    // The first of several that are as near: the last is what `max_by` keeps.
+    let scored = known.iter().rev().map(|candidate| (likeness(candidate), *candidate));
     scored
         .filter(|(score, _)| *score >= 1.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))
@@ -54,6 +58,8 @@ mod tests {
         assert_eq!(nearest("duration", &known), Some("duration_s"));
         assert_eq!(nearest("Kp", &known), Some("kp"));
         assert_eq!(nearest("colour", &known), None);
+        assert_eq!(nearest(";", &["x", "y"]), None);
+        assert_eq!(nearest("COK", &["COG", "COA"]), Some("COG"));
         assert_eq!(nearest("overshot", &["overshoot_pct", "peak_deg"]), Some("overshoot_pct"));
     }
 

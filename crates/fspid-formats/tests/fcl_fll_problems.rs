@@ -40,7 +40,7 @@ fn a_rule_that_cannot_be_read_is_a_problem_and_never_skipped() {
         ),
         (
             "RULE 1 : IF x IS low THEN;",
-            "5:26: `;`: not the name of a variable; expected one of `x`, `y`; did you mean `x`?",
+            "5:26: `;`: not the name of a variable; expected one of `x`, `y`",
         ),
         (
             "RULE 1 : IF x IS low y IS a;",

@@ -12,7 +12,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use fspid_study::file;
+use fspid_scenario::file;
 
 const ROUNDS: usize = 20;
 const SCENARIO: &str = include_str!("../../../scenarios/gallery/b747-turbulence.toml");

@@ -13,9 +13,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use fspid_scenario::file;
 use fspid_sim::simulate;
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::file;
 use fspid_study::metrics::FlightMetrics;
 use fspid_study::simulation::Simulation;
 

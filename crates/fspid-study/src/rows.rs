@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 
-use crate::file::unread_in_words;
+use fspid_scenario::file::unread_in_words;
 
 /// Most problems that are told of one table.
 const MOST_PROBLEMS: usize = 20;

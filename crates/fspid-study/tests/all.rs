@@ -3,7 +3,6 @@
 mod analysis;
 mod certify;
 mod designs;
-mod file;
 mod fly;
 mod flying;
 mod fuzzy_system;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fspid_proof::LoopDescription;
+use fspid_scenario::file::{self, Study};
 use fspid_study::certify::{check_text, from_text};
-use fspid_study::file::{self, Study};
 use fspid_study::simulation::Simulation;
 
 fn folder() -> PathBuf {

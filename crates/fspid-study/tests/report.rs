@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fspid_study::file::{self, Study};
+use fspid_scenario::file::{self, Study};
 use fspid_study::report;
 use fspid_study::reproduce::{CLAIMS, Library, Reproduction};
 use fspid_study::simulation::Simulation;
@@ -272,4 +272,48 @@ fn a_flight_of_a_thousand_steps_does_not_bury_its_report() {
     assert_sound(&html);
     assert!(html.contains("more steps: `fspid simulate --format json` lists them all"));
     assert!(html.len() < 2_000_000, "{} bytes", html.len());
+}
+
+/// A Navion with gains that go with dynamic pressure.
+const SCHEDULED: &str = r#"
+schema = 1
+name = "scheduled"
+[aircraft]
+name = "navion"
+airspeed_m_s = 60.0
+altitude_m = 1000.0
+model = "linear"
+[loop]
+sample_period_s = 0.01
+duration_s = 1.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.8
+ki = 0.4
+kd = 0.2
+rate_gain = 0.1
+derivative_filter_s = 0.05
+schedule = { dynamic_pressure_pa = 1000.0, exponent = -1.0 }
+[[controller]]
+name = "P"
+kind = "p"
+kp = 0.8
+rate_gain = 0.1
+schedule = { dynamic_pressure_pa = 1000.0 }
+"#;
+
+#[test]
+fn a_report_shows_the_gains_that_fly() {
+    let (study, simulation) = flight(SCHEDULED);
+    let page = report::of_simulation(&study, &simulation);
+    assert!(page.contains("Gains that fly"), "no table");
+    assert!(page.contains("those of the file times 0.49"), "no factor");
+    let lines: Vec<String> = study.derived_gains.iter().map(ToString::to_string).collect();
+    assert!(lines[1].starts_with("P: kp 0.39"), "{lines:?}");
+    assert!(lines[1].contains("schedule at a dynamic pressure of 2000.9"), "{lines:?}");
 }

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use fspid_core::PidConfig;
+use fspid_scenario::file::{Extra, SettingPath, Template};
+use fspid_scenario::tuning::Free;
 use fspid_sim::Controller;
-use fspid_study::file::{Extra, SettingPath, Template};
-use fspid_study::tuning::Free;
 use serde_json::{Value, json};
 
 use crate::design::{check_room, text_of, with_changes};

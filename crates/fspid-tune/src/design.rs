@@ -1,7 +1,7 @@
 //! A design: the scenario's own text with what was found in place of the marks.
 
-use fspid_study::file::{Extra, NewValue, Template, read_text};
-use fspid_study::tuning::{Free, Mark};
+use fspid_scenario::file::{Extra, NewValue, Template, read_text};
+use fspid_scenario::tuning::{Free, Mark};
 
 use crate::error::TuneError;
 use crate::source::{Source, folder_of};

@@ -2,7 +2,7 @@
 
 use fspid_campaign::CampaignError;
 use fspid_campaign::table::TableError;
-use fspid_study::file::{LoadError, Problems};
+use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::OutputError;
 use thiserror::Error;
 

@@ -3,10 +3,10 @@
 use fspid_campaign::Draws;
 use fspid_campaign::engine::{self, FlightResult, Judging, Memory, Stability};
 use fspid_campaign::sample::Sampling;
-use fspid_study::dispersion::Drawn;
-use fspid_study::file::{Study, Template};
-use fspid_study::requirement::{AskedIn, Requirement};
-use fspid_study::tuning::Case;
+use fspid_scenario::dispersion::Drawn;
+use fspid_scenario::file::{Study, Template};
+use fspid_scenario::requirement::{AskedIn, Requirement};
+use fspid_scenario::tuning::Case;
 use rayon::prelude::*;
 
 use crate::error::TuneError;

@@ -1,11 +1,11 @@
 //! What is flown for a candidate, and what it is worth.
 
 use fspid_campaign::engine::{Judging, Stability};
+use fspid_scenario::file::Study;
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::tuning::{Mark, Tuning};
 use fspid_sim::Controller;
 use fspid_study::analysis::AtRest;
-use fspid_study::file::Study;
-use fspid_study::requirement::Requirement;
-use fspid_study::tuning::{Mark, Tuning};
 use sha2::{Digest as _, Sha256};
 
 use crate::error::TuneError;

@@ -1,11 +1,12 @@
 //! What a candidate is worth: costs of flights, and how they become one.
 
 use fspid_campaign::engine::FlightResult;
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::tuning::{Over, Tuning};
 use fspid_sim::load::{ConstantLoad, HALF_GONE};
+use fspid_study::judgement::Judgement;
 use fspid_study::metrics::Verdict;
-use fspid_study::requirement::{Judgement, Requirement};
 use fspid_study::simulation::WRONG_WAY;
-use fspid_study::tuning::{Over, Tuning};
 use serde::{Deserialize, Serialize};
 
 /// Cost above which candidates break a requirement or cannot be flown; what is allowed costs no more, however

@@ -4,7 +4,7 @@ use fspid_campaign::Plan as Campaign;
 use fspid_optimise::{
     Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
 };
-use fspid_study::file::known_words;
+use fspid_scenario::file::known_words;
 use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use fspid_study::file::Template;
-use fspid_study::tuning::Case;
+use fspid_scenario::file::Template;
+use fspid_scenario::tuning::Case;
 
 use crate::error::TuneError;
 

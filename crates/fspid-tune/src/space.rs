@@ -1,7 +1,7 @@
 //! The unit cube that is searched, and what its points put into a scenario.
 
-use fspid_study::file::{NewValue, SettingPath};
-use fspid_study::tuning::Mark;
+use fspid_scenario::file::{NewValue, SettingPath};
+use fspid_scenario::tuning::Mark;
 
 /// The marked places of a scenario, one or more coordinates each.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! What a search found, for people and programs.
 
 use fspid_optimise::Stop;
-use fspid_study::digits::to_digits;
-use fspid_study::requirement::Requirement;
-use fspid_study::tuning::{Free, Over};
+use fspid_scenario::digits::to_digits;
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -1,9 +1,9 @@
 //! What a candidate is worth, against what a single flight measures.
 #![allow(clippy::float_cmp, reason = "the same bits are asked for")]
 
-use fspid_study::file;
+use fspid_scenario::file;
+use fspid_scenario::units::degrees;
 use fspid_study::simulation::Simulation;
-use fspid_study::units::degrees;
 use fspid_tune::{Effort, FORBIDDEN, Problem, Search, Source};
 
 const SCENARIO: &str = r#"schema = 1

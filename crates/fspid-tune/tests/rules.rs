@@ -2,9 +2,9 @@
 
 use fspid_core::{Gains, PidConfig};
 use fspid_lti::spectral_radius;
+use fspid_scenario::file::{self, Study};
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::file::{self, Study};
 use fspid_tune::rule::{
     Design, Form, LqrOptions, Model, Options, PoleOptions, ProcessKind, Rule, RuleError, Verdict,
     design,

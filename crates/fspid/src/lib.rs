@@ -96,6 +96,7 @@ pub mod prelude {
     pub use fspid_fuzzy::{
         Defuzzifier, FuzzyError, Grid, Label, OutOfRange, RuleTable, Supervisor,
     };
+    pub use fspid_scenario::file::{Study, load, parse};
     pub use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
     pub use fspid_sim::{
         Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Plant, Scenario, Servo,
@@ -103,7 +104,6 @@ pub mod prelude {
     };
     pub use fspid_study::analysis::{Analysis, Question};
     pub use fspid_study::certify::Certification;
-    pub use fspid_study::file::{Study, load, parse};
     pub use fspid_study::metrics::{FlightMetrics, Verdict};
     pub use fspid_study::simulation::Simulation;
 }

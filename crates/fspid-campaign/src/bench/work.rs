@@ -6,9 +6,9 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 
 use fspid_core::fuzzy::{Answers, Increments, Supervisor};
+use fspid_scenario::file::{Extra, Template};
 use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
 use fspid_sim::{Controller, Prepared, fly};
-use fspid_study::file::{Extra, Template};
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;

@@ -1,8 +1,8 @@
 //! One controller of each study, in lanes as far as they go.
 
+use fspid_scenario::file::Study;
 use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
 use fspid_sim::{Controller, Prepared, SimError, Trace};
-use fspid_study::file::Study;
 
 use super::memory::Memory;
 use super::single;

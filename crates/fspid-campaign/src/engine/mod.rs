@@ -9,11 +9,11 @@ mod recorder;
 mod single;
 
 use fspid_core::Faults;
+use fspid_scenario::file::{RangeRule, Study};
 use fspid_sim::{Exit, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
-use fspid_study::file::{RangeRule, Study};
+use fspid_study::judgement::{Judgement, judge};
 use fspid_study::metrics::{CommandEffort, FlightMetrics, Verdict, largest_error_rad};
-use fspid_study::requirement::{Judgement, judge};
 use fspid_study::simulation::{ControllerResult, Ending};
 
 pub use memory::Memory;

@@ -1,7 +1,7 @@
 //! The answer first: how often flights fail, and which requirements are not met.
 
+use fspid_page::analysis::{DataTable, Datum, Item, Standing, Verdict};
 use fspid_plot::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
-use fspid_study::report::analysis::{DataTable, Datum, Item, Standing, Verdict};
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
 use super::words::{count, cut, percent, probability, with_unit};

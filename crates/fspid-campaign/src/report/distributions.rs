@@ -1,7 +1,7 @@
 //! How measures are distributed: histograms first, all numbers in a table.
 
+use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture};
 use fspid_plot::{DistributionFigure, DistributionRow, LimitLine};
-use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item, Picture};
 
 use super::measures::{self, Measure};
 use super::words::{count, cut, number};

@@ -1,6 +1,6 @@
 //! Which campaign it is, and how it is made again.
 
-use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item};
+use fspid_page::analysis::{Chapter, DataTable, Datum, Item};
 use fspid_study::shell;
 
 use super::Source;

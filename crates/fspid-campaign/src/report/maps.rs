@@ -1,10 +1,10 @@
 //! Maps of failures over the parameters that matter most.
 
+use fspid_page::analysis::{Chapter, Item, Picture};
 use fspid_plot::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, RunScatter, ShareCell, ShareMap,
 };
-use fspid_study::dispersion::Distribution;
-use fspid_study::report::analysis::{Chapter, Item, Picture};
+use fspid_scenario::dispersion::Distribution;
 
 use super::by_parameter::{ByParameter, Counted, Counts, Event, counted, pairs};
 use super::distributions::value_at;

@@ -25,9 +25,9 @@ mod worst;
 
 use std::path::Path;
 
+use fspid_page::analysis::{Item, Picture};
+use fspid_page::campaign::CampaignPage;
 use fspid_plot::{SeriesStyle, Svg};
-use fspid_study::report::analysis::{Item, Picture};
-use fspid_study::report::campaign::CampaignPage;
 
 use crate::summary::{Summary, SummaryError, SummarySettings};
 use crate::table::Reader;

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use fspid_scenario::file::Study;
+use fspid_scenario::units::degrees;
 use fspid_sim::fly;
-use fspid_study::file::Study;
-use fspid_study::units::degrees;
 use rayon::prelude::*;
 
 use super::Source;

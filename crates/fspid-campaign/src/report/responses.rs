@@ -1,7 +1,7 @@
 //! Envelopes of responses: what pitch and elevator do in most flights, in all, and in the worst.
 
+use fspid_page::analysis::{Chapter, Item, Picture};
 use fspid_plot::{EnvelopeBand, EnvelopeFigure, EnvelopePanel};
-use fspid_study::report::analysis::{Chapter, Item, Picture};
 
 use super::reflown::{Curves, Flights, Reflown, reflown};
 use super::words::{count, list, number};

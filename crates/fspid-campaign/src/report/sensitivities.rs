@@ -1,7 +1,7 @@
 //! What failing and the main measures depend on.
 
+use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture};
 use fspid_plot::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
-use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item, Picture};
 
 use super::measures;
 use super::words::{axis_label, cut, label, number, share};

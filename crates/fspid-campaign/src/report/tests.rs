@@ -243,7 +243,7 @@ fn boxes_of_a_map_hold_the_runs_that_lie_in_them() {
             .drawn
             .iter()
             .map(|it| match it {
-                fspid_study::dispersion::Drawn::Number(number) => *number,
+                fspid_scenario::dispersion::Drawn::Number(number) => *number,
                 _ => panic!("numbers"),
             })
             .collect();
@@ -270,7 +270,7 @@ fn curves_are_those_of_the_run_as_it_is_flown_alone() {
     let reflown = reflown::reflown(&source, &[vec![7], vec![]]).expect("flown again");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
-    let degrees = |rad: &f64| fspid_study::units::degrees(*rad);
+    let degrees = |rad: &f64| fspid_scenario::units::degrees(*rad);
     let trace = &replay.simulation.results[0].trace;
     let pitch_deg: Vec<f64> = trace.theta_rad.iter().map(degrees).collect();
     assert_eq!(reflown.controllers[0].first[7].pitch_deg, pitch_deg);

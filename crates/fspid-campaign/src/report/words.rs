@@ -1,6 +1,6 @@
 //! Numbers, probabilities and names in words.
 
-use fspid_study::report::number::significant;
+use fspid_page::number::significant;
 
 use crate::summary::Probability;
 pub(super) use crate::summary::words::{percent, whole as count};

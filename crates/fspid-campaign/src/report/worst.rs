@@ -1,6 +1,6 @@
 //! The worst flights, with what it takes to fly them again.
 
-use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item};
+use fspid_page::analysis::{Chapter, DataTable, Datum, Item};
 
 use super::Source;
 use super::words::{count, cut};

@@ -1,6 +1,6 @@
 //! Points against the laws that each sampling obeys, and against recorded bits.
 
-use fspid_study::dispersion::{Distribution, Draw};
+use fspid_scenario::dispersion::{Distribution, Draw};
 
 use super::*;
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fspid_study::metrics::Measure;
+use fspid_scenario::measure::Measure;
 use serde_json::Value;
 
 use super::data::{Head, Limits, Parameter};

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use fspid_study::file::unread_in_words;
+use fspid_scenario::file::unread_in_words;
 use parquet::errors::ParquetError;
 use thiserror::Error;
 

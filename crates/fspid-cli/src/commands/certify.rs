@@ -8,8 +8,9 @@ use super::progress::{Telling, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
+use fspid_scenario::file;
 use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
-use fspid_study::{file, output};
+use fspid_study::output;
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
 ///

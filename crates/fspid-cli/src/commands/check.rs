@@ -8,10 +8,10 @@ use serde_json::json;
 use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
+use fspid_scenario::digits::counted;
+use fspid_scenario::file::{self, Study, Template};
+use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;
-use fspid_study::digits::counted;
-use fspid_study::file::{self, Study, Template};
-use fspid_study::fuzzy_system;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
 ///

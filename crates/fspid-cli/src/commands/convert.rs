@@ -6,8 +6,10 @@ use serde_json::json;
 use super::{Format, Loading, Tool, json_text};
 use crate::argument::{OutFile, Source, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
-use fspid_study::file::known_words;
-use fspid_study::fuzzy_system::{self, Dialect, Target};
+use fspid_scenario::file::known_words;
+use fspid_scenario::fuzzy_system;
+use fspid_scenario::fuzzy_system::Dialect;
+use fspid_scenario::fuzzy_system::Target;
 use fspid_study::output;
 
 /// Write a fuzzy system in another format; the ending of OUT says which.

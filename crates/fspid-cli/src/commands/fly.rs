@@ -7,7 +7,7 @@ use std::io::{self, IsTerminal as _};
 use super::Format;
 use crate::argument::NamedFile;
 use crate::exit::{Failure, note, stream};
-use fspid_study::file;
+use fspid_scenario::file;
 use fspid_study::fly::{self, Pilot, StreamError, Summary};
 
 /// Let a controller of a scenario fly whatever is at the other end of standard input and output.

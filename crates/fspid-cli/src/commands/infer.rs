@@ -8,8 +8,9 @@ use clap::{ArgGroup, Args};
 use super::{Format, Inputs, Which, json_text};
 use crate::argument::InFile;
 use crate::exit::{Failure, print};
+use fspid_scenario::supervisor::Question;
 use fspid_study::fuzzy_system::{self, SystemTable};
-use fspid_study::inference::{self, Question, SupervisorTable};
+use fspid_study::inference::{self, SupervisorTable};
 use fspid_study::rows::{self, RowsError, Table};
 
 /// Ask a fuzzy system: one question, or a table of them.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::Format;
 use crate::argument::{OutFile, is_standard, written};
 use crate::exit::{Failure, note};
-use fspid_study::file::{self, STARTERS, Starter};
+use fspid_scenario::file::{self, STARTERS, Starter};
 use fspid_study::{output, shell};
 
 /// Write a commented file to start from: a scenario, or with --template something else.

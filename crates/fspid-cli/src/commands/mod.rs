@@ -29,7 +29,8 @@ use serde_json::json;
 
 use crate::argument::Source;
 use crate::exit::{Failure, note, print};
-use fspid_study::fuzzy_system::{self, Dialect, Options, System};
+use fspid_scenario::fuzzy_system;
+use fspid_scenario::fuzzy_system::{Dialect, Options, System};
 
 /// How a fuzzy system answers, where its file shall not decide.
 #[derive(Debug, Args)]

@@ -5,8 +5,9 @@ use clap::Args;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
+use fspid_scenario::file;
 use fspid_study::simulation::Simulation;
-use fspid_study::{file, output, report};
+use fspid_study::{output, report};
 
 /// Fly a scenario: metrics and verdict of each controller, traces and a report if asked for.
 #[derive(Debug, Args)]

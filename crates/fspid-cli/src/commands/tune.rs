@@ -11,7 +11,7 @@ use super::{Format, drawings, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
-use fspid_study::file::{known_words, unread_in_words};
+use fspid_scenario::file::{known_words, unread_in_words};
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};

@@ -1,9 +1,9 @@
 //! A page of a loop analysis; its numbers stand for those that a study would compute.
 
-use fspid_plot::Svg;
-use fspid_study::report::analysis::{
+use fspid_page::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
 };
+use fspid_plot::Svg;
 
 /// The figures that there are, by name.
 struct Figures<'a>(&'a [(&'static str, Svg)]);

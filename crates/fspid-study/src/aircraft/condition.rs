@@ -6,13 +6,13 @@ use fspid_aircraft::data::{AircraftData, Laws, Loading, ModelData, Reference};
 use fspid_aircraft::{Air, Aircraft, ForceModel, Trim, TrimTarget};
 use fspid_sim::aircraft::Forces;
 
-use super::failure::AircraftFailure;
 use super::load::load_at;
 use super::loading::{self, LoadingQuestion};
 use super::parse::quantity;
-use super::units::{ANGLES, Kind, LENGTHS, SPEEDS, Units};
-use crate::flyer::flyer;
-use crate::inference::Refused;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::units::{ANGLES, Kind, LENGTHS, SPEEDS, Units};
+use fspid_scenario::flyer::flyer;
+use fspid_scenario::supervisor::Refused;
 
 /// Which air and gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -205,7 +205,7 @@ impl Flight {
     /// The air in words.
     pub(super) fn air_in_words(&self) -> String {
         let gravity = self.aircraft.environment().gravity_m_s2;
-        let gravity = super::failure::quantity(self.units, Kind::Acceleration, gravity);
+        let gravity = fspid_scenario::aircraft::quantity(self.units, Kind::Acceleration, gravity);
         match self.air {
             AirChoice::Standard => {
                 let own = matches!(self.data.model, ModelData::Forces(_));

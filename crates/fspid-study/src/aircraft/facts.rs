@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
-use super::number::{short, significant};
-use super::units::{Kind, Units};
+use fspid_scenario::aircraft::number::{short, significant};
+use fspid_scenario::aircraft::units::{Kind, Units};
 
 /// Significant digits of a quantity in a text.
 const DIGITS: usize = 6;

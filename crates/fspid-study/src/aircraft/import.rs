@@ -6,11 +6,11 @@ use std::path::Path;
 use fspid_daveml::{CheckReport, Deviation, Problem, Problems, Reading, ShotReport};
 use serde_json::{Value, json};
 
-use super::failure::AircraftFailure;
 use super::load::text;
-use super::number::significant;
 use super::table::table;
-use crate::file::tables::read_model;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::file::read_model;
 
 /// A model that was read, and what came out of its check cases.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use fspid_aircraft::{Travel, Validity};
 
 use super::facts::Facts;
-use super::units::Kind;
+use fspid_scenario::aircraft::units::Kind;
 
 /// Where a model is trusted; `alpha` is what its angle of attack is called.
 pub(super) fn validity(alpha: &str, validity: &Validity) -> Facts {

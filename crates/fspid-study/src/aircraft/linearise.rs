@@ -6,12 +6,12 @@ use fspid_lti::{Complex, TransferFunction};
 use serde_json::{Value, json};
 
 use super::condition::Question;
-use super::failure::AircraftFailure;
-use super::number::significant;
 use super::state_model::StateModel;
 use super::trim::{Trimmed, trim};
-use super::units::Units;
 use super::{plant_file, polynomial};
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::units::Units;
 
 /// A linear model and the flight around which it holds.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use fspid_aircraft::data::{AircraftData, ModelData};
 use serde_json::{Value, json};
 
 use super::table::table;
-use crate::file::{aircraft, aircraft_names};
+use fspid_scenario::file::{aircraft, aircraft_names};
 
 /// All of them.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use fspid_aircraft::data::AircraftData;
 
-use super::failure::AircraftFailure;
-use crate::file::files::{STANDARD_INPUT, read_regular};
-use crate::file::{self, aircraft_names};
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::file::{self, aircraft_names};
+use fspid_scenario::file::{STANDARD_INPUT, read_regular};
 
 /// The aircraft of a name that the program carries, or of a `.toml` file.
 ///

@@ -4,10 +4,10 @@ use fspid_aircraft::MassProperties;
 use fspid_aircraft::data::{AircraftData, Loading, ModelData, Moment};
 
 use super::facts::Facts;
-use super::failure::AircraftFailure;
 use super::parse::quantity;
-use super::units::{INERTIAS, Kind, MASSES, Units};
-use crate::inference::Refused;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::units::{INERTIAS, Kind, MASSES, Units};
+use fspid_scenario::supervisor::Refused;
 
 /// A loading as it is written; what is left out is that of the aircraft's data.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -8,7 +8,6 @@ mod condition;
 mod derive;
 mod envelope;
 mod facts;
-mod failure;
 mod import;
 mod limits;
 mod linearise;
@@ -16,7 +15,6 @@ mod list;
 mod load;
 mod loading;
 mod modes;
-mod number;
 mod parse;
 mod plant_file;
 mod polynomial;
@@ -26,7 +24,6 @@ mod state_model;
 mod table;
 mod tables;
 mod trim;
-mod units;
 
 pub use fspid_aircraft::VelocityForm;
 pub use fspid_aircraft::qualities::{Category, Class};
@@ -35,7 +32,6 @@ pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, fligh
 
 pub use derive::{Derivation, derive};
 pub use envelope::{Envelope, EnvelopeQuestion, envelope};
-pub use failure::AircraftFailure;
 pub use import::{ImportFailure, Imported, import};
 pub use linearise::{Linear, linearise};
 pub use list::{List, list};
@@ -45,4 +41,3 @@ pub use modes::{Modes, modes};
 pub use qualities::{Judged, QualitiesQuestion, qualities};
 pub use show::{Show, show};
 pub use trim::{Trimmed, trim};
-pub use units::Units;

@@ -6,11 +6,11 @@ use fspid_lti::{Complex, Mode, StateSpace, modulus};
 use serde_json::{Map, Value, json};
 
 use super::condition::Question;
-use super::failure::AircraftFailure;
-use super::number::significant;
 use super::table::table;
 use super::trim::{Trimmed, trim};
-use super::units::Units;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::units::Units;
 
 /// The modes of an aircraft in a flight.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Numbers with units, as they are written on a command line.
 
-use super::units::Unit;
+use fspid_scenario::aircraft::units::Unit;
 
 /// A quantity with or without a unit, such as `176ft/s`, `100 kt` or `53.6`, in SI.
 ///
@@ -79,8 +79,8 @@ fn spread(first: f64, last: f64, count: usize) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::units::{Kind, LENGTHS, SPEEDS, Units};
     use super::*;
+    use fspid_scenario::aircraft::units::{Kind, LENGTHS, SPEEDS, Units};
 
     fn speed(text: &str) -> Result<f64, String> {
         quantity("--speed", text, &SPEEDS, Units::Si.of(Kind::Speed))

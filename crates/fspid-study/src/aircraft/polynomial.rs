@@ -3,7 +3,7 @@
 use fspid_lti::TransferFunction;
 use serde_json::{Value, json};
 
-use super::number::significant;
+use fspid_scenario::aircraft::number::significant;
 
 /// Significant digits of a coefficient.
 const DIGITS: usize = 7;

@@ -7,15 +7,15 @@ use fspid_aircraft::data::{AircraftData, DerivativeData, LinearData, LinearEleva
 use serde_json::{Value, json};
 
 use super::facts::Facts;
-use super::failure::AircraftFailure;
 use super::limits::{travel, validity};
 use super::linearise::linearise;
 use super::list::kind;
 use super::load::load;
-use super::number::short;
 use super::table::table;
-use super::units::{Kind, Units};
 use super::{Question, polynomial, tables};
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::short;
+use fspid_scenario::aircraft::units::{Kind, Units};
 
 /// An aircraft, to be told.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,9 +6,9 @@ use fspid_lti::{Matrix, StateSpace};
 use serde_json::{Value, json};
 
 use super::facts::key;
-use super::number::significant;
 use super::table::table;
-use super::units::{Kind, Units};
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::units::{Kind, Units};
 
 /// Significant digits of an entry.
 const DIGITS: usize = 7;

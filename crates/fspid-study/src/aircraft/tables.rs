@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::facts::Facts;
 use super::limits::{travel, validity};
-use super::units::{Kind, Units};
+use fspid_scenario::aircraft::units::{Kind, Units};
 
 fn body(data: &ForceData) -> Facts {
     let (geometry, mass) = (&data.geometry, &data.mass);

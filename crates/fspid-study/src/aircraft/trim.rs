@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::condition::{Flight, Question, flight};
 use super::facts::Facts;
-use super::failure::{AircraftFailure, quantity};
 use super::loading;
-use super::units::{KNOT_M_S, Kind};
+use fspid_scenario::aircraft::units::{KNOT_M_S, Kind};
+use fspid_scenario::aircraft::{AircraftFailure, quantity};
 
 /// A flight that is held.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use fspid_lti::{Bracket, Proved, SampledMargins};
 
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// Margins of a loop that is stable. A margin without an end is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use fspid_sim::{Controller, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
 use crate::metrics::short;
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// What is held at a rest, in words.
 pub(crate) fn held_in_words(at: RestPoint) -> String {

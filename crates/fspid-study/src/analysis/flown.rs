@@ -3,7 +3,7 @@
 use fspid_core::{Change, ErrorSign, SecondInput};
 use fspid_sim::{Controller, simulate};
 
-use crate::file::Study;
+use fspid_scenario::file::Study;
 
 /// Error and change at each sample of a controller's flight, in the supervisor's units and within its
 /// range; nothing for fixed gains, a supervisor that sees something else, or a flight that cannot be

@@ -4,7 +4,7 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, modulus};
 use serde_json::{Map, Value, json};
 
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop, RestLoop};

@@ -353,7 +353,7 @@ mod tests {
     use fspid_core::Gains;
 
     use super::*;
-    use crate::file;
+    use fspid_scenario::file;
 
     /// A loop that one rest leaves undecided and another makes unstable used to be called undecided.
     #[test]

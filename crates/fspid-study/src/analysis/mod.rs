@@ -23,8 +23,8 @@ mod text;
 
 use fspid_sim::{Scenario, SimError};
 
-use crate::file::Study;
 use crate::simulation::too_large;
+use fspid_scenario::file::Study;
 
 pub use answer::{Margins, decibels};
 pub(crate) use at_rest::held_in_words;

@@ -9,7 +9,7 @@ use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
 use crate::analysis::lasting_plants;
-use crate::file::Study;
+use fspid_scenario::file::Study;
 
 /// What stands in for something that is not there.
 const NOTHING: &str = "nothing";

@@ -327,8 +327,8 @@ mod tests {
         let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
         let numbers =
             format!("numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }} #");
-        let text = crate::file::starter().replace("table = \"mirrored\" ", &numbers);
-        let study = crate::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
+        let text = fspid_scenario::file::starter().replace("table = \"mirrored\" ", &numbers);
+        let study = fspid_scenario::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
         let controllers = &study.scenario.controllers;
         let is_tuned = |it: &Controller| matches!(it, Controller::SelfTuning(_));
         let tuned = controllers.iter().find(|it| is_tuned(&it.controller)).expect("one");

@@ -309,31 +309,9 @@ pub fn coverage_table() -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
+    use fspid_scenario::file::scenario_keys;
 
     use super::*;
-    use crate::file::spec::{Kind, SCENARIO, Table};
-
-    fn walk(table: &'static Table, before: &str, found: &mut BTreeSet<String>) {
-        let variants = table.variants.iter().flat_map(|variant| variant.table.keys());
-        for key in table.keys().chain(variants) {
-            let path = format!("{before}{}", key.name);
-            let inner = format!("{path}.");
-            match &key.kind {
-                Kind::Table(table) | Kind::Tables { table, .. } => walk(table, &inner, found),
-                Kind::Rules(table) => {
-                    found.insert(path);
-                    walk(table, &inner, found);
-                }
-                _ => {
-                    found.insert(path);
-                }
-            }
-        }
-        if !table.variants.is_empty() {
-            found.insert(format!("{before}kind"));
-        }
-    }
 
     fn matches(row: &Row, path: &str) -> bool {
         match row.keys.strip_suffix('*') {
@@ -344,8 +322,7 @@ mod tests {
 
     #[test]
     fn every_key_of_a_scenario_has_one_row_and_every_row_a_key() {
-        let mut paths = BTreeSet::new();
-        walk(&SCENARIO, "", &mut paths);
+        let paths = scenario_keys();
         for path in &paths {
             let rows = COVERAGE.iter().filter(|row| matches(row, path)).count();
             assert_eq!(rows, 1, "{path}: decide what a certificate makes of it, in COVERAGE");

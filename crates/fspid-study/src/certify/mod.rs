@@ -25,7 +25,7 @@ use fspid_proof::{
 use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
-use crate::file::Study;
+use fspid_scenario::file::Study;
 
 pub use fspid_proof::Effort;
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::text::line;
 use crate::metrics::short;
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// The scope of a claim, ready to be told.
 pub(super) struct Told {

@@ -11,7 +11,7 @@ use super::{
     file::{Read, read, resealed},
     from_text, to_text,
 };
-use crate::file::{self, Study};
+use fspid_scenario::file::{self, Study};
 
 /// No largest output scale is asked for: the verdict alone.
 fn effort() -> Effort {

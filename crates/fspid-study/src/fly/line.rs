@@ -1,6 +1,6 @@
 //! What a line says.
 
-use crate::units::{degrees, radians};
+use fspid_scenario::units::{degrees, radians};
 
 /// Longest line with its end, bytes.
 pub(super) const LONGEST_LINE: usize = 4096;

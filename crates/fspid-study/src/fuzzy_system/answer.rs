@@ -3,8 +3,8 @@
 use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
 use serde_json::{Map, Value, json};
 
-use crate::inference::Refused;
 use fspid_diagnostics::known_words;
+use fspid_scenario::supervisor::Refused;
 
 /// A question with its answers.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use fspid_aircraft::Departure;
 use fspid_sim::Exit;
 
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// How the sentence begins.
 pub const LEFT_RANGE: &str = "left the range of its model";

@@ -4,13 +4,11 @@ mod effort;
 mod exit;
 mod extreme;
 mod flight;
-mod measure;
 mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
 pub use exit::{LEFT_RANGE, left_validity};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
-pub use measure::{Family, Measure};
 pub use step::{StepMetrics, StepWindow};
 
 use std::fmt;

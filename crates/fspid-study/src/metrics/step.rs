@@ -4,6 +4,8 @@
 //! $y_n = (y - y_i) / (y_f - y_i)$; both are given, never guessed from the data. Crossings are
 //! interpolated between samples. Definitions as in MATLAB's `stepinfo`, but for those two points.
 
+use fspid_scenario::measure::Measure;
+
 use super::extreme::{all_finite, extreme};
 use super::{Absent, Measured};
 
@@ -62,6 +64,20 @@ pub struct StepMetrics {
 }
 
 impl StepMetrics {
+    /// The value of a measure by name, or why there is none; only what the paper claims is measured of a step alone.
+    ///
+    /// # Errors
+    /// The reason in the metrics.
+    pub fn measured(&self, measure: Measure) -> Measured {
+        match measure {
+            Measure::RiseTime => self.rise_time_s,
+            Measure::SettlingTime => self.settling_time_s,
+            Measure::Overshoot => self.overshoot_pct,
+            Measure::FinalError => self.final_error_pct,
+            _ => Err(Absent::NoStep),
+        }
+    }
+
     /// The same reason for every measure.
     #[must_use]
     pub fn absent(reason: Absent) -> Self {

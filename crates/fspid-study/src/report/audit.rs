@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::html::{self, context};
-use super::page::{self, Cell, Figure, Section, Table};
 use crate::fuzzy_system::{Audit, Chapter, Mark, SliceQuestion, slice};
+use crate::report::templates::render;
+use fspid_page::context;
+use fspid_page::page::{self, Cell, Figure, Section, Table};
 
 /// What stands about an output beside its findings.
 #[derive(Serialize)]
@@ -27,13 +28,13 @@ pub(super) fn report(audit: &Audit<'_>) -> String {
     let context = context! {
         title => format!("{name}: audit"),
         heading => name,
-        lead => html::render("audit", context! { part => "lead", description => parts.description }),
+        lead => render("audit", context! { part => "lead", description => parts.description }),
         style => page::style(),
         sections,
         verdict_first => true,
         version => env!("CARGO_PKG_VERSION"),
     };
-    html::render("page", context)
+    render("page", context)
 }
 
 /// How many findings of each kind, and those that are probably not meant.
@@ -65,7 +66,7 @@ fn summary(chapters: &[Chapter]) -> Section {
             })
         })
         .collect();
-    Section::of("summary", "Summary", "audit", context! { part => "summary", table, worst })
+    Section::of("summary", "Summary", render("audit", context! { part => "summary", table, worst }))
 }
 
 const fn class(mark: Mark) -> &'static str {
@@ -89,7 +90,7 @@ fn section(audit: &Audit<'_>, index: usize, chapter: &Chapter) -> Section {
         .collect();
     let figure = index.checked_sub(1).and_then(|_| drawing(audit, index, &chapter.title));
     let title = if index == 0 { "Rules as written".to_owned() } else { chapter.title.clone() };
-    Section::of(id(index), &title, "audit", context! { part => "findings", lines, figure })
+    Section::of(id(index), &title, render("audit", context! { part => "findings", lines, figure }))
 }
 
 /// Ids of sections, which the page needs as constants; further outputs share the last.

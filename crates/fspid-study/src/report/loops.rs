@@ -2,17 +2,17 @@
 
 use fspid_sim::SimError;
 
-use super::analysis::{
-    AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
-};
-use super::number::{fixed, significant};
 use crate::analysis::figures::{
     LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
 use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
-use crate::file::Study;
 use crate::metrics::Absent;
+use fspid_page::analysis::{
+    AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
+};
+use fspid_page::number::{fixed, significant};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
+use fspid_scenario::file::Study;
 
 /// Beyond this a step response has run away.
 const RUN_AWAY: f64 = 10.0;

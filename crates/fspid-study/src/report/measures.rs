@@ -1,11 +1,11 @@
 //! Tables of measures: one row for each controller and each step of the command.
 
-use super::number;
-use super::page::{Cell, Row, Table};
 use super::traces::fails;
 use crate::metrics::{EdgeMetrics, FlightMetrics, Measured, StepMetrics};
 use crate::simulation::{ControllerResult, Simulation};
-use crate::units::degrees;
+use fspid_page::number;
+use fspid_page::page::{Cell, Row, Table};
+use fspid_scenario::units::degrees;
 
 /// A column: its heading with the unit, decimals, and the measure.
 type Column = (&'static str, usize, fn(&StepMetrics) -> Measured);

@@ -5,27 +5,22 @@
 //!
 //! Not here: what is measured and judged (`metrics`, `reproduce`), and how a line is drawn (`figure`).
 
-pub mod analysis;
 mod audit;
-pub mod campaign;
-mod html;
 mod loops;
-mod markdown;
 mod measures;
-pub mod number;
-mod page;
 mod paper;
 mod section;
 mod settings;
 mod supervisor;
+mod templates;
 mod traces;
 mod user;
 
 use crate::analysis::Analysis;
-use crate::file::Study;
 use crate::fuzzy_system::Audit;
 use crate::reproduce::{Library, Reproduction};
 use crate::simulation::Simulation;
+use fspid_scenario::file::Study;
 
 /// The report of a user's scenario.
 #[must_use]

@@ -1,9 +1,10 @@
 //! The report of the paper, section by section.
 
-use super::html::{self, context};
-use super::page::{self, Section};
 use super::section;
+use crate::report::templates::render;
 use crate::reproduce::{Library, Reproduction, Stored};
+use fspid_page::context;
+use fspid_page::page::{self, Section};
 
 /// What the report is about.
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +22,13 @@ pub(super) fn report(paper: &Paper<'_>) -> String {
     let context = context! {
         title,
         heading => title,
-        lead => html::render("paper", context! {}),
+        lead => render("paper", context! {}),
         style => page::style(),
         sections,
         verdict_first => false,
         version => env!("CARGO_PKG_VERSION"),
     };
-    html::render("page", context)
+    render("page", context)
 }
 
 /// Figures, traces and scenarios, each as a file.

@@ -1,8 +1,8 @@
 //! Every setting that a flight had, whether its file gave it or a default filled it in.
 
-use super::number::significant;
-use super::page::{Cell, Table};
-use crate::file::{DerivedGains, Setting};
+use fspid_page::number::significant;
+use fspid_page::page::{Cell, Table};
+use fspid_scenario::file::{DerivedGains, Setting};
 
 /// Tables whose settings stand in a table of their own.
 const CONTROLLERS: &str = "controller";
@@ -87,14 +87,14 @@ fn form(settings: &[&Setting]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file;
+    use fspid_scenario::file;
 
     fn settings(text: &str) -> Vec<Setting> {
         file::parse(text, "test.toml", None, &[]).expect("the scenario is right").settings
     }
 
     fn rows(table: &Table) -> Vec<String> {
-        let text = |row: &crate::report::page::Row| {
+        let text = |row: &fspid_page::page::Row| {
             let cells: Vec<&str> = row.cells.iter().map(|cell| cell.text.as_str()).collect();
             cells.join(" | ")
         };

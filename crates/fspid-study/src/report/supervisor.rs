@@ -5,8 +5,8 @@ use fspid_fuzzy::{
     Defuzzifier, Grid, Increments, Label, OutOfRange, Output, RuleTable, Supervisor,
 };
 
-use super::number;
-use super::page::Figure;
+use fspid_page::number;
+use fspid_page::page::Figure;
 use fspid_plot::{Mark, SEVEN, Surface, SurfaceKind, memberships};
 
 /// Nodes of a gain surface along each input.
@@ -287,7 +287,7 @@ pub(super) fn at_rest(supervisor: &Supervisor<f64>) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::rule_table;
+    use fspid_scenario::file::rule_table;
 
     #[test]
     fn the_mirrored_table_has_no_odd_cell_left_by_its_own_symmetry() {

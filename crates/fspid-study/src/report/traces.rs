@@ -3,8 +3,8 @@
 use fspid_sim::{Controller, Outcome, Scenario, Trace};
 
 use crate::simulation::{ControllerResult, Simulation};
-use crate::units::degrees;
 use fspid_plot::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
+use fspid_scenario::units::degrees;
 
 /// How a flight is drawn.
 pub(super) struct Drawing<'a> {
@@ -193,7 +193,7 @@ impl Drawing<'_> {
         format!(
             " At a step the derivative of the error moves the command by up to {} deg for a sample; the panel leaves \
              these spikes out.",
-            super::number::significant(largest, 2)
+            fspid_page::number::significant(largest, 2)
         )
     }
 

@@ -4,16 +4,17 @@ use fspid_core::{GainCoupling, InputSets, SecondInput, TunerSettings};
 use fspid_sim::Controller;
 use serde::Serialize;
 
-use super::html::{self, context};
-use super::number::{capital, fixed, measured, sentence, significant, with_sign};
-use super::page::{self, Cell, Figure, Section, Table};
 use super::supervisor;
 use super::traces::{Drawing, fails, is_cut_short};
 use super::{measures, settings};
-use crate::file::{Setting, Study};
 use crate::metrics::Verdict;
+use crate::report::templates::render;
 use crate::simulation::{ControllerResult, Simulation};
+use fspid_page::context;
+use fspid_page::number::{capital, fixed, measured, sentence, significant, with_sign};
+use fspid_page::page::{self, Cell, Figure, Section, Table};
 use fspid_plot::SurfaceKind;
+use fspid_scenario::file::{Setting, Study};
 
 #[derive(Clone, Copy)]
 struct User<'a> {
@@ -30,13 +31,13 @@ pub(super) fn report(study: &Study, simulation: &Simulation) -> String {
     let context = context! {
         title => format!("{}: flight report", simulation.scenario),
         heading => simulation.scenario,
-        lead => html::render("user", context! { part => "lead" }),
+        lead => render("user", context! { part => "lead" }),
         style => page::style(),
         sections,
         verdict_first => true,
         version => env!("CARGO_PKG_VERSION"),
     };
-    html::render("page", context)
+    render("page", context)
 }
 
 /// How a controller did, at a glance.
@@ -112,7 +113,7 @@ impl User<'_> {
             requirements => (!self.simulation.judgements.is_empty()).then(|| self.requirements()),
             met,
         };
-        Section::of("verdict", "Verdict", "user", context)
+        Section::of("verdict", "Verdict", render("user", context))
     }
 
     /// Those of the file, and what may be wrong with flights beside their verdicts.
@@ -182,8 +183,7 @@ impl User<'_> {
         Section::of(
             "responses",
             "Time responses",
-            "user",
-            context! { part => "responses", figure, leaving, ended },
+            render("user", context! { part => "responses", figure, leaving, ended }),
         )
     }
 
@@ -197,7 +197,7 @@ impl User<'_> {
             steps => (has_steps || failed).then(steps),
             integrals => measures::integrals("Whole flights: integrals of the error, and effort.", self.simulation),
         };
-        Section::of("measures", "Measures", "user", context)
+        Section::of("measures", "Measures", render("user", context))
     }
 
     /// One part for each self-tuning controller; no section without one.
@@ -206,7 +206,11 @@ impl User<'_> {
         let parts: Vec<Tuning> =
             controllers.iter().enumerate().filter_map(|(n, c)| tuning(n, c)).collect();
         (!parts.is_empty()).then(|| {
-            Section::of("tuning", "Self-tuning", "user", context! { part => "tuning", parts })
+            Section::of(
+                "tuning",
+                "Self-tuning",
+                render("user", context! { part => "tuning", parts }),
+            )
         })
     }
 
@@ -220,7 +224,7 @@ impl User<'_> {
             controllers => settings::of_controllers(settings),
             derived => settings::derived(&self.study.derived_gains),
         };
-        Section::of("settings", "Settings", "user", context)
+        Section::of("settings", "Settings", render("user", context))
     }
 
     fn provenance(self) -> Section {
@@ -229,7 +233,7 @@ impl User<'_> {
             version => env!("CARGO_PKG_VERSION"),
             digest => self.study.digest,
         };
-        Section::of("provenance", "Provenance", "user", context)
+        Section::of("provenance", "Provenance", render("user", context))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The claims of the paper: what is printed, where it is read off, and how ours compares.
 
-use crate::metrics::Measure;
+use fspid_scenario::measure::Measure;
 
 /// A number as the paper prints it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,10 +12,10 @@
 
 use fspid_sim::Trace;
 
-use crate::file::Problems;
 use crate::metrics::{Absent, CommandEffort, ErrorIntegrals};
 use crate::simulation::Simulation;
-use crate::units::degrees;
+use fspid_scenario::file::Problems;
+use fspid_scenario::units::degrees;
 
 use super::figures::Library;
 

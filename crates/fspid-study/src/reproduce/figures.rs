@@ -1,8 +1,8 @@
 //! The figures of the paper as scenarios, once with parameters of their own and once with one
 //! supervisor for all figures of a range.
 
-use crate::file::{self, Problems};
 use crate::simulation::Simulation;
+use fspid_scenario::file::{self, Problems};
 
 /// Which scale factors a figure is flown with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,8 @@
 use super::claim::{CLAIMS, Claim, Printed, Quantity, Status, judge_change};
 use super::figures::{FIGURES, Fit, FlownFigure};
 use super::reading::{FigureFlight, claim, figure_of, number, readings};
-use crate::metrics::{Absent, Measure};
+use crate::metrics::Absent;
+use fspid_scenario::measure::Measure;
 
 /// A number of the paper and what came of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -28,9 +28,9 @@ use sha2::{Digest, Sha256};
 use self::disturbance::Sweep;
 use self::identify::Record;
 use self::qualitative::Evidence;
-use crate::file::{self, Problems};
 use crate::metrics::Measured;
 use crate::simulation::Simulation;
+use fspid_scenario::file::{self, Problems};
 
 /// Why the paper could not be flown: a stored scenario is wrong, which no shipped one is.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use fspid_sim::{
     Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
 };
 
-use crate::units::{degrees, radians};
+use fspid_scenario::units::{degrees, radians};
 
 /// Sample period of all figures, s (assumption A4).
 pub(super) const SAMPLE_PERIOD_S: f64 = 0.01;
@@ -275,7 +275,7 @@ fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file;
+    use fspid_scenario::file;
 
     fn model(setting: Setting, command: Command, rate_gain: f64) -> FlightModel {
         let scales = Scales { error: 23.71, change: 29.5, output: [0.28, 0.0096, 0.034] };

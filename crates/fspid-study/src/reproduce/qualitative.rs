@@ -9,7 +9,7 @@ use super::disturbance::{Contest, Sweep};
 use super::figures::{DAMPING, DISTURBED, Fit, FlownFigure, WEAKENED};
 use crate::metrics::ErrorIntegrals;
 use crate::simulation::{ControllerResult, Simulation};
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// A claim in words and what came of it.
 #[derive(Clone, Debug, PartialEq)]

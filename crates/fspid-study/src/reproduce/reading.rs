@@ -60,7 +60,7 @@ fn read(reading: Reading, flights: &[FigureFlight<'_>]) -> Result<f64, Absent> {
             .iter()
             .find(|flight| flight.figure == reading.figure && flight.controller == *name)
             .ok_or(Absent::NoStep)?;
-        let value = flight.metrics.of_step(reading.edge, |step| reading.measure.of(step))?;
+        let value = flight.metrics.of_step(reading.edge, |step| step.measured(reading.measure))?;
         worst = worst.max(value.abs());
     }
     Ok(worst)

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fspid_sim::{Column, Trace};
 
 use super::{ControllerResult, Simulation};
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// Columns of one controller.
 const COLUMNS: [&str; 7] =

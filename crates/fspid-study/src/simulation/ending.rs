@@ -3,8 +3,8 @@
 
 use fspid_sim::Exit;
 
-use crate::file::RangeRule;
 use crate::metrics::{Verdict, left_validity};
+use fspid_scenario::file::RangeRule;
 
 /// Which flights fail by themselves, whatever is required of them, wherever that is said.
 pub const FAILS_BY_ITSELF: &str = "diverges, hits the ground, leaves the range of its aircraft's data where its scenario does not allow that, or is of a loop that is unstable at rest";
@@ -69,7 +69,7 @@ impl FailedFlight {
 /// What is added where something is said of a ready set's own flight.
 pub(crate) fn on_its_own(own_step_deg: Option<f64>) -> String {
     own_step_deg.map_or(String::new(), |step_deg| {
-        let step = crate::requirement::shortest(step_deg);
+        let step = fspid_scenario::digits::to_digits(step_deg, 6);
         format!(", on a flight of its own with a step of {step} deg")
     })
 }

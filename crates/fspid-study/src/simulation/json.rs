@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{ControllerResult, FailedFlight, Judgement, Simulation};
 use crate::analysis::AtRest;
 use crate::metrics::{EdgeMetrics, Measured, StepMetrics, Verdict};
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;

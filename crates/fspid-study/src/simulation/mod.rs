@@ -16,10 +16,10 @@ use fspid_sim::stability::{Unstable, instability};
 use fspid_sim::{Controller, NamedController, RestPoint, SimError, Trace, simulate};
 
 use crate::analysis::AtRest;
-use crate::file::{RangeRule, Study};
+pub use crate::judgement::Judgement;
+use crate::judgement::{flown_on_their_own, judge};
 use crate::metrics::{FlightMetrics, Verdict};
-pub use crate::requirement::Judgement;
-use crate::requirement::{flown_on_their_own, judge};
+use fspid_scenario::file::{RangeRule, Study};
 
 /// One controller's flight.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{ControllerResult, Judgement, Simulation, on_its_own};
 use crate::metrics::{Absent, Measured, StepMetrics};
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 impl Simulation {
     /// The answer of `simulate --format text`: each controller with one line for each step of the

@@ -7,15 +7,12 @@ use fspid_sim::stability::Unstable;
 
 use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains, held_in_words};
-use crate::digits::to_digits;
-use crate::file::RangeRule;
 use crate::metrics::{EdgeMetrics, left_validity, short};
+use fspid_scenario::digits::to_digits;
+use fspid_scenario::file::RangeRule;
 
 /// What is asked where the first movement is steadily away from the set-point.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
-
-/// What is said of an aircraft that a linear model flies.
-pub(crate) const LINEAR_AIRCRAFT: &str = "flown by a linear model, which has no height and no range: neither the ground nor the limits of the aircraft's data are asked";
 
 /// Gains to five digits.
 fn gains(gains: Gains<f64>) -> String {
@@ -124,15 +121,5 @@ impl ControllerResult {
             .into_iter()
             .chain(self.at_rest.one_side_in_words());
         question.into_iter().chain(held).chain(load).chain(left).chain(not_asked).collect()
-    }
-}
-
-impl RangeRule {
-    /// What is said once of all flights.
-    pub(crate) fn note(self) -> Option<&'static str> {
-        match self {
-            Self::Linear => Some(LINEAR_AIRCRAFT),
-            Self::NoRange | Self::Fails | Self::Warns => None,
-        }
     }
 }

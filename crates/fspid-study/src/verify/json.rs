@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Verification;
-use crate::requirement::Judgement;
+use crate::judgement::Judgement;
 use crate::simulation::{FailedFlight, finite};
 
 /// Version of the answer's shape.

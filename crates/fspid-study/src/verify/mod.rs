@@ -12,10 +12,10 @@ use std::path::Path;
 
 use fspid_sim::SimError;
 
-use crate::file::{self, Extra, LoadError, Problems, Study};
-use crate::report::number::sentence;
-use crate::requirement::Judgement;
+use crate::judgement::Judgement;
 use crate::simulation::{ControllerResult, FailedFlight, Simulation};
+use fspid_page::number::sentence;
+use fspid_scenario::file::{self, Extra, LoadError, Problems, Study};
 
 pub use replay::ReplayFile;
 

@@ -5,9 +5,9 @@ use std::path::{Component, Path, PathBuf};
 use fspid_sim::{Controller, ElevatorSign, LinearPlant};
 
 use super::Verification;
-use crate::file::{Extra, Replay, replay};
-use crate::metrics::Family;
-use crate::requirement::{Judgement, is_of_aircraft};
+use crate::judgement::{Judgement, is_of_aircraft};
+use fspid_scenario::file::{Extra, Replay, replay};
+use fspid_scenario::measure::Family;
 
 /// A scenario that gives the number of one line again, bit for bit.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,10 +6,12 @@ use fspid_sim::{Controller, Scenario};
 
 use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
-use crate::metrics::{Family, Measure};
-use crate::report::number::capital;
-use crate::requirement::{Judgement, Origin, set, shortest};
+use crate::judgement::Judgement;
 use crate::shell;
+use fspid_page::number::capital;
+use fspid_scenario::digits::to_digits;
+use fspid_scenario::measure::{Family, Measure};
+use fspid_scenario::requirement::{Origin, set};
 
 /// Width of a paragraph in characters.
 const WIDTH: usize = 100;
@@ -120,7 +122,7 @@ impl Verification {
             }
             format!(
                 "Judged on a flight of their own, because the command has no step of {0} deg: {1}. It is the scenario with a step of {0} deg at 0 s in place of its command; everything else is as written.",
-                shortest(size_deg),
+                to_digits(size_deg, 6),
                 names.join(", ")
             )
         };

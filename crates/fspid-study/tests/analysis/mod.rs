@@ -4,8 +4,8 @@ mod answers;
 mod handbook;
 mod self_tuning;
 
+use fspid_scenario::file::{self, Study};
 use fspid_study::analysis::{Analysis, BreakPoint, Margins, Question};
-use fspid_study::file::{self, Study};
 use fspid_study::metrics::Absent;
 
 /// The paper's 747 with its servo under proportional control.

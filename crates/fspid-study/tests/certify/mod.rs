@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use fspid_proof::{Asked, LoopDescription, NotProvable, Range};
+use fspid_scenario::file::{self, Study};
 use fspid_sim::LinearPlant;
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::file::{self, Study};
 
 fn study(path: &str, set: &[&str]) -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io;
 
-use fspid_study::file::{self, Study};
+use fspid_scenario::file::{self, Study};
 use fspid_study::fly::{Angles, Pilot, fly};
 
 mod lines;

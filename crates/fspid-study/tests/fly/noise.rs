@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use fspid_study::file;
+use fspid_scenario::file;
 use fspid_study::fly::{Angles, Pilot};
 
 use super::{SCENARIO, said};

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use fspid_scenario::units::degrees;
 use fspid_study::fly::Angles;
 use fspid_study::simulation::{ControllerResult, Simulation};
-use fspid_study::units::degrees;
 
 use super::{numbers, pilot, said, study};
 

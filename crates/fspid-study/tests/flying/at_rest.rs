@@ -198,3 +198,14 @@ fn a_flight_is_asked_whether_its_loop_is_stable_at_the_set_point_that_it_holds()
     let (plain, on_one_side, _) = of("setpoint.amplitude_deg=-8");
     assert!(!on_one_side && !plain.is_failure(), "{plain:?}");
 }
+
+/// A tuned starter had never met a load: its rules could take the integral away and nothing showed it.
+#[test]
+fn the_starter_has_a_load_that_stays_and_both_of_its_controllers_take_it_over() {
+    let study = study(fspid_scenario::file::starter(), &[]);
+    let simulation = Simulation::of(&study).expect("it flies");
+    for result in &simulation.results {
+        assert_eq!(result.metrics.verdict, Verdict::Settled);
+        assert!(result.at_rest.load.is_some_and(|load| load.is_removed()), "{}", result.name);
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fspid_study::file;
+use fspid_scenario::file;
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
 

@@ -1,7 +1,7 @@
 //! Flights that come down to the ground, and flights beyond the range of their aircraft's data.
 
+use fspid_scenario::file;
 use fspid_sim::Outcome;
-use fspid_study::file;
 use fspid_study::metrics::{Absent, Verdict};
 use fspid_study::report;
 use fspid_study::simulation::Simulation;

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use fspid_aircraft::Quantity;
+use fspid_scenario::file;
 use fspid_sim::{Outcome, fly};
-use fspid_study::file;
 use fspid_study::metrics::Verdict;
 use fspid_study::report;
 use fspid_study::simulation::Simulation;

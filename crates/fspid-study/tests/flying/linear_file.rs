@@ -2,8 +2,8 @@
 
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{AirMotion, TrimTarget, Vector3, VelocityForm};
+use fspid_scenario::file::{self, aircraft};
 use fspid_sim::ElevatorSign;
-use fspid_study::file::{self, aircraft};
 use fspid_study::simulation::Simulation;
 
 use crate::flying::{NAVION, apart, flown, largest, study};

@@ -1,7 +1,7 @@
 //! Loadings and climbs of a scenario's aircraft.
 
+use fspid_scenario::file;
 use fspid_sim::{AircraftPlant, Plant};
-use fspid_study::file;
 
 use crate::flying::{NAVION, apart, column, flown, study};
 

@@ -8,10 +8,11 @@ mod ground;
 mod limits;
 mod linear_file;
 mod loading;
+mod lqi;
 mod moving_air;
 
+use fspid_scenario::file::{self, Study};
 use fspid_sim::Trace;
-use fspid_study::file::{self, Study};
 use fspid_study::simulation::Simulation;
 
 /// A quiet flight of the Navion at its reference speed.

@@ -1,8 +1,7 @@
 //! Answers, by name.
 
-use fspid_study::fuzzy_system::{
-    LoadError, Options, SliceQuestion, SystemTable, ask, load, parse, slice,
-};
+use fspid_scenario::fuzzy_system::{LoadError, Options, load, parse};
+use fspid_study::fuzzy_system::{SliceQuestion, SystemTable, ask, slice};
 use fspid_study::rows::{RowsError, answer_rows};
 
 use super::{TIP, tip, values};
@@ -124,7 +123,7 @@ fn a_heading_without_a_column_is_refused() {
 fn an_output_without_an_answer_is_an_empty_cell_and_one_that_keeps_its_answer_keeps_it() {
     let text = TIP.replace("fallback = \"middle\"", "").replace("sigma = 1.5", "sigma = 0.01");
     let system = parse(&text, "tip.toml").expect("good");
-    let run = |system: &fspid_study::fuzzy_system::System| {
+    let run = |system: &fspid_scenario::fuzzy_system::System| {
         let mut out = Vec::new();
         let mut rows = "service,food\n2.5,5\n5,5\n2.5,5\n".as_bytes();
         answer_rows(&mut SystemTable::new(system), &mut rows, &mut out).expect("good");

@@ -1,6 +1,7 @@
 //! What is said to be true of a system.
 
-use fspid_study::fuzzy_system::{AuditQuestion, Mark, audit, parse};
+use fspid_scenario::fuzzy_system::parse;
+use fspid_study::fuzzy_system::{AuditQuestion, Mark, audit};
 use fspid_study::report;
 
 use super::{TIP, tip, values};

@@ -1,6 +1,7 @@
 //! Shares, and what a conclusion lacked.
 
-use fspid_study::fuzzy_system::{Basis, Options, explain, load, parse};
+use fspid_scenario::fuzzy_system::{Options, load, parse};
+use fspid_study::fuzzy_system::{Basis, explain};
 
 use super::{TIP, tip, values};
 

@@ -1,6 +1,6 @@
 //! Every problem of a file at once, each at its place, with what would be right.
 
-use fspid_study::fuzzy_system::parse;
+use fspid_scenario::fuzzy_system::parse;
 
 use super::{EVERY_KEY, TIP};
 

@@ -8,7 +8,7 @@ mod messages;
 mod schema;
 mod writing;
 
-use fspid_study::fuzzy_system::{System, parse};
+use fspid_scenario::fuzzy_system::{System, parse};
 
 /// What to leave for a waiter.
 const TIP: &str = include_str!("../systems/tip.toml");

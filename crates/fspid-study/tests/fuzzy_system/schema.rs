@@ -21,7 +21,7 @@ fn word_fault(
     let good = match word {
         "$ref" => {
             let name = rule.as_str().and_then(|path| path.strip_prefix("#/$defs/"));
-            let definitions = &fspid_study::fuzzy_system::schema()["$defs"];
+            let definitions = &fspid_scenario::fuzzy_system::schema()["$defs"];
             let found = name.and_then(|name| definitions.get(name)).expect("it is defined");
             return fault(found, value, path);
         }
@@ -105,7 +105,7 @@ fn json(text: &str) -> Value {
 
 #[test]
 fn the_schema_allows_every_key_and_refuses_what_is_wrong() {
-    let schema = fspid_study::fuzzy_system::schema();
+    let schema = fspid_scenario::fuzzy_system::schema();
     for text in [TIP, EVERY_KEY, TYPE_2] {
         assert_eq!(fault(&schema, &json(text), "$"), None);
     }

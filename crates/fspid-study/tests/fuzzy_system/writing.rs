@@ -2,9 +2,8 @@
 
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::Parts;
-use fspid_study::fuzzy_system::{
-    AuditQuestion, Options, SliceQuestion, System, audit, load, parse, slice, write,
-};
+use fspid_scenario::fuzzy_system::{Options, System, load, parse, write};
+use fspid_study::fuzzy_system::{AuditQuestion, SliceQuestion, audit, slice};
 
 use super::{EVERY_KEY, TIP, TYPE_2};
 

@@ -1,8 +1,9 @@
 //! How requirements are judged: the worst case, the limit itself, and what cannot be evaluated.
 
+use fspid_scenario::measure::{Family, Measure};
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::metrics::{Absent, Family, Measure};
-use fspid_study::requirement::{Judgement, NotEvaluated};
+use fspid_study::judgement::{Judgement, NotEvaluated};
+use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
 
 use crate::requirements::{JUMBO, judged, study, values, verified, written};

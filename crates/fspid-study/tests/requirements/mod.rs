@@ -8,9 +8,9 @@ mod sets;
 
 use std::path::{Path, PathBuf};
 
-use fspid_study::file::{self, Study};
-use fspid_study::metrics::Measure;
-use fspid_study::requirement::Judgement;
+use fspid_scenario::file::{self, Study};
+use fspid_scenario::measure::Measure;
+use fspid_study::judgement::Judgement;
 use fspid_study::simulation::Simulation;
 use fspid_study::verify::{Question, Verification, verify};
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use fspid_study::file;
-use fspid_study::metrics::Measure;
-use fspid_study::requirement::{Judgement, NotEvaluated};
+use fspid_scenario::file;
+use fspid_scenario::measure::Measure;
+use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::simulation::Simulation;
 use fspid_study::verify::Verification;
 

@@ -1,8 +1,8 @@
 //! Ready sets: complete, sourced, and the numbers of the handbook.
 
 use fspid_aircraft::qualities::{Category, Level, cap_level};
-use fspid_study::metrics::Measure;
-use fspid_study::requirement::{Confidence, Requirement, SET_NAMES, set};
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::{Confidence, Requirement, SET_NAMES, set};
 
 use crate::requirements::{JUMBO, study};
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use fspid_campaign::sample::{Cube, Sampling};
 use fspid_fuzzy::system::{Parts, System};
-use fspid_study::file::unread_in_words;
+use fspid_scenario::file::unread_in_words;
 use fspid_study::rows::{self, RowsError, Table};
 
 use super::error::AnfisError;

@@ -1,8 +1,8 @@
 //! Whether a contest can be held, and fairly: everything that is wrong is told at once.
 
 use fspid_campaign::engine::{Judging, Stability};
-use fspid_study::file::{Study, Template};
-use fspid_study::tuning::{Contest as Rules, Tuning};
+use fspid_scenario::file::{Study, Template};
+use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
 use super::{Contest, Entrant, Options, flight};
 use crate::error::TuneError;

@@ -2,10 +2,12 @@
 
 use fspid_campaign::engine::FlightResult;
 use fspid_campaign::rows;
-use fspid_study::metrics::{Absent, Measure, Verdict};
-use fspid_study::requirement::{AskedIn, Conditions, Judgement, NotEvaluated, Origin, Requirement};
-use fspid_study::tuning::Objective;
-use fspid_study::units::degrees;
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::{AskedIn, Conditions, Origin, Requirement};
+use fspid_scenario::tuning::Objective;
+use fspid_scenario::units::degrees;
+use fspid_study::judgement::{Judgement, NotEvaluated};
+use fspid_study::metrics::{Absent, Verdict};
 
 use crate::score::FlightScore;
 

@@ -40,8 +40,8 @@ mod words;
 use std::path::Path;
 
 use fspid_campaign::Folder;
+use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use fspid_study::output;
-use fspid_study::tuning::{Contest as Rules, Tuning};
 
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};

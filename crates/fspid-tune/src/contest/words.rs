@@ -1,8 +1,8 @@
 //! Numbers and findings in words.
 
-use fspid_study::report::number::{fixed, significant};
-use fspid_study::requirement::Requirement;
-use fspid_study::tuning::{Over, Tuning};
+use fspid_page::number::{fixed, significant};
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::tuning::{Over, Tuning};
 
 use super::compare::{Bar, CONFIDENCE, Comparison, Standing, barred};
 use super::flight::{FAR, Flight};
@@ -12,7 +12,7 @@ use super::summary::Spread;
 
 /// What the tuning made small.
 pub(super) fn objectives(tuning: &Tuning) -> Vec<String> {
-    let one = |it: &fspid_study::tuning::Objective| {
+    let one = |it: &fspid_scenario::tuning::Objective| {
         let name = it.requirement.measure.name();
         if it.weight.total_cmp(&1.0).is_eq() {
             name.to_owned()

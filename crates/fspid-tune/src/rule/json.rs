@@ -1,7 +1,7 @@
 //! A design for programs.
 
+use fspid_scenario::units::degrees;
 use fspid_study::analysis::Margins;
-use fspid_study::units::degrees;
 use serde_json::{Map, Value, json};
 
 use super::{

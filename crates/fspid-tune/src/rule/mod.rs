@@ -29,9 +29,9 @@ mod text;
 mod ultimate;
 
 use fspid_core::{Gains, Pid, PidConfig};
+use fspid_scenario::file::Study;
 use fspid_sim::{Controller, NamedController, Scenario};
 use fspid_study::analysis::{AnalysedLoop, Analysis, Question};
-use fspid_study::file::Study;
 
 pub use error::RuleError;
 pub use isa::Isa;

@@ -201,7 +201,7 @@ pub(super) fn experiment(
         scatter: settled.scatter,
         cycles,
         settled_s: k as f64 * dt_s,
-        phase_deg: fspid_study::units::degrees(lead_rad) - 180.0,
+        phase_deg: fspid_scenario::units::degrees(lead_rad) - 180.0,
         ultimate: UltimatePoint { gain, period_s, lowest_gain: None },
     })
 }

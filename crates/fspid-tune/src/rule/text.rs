@@ -3,8 +3,8 @@
 use core::fmt::Write as _;
 
 use fspid_lti::modulus;
+use fspid_scenario::units::degrees;
 use fspid_study::analysis::{Margins, PlantLoop};
-use fspid_study::units::degrees;
 
 use super::outcome::least_damped;
 use super::{Design, FittedModel, Form, Identified, RelayExperiment, UltimatePoint};

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::system::{Parts, System};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_study::file::rule_table;
+use fspid_scenario::file::rule_table;
 use fspid_tune::anfis::{Curve, Data, Order, Plan, grid, learn_beside, sugeno};
 
 use crate::anfis::{answer, axis, learned};

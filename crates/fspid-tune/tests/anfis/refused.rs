@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::system::Parts;
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_study::file::rule_table;
+use fspid_scenario::file::rule_table;
 use fspid_tune::anfis::{AnfisError, Curve, Data, Order, Plan, grid, learn, sugeno};
 
 use crate::anfis::{axis, samples};

@@ -16,7 +16,7 @@ use serde_json::Value;
 use super::Format;
 use crate::argument::Source;
 use crate::exit::Failure;
-use fspid_study::aircraft::{self, AirChoice, DragChoice, LoadingQuestion, Question, ThrustChoice};
+use fspid_study::aircraft::{AirChoice, DragChoice, LoadingQuestion, Question, ThrustChoice};
 
 /// Trim, linearise and judge aircraft anywhere in their envelope.
 ///
@@ -76,10 +76,10 @@ enum Units {
 }
 
 impl Answer {
-    fn units(self) -> aircraft::Units {
+    fn units(self) -> fspid_scenario::aircraft::Units {
         match self.units {
-            Units::Si => aircraft::Units::Si,
-            Units::English => aircraft::Units::English,
+            Units::Si => fspid_scenario::aircraft::Units::Si,
+            Units::English => fspid_scenario::aircraft::Units::English,
         }
     }
 
@@ -155,7 +155,7 @@ enum Thrust {
 }
 
 impl Plane {
-    fn question(&self, units: aircraft::Units) -> Question<'_> {
+    fn question(&self, units: fspid_scenario::aircraft::Units) -> Question<'_> {
         Question {
             aircraft: &self.name,
             loading: LoadingQuestion {
@@ -200,7 +200,7 @@ struct Flight {
 }
 
 impl Flight {
-    fn question(&self, units: aircraft::Units) -> Question<'_> {
+    fn question(&self, units: fspid_scenario::aircraft::Units) -> Question<'_> {
         Question {
             speed: self.speed.as_deref(),
             altitude: self.altitude.as_deref(),

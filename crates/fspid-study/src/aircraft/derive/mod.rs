@@ -9,12 +9,12 @@ use fspid_lti::TransferFunction;
 use serde_json::{Value, json};
 
 use super::facts::Facts;
-use super::failure::AircraftFailure;
 use super::load::load;
-use super::number::significant;
 use super::polynomial;
 use super::table::table;
-use super::units::{Kind, Units};
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::units::{Kind, Units};
 use paper::Comparison;
 
 /// Polynomials from derivatives.

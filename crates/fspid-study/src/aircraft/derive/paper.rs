@@ -6,9 +6,9 @@ use fspid_aircraft::derivation::{DerivationCondition, DimensionalDerivatives};
 use fspid_lti::TransferFunction;
 use serde_json::{Value, json};
 
-use super::super::number::{short, significant};
 use super::super::table::{paragraph, table};
-use crate::units::{FOOT_M, POUND_FORCE_N};
+use fspid_scenario::aircraft::number::{short, significant};
+use fspid_scenario::units::{FOOT_M, POUND_FORCE_N};
 
 /// A printed coefficient: where it stands, its value, and half of its last digit.
 type Printed = (&'static str, f64, f64);

@@ -7,9 +7,9 @@ use fspid_lti::TransferFunction;
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, NamedController, Scenario};
 
-use crate::aircraft::failure::AircraftFailure;
-use crate::file::{self, LoadError};
-use crate::inference::Refused;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::file::{self, LoadError};
+use fspid_scenario::supervisor::Refused;
 
 /// A radius this close below 1 counts as unstable, as in the simulation.
 const MARGIN: f64 = 1e-9;

@@ -3,7 +3,7 @@
 use fspid_aircraft::ModeName;
 
 use super::point::{Held, Point, pair, short_period};
-use crate::aircraft::units::Kind;
+use fspid_scenario::aircraft::units::Kind;
 
 /// A quantity over an envelope.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,8 @@
 use super::Envelope;
 use super::point::{Point, reason};
 use crate::aircraft::facts::key;
-use crate::aircraft::units::Kind;
 use crate::rows::quoted;
+use fspid_scenario::aircraft::units::Kind;
 
 impl Envelope {
     /// A line a point: where, whether it can be flown or why not, and every quantity with its unit in the heading.

@@ -4,8 +4,8 @@ use super::Envelope;
 use super::autopilot::is_stable;
 use super::column::Column;
 use super::point::{Point, short_period};
-use crate::aircraft::units::{Kind, Units};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
+use fspid_scenario::aircraft::units::{Kind, Units};
 
 /// What a hatched place means.
 const MISSING: &str = "no trim there; the CSV says why";

@@ -15,12 +15,12 @@ use serde_json::{Map, Value, json};
 
 use super::condition::{AirChoice, Question};
 use super::facts::key;
-use super::failure::AircraftFailure;
 use super::parse::span;
-use super::units::{Kind, LENGTHS, SPEEDS, Units};
-use crate::inference::Refused;
 use autopilot::Autopilot;
 use column::{Column, columns};
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::units::{Kind, LENGTHS, SPEEDS, Units};
+use fspid_scenario::supervisor::Refused;
 use point::{Point, reason};
 
 /// Speeds and altitudes, and whose loop is judged there.

@@ -6,8 +6,8 @@ use fspid_aircraft::qualities::ShortPeriod;
 use fspid_lti::Mode;
 
 use super::autopilot::Loop;
-use crate::aircraft::failure::departure;
-use crate::aircraft::units::Units;
+use fspid_scenario::aircraft::departure;
+use fspid_scenario::aircraft::units::Units;
 
 /// A speed and altitude, and what the aircraft is like there or why it cannot fly there.
 pub(super) type Point = EnvelopeRow<Option<Loop>>;

@@ -7,10 +7,10 @@ use super::autopilot::is_stable;
 use super::column::Column;
 use super::point::Point;
 use crate::aircraft::condition::AirChoice;
-use crate::aircraft::failure::quantity;
-use crate::aircraft::number::significant;
 use crate::aircraft::table::table;
-use crate::aircraft::units::Kind;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::quantity;
+use fspid_scenario::aircraft::units::Kind;
 
 impl Envelope {
     /// A summary; the points themselves are in the CSV and in the drawings.

@@ -13,14 +13,14 @@ use serde_json::{Map, Value, json};
 
 use super::condition::Question;
 use super::facts::Facts;
-use super::failure::AircraftFailure;
-use super::number::significant;
 use super::parse::quantity;
 use super::table::{paragraph, table};
 use super::trim::{Trimmed, trim};
-use super::units::{Kind, TIMES, Units};
-use crate::file::preset;
-use crate::inference::Refused;
+use fspid_scenario::aircraft::AircraftFailure;
+use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::aircraft::units::{Kind, TIMES, Units};
+use fspid_scenario::file::preset;
+use fspid_scenario::supervisor::Refused;
 
 /// Whose flying qualities, and behind what.
 #[derive(Clone, Copy, Debug, PartialEq)]

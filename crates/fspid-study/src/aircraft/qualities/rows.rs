@@ -3,7 +3,7 @@
 use fspid_aircraft::qualities::{Absent, Phugoid, Qualities};
 
 use crate::aircraft::facts::Facts;
-use crate::aircraft::units::Kind;
+use fspid_scenario::aircraft::units::Kind;
 
 /// Every value that exists.
 pub(super) fn facts(qualities: &Qualities) -> Facts {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::Flights;
 use crate::analysis::decibels;
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 impl Flights {
     /// The answer for programs.

@@ -7,7 +7,7 @@ use fspid_sim::flown::trajectory::TrajectoryLinearisation;
 
 use super::Flights;
 use crate::analysis::decibels;
-use crate::units::degrees;
+use fspid_scenario::units::degrees;
 
 impl Flights {
     /// One line for each thing that flights say, a label and a sentence.

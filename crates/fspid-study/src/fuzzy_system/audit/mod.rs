@@ -15,7 +15,7 @@ use fspid_fuzzy::system::System;
 use super::answer::named;
 use super::slice::spans;
 use super::words;
-use crate::inference::Refused;
+use fspid_scenario::supervisor::Refused;
 
 /// Where to look, and how hard.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -9,7 +9,7 @@ mod why_not;
 use fspid_fuzzy::system::{Firing, System};
 
 use super::answer::{Asked, ask};
-use crate::inference::Refused;
+use fspid_scenario::supervisor::Refused;
 
 pub use share::{Basis, Share, Shares};
 pub use why_not::{Lack, WhyNot};

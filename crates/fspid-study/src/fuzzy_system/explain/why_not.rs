@@ -5,8 +5,8 @@ use fspid_fuzzy::system::{
     Antecedent, Firing, Membership, RuleBlock, Statement, System, Variable, Workspace,
 };
 
-use crate::inference::Refused;
 use fspid_diagnostics::known_words;
+use fspid_scenario::supervisor::Refused;
 
 /// A rule that could conclude the term.
 #[derive(Clone, Debug, PartialEq)]

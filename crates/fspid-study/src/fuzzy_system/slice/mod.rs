@@ -8,8 +8,8 @@ use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
-use crate::inference::Refused;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
+use fspid_scenario::supervisor::Refused;
 
 use question::Asking;
 pub(super) use question::spans;

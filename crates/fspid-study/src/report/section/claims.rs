@@ -1,10 +1,11 @@
 //! Every number of the paper and every claim in words, with what became of it.
 
-use crate::report::html::context;
-use crate::report::number::fixed;
-use crate::report::page::{Cell, Row, Section, Table};
 use crate::report::paper::Paper;
+use crate::report::templates::render;
 use crate::reproduce::{JudgedClaim, JudgedStatement};
+use fspid_page::context;
+use fspid_page::number::fixed;
+use fspid_page::page::{Cell, Row, Section, Table};
 
 /// The tables of claims.
 pub(super) fn section(paper: &Paper<'_>) -> Section {
@@ -12,7 +13,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         numbers => numbers(&paper.reproduction.claims),
         statements => statements(&paper.reproduction.statements),
     };
-    Section::of("claims", "Claims", "claims", context)
+    Section::of("claims", "Claims", render("claims", context))
 }
 
 fn numbers(claims: &[JudgedClaim]) -> Table {
@@ -39,9 +40,9 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
                 Cell::text(judged.claim.unit),
                 Cell::number(judged.claim.paper.0),
                 value(judged.ours),
-                Cell::status(judged.status),
+                super::status(judged.status),
                 value(judged.shared),
-                Cell::status(judged.shared_status),
+                super::status(judged.shared_status),
                 Cell::links(judged.assumptions),
                 Cell::linked(&judged.note),
             ],
@@ -61,7 +62,7 @@ fn statements(statements: &[JudgedStatement]) -> Table {
                 Cell::text(judged.id),
                 Cell::text(judged.paper),
                 Cell::text(&judged.ours),
-                Cell::status(judged.status),
+                super::status(judged.status),
                 Cell::links(judged.assumptions),
                 Cell::linked(judged.note),
             ],

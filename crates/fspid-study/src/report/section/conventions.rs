@@ -1,8 +1,9 @@
 //! Axes, signs, and the loops as block diagrams.
 
-use crate::report::html::context;
-use crate::report::page::{Figure, Section};
 use crate::report::paper::Paper;
+use crate::report::templates::render;
+use fspid_page::context;
+use fspid_page::page::{Figure, Section};
 use fspid_plot::diagrams;
 
 /// Figs 1 to 3 of the paper, redrawn with the signs that hold here.
@@ -30,6 +31,6 @@ pub(super) fn section(_: &Paper<'_>) -> Section {
         )
         .resting_on(&["A2", "A3", "A10"]),
     ];
-    Section::of("conventions", "Axes, signs and loops", "conventions", context! { figures })
+    Section::of("conventions", "Axes, signs and loops", render("conventions", context! { figures }))
         .with_figures(figures)
 }

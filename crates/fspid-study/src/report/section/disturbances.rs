@@ -1,13 +1,9 @@
 //! Fig. 7: who resists disturbances better, and by how much.
 
+use crate::report::templates::render;
 use fspid_sim::Controller;
 use serde::Serialize;
 
-use crate::file::Study;
-use crate::report::html::context;
-use crate::report::number::capital;
-use crate::report::number::{exact, fixed, significant};
-use crate::report::page::{Cell, Figure, Row, Section, Table};
 use crate::report::paper::Paper;
 use crate::report::settings;
 use crate::report::traces::Drawing;
@@ -17,7 +13,12 @@ use crate::reproduce::disturbance::{
     scenario_name,
 };
 use crate::simulation::Simulation;
+use fspid_page::context;
+use fspid_page::number::capital;
+use fspid_page::number::{exact, fixed, significant};
+use fspid_page::page::{Cell, Figure, Row, Section, Table};
 use fspid_plot::{RatioFigure, Series, SeriesStyle};
+use fspid_scenario::file::Study;
 
 /// A comparison: who, over whom, and what it is called.
 pub(super) struct Match {
@@ -105,7 +106,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         cases => SIZES_DEG.len() * ENTRIES.len(),
         budget => budget(paper),
     };
-    Section::of("disturbances", "Figure 7: disturbances", "disturbances", context)
+    Section::of("disturbances", "Figure 7: disturbances", render("disturbances", context))
         .with_figures(figures)
 }
 

@@ -1,12 +1,13 @@
 //! How the unpublished parameters were found.
 
+use crate::report::templates::render;
 use serde::Serialize;
 
-use crate::report::html::context;
-use crate::report::number::significant;
-use crate::report::page::{Cell, Section, Table};
 use crate::report::paper::Paper;
 use crate::reproduce::identify::{ProblemRecord, SeedRecord};
+use fspid_page::context;
+use fspid_page::number::significant;
+use fspid_page::page::{Cell, Section, Table};
 
 /// A parameter that moves by more than this between seeds of nearly equal cost is not determined.
 const DETERMINED: f64 = 0.1;
@@ -32,7 +33,11 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
     let several = record.problems.iter().any(|problem| problem.runs.len() > 1);
     let context =
         context! { command => record.command, fits, tuned => tuned_table(tuned), several };
-    Section::of("identification", "How the parameters were found", "identification", context)
+    Section::of(
+        "identification",
+        "How the parameters were found",
+        render("identification", context),
+    )
 }
 
 fn problem(of: &ProblemRecord) -> Problem {

@@ -1,8 +1,9 @@
 //! Where every number comes from, and how to fly it again.
 
-use crate::report::html::context;
-use crate::report::page::Section;
 use crate::report::paper::Paper;
+use crate::report::templates::render;
+use fspid_page::context;
+use fspid_page::page::Section;
 
 /// Versions, digests, commands.
 pub(super) fn section(paper: &Paper<'_>) -> Section {
@@ -34,5 +35,5 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         scenarios => paper.library.scenarios().len(),
         figures,
     };
-    Section::of("provenance", "Provenance", "provenance", context)
+    Section::of("provenance", "Provenance", render("provenance", context))
 }

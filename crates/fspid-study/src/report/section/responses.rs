@@ -1,15 +1,16 @@
 //! Figures 5, 6, 8a, 8b and 9 under both fits.
 
+use crate::report::templates::render;
 use serde::Serialize;
 
 use crate::metrics::short;
-use crate::report::html::context;
 use crate::report::measures;
-use crate::report::number::exact;
-use crate::report::page::{Figure, Section, Table};
 use crate::report::paper::Paper;
 use crate::report::traces::Drawing;
 use crate::reproduce::{FIGURES, Fit, FlownFigure, JudgedClaim, Status};
+use fspid_page::context;
+use fspid_page::number::exact;
+use fspid_page::page::{Figure, Section, Table};
 
 #[derive(Serialize)]
 struct Part {
@@ -34,7 +35,7 @@ struct Standing {
 pub(super) fn section(paper: &Paper<'_>) -> Section {
     let parts: Vec<Part> = FIGURES.iter().filter_map(|figure| part(paper, figure.id)).collect();
     let figures = parts.iter().flat_map(|part| [part.own.clone(), part.shared.clone()]).collect();
-    Section::of("responses", "Figures 5, 6, 8 and 9", "responses", context! { parts })
+    Section::of("responses", "Figures 5, 6, 8 and 9", render("responses", context! { parts }))
         .with_figures(figures)
 }
 

@@ -1,14 +1,15 @@
 //! The supervisor: sets, rules, surfaces, and what it adds at rest.
 
+use crate::report::templates::render;
 use fspid_fuzzy::{Output, RuleTable};
 
-use crate::file;
-use crate::report::html::context;
-use crate::report::number::{significant, with_sign};
-use crate::report::page::{Cell, Figure, Row, Section, Table};
 use crate::report::paper::Paper;
 use crate::report::supervisor::{self, Marks, OddCell};
+use fspid_page::context;
+use fspid_page::number::{significant, with_sign};
+use fspid_page::page::{Cell, Figure, Row, Section, Table};
 use fspid_plot::SurfaceKind;
+use fspid_scenario::file;
 
 /// Half ranges that the paper names.
 const RANGES: [f64; 2] = [5.0, 40.0];
@@ -22,7 +23,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         (file::rule_table("printed"), file::rule_table("mirrored"))
     else {
         // Both are part of the program.
-        return Section::of("supervisor", "The fuzzy supervisor", "failed", context! {});
+        return Section::of("supervisor", "The fuzzy supervisor", render("failed", context! {}));
     };
     let (sets, maps, views, mirrored_maps) = pictures(&printed, &mirrored);
     let tables = supervisor::rule_tables("table-3", "printed table", &printed, Marks::Paper);
@@ -39,7 +40,8 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         at_rest => at_rest(),
         in_flight => in_flight(paper),
     };
-    Section::of("supervisor", "The fuzzy supervisor", "supervisor", context).with_figures(figures)
+    Section::of("supervisor", "The fuzzy supervisor", render("supervisor", context))
+        .with_figures(figures)
 }
 
 type Pictures = (Vec<Figure>, Vec<Figure>, Vec<Figure>, Vec<Figure>);

@@ -1,15 +1,16 @@
 //! Whether the identified loops are stable at rest, with gains that stand elsewhere, and while they move.
 
+use crate::report::templates::render;
 use fspid_proof::{Bearing, Claim, Effort, Outcome, Verdict};
 
 use crate::analysis::{AnalysedLoop, Analysis, Margins, Question, flown_inputs};
 use crate::certify::{Certification, Certified, scope_in_short};
-use crate::file::Study;
-use crate::report::html::context;
-use crate::report::number::fixed;
-use crate::report::page::{Cell, Section, Table};
 use crate::report::paper::Paper;
 use crate::reproduce::{FIGURES, Fit};
+use fspid_page::context;
+use fspid_page::number::fixed;
+use fspid_page::page::{Cell, Section, Table};
+use fspid_scenario::file::Study;
 
 /// Verdicts alone: the report does not ask for the largest output scale, nor for proofs that take long.
 fn effort() -> Effort {
@@ -40,7 +41,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         own => table("Loops with parameters of their own for each figure.", Fit::Own),
         shared => table("Loops with one set of scale factors for all figures of a range.", Fit::Shared),
     };
-    Section::of("stability", "Stability while the gains move", "stability", context)
+    Section::of("stability", "Stability while the gains move", render("stability", context))
 }
 
 fn rows(figure: &str, study: &Study) -> Vec<Vec<Cell>> {

@@ -1,17 +1,18 @@
 //! What was done, and the bottom line: every sentence with numbers of this very run.
 
+use crate::report::templates::render;
 use fspid_sim::Controller;
 use serde::Serialize;
 
 use super::disturbances::{MATCHES, Match, compared};
 use crate::metrics::{Measured, StepMetrics};
-use crate::report::html::context;
-use crate::report::number::{fixed, measured, significant};
-use crate::report::page::{Cell, Section, Table};
 use crate::report::paper::Paper;
 use crate::reproduce::disturbance::{Contest, SHAPES};
 use crate::reproduce::{Fit, Reproduction, Status};
 use crate::simulation::Simulation;
+use fspid_page::context;
+use fspid_page::number::{fixed, measured, significant};
+use fspid_page::page::{Cell, Section, Table};
 
 /// The figure whose steps are taken apart, and the controller.
 const EXAMPLE: (&str, &str) = ("8a", "FSPID");
@@ -29,12 +30,12 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         memory => memory(paper),
         failed => failed(reproduction),
     };
-    Section::of("summary", "Summary", "summary", context)
+    Section::of("summary", "Summary", render("summary", context))
 }
 
 fn statuses(reproduction: &Reproduction) -> Table {
     let mut head = vec!["claims".to_owned()];
-    head.extend(Status::ALL.map(|status| Cell::status(status).text));
+    head.extend(Status::ALL.map(|status| super::status(status).text));
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
     let mut table = Table::new("How many claims stand how.", &head).in_cards();
     let own = reproduction.claims.iter().map(|judged| judged.status).collect();
@@ -162,7 +163,8 @@ fn memory(paper: &Paper<'_>) -> Option<Memory> {
     let size =
         |index: usize| metrics.edges.get(index).map(|edge| (edge.to_rad - edge.from_rad).abs());
     let (small, large) = (size(0)?, size(2)?);
-    let alone = |size_rad: f64| alone(paper, figure, controller, crate::units::degrees(size_rad));
+    let alone =
+        |size_rad: f64| alone(paper, figure, controller, fspid_scenario::units::degrees(size_rad));
     let (alone_small, alone_large) = (alone(small)?, alone(large)?);
     let rise = |index: usize| metrics.of_step(index, |step| step.rise_time_s).ok();
     let share = |first: f64, later: f64, alone: f64| {
@@ -224,7 +226,7 @@ fn failed(reproduction: &Reproduction) -> Vec<Failed> {
     let entry = |id, what, status: Status| Failed {
         id,
         what,
-        status: Cell::status(status).text,
+        status: super::status(status).text,
         class: status.name(),
     };
     let numbers = reproduction.claims.iter().map(|j| entry(j.claim.id, j.claim.quantity, j.status));

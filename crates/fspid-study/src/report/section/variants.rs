@@ -1,16 +1,17 @@
 //! The same flights with another rule table, and with another tool's centroid.
 
+use crate::report::templates::render;
 use fspid_sim::Controller;
 
-use crate::report::html::context;
 use crate::report::measures;
-use crate::report::number::fixed;
-use crate::report::page::{Figure, Section, Table};
 use crate::report::paper::Paper;
 use crate::reproduce::{FIGURES, Fit, FlownFigure};
 use crate::simulation::Simulation;
-use crate::units::degrees;
+use fspid_page::context;
+use fspid_page::number::fixed;
+use fspid_page::page::{Figure, Section, Table};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
+use fspid_scenario::units::degrees;
 
 /// Figures whose printed and mirrored flights are drawn.
 const DRAWN: [&str; 2] = ["8a", "8b"];
@@ -46,7 +47,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
             &sampled,
         ),
     };
-    Section::of("variants", "Other rule table, other centroid", "variants", context)
+    Section::of("variants", "Other rule table, other centroid", render("variants", context))
         .with_figures(figures)
 }
 

@@ -18,8 +18,8 @@ use self::problem::{Bench, FigureProblem, PROBLEMS, Weighing, scales};
 use self::staged::{Effort, SeedResult, Set};
 use super::figures::{FIGURES, Fit, Library, Stored};
 use super::model::{Command, FULL_MODEL, SHORT_PERIOD, Scales};
-use crate::file;
 use fspid_optimise::{Budget, Parameter, Scale, Space, search};
+use fspid_scenario::file;
 
 /// Two upward and two downward steps are shown of a square wave.
 const SHOWN_HALF_PERIODS: u32 = 4;

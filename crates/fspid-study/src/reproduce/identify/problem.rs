@@ -13,9 +13,10 @@ use super::super::model::{
     Command, ControllerModel, FULL_MODEL, FlightModel, SHORT_PERIOD, Scales, Setting, on_grid,
 };
 use super::super::reading::{FigureFlight, figure_of, number, readings};
-use crate::metrics::{EdgeMetrics, FlightMetrics, Measure, StepMetrics, StepWindow};
-use crate::units::degrees;
+use crate::metrics::{EdgeMetrics, FlightMetrics, StepMetrics, StepWindow};
 use fspid_optimise::{Parameter, Scale};
+use fspid_scenario::measure::Measure;
+use fspid_scenario::units::degrees;
 
 /// Reading time of Figs 5 and 6, s (assumption A15).
 pub(super) const WINDOW_S: f64 = 12.0;

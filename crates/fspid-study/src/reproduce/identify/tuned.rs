@@ -10,8 +10,8 @@ use super::super::model::{Command, ControllerModel, FlightModel, SHORT_PERIOD, S
 use super::Session;
 use super::problem::{Bench, scales};
 use super::staged::{SeedResult, Set};
-use crate::units::radians;
 use fspid_optimise::{Budget, Found, Parameter, Scale, Space, search};
+use fspid_scenario::units::radians;
 
 /// Length of a disturbed flight, s.
 const FLIGHT_S: f64 = 30.0;

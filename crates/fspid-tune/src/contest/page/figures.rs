@@ -1,9 +1,9 @@
 //! Differences with intervals, and error against activity.
 
+use fspid_page::analysis::{Chapter, Item};
 use fspid_plot::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, TradeFigure, TradeSeries,
 };
-use fspid_study::report::analysis::{Chapter, Item};
 
 use super::{chapter, picture, style, tables};
 use crate::contest::Outcome;

@@ -1,6 +1,6 @@
 //! What the tunings found.
 
-use fspid_study::report::analysis::{Chapter, Datum, Item};
+use fspid_page::analysis::{Chapter, Datum, Item};
 
 use super::tables;
 use crate::contest::judged::{Contestant, Judged};

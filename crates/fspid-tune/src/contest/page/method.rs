@@ -1,6 +1,6 @@
 //! How it was judged, so that nobody has to believe it.
 
-use fspid_study::report::analysis::{Chapter, Datum, Item};
+use fspid_page::analysis::{Chapter, Datum, Item};
 
 use super::tables;
 use crate::contest::Outcome;
@@ -64,7 +64,7 @@ fn training(outcome: &Outcome) -> String {
     }
 }
 
-fn case_table(outcome: &Outcome) -> fspid_study::report::analysis::DataTable {
+fn case_table(outcome: &Outcome) -> fspid_page::analysis::DataTable {
     let cases = &outcome.judged.cases;
     let rows = cases.iter().map(|case| {
         let mirrored = case.mirror_of.and_then(|place| cases.get(place));

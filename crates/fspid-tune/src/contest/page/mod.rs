@@ -7,9 +7,9 @@ mod responses;
 mod tables;
 
 use fspid_campaign::Plan;
+use fspid_page::analysis::{Chapter, Item, Picture, Standing as Colour, Verdict};
+use fspid_page::campaign::CampaignPage;
 use fspid_plot::{SeriesStyle, Svg};
-use fspid_study::report::analysis::{Chapter, Item, Picture, Standing as Colour, Verdict};
-use fspid_study::report::campaign::CampaignPage;
 use fspid_study::shell::word;
 
 use super::flight::LOST;

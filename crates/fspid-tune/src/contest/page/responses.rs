@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
+use fspid_page::analysis::{Chapter, Item, Picture};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
+use fspid_scenario::units::degrees;
 use fspid_sim::fly;
-use fspid_study::report::analysis::{Chapter, Item, Picture};
-use fspid_study::units::degrees;
 
 use super::{chapter as chapter_of, style};
 use crate::contest::judged::{Contestant, Judged, Quantity};

@@ -1,7 +1,7 @@
 //! Tables: controllers, failures, mirrored cases, cases.
 
-use fspid_study::report::analysis::{Chapter, DataTable, Datum, Item};
-use fspid_study::report::number::significant;
+use fspid_page::analysis::{Chapter, DataTable, Datum, Item};
+use fspid_page::number::significant;
 
 use super::chapter;
 use crate::contest::compare::{Comparison, Standing};

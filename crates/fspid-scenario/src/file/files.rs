@@ -1,0 +1,192 @@
+//! The files that a file refers to, and the digest of all that was read.
+
+use std::io::Read as _;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::file::document::{FILE_LIMIT, Item};
+use crate::file::overrides::Change;
+use crate::file::section::Section;
+use crate::file::spec::Table;
+use fspid_diagnostics::Report;
+
+/// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
+pub(crate) struct Files<'a> {
+    folder: Option<&'a Path>,
+    hasher: Sha256,
+    /// Path of the key that refers to a file, the file's specification, and what it says.
+    referred: Vec<(String, &'static Table, Section)>,
+    /// Path of a key that is left out, and the word that a file makes its default.
+    filled: Vec<(String, &'static str)>,
+    /// Changes that wait for the file that they are in, and whether it came.
+    changes: Vec<(Change, bool)>,
+    /// What files say that were changed, before the changes, by the path of the key that names them.
+    written: Vec<(String, Item)>,
+    /// What was read, by the path of the key that names it; kept if asked for.
+    documents: Option<Vec<(String, Item)>>,
+}
+
+impl<'a> Files<'a> {
+    /// Relative paths are those of `folder`; without one, no file can be referred to.
+    pub(crate) fn new(folder: Option<&'a Path>) -> Self {
+        Self {
+            folder,
+            hasher: Sha256::new(),
+            referred: Vec::new(),
+            filled: Vec::new(),
+            changes: Vec::new(),
+            written: Vec::new(),
+            documents: None,
+        }
+    }
+
+    /// Keeps what the file says that the key at `path` refers to.
+    pub(crate) fn keep(&mut self, path: String, spec: &'static Table, section: Section) {
+        self.referred.push((path, spec, section));
+    }
+
+    /// Keeps the default of the key at `path`, which depends on what a file says.
+    pub(crate) fn fill(&mut self, path: String, word: &'static str) {
+        self.filled.push((path, word));
+    }
+
+    /// The default of the key at `path`, if what a file says makes it.
+    pub(crate) fn filled(&self, path: &str) -> Option<&'static str> {
+        let (_, word) = self.filled.iter().find(|(at, _)| at == path)?;
+        Some(word)
+    }
+
+    /// Keeps a change until the file has been read that it is in.
+    pub(crate) fn change(&mut self, change: Change) {
+        self.changes.push((change, false));
+    }
+
+    /// The changes that wait.
+    pub(crate) fn changes(&self) -> impl Iterator<Item = &Change> {
+        self.changes.iter().map(|(change, _)| change)
+    }
+
+    /// Changes what the file says that the key at `path` refers to; every file passes here.
+    pub(crate) fn apply_changes(&mut self, report: &mut Report, path: &str, document: &mut Item) {
+        if self.changes.iter().any(|(change, _)| change.path == path) {
+            self.written.push((path.to_owned(), document.clone()));
+        }
+        for (change, used) in self.changes.iter_mut().filter(|(change, _)| change.path == path) {
+            change.apply(report, document);
+            *used = true;
+        }
+        if let Some(documents) = &mut self.documents {
+            documents.push((path.to_owned(), document.clone()));
+        }
+    }
+
+    /// What the file says that the key at `path` names, without the changes; none where there are no changes.
+    pub(crate) fn written(&self, path: &str) -> Option<&Item> {
+        let (_, document) = self.written.iter().find(|(at, _)| at == path)?;
+        Some(document)
+    }
+
+    /// Keeps what is read from here on.
+    pub(crate) fn keep_documents(&mut self) {
+        self.documents = Some(Vec::new());
+    }
+
+    /// What was read that the key at `path` names.
+    pub(crate) fn document(&self, path: &str) -> Option<&Item> {
+        let mut documents = self.documents.iter().flatten();
+        documents.find(|(at, _)| at == path).map(|(_, document)| document)
+    }
+
+    /// Reports changes whose file never came, where nothing else explains that.
+    pub(crate) fn report_unused_changes(&self, report: &mut Report) {
+        if report.count() == 0 {
+            let unused = self.changes.iter().filter(|(_, used)| !used);
+            unused.for_each(|(change, _)| change.report_unused(report));
+        }
+    }
+
+    /// What the file says that the key at `path` refers to.
+    pub(crate) fn referred(&self, path: &str) -> Option<(&'static Table, &Section)> {
+        let (_, spec, section) = self.referred.iter().find(|(at, ..)| at == path)?;
+        Some((spec, section))
+    }
+
+    /// Adds a text to the digest, with its length, so that no two sets of texts look alike.
+    pub(crate) fn digest(&mut self, text: &str) {
+        self.hasher.update((text.len() as u64).to_le_bytes());
+        self.hasher.update(text.as_bytes());
+    }
+
+    /// The digest in hexadecimal digits.
+    pub(crate) fn finish(self) -> String {
+        let bytes = self.hasher.finalize();
+        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The text of a file that is referred to.
+    pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
+        let Some(folder) = self.folder else {
+            return Err("this scenario is not in a folder, so it cannot refer to files".to_owned());
+        };
+        let bytes = read_regular(&folder.join(path))?;
+        String::from_utf8(bytes).map_err(|error| {
+            let position = error.utf8_error().valid_up_to();
+            format!("not UTF-8 from byte {position} on")
+        })
+    }
+}
+
+/// Why a file could not be read, in the same words everywhere.
+#[must_use]
+pub fn unread_in_words(reason: &std::io::Error) -> String {
+    match reason.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "it may not be read".to_owned(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        _ => reason.to_string(),
+    }
+}
+
+/// The name that stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
+
+/// What standard input holds. It is read once, for a scenario is asked for again and again.
+fn standard_input() -> Result<Vec<u8>, String> {
+    static READ: OnceLock<Result<Vec<u8>, String>> = OnceLock::new();
+    let read = || {
+        let mut bytes = Vec::new();
+        let mut limited = std::io::stdin().lock().take(FILE_LIMIT + 1);
+        limited.read_to_end(&mut bytes).map_err(|error| unread_in_words(&error))?;
+        match bytes.len() as u64 > FILE_LIMIT {
+            true => Err(format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024))),
+            false => Ok(bytes),
+        }
+    };
+    READ.get_or_init(read).clone()
+}
+
+/// The bytes of a regular file that is not too large.
+pub fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
+    let reason = |error: std::io::Error| unread_in_words(&error);
+    if path == Path::new(STANDARD_INPUT) {
+        return standard_input();
+    }
+    let metadata = std::fs::metadata(path).map_err(reason)?;
+    if !metadata.is_file() {
+        return Err("it is no regular file".to_owned());
+    }
+    let too_large = || format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024));
+    if metadata.len() > FILE_LIMIT {
+        return Err(too_large());
+    }
+    let file = std::fs::File::open(path).map_err(reason)?;
+    let mut bytes = Vec::new();
+    let mut limited = file.take(FILE_LIMIT + 1);
+    limited.read_to_end(&mut bytes).map_err(reason)?;
+    if bytes.len() as u64 > FILE_LIMIT {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,70 @@
+//! The supervisor of a scenario's self-tuning controller as a system.
+
+use std::path::Path;
+
+use fspid_fuzzy::system::Parts;
+use fspid_sim::Controller;
+
+use super::load::{LoadError, Loaded, built};
+use super::toml_file;
+use crate::file;
+use crate::file::document::{Item, Value, read as read_document};
+use crate::supervisor::Refused;
+use fspid_diagnostics::Report;
+
+/// True for a text with controllers, however they are written.
+///
+/// A text that is no TOML is one if a line of it looks like their heading, so that what is wrong with it is told
+/// as of a scenario.
+pub(super) fn is_one(text: &str) -> bool {
+    if toml_file::is_of_this_kind(text) {
+        return false;
+    }
+    let is_heading = |line: &str| {
+        let heading: String = line.chars().filter(|c| !c.is_whitespace()).collect();
+        heading.starts_with("[[controller]]")
+    };
+    match read_document(&mut Report::default(), None, text) {
+        Some(Item { value: Value::Table(members), .. }) => {
+            members.iter().any(|member| member.name == "controller")
+        }
+        _ => text.lines().any(is_heading),
+    }
+}
+
+/// The supervisor of the controller of this name, or of the only one that has any.
+///
+/// What stands between the flight and the supervisor (factors, bent inputs, the dead zone) is not part of it.
+pub(super) fn read(path: &Path, text: &str, name: Option<&str>) -> Result<Loaded, LoadError> {
+    let shown = path.display().to_string();
+    let study = file::parse(text, &shown, path.parent(), &[]).map_err(LoadError::Problems)?;
+    let tuned = study.scenario.controllers.iter().filter_map(|named| match &named.controller {
+        Controller::SelfTuning(fspid) => Some((named.name.as_str(), fspid.tuner())),
+        Controller::Fixed(_) => None,
+    });
+    let all: Vec<_> = tuned.collect();
+    let meant: Vec<_> = all.iter().filter(|(it, _)| name.is_none_or(|name| name == *it)).collect();
+    let &[(name, tuner)] = meant.as_slice() else {
+        let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
+        let told = match (all.is_empty(), name) {
+            (true, _) => format!("{shown}: no controller has a supervisor"),
+            (_, Some(name)) => {
+                format!("--controller {name}: those with a supervisor are {}", known.join(", "))
+            }
+            (_, None) => format!(
+                "{shown} has several supervisors; --controller says which: {}",
+                known.join(", ")
+            ),
+        };
+        return Err(LoadError::Refused(Refused::one(told)));
+    };
+    let mut parts = Parts::from(tuner.supervisor());
+    parts.name = (*name).to_owned();
+    let mut notes = Vec::new();
+    if !tuner.settings().input_sets.are_even() {
+        notes.push(format!(
+            "{name}: its sets are uneven; the system has the even sets behind the bent inputs"
+        ));
+    }
+    Ok(Loaded { system: built(parts)?, notes })
+}

@@ -1,0 +1,277 @@
+//! Measures by name, for requirements and claims.
+
+/// What must be at hand to answer a measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// The response to a step of the command; the worst step counts.
+    Step,
+    /// A flight as a whole.
+    Flight,
+    /// The linear loop as sampled, around rest; the worst of the aircraft's plants counts.
+    Loop,
+    /// The same with the gains frozen at everything that the supervisor can produce; the worst counts.
+    Frozen,
+    /// The aircraft without its controller, behind servo and dead time.
+    Airframe,
+}
+
+/// A measure that can be asked for by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Beyond the new set-point, %.
+    Overshoot,
+    /// 10 % to 90 %, s.
+    RiseTime,
+    /// Within 2 %, s.
+    SettlingTime,
+    /// Left at the end of the window, %.
+    FinalError,
+    /// Left at the end of the window, deg.
+    FinalErrorAngle,
+    /// Until the error stays within a band, s.
+    RecoveryTime,
+    /// Root mean square of the error, deg.
+    RmsError,
+    /// Largest error, deg.
+    LargestError,
+    /// Integral of the size of the error, deg s.
+    ErrorIntegral,
+    /// The same weighted with the time since the last step, deg s².
+    TimedErrorIntegral,
+    /// Largest command, deg.
+    LargestCommand,
+    /// Way of the command, deg.
+    CommandVariation,
+    /// Way of the elevator, deg.
+    ElevatorTravel,
+    /// Fastest command, deg/s.
+    CommandRate,
+    /// Fastest elevator, deg/s.
+    ElevatorRate,
+    /// Samples whose command was cut, %.
+    Saturated,
+    /// 1 for a stable loop, 0 for another.
+    Stable,
+    /// The smaller of the two ends of the gain margin, dB.
+    GainMargin,
+    /// How far the gain may fall, dB.
+    GainMarginLow,
+    /// How far the gain may rise, dB.
+    GainMarginHigh,
+    /// Phase margin, deg.
+    PhaseMargin,
+    /// Delay margin, s.
+    DelayMargin,
+    /// Disk margin.
+    DiskMargin,
+    /// Peak of the sensitivity.
+    SensitivityPeak,
+    /// Frequency of the crossover with the smallest phase margin, rad/s.
+    GainCrossover,
+    /// Least damping of a closed-loop mode.
+    ModeDamping,
+    /// 1 if the loop is stable at every gain the supervisor can produce, 0 if not.
+    FrozenStable,
+    /// Least gain margin over the frozen gains, dB.
+    FrozenGainMargin,
+    /// Least phase margin over the frozen gains, deg.
+    FrozenPhaseMargin,
+    /// Least disk margin over the frozen gains.
+    FrozenDiskMargin,
+    /// Damping of the aircraft's short period.
+    ShortPeriodDamping,
+    /// Control anticipation parameter, rad/s² for each multiple of gravity.
+    ControlAnticipation,
+    /// Damping of the aircraft's phugoid.
+    PhugoidDamping,
+    /// Time in which the phugoid doubles, s.
+    PhugoidDoubling,
+    /// Equivalent delay between command and elevator, s.
+    EquivalentDelay,
+}
+
+/// All that is to be known about a measure.
+struct Row {
+    measure: Measure,
+    name: &'static str,
+    unit: &'static str,
+    family: Family,
+    doc: &'static str,
+    /// Conditions that it can be asked under, beyond those of its family.
+    conditions: &'static [&'static str],
+}
+
+/// Names of the ends of a time window.
+const TIMES: &[&str] = &["from_s", "to_s"];
+/// Names of the ends of a band of frequencies.
+const BAND: &[&str] = &["from_hz", "to_hz"];
+
+const fn row(
+    measure: Measure,
+    (name, unit): (&'static str, &'static str),
+    family: Family,
+    conditions: &'static [&'static str],
+    doc: &'static str,
+) -> Row {
+    Row { measure, name, unit, family, doc, conditions }
+}
+
+/// One row a measure, in the order of the enumeration.
+#[rustfmt::skip] // a table: one row a measure
+const ROWS: [Row; 35] = {
+    use Family::{Airframe, Flight, Frozen, Loop, Step};
+    use Measure as M;
+    [
+        row(M::Overshoot, ("overshoot_pct", "%"), Step, &[], "how far the response goes beyond the new set-point, of the step"),
+        row(M::RiseTime, ("rise_time_s", "s"), Step, &[], "time from 10 % to 90 % of the way"),
+        row(M::SettlingTime, ("settling_time_s", "s"), Step, &[], "time until the response stays within 2 % of the step"),
+        row(M::FinalError, ("final_error_pct", "%"), Step, &[], "size of the error at the end of the step's window, of the step"),
+        row(M::FinalErrorAngle, ("final_error_deg", "deg"), Step, &[], "size of the error at the end of the step's window; without a step, at the end of the flight"),
+        row(M::RecoveryTime, ("recovery_time_s", "s"), Step, &["within_deg", "from_s", "to_s"], "time until the error stays within the band, counted from the step or from from_s"),
+        row(M::RmsError, ("rms_error_deg", "deg"), Flight, TIMES, "root mean square of the error"),
+        row(M::LargestError, ("largest_error_deg", "deg"), Flight, TIMES, "largest size of the error"),
+        row(M::ErrorIntegral, ("iae_deg_s", "deg s"), Flight, &[], "integral of the size of the error"),
+        row(M::TimedErrorIntegral, ("itae_deg_s2", "deg s²"), Flight, &[], "the same, weighted with the time since the last step"),
+        row(M::LargestCommand, ("largest_command_deg", "deg"), Flight, &[], "largest size of the command"),
+        row(M::CommandVariation, ("command_variation_deg", "deg"), Flight, &[], "way of the command: sum of the sizes of its changes"),
+        row(M::ElevatorTravel, ("elevator_travel_deg", "deg"), Flight, &[], "way of the elevator: sum of the sizes of its changes"),
+        row(M::CommandRate, ("command_rate_deg_s", "deg/s"), Flight, &[], "largest change of the command from sample to sample, per second"),
+        row(M::ElevatorRate, ("elevator_rate_deg_s", "deg/s"), Flight, &[], "largest change of the elevator from sample to sample, per second"),
+        row(M::Saturated, ("saturated_pct", "%"), Flight, &[], "samples whose command the controller's own limits cut"),
+        row(M::Stable, ("stable", ""), Loop, &[], "1 for a loop whose every mode decays, 0 for another; needs no limit"),
+        row(M::GainMargin, ("gain_margin_db", "dB"), Loop, BAND, "the smaller of how far the gain may fall and rise"),
+        row(M::GainMarginLow, ("gain_margin_low_db", "dB"), Loop, BAND, "how far the gain may fall, counted positive"),
+        row(M::GainMarginHigh, ("gain_margin_high_db", "dB"), Loop, BAND, "how far the gain may rise"),
+        row(M::PhaseMargin, ("phase_margin_deg", "deg"), Loop, BAND, "smallest distance of the phase from -180 deg over all frequencies at which the loop gain is 1"),
+        row(M::DelayMargin, ("delay_margin_s", "s"), Loop, &[], "the dead time that makes the loop unstable"),
+        row(M::DiskMargin, ("disk_margin", ""), Loop, &[], "size of the disk of gain and phase together that is allowed, without skew"),
+        row(M::SensitivityPeak, ("sensitivity_peak", ""), Loop, &[], "largest gain from disturbance to error"),
+        row(M::GainCrossover, ("gain_crossover_rad_s", "rad/s"), Loop, &[], "frequency of the crossover with the smallest phase margin"),
+        row(M::ModeDamping, ("mode_damping", ""), Loop, BAND, "least damping ratio of a closed-loop mode"),
+        row(M::FrozenStable, ("frozen_stable", ""), Frozen, &[], "1 if stable at every gain the supervisor can produce, held still; needs no limit"),
+        row(M::FrozenGainMargin, ("frozen_gain_margin_db", "dB"), Frozen, &[], "gain_margin_db at the worst of these gains"),
+        row(M::FrozenPhaseMargin, ("frozen_phase_margin_deg", "deg"), Frozen, &[], "phase_margin_deg at the worst of these gains"),
+        row(M::FrozenDiskMargin, ("frozen_disk_margin", ""), Frozen, &[], "disk_margin at the worst of these gains"),
+        row(M::ShortPeriodDamping, ("short_period_damping", ""), Airframe, &[], "damping ratio of the aircraft's short period"),
+        row(M::ControlAnticipation, ("cap_rad_s2_per_g", "rad/s² per g"), Airframe, &[], "control anticipation parameter"),
+        row(M::PhugoidDamping, ("phugoid_damping", ""), Airframe, &[], "damping ratio of the aircraft's phugoid; 1 or -1 where it creeps"),
+        row(M::PhugoidDoubling, ("phugoid_doubling_s", "s"), Airframe, &[], "time in which the phugoid doubles"),
+        row(M::EquivalentDelay, ("equivalent_delay_s", "s"), Airframe, &[], "delay of servo, whole samples and half a sample of the hold"),
+    ]
+};
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Self; ROWS.len()] = {
+        let mut all = [Self::Overshoot; ROWS.len()];
+        let mut index = 0;
+        while index < ROWS.len() {
+            all[index] = ROWS[index].measure;
+            index += 1;
+        }
+        all
+    };
+
+    /// Names of all of them.
+    pub const NAMES: [&'static str; ROWS.len()] = {
+        let mut names = [""; ROWS.len()];
+        let mut index = 0;
+        while index < ROWS.len() {
+            names[index] = ROWS[index].name;
+            index += 1;
+        }
+        names
+    };
+
+    const fn row(self) -> &'static Row {
+        const TABLE: &[Row; ROWS.len()] = &ROWS;
+        &TABLE[self as usize]
+    }
+
+    /// Name in files and answers, with its unit.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Its unit; empty for a number without one.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        self.row().unit
+    }
+
+    /// What must be at hand to answer it.
+    #[must_use]
+    pub const fn family(self) -> Family {
+        self.row().family
+    }
+
+    /// What it is, in a line.
+    #[must_use]
+    pub const fn doc(self) -> &'static str {
+        self.row().doc
+    }
+
+    /// True for a measure that is 1 or 0, so that it needs no limit.
+    #[must_use]
+    pub const fn is_yes_or_no(self) -> bool {
+        matches!(self, Self::Stable | Self::FrozenStable)
+    }
+
+    /// True if the condition of this name can be asked of it, such as `step_deg`.
+    #[must_use]
+    pub fn takes(self, condition: &str) -> bool {
+        let of_family = match self.family() {
+            Family::Step => &["step_deg", "air"][..],
+            Family::Flight => &["air"],
+            Family::Loop | Family::Frozen | Family::Airframe => &[],
+        };
+        of_family.contains(&condition) || self.row().conditions.contains(&condition)
+    }
+
+    /// The measure with that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|measure| measure.name() == name)
+    }
+
+    /// What of a value is compared with limits: of the error that is left its size, of everything else
+    /// the value itself.
+    #[must_use]
+    pub fn compared(self, value: f64) -> f64 {
+        if self == Self::FinalError { value.abs() } else { value }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_stands_at_its_own_row_with_a_name_of_its_own() {
+        for (index, measure) in Measure::ALL.into_iter().enumerate() {
+            assert_eq!(measure as usize, index, "{}", measure.name());
+            assert_eq!(Measure::from_name(measure.name()), Some(measure));
+            assert!(measure.doc().len() > 10, "{}", measure.name());
+        }
+    }
+
+    #[test]
+    fn the_unit_of_a_measure_is_the_last_part_of_its_name() {
+        for measure in Measure::ALL {
+            let suffix = match measure.unit() {
+                "" => continue,
+                "%" => "_pct",
+                "dB" => "_db",
+                "deg/s" | "deg s" => "_deg_s",
+                "deg s²" => "_deg_s2",
+                "rad/s" => "_rad_s",
+                "rad/s² per g" => "_rad_s2_per_g",
+                "s" => "_s",
+                "deg" => "_deg",
+                other => panic!("{other}"),
+            };
+            assert!(measure.name().ends_with(suffix), "{}", measure.name());
+        }
+    }
+}

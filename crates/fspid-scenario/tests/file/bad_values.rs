@@ -1,0 +1,237 @@
+//! Every number of the format, replaced by everything that it must not be.
+
+use std::collections::BTreeSet;
+
+use fspid_scenario::file;
+use serde_json::Value;
+
+use crate::file::schema::as_json;
+use crate::file::text;
+
+/// Set-points that take the place of the one in the file with every key.
+const SETPOINTS: [&str; 6] = [
+    "kind = \"step\"\namplitude_deg = 1.0\nat_s = 0.5\n",
+    "kind = \"square\"\namplitude_deg = 1.0\nat_s = 0.5\nhalf_period_s = 2.0\nbipolar = true\n",
+    "kind = \"doublet\"\namplitude_deg = 1.0\nat_s = 0.5\nwidth_s = 2.0\n",
+    "kind = \"ramp\"\namplitude_deg = 1.0\nat_s = 0.5\nwidth_s = 2.0\n",
+    "kind = \"sine\"\namplitude_deg = 1.0\nat_s = 0.5\nfrequency_hz = 2.0\n",
+    "kind = \"table\"\ntime_s = [0.0, 1.0]\nvalue_deg = [1.0, 2.0]\ninterpolation = \"linear\"\n",
+];
+
+/// Inertia of the flying file: in every unit, and by radii.
+const INERTIAS: [&str; 3] = [
+    "ix_kg_m2 = 1400.0\niy_kg_m2 = 4000.0\niz_kg_m2 = 4700.0\nixz_kg_m2 = 10.0\n",
+    "ix_slug_ft2 = 1000.0\niy_slug_ft2 = 3000.0\niz_slug_ft2 = 3500.0\nixz_slug_ft2 = 8.0\n",
+    "ix_gyration_m = 1.1\niy_gyration_m = 1.8\niz_gyration_m = 2.0\n",
+];
+
+/// Speed, altitude, wind and inertia of the flying file: every unit and every kind.
+const FLIGHTS: [[&str; 4]; 5] = [
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"steady\"\nspeed_m_s = 5.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+        INERTIAS[0],
+    ],
+    [
+        "airspeed_kt = 104.0",
+        "altitude_ft = 1000.0",
+        "kind = \"steady\"\nspeed_kt = 10.0\nfrom_deg = 30.0\nup_m_s = 0.5\n",
+        INERTIAS[1],
+    ],
+    [
+        "airspeed_ft_s = 176.0",
+        "altitude_m = 300.0",
+        "kind = \"log-shear\"\nw20_m_s = 5.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+        INERTIAS[2],
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"log-shear\"\nw20_kt = 10.0\nfrom_deg = 30.0\nroughness_m = 0.6\n",
+        INERTIAS[0],
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"microburst\"\noutflow_m_s = 8.0\nradius_m = 600.0\npeak_height_m = 40.0\nnorth_m = 700.0\neast_m = 50.0\n",
+        INERTIAS[0],
+    ],
+];
+
+/// The files with every key, once for each set-point, and once for each speed, altitude and wind.
+pub(crate) fn texts() -> Vec<String> {
+    let whole = text("crates/fspid-scenario/tests/scenarios/every-key.toml");
+    let flying = text("crates/fspid-scenario/tests/scenarios/every-key-aircraft.toml");
+    let commands = SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint));
+    let flights = FLIGHTS.map(|flight| {
+        let parts = FLIGHTS[0].into_iter().zip(flight);
+        parts.fold(flying.clone(), |text, (from, to)| text.replace(from, to))
+    });
+    commands.into_iter().chain(flights).collect()
+}
+
+/// A number in the file: its line, what stands before it, and whether it is in a list.
+struct Number {
+    line: usize,
+    head: String,
+    in_list: bool,
+}
+
+fn numbers(text: &str) -> Vec<Number> {
+    let number = |(index, line): (usize, &str)| {
+        let (key, value) = line.split_once(" = ")?;
+        let in_list = value.starts_with('[');
+        let first = value.trim_matches(['[', ']']).split(',').next()?;
+        first.parse::<f64>().ok()?;
+        let head = format!("{key} = ");
+        Some(Number { line: index, head, in_list })
+    };
+    text.lines().enumerate().filter_map(number).collect()
+}
+
+fn with(text: &str, number: &Number, value: &str) -> String {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let rest = lines[number.line].split_once(", ").map_or("]", |(_, rest)| rest);
+    let changed = match number.in_list {
+        true => format!("{}[{value}, {rest}", number.head),
+        false => format!("{}{value}", number.head),
+    };
+    lines[number.line] = &changed;
+    lines.join("\n")
+}
+
+/// The path without list positions, with the kind of each table that has one.
+fn normalised(path: &str, document: &Value) -> String {
+    let mut at = document;
+    let mut words = Vec::new();
+    for step in path.split('.') {
+        let (name, index) = step.split_once('[').unwrap_or((step, ""));
+        at = &at[name];
+        if let (Ok(index), true) = (index.trim_end_matches(']').parse::<usize>(), at.is_array()) {
+            at = &at[index];
+        }
+        let kind = at.get("kind").and_then(Value::as_str);
+        words.push(kind.map_or(name.to_owned(), |kind| format!("{name}:{kind}")));
+    }
+    words.join(".")
+}
+
+/// The paths of all numbers in the schema, in the same form.
+fn in_schema(schema: &Value, path: &str, found: &mut BTreeSet<String>) {
+    let kind = schema["properties"]["kind"]["const"].as_str();
+    let path = kind.map_or(path.to_owned(), |kind| format!("{path}:{kind}"));
+    // A number, or a mark in its place.
+    let plain = |schema: &Value| match &schema["anyOf"] {
+        Value::Array(two) if two.iter().any(|one| one["$ref"].is_string()) => two[0].clone(),
+        _ => schema.clone(),
+    };
+    let (schema, items) = (&plain(schema), &plain(&schema["items"]));
+    if ["number", "integer"].iter().any(|word| schema["type"] == *word || items["type"] == *word) {
+        found.insert(path.clone());
+    }
+    for (key, property) in schema["properties"].as_object().into_iter().flatten() {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        in_schema(property, &path, found);
+    }
+    schema["oneOf"].as_array().into_iter().flatten().for_each(|one| in_schema(one, &path, found));
+    if items.is_object() {
+        in_schema(items, &path, found);
+    }
+}
+
+fn refuse(text: &str, number: &Number, value: &str) -> String {
+    let bad = with(text, number, value);
+    let Err(problems) = file::parse(&bad, "bad.toml", None, &[]) else {
+        panic!("{}{value} was accepted", number.head);
+    };
+    let key = number.head.trim_end_matches(" = ");
+    let at_line = |problem: &&file::Problem| {
+        problem.line_and_column().0 == number.line + 1 && problem.path.contains(key)
+    };
+    let found = problems.list.iter().find(at_line);
+    let found = found
+        .unwrap_or_else(|| panic!("{}{value}, line {}: {problems}", number.head, number.line + 1));
+    assert!(
+        !found.message.is_empty() && !found.found.is_empty() && !found.allowed.is_empty(),
+        "{problems}"
+    );
+    found.path.clone()
+}
+
+#[test]
+fn the_file_with_every_key_is_good() {
+    for text in texts() {
+        let study = file::parse(&text, "every-key.toml", None, &[]);
+        let study = study.unwrap_or_else(|problems| panic!("{problems}"));
+        assert!(study.warnings.is_empty(), "{:?}", study.warnings);
+        assert_eq!(crate::file::schema::fault(&file::schema(), &as_json(&text), ""), None);
+    }
+}
+
+#[test]
+fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
+    let mut covered = BTreeSet::new();
+    for text in texts() {
+        let document = as_json(&text);
+        for number in numbers(&text) {
+            for value in [
+                "nan",
+                "-nan",
+                "inf",
+                "-inf",
+                "1e999",
+                "-1e999",
+                "\"1.0\"",
+                "true",
+                "[]",
+                "{}",
+                "2026-11-20",
+            ] {
+                let path = refuse(&text, &number, value);
+                covered.insert(normalised(&path, &document));
+            }
+        }
+    }
+    let mut all = BTreeSet::new();
+    in_schema(&file::schema(), "", &mut all);
+    let missed: Vec<&String> = all.difference(&covered).collect();
+    assert!(missed.is_empty(), "numbers that no bad value was tried on: {missed:?}");
+    assert!(all.len() > 90, "{}", all.len());
+}
+
+#[test]
+fn every_number_refuses_what_lies_outside_its_range() {
+    let mut outside = 0;
+    let schema = file::schema();
+    for text in texts() {
+        for number in numbers(&text) {
+            for value in ["-1", "0", "-1e-9", "1e301"] {
+                let bad = with(&text, &number, value);
+                // The schema is the second opinion on what is in range.
+                if crate::file::schema::fault(&schema, &as_json(&bad), "").is_some() {
+                    refuse(&text, &number, value);
+                    outside += 1;
+                }
+            }
+        }
+    }
+    assert!(outside > 500, "{outside}");
+}
+
+#[test]
+fn whole_numbers_refuse_fractions_and_what_does_not_fit() {
+    let text = &texts()[0];
+    let whole = ["schema = ", "delay_samples = ", "seed = "];
+    let numbers = numbers(text);
+    let numbers: Vec<&Number> =
+        numbers.iter().filter(|number| whole.contains(&number.head.as_str())).collect();
+    assert_eq!(numbers.len(), 4);
+    for number in numbers {
+        for value in
+            ["1.5", "-1", "1e3", "99999999999999999999", "170141183460469231731687303715884105728"]
+        {
+            refuse(text, number, value);
+        }
+    }
+}

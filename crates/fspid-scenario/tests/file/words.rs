@@ -1,0 +1,93 @@
+//! Words of a file: each is built as what it says, and none falls to a default.
+
+use std::path::{Path, PathBuf};
+
+use fspid_scenario::file;
+
+/// The scenario that comes of the starter with these changes, in the words of the debugger, which leave nothing out.
+fn built(set: &[&str]) -> String {
+    let set: Vec<String> = set.iter().map(|it| (*it).to_owned()).collect();
+    let study = file::parse(file::starter(), "mine.toml", None, &set).expect("a scenario");
+    format!("{:?}", study.scenario)
+}
+
+/// Used to hold by chance: the last word of a list was whatever no arm named, so that a renamed word changed the
+/// controller in silence.
+#[test]
+fn every_word_of_a_controller_builds_something_of_its_own() {
+    const LIMITS: &str = "controller.FSPID.output_limits_deg=[-20.0, 20.0]";
+    const MODEL: &str = "controller.FSPID.supervisor.model={ bandwidth_rad_s = 2.0 }";
+    let families: [&[&[&str]]; 7] = [
+        &[&["controller.FSPID.integral=bumpless"], &["controller.FSPID.integral=literal"]],
+        &[
+            &["controller.FSPID.derivative_on=error"],
+            &["controller.FSPID.derivative_on=measurement"],
+        ],
+        &[
+            &[LIMITS, "controller.FSPID.anti_windup={ kind = \"none\" }"],
+            &[LIMITS, "controller.FSPID.anti_windup={ kind = \"conditional\" }"],
+            &[
+                LIMITS,
+                "controller.FSPID.anti_windup={ kind = \"back-calculation\", tracking_s = 1.0 }",
+            ],
+            &[
+                LIMITS,
+                "controller.FSPID.anti_windup={ kind = \"clamping\", lower_deg = -1.0, upper_deg = 1.0 }",
+            ],
+        ],
+        &[&["controller.FSPID.law=memoryless"], &["controller.FSPID.law=accumulating"]],
+        &[
+            &["controller.FSPID.supervisor.error_sign=setpoint-minus-measurement"],
+            &["controller.FSPID.supervisor.error_sign=measurement-minus-setpoint"],
+        ],
+        &[
+            &["controller.FSPID.supervisor.change=rate"],
+            &["controller.FSPID.supervisor.change=delta"],
+            &["controller.FSPID.supervisor.sees=error-and-rate"],
+            &["controller.FSPID.supervisor.sees=error-and-model-error", MODEL],
+        ],
+        &[
+            &["controller.FSPID.supervisor.out_of_range=clamp"],
+            &["controller.FSPID.supervisor.out_of_range=evaluate"],
+            &["controller.FSPID.supervisor.out_of_range=error"],
+        ],
+    ];
+    for family in families {
+        let all: Vec<String> = family.iter().map(|set| built(set)).collect();
+        for (place, one) in all.iter().enumerate() {
+            for (other, set) in all.iter().zip(family).take(place) {
+                assert!(one != other, "{:?} and {set:?} build the same", family[place]);
+            }
+        }
+    }
+}
+
+/// The types of words are matched without a wildcard; a string that is compared would be a way around them.
+#[test]
+fn no_reader_of_files_compares_a_word_as_a_string() {
+    let sources = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = Vec::new();
+    for folder in ["file", "fuzzy_system/toml_file"] {
+        visit(&sources.join(folder), &mut found);
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+fn visit(folder: &Path, found: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("readable").path();
+        if path.is_dir() {
+            visit(&path, found);
+        } else if path.extension().is_some_and(|it| it == "rs") {
+            let text = std::fs::read_to_string(&path).expect("a source file");
+            let lines = text.lines().enumerate().filter(|(_, line)| compares(line));
+            found.extend(lines.map(|(at, line)| format!("{}:{}: {line}", path.display(), at + 1)));
+        }
+    }
+}
+
+fn compares(line: &str) -> bool {
+    let of_kind = ["section.kind {", "part.kind {", "section.kind ==", "part.kind =="];
+    let of_text = line.contains(".text(\"") && line.contains("Some(\"");
+    of_text || of_kind.iter().any(|it| line.contains(it))
+}

@@ -1,0 +1,97 @@
+//! The aircraft alone: its modes, behind servo and dead time.
+
+use fspid_aircraft::modes::Growth;
+use fspid_aircraft::qualities::{
+    Category, CommandPath, EquivalentDelay, Phugoid, PitchModel, ShortPeriod,
+};
+use fspid_sim::{LinearPlant, Scenario, SimError};
+
+use crate::judgement::{Case, NotEvaluated, Place, PlantAt};
+use fspid_scenario::file::{Airframe, Study};
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::Requirement;
+
+/// A case for each plant of the scenario.
+pub(super) fn cases(study: &Study, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
+    let scenario = &study.scenario;
+    let path = command_path(scenario)?;
+    let several = !scenario.plant_changes.is_empty();
+    let mut cases = Vec::new();
+    for ((at, plant), airframe) in plants(scenario)?.into_iter().zip(&study.airframes) {
+        let value = value(requirement.measure, &plant, airframe, &path)?;
+        let place = Place { plant: several.then_some(at), ..Place::default() };
+        cases.push(Case { value, place });
+    }
+    Ok(cases)
+}
+
+/// The linear plants, an aircraft's model at its trim in its place.
+fn plants(scenario: &Scenario) -> Result<Vec<(PlantAt, LinearPlant)>, SimError> {
+    let first = match (scenario.plant.linear(), scenario.plant.aircraft()) {
+        (Some(plant), _) => plant.clone(),
+        (None, Some(aircraft)) => aircraft.linear()?,
+        (None, None) => return Err(SimError::NotLinear),
+    };
+    let later = (1..)
+        .zip(&scenario.plant_changes)
+        .map(|(index, change)| (PlantAt { index, from_s: change.at_s() }, change.target().clone()));
+    Ok(std::iter::once((PlantAt { index: 0, from_s: 0.0 }, first)).chain(later).collect())
+}
+
+/// Servo, whole samples of delay, and half a sample for which the hold keeps a command on average.
+fn command_path(scenario: &Scenario) -> Result<CommandPath, SimError> {
+    let actuator = match scenario.surroundings.actuator {
+        Some(actuator) => actuator,
+        None => scenario.servo.as_actuator()?,
+    };
+    let samples = actuator.delay_samples() as f64 + 0.5;
+    let servo = actuator.lag().transfer_function()?;
+    Ok(CommandPath { servo, delay_s: samples * scenario.timing.dt_s() })
+}
+
+fn value(
+    measure: Measure,
+    plant: &LinearPlant,
+    airframe: &Airframe,
+    path: &CommandPath,
+) -> Result<f64, NotEvaluated> {
+    let needs_speed = measure == Measure::ControlAnticipation;
+    // Modes do not depend on the speed that the loads are computed with; any will do for them.
+    let speed_m_s = match airframe.airspeed_m_s {
+        Some(speed_m_s) => speed_m_s,
+        None if needs_speed => return Err(NotEvaluated::SpeedUnknown),
+        None => 1.0,
+    };
+    let transfer = plant.transfer_function().clone();
+    let model = PitchModel::new(transfer, speed_m_s, airframe.gravity_m_s2)
+        .map_err(NotEvaluated::Aircraft)?
+        .behind(path.clone());
+    // Categories differ in their limits, which are the requirement's here, and not in the values.
+    let short_period = || ShortPeriod::of(&model, Category::B);
+    Ok(match measure {
+        Measure::ShortPeriodDamping => short_period()?.mode.damping_ratio,
+        Measure::ControlAnticipation => short_period()?.cap,
+        Measure::PhugoidDamping => phugoid_damping(&Phugoid::of(&model)?),
+        Measure::PhugoidDoubling => phugoid_doubling_s(&Phugoid::of(&model)?),
+        // The equivalent delay, and nothing else comes here.
+        _ => EquivalentDelay::of(&model)?.delay_s,
+    })
+}
+
+/// Damping of a phugoid; one that creeps has real poles, whose damping is 1 or -1.
+fn phugoid_damping(phugoid: &Phugoid) -> f64 {
+    match phugoid {
+        Phugoid::Oscillation { mode, .. } => mode.damping_ratio,
+        Phugoid::Creep { real_rad_s, .. } if *real_rad_s < 0.0 => 1.0,
+        Phugoid::Creep { .. } => -1.0,
+    }
+}
+
+/// Time to double; infinite for a phugoid that does not grow.
+fn phugoid_doubling_s(phugoid: &Phugoid) -> f64 {
+    let (Phugoid::Oscillation { growth, .. } | Phugoid::Creep { growth, .. }) = phugoid;
+    match growth {
+        Growth::Doubles(time_s) => *time_s,
+        Growth::Halves(_) | Growth::Stays => f64::INFINITY,
+    }
+}

@@ -1,0 +1,260 @@
+//! What a flight shows.
+
+use std::ops::RangeInclusive;
+
+use fspid_sim::air::WindKind;
+use fspid_sim::{Timing, Trace};
+
+use crate::judgement::{Case, NotEvaluated, Place, StepAt};
+use crate::metrics::{Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics};
+use crate::simulation::ControllerResult;
+use fspid_scenario::file::Study;
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::{Air, Conditions, Requirement};
+use fspid_scenario::units::degrees;
+
+/// Cases of a measure of a flight.
+pub(super) fn cases(
+    study: &Study,
+    result: &ControllerResult,
+    requirement: &Requirement,
+) -> Result<Vec<Case>, NotEvaluated> {
+    check_air(study, &requirement.conditions)?;
+    let flown =
+        Flown { trace: &result.trace, metrics: &result.metrics, timing: study.scenario.timing };
+    match requirement.measure {
+        Measure::RecoveryTime => flown.recovery(&requirement.conditions),
+        Measure::FinalErrorAngle => flown.final_errors(&requirement.conditions),
+        Measure::Overshoot | Measure::RiseTime | Measure::SettlingTime | Measure::FinalError => {
+            flown.steps(requirement)
+        }
+        _ => flown.whole(requirement).map(|case| vec![case]),
+    }
+}
+
+/// Refuses flights that have no measures at all, such as those that diverged.
+pub(super) fn require_measures(result: &ControllerResult) -> Result<(), NotEvaluated> {
+    result.metrics.effort.map(|_| ()).map_err(NotEvaluated::from)
+}
+
+/// Refuses a flight in another air than the one that is asked for.
+fn check_air(study: &Study, conditions: &Conditions) -> Result<(), NotEvaluated> {
+    let Some(asked) = conditions.air else {
+        return Ok(());
+    };
+    let weather = study.scenario.surroundings.weather.as_ref();
+    let turbulent = weather.is_some_and(|weather| weather.turbulence.is_some());
+    let gusts = weather
+        .is_some_and(|weather| weather.winds.iter().any(|wind| wind.kind() != WindKind::Steady));
+    let found = match (asked, turbulent, gusts) {
+        (Air::Smooth, true, _) => "turbulence",
+        (Air::Smooth, false, true) => "gusts",
+        (Air::Turbulent, false, _) => "no turbulence",
+        _ => return Ok(()),
+    };
+    Err(NotEvaluated::OtherAir { asked, found })
+}
+
+struct Flown<'a> {
+    trace: &'a Trace,
+    metrics: &'a FlightMetrics,
+    timing: Timing,
+}
+
+impl Flown<'_> {
+    /// The steps of the command that count.
+    fn counted(
+        &self,
+        conditions: &Conditions,
+    ) -> Result<Vec<(StepAt, &EdgeMetrics)>, NotEvaluated> {
+        let steps = (1..).zip(&self.metrics.edges).map(|(number, edge)| {
+            let (from_deg, to_deg) = (degrees(edge.from_rad), degrees(edge.to_rad));
+            (StepAt { number, at_s: edge.at_s, from_deg, to_deg }, edge)
+        });
+        let steps: Vec<_> = steps.collect();
+        let sizes = || steps.iter().map(|(step, _)| step.to_deg - step.from_deg);
+        let counted: Vec<_> = steps
+            .iter()
+            .filter(|(step, _)| conditions.counts_step(step.to_deg - step.from_deg))
+            .copied()
+            .collect();
+        match (counted.is_empty(), conditions.step_deg) {
+            (false, _) => Ok(counted),
+            (true, Some(asked_deg)) => {
+                Err(NotEvaluated::NoStepOf { asked_deg, found_deg: sizes().collect() })
+            }
+            (true, None) => Err(NotEvaluated::Absent(Absent::NoStep)),
+        }
+    }
+
+    fn steps(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
+        let steps = self.counted(&requirement.conditions)?;
+        let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
+            let value = edge.step.measured(requirement.measure)?;
+            Ok(Case { value, place: at_step(*step) })
+        };
+        steps.iter().map(case).collect()
+    }
+
+    /// Samples from a step to the last one before the next.
+    fn window(&self, edge: &EdgeMetrics) -> RangeInclusive<usize> {
+        let start = self.timing.first_sample_at(edge.at_s);
+        let later = self.metrics.edges.iter().map(|edge| self.timing.first_sample_at(edge.at_s));
+        let next = later.filter(|sample| *sample > start).min();
+        start..=next.unwrap_or(self.trace.rows()).saturating_sub(1)
+    }
+
+    /// Errors of some samples, rad.
+    fn errors_rad(&self, time: RangeInclusive<usize>) -> Vec<f64> {
+        let setpoints = self.trace.setpoint_rad.get(time.clone()).unwrap_or_default();
+        let thetas = self.trace.theta_rad.get(time).unwrap_or_default();
+        setpoints.iter().zip(thetas).map(|(setpoint, theta)| setpoint - theta).collect()
+    }
+
+    fn final_errors(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {
+        let last = self.trace.rows().saturating_sub(1);
+        // A command that never moves is held from the start to the end.
+        if self.metrics.edges.is_empty() && conditions.step_deg.is_none() {
+            let value = degrees(self.errors_rad(last..=last).first().map_or(f64::NAN, |e| e.abs()));
+            let place = Place { at_s: Some(self.timing.time_s(last)), ..Place::default() };
+            return Ok(vec![Case { value, place }]);
+        }
+        let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
+            let theta_rad = self.trace.theta_rad.get(*self.window(edge).end()).copied();
+            let left_rad = edge.to_rad - theta_rad.unwrap_or(f64::NAN);
+            Case { value: degrees(left_rad.abs()), place: at_step(*step) }
+        };
+        Ok(self.counted(conditions)?.iter().map(case).collect())
+    }
+
+    /// Samples of the time that counts; the whole flight where no end is given.
+    fn time(&self, conditions: &Conditions) -> Result<RangeInclusive<usize>, NotEvaluated> {
+        let end_s = self.timing.end_s();
+        let (from_s, to_s) = (conditions.from_s.unwrap_or(0.0), conditions.to_s.unwrap_or(end_s));
+        let first = self.timing.first_sample_at(from_s);
+        // The sample at the end counts, and none after it.
+        let last = match conditions.to_s {
+            Some(to_s) => self.sample_up_to(to_s),
+            None => Some(self.trace.rows().saturating_sub(1)),
+        };
+        match last {
+            Some(last) if first <= last && last < self.trace.rows() => Ok(first..=last),
+            _ => Err(NotEvaluated::NotFlown { from_s, to_s, end_s }),
+        }
+    }
+
+    /// The last sample that is not after a time; none for a time after the end of the flight.
+    fn sample_up_to(&self, time_s: f64) -> Option<usize> {
+        let next = self.timing.first_sample_at(time_s);
+        // A time a rounding before a sample is on it, as everywhere.
+        let allowance_s = 1e-6 * self.timing.dt_s();
+        match next < self.timing.rows() {
+            true if self.timing.time_s(next) <= time_s + allowance_s => Some(next),
+            true => next.checked_sub(1),
+            false => None,
+        }
+    }
+
+    fn recovery(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {
+        let within_deg = conditions.within_deg.unwrap_or(0.0);
+        if let Some(from_s) = conditions.from_s {
+            let place = Place { at_s: Some(from_s), ..Place::default() };
+            let errors = self.errors_rad(self.time(conditions)?).into_iter().map(degrees);
+            let errors: Vec<f64> = errors.collect();
+            return Ok(vec![self.recovered(&errors, within_deg, place)?]);
+        }
+        let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
+            let theta = self.trace.theta_rad.get(self.window(edge)).unwrap_or_default();
+            let errors: Vec<f64> = theta.iter().map(|theta| degrees(edge.to_rad - theta)).collect();
+            self.recovered(&errors, within_deg, at_step(*step))
+        };
+        self.counted(conditions)?.iter().map(case).collect()
+    }
+
+    /// The time after the first of some errors from which on they stay within a band, between samples by a straight line.
+    fn recovered(
+        &self,
+        errors_deg: &[f64],
+        within_deg: f64,
+        place: Place,
+    ) -> Result<Case, NotEvaluated> {
+        // Written so that NaN is outside.
+        let is_outside = |error: &f64| !(error.abs() <= within_deg);
+        let Some(outside) = errors_deg.iter().rposition(is_outside) else {
+            return Ok(Case { value: 0.0, place });
+        };
+        match errors_deg.get(outside..) {
+            Some([before, after, ..]) => {
+                let edge = within_deg.copysign(*before);
+                let share = (before - edge) / (before - after);
+                let value = (outside as f64 + share) * self.timing.dt_s();
+                Ok(Case { value, place })
+            }
+            _ => {
+                let window_s = errors_deg.len().saturating_sub(1) as f64 * self.timing.dt_s();
+                let place = Box::new(place);
+                Err(NotEvaluated::NotRecovered { within_deg, window_s, place })
+            }
+        }
+    }
+
+    /// A measure of the whole flight or of the time that counts.
+    fn whole(&self, requirement: &Requirement) -> Result<Case, NotEvaluated> {
+        let time = self.time(&requirement.conditions)?;
+        let dt_s = self.timing.dt_s();
+        let effort = |of: fn(&CommandEffort) -> f64| {
+            self.metrics.effort.map(|effort| of(&effort)).map_err(NotEvaluated::from)
+        };
+        let integral = |of: fn(&ErrorIntegrals) -> f64| {
+            self.metrics.integrals.map(|found| of(&found)).map_err(NotEvaluated::from)
+        };
+        let nowhere = |value: f64| Case { value, place: Place::default() };
+        match requirement.measure {
+            Measure::RmsError => Ok(nowhere(self.rms_deg(time))),
+            Measure::LargestError => Ok(self.largest_error(time)),
+            Measure::ErrorIntegral => Ok(nowhere(degrees(integral(|i| i.iae_rad_s)?))),
+            Measure::TimedErrorIntegral => Ok(nowhere(degrees(integral(|i| i.itae_rad_s2)?))),
+            Measure::CommandVariation => Ok(nowhere(degrees(effort(|e| e.variation_rad)?))),
+            Measure::ElevatorTravel => {
+                let elevator = CommandEffort::of(&self.trace.elevator_rad, dt_s);
+                Ok(nowhere(degrees(elevator.variation_rad)))
+            }
+            Measure::LargestCommand => Ok(nowhere(degrees(effort(|e| e.largest_rad)?))),
+            Measure::CommandRate => Ok(nowhere(degrees(effort(|e| e.fastest_rad_s)?))),
+            Measure::ElevatorRate => {
+                let elevator = CommandEffort::of(&self.trace.elevator_rad, dt_s);
+                Ok(nowhere(degrees(elevator.fastest_rad_s)))
+            }
+            // The share of samples whose command was cut, and nothing else comes here.
+            _ => {
+                let share = self.trace.saturated_samples as f64 / self.trace.rows() as f64;
+                Ok(nowhere(100.0 * share))
+            }
+        }
+    }
+
+    /// As in the metrics of a flight, in radians first.
+    fn rms_deg(&self, time: RangeInclusive<usize>) -> f64 {
+        let errors = self.errors_rad(time);
+        let squares: f64 = errors.iter().map(|error| error * error).sum();
+        degrees((squares / errors.len() as f64).sqrt())
+    }
+
+    fn largest_error(&self, time: RangeInclusive<usize>) -> Case {
+        let first = *time.start();
+        let mut largest = Case { value: 0.0, place: Place::default() };
+        for (sample, error_rad) in (first..).zip(self.errors_rad(time)) {
+            let value = degrees(error_rad.abs());
+            // Written so that NaN is the largest.
+            if !(value <= largest.value) {
+                let place = Place { at_s: Some(self.timing.time_s(sample)), ..Place::default() };
+                largest = Case { value, place };
+            }
+        }
+        largest
+    }
+}
+
+fn at_step(step: StepAt) -> Place {
+    Place { step: Some(step), ..Place::default() }
+}

@@ -1,0 +1,115 @@
+//! What answers requirements: one controller's flight, its linear loops, and the aircraft alone.
+
+mod airframe;
+mod flown;
+mod frozen;
+mod linear;
+
+use std::cell::OnceCell;
+
+use fspid_sim::{Controller, NamedController};
+
+use super::{Case, NotEvaluated};
+use crate::metrics::Verdict;
+use crate::simulation::ControllerResult;
+use fspid_scenario::file::Study;
+use fspid_scenario::measure::Family;
+use fspid_scenario::requirement::Requirement;
+use linear::PlantEvidence;
+
+/// Everything that is known of one controller of a study. What a flight does not show is computed when it is first
+/// asked for.
+#[derive(Debug)]
+pub struct Evidence<'a> {
+    study: &'a Study,
+    named: &'a NamedController,
+    result: &'a ControllerResult,
+    /// Whether the loops are stable, asked of every flight.
+    held: OnceCell<Result<(), NotEvaluated>>,
+    /// The loops with their margins, which take ten times as long.
+    loops: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+    /// The same with maps of frozen gains, which take a hundred times as long.
+    mapped: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+}
+
+/// Points along each input of a map of frozen gains.
+const MAP_POINTS: usize = 9;
+
+impl<'a> Evidence<'a> {
+    /// Evidence of a flight of one of a study's controllers.
+    #[must_use]
+    pub fn new(study: &'a Study, named: &'a NamedController, result: &'a ControllerResult) -> Self {
+        Self {
+            study,
+            named,
+            result,
+            held: OnceCell::new(),
+            loops: OnceCell::new(),
+            mapped: OnceCell::new(),
+        }
+    }
+
+    /// Name of the controller.
+    #[must_use]
+    pub fn controller(&self) -> &str {
+        &self.named.name
+    }
+
+    /// Every case of a requirement's measure: the steps of a flight, the plants, the frozen gains.
+    ///
+    /// # Errors
+    /// [`NotEvaluated`] where one case has no value; the others do not count then.
+    pub fn cases(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
+        match requirement.measure.family() {
+            Family::Step | Family::Flight => {
+                // Where the loop says it of each plant, it says of which.
+                if self.is_unstable_beyond_fixed_gains() {
+                    self.require_stability()?;
+                }
+                flown::require_measures(self.result)?;
+                self.require_stability()?;
+                flown::cases(self.study, self.result, requirement)
+            }
+            Family::Loop => linear::cases(self.loops()?, self.result, requirement),
+            Family::Frozen => {
+                frozen::require_whole_map(&self.named.controller)?;
+                frozen::cases(self.mapped()?, requirement)
+            }
+            Family::Airframe => airframe::cases(self.study, requirement),
+        }
+    }
+
+    /// True for the verdict of a loop at rest whose gains move or whose command is limited.
+    fn is_unstable_beyond_fixed_gains(&self) -> bool {
+        let is_simple = match &self.named.controller {
+            Controller::Fixed(pid) => pid.config().is_linear(),
+            Controller::SelfTuning(_) => false,
+        };
+        !is_simple && matches!(self.result.metrics.verdict, Verdict::Unstable { .. })
+    }
+
+    /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.
+    fn require_stability(&self) -> Result<(), NotEvaluated> {
+        let scenario = &self.study.scenario;
+        let held = self.held.get_or_init(|| linear::require_stability(scenario, self.named));
+        held.clone()
+    }
+
+    fn loops(&self) -> Result<&[PlantEvidence], NotEvaluated> {
+        self.computed(&self.loops, 0)
+    }
+
+    fn mapped(&self) -> Result<&[PlantEvidence], NotEvaluated> {
+        self.computed(&self.mapped, MAP_POINTS)
+    }
+
+    fn computed<'b>(
+        &self,
+        cell: &'b OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+        map_points: usize,
+    ) -> Result<&'b [PlantEvidence], NotEvaluated> {
+        let scenario = &self.study.scenario;
+        let loops = cell.get_or_init(|| linear::loops(scenario, self.named, map_points));
+        loops.as_deref().map_err(NotEvaluated::clone)
+    }
+}

@@ -1,0 +1,18 @@
+//! Whether requirements are met.
+//!
+//! [`Evidence`] answers a requirement from the flight, the linear loop or the aircraft itself, case by case: each step
+//! of the command, each plant of a change in flight, each gain the supervisor can produce. A [`Judgement`] holds the
+//! worst case. What cannot be evaluated is not met, and says why.
+
+mod case;
+mod evidence;
+mod judge;
+mod own_flight;
+mod reason;
+
+pub use case::{Case, FrozenAt, Place, PlantAt, StepAt};
+pub use evidence::Evidence;
+pub(crate) use judge::is_of_aircraft;
+pub use judge::{AIRCRAFT, Judgement, judge};
+pub(crate) use own_flight::flown as flown_on_their_own;
+pub use reason::NotEvaluated;
