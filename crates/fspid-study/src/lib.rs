@@ -22,7 +22,6 @@ pub mod judgement;
 pub mod metrics;
 pub mod output;
 pub mod report;
-pub mod reproduce;
 pub mod rows;
 pub mod shell;
 pub mod simulation;

@@ -6,7 +6,7 @@ mod designs;
 mod fly;
 mod flying;
 mod fuzzy_system;
-mod paper;
 mod report;
 mod requirements;
+mod sound;
 mod step_metrics;

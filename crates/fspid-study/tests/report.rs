@@ -1,16 +1,10 @@
 //! The reports as documents: complete, self-contained, well-formed, escaped, and the same each time.
 
-use std::collections::BTreeSet;
-
 use fspid_scenario::file::{self, Study};
 use fspid_study::report;
-use fspid_study::reproduce::{CLAIMS, Library, Reproduction};
 use fspid_study::simulation::Simulation;
 
-fn paper() -> (Library, Reproduction) {
-    let reproduction = Reproduction::stored().expect("the shipped scenarios are right");
-    (Library::stored(), reproduction)
-}
+use crate::sound::assert_sound;
 
 fn flight(text: &str) -> (Study, Simulation) {
     let study = file::parse(text, "test.toml", None, &[]).expect("the scenario is right");
@@ -54,144 +48,9 @@ measure = "overshoot_pct"
 most = 5.0
 "#;
 
-/// Every tag of a page: its name and the text of its attributes.
-fn tags(html: &str) -> Vec<(String, String)> {
-    let mut tags = Vec::new();
-    for part in html.split('<').skip(1) {
-        // No attribute of ours holds a bare `>`; text escapes it.
-        let (tag, _) = part.split_once('>').expect("every tag is closed");
-        let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
-        tags.push((name.trim_end_matches('/').to_owned(), attributes.to_owned()));
-    }
-    tags
-}
-
-fn attributes<'a>(tags: &'a [(String, String)], name: &str) -> Vec<&'a str> {
-    let start = format!("{name}=\"");
-    let of = |attributes: &'a str| {
-        let padded =
-            attributes.find(&start).filter(|at| *at == 0 || attributes[..*at].ends_with(' '))?;
-        attributes[padded + start.len()..].split('"').next()
-    };
-    tags.iter().filter_map(|(_, attributes)| of(attributes)).collect()
-}
-
-const VOID: [&str; 4] = ["meta", "br", "hr", "!doctype"];
-
-fn assert_sound(html: &str) {
-    let tags = tags(html);
-    let mut open: Vec<&str> = Vec::new();
-    for (name, attributes) in &tags {
-        if let Some(name) = name.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name), "closed out of turn");
-        } else if !VOID.contains(&name.as_str()) && !attributes.ends_with('/') {
-            open.push(name);
-        }
-    }
-    assert!(open.is_empty(), "never closed: {open:?}");
-    let ids = attributes(&tags, "id");
-    let unique: BTreeSet<&str> = ids.iter().copied().collect();
-    assert_eq!(ids.len(), unique.len(), "an id is given twice");
-    for reference in attributes(&tags, "href") {
-        let id = reference.strip_prefix('#').expect("references stay in the page");
-        assert!(unique.contains(id), "nothing has the id {id}");
-    }
-    for name in attributes(&tags, "aria-labelledby").iter().flat_map(|names| names.split(' ')) {
-        assert!(unique.contains(name), "nothing has the id {name}");
-    }
-    assert!(attributes(&tags, "src").is_empty(), "something is loaded");
-    assert!(
-        tags.iter().all(
-            |(name, _)| !["script", "link", "iframe", "img", "object"].contains(&name.as_str())
-        )
-    );
-    assert!(!html.contains("@import") && !html.contains("class=\"failed\""));
-    let urls = html.match_indices("url(").filter(|(at, _)| !html[at + 4..].starts_with('#'));
-    assert_eq!(urls.count(), 0, "a style refers to something outside");
-    // Name spaces of SVG are names, not references.
-    let outside = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
-    assert!(!outside.contains("http://") && !outside.contains("https://"));
-    assert!(html.contains("<html lang=\"en\">") && html.contains("name=\"viewport\""));
-}
-
 #[test]
-fn the_report_of_the_paper_is_sound_and_holds_every_claim() {
-    let (library, reproduction) = paper();
-    let html = report::of_reproduction(&library, &reproduction);
-    assert_sound(&html);
-    for claim in CLAIMS {
-        assert!(html.contains(&format!("<tr id=\"{}\">", claim.id)), "{}", claim.id);
-    }
-    for statement in &reproduction.statements {
-        assert!(html.contains(&format!("<tr id=\"{}\">", statement.id)), "{}", statement.id);
-    }
-    assert!(html.contains(&reproduction.digest) && html.contains(env!("CARGO_PKG_VERSION")));
-    assert!(html.len() < 6_000_000, "{} bytes", html.len());
-}
-
-#[test]
-fn every_assumption_and_erratum_has_its_anchor() {
-    let (library, reproduction) = paper();
-    let html = report::of_reproduction(&library, &reproduction);
-    for number in 1..=23 {
-        assert!(html.contains(&format!("<h3 id=\"A{number}\">")), "A{number}");
-    }
-    for number in 1..=19 {
-        assert!(html.contains(&format!("id=\"E{number}\">")), "E{number}");
-    }
-}
-
-#[test]
-fn parameters_that_the_claims_do_not_determine_are_named_where_there_are_several_seeds() {
-    let (library, mut reproduction) = paper();
-    for problem in &mut reproduction.record.problems {
-        problem.runs.truncate(1);
-        let mut other = problem.runs[0].clone();
-        other.seed += 1;
-        other.point[0] *= 2.0;
-        problem.runs.push(other);
-    }
-    let html = report::of_reproduction(&library, &reproduction);
-    assert_sound(&html);
-    assert!(html.contains("<strong>Not determined by the claims:</strong> error_scale."));
-}
-
-#[test]
-fn two_runs_write_the_same_bytes() {
-    let once = || {
-        let (library, reproduction) = paper();
-        (
-            report::of_reproduction(&library, &reproduction),
-            report::files_of_reproduction(&library, &reproduction),
-        )
-    };
-    assert!(once() == once());
+fn two_reports_of_a_flight_have_the_same_bytes() {
     assert!(of_flight(HOSTILE) == of_flight(HOSTILE));
-}
-
-#[test]
-fn what_lies_beside_the_report_has_names_of_its_own_and_can_be_flown_again() {
-    let (library, reproduction) = paper();
-    let files = report::files_of_reproduction(&library, &reproduction);
-    let names: BTreeSet<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names.len(), files.len(), "a name is given twice");
-    for (name, text) in &files {
-        match name.split('/').next() {
-            Some("figures") => {
-                assert!(text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"), "{name}")
-            }
-            Some("traces") => assert!(text.starts_with("time_s,"), "{name}"),
-            Some("scenarios") => {
-                let again = file::parse(text, name, None, &[]);
-                assert!(again.is_ok(), "{name}");
-            }
-            _ => panic!("{name} belongs nowhere"),
-        }
-    }
-    assert!(
-        names.contains("scenarios/own/figure-8b.toml")
-            && names.contains("figures/figure-8b-own.svg")
-    );
 }
 
 #[test]

@@ -8,10 +8,9 @@ use serde_json::{Map, Value, json};
 use super::Format;
 use crate::argument::Folder;
 use crate::exit::{Failure, note};
+use fspid_paper::identify::{Options, identify};
+use fspid_paper::{Library, Reproduction, Status, Stored, fallen, recorded_toml};
 use fspid_study::output;
-use fspid_study::report;
-use fspid_study::reproduce::identify::{Options, identify};
-use fspid_study::reproduce::{Library, Reproduction, Status, Stored, fallen, recorded_toml};
 
 /// Regenerate the paper's figures, judge every claim in it, and write one report.
 #[derive(Debug, Args)]
@@ -64,12 +63,15 @@ fn identified(arguments: &Arguments) -> Result<(Library, Reproduction), Failure>
 }
 
 fn write_all(out: &Path, library: &Library, reproduction: &Reproduction) -> Result<(), Failure> {
-    for (name, text) in report::files_of_reproduction(library, reproduction) {
+    for (name, text) in fspid_paper::report::files_of_reproduction(library, reproduction) {
         write_below(out, &name, &text)?;
     }
     output::write(&out.join("claims.json"), format!("{:#}\n", reproduction.claims_json()))?;
     output::write(&out.join("statuses.toml"), recorded_toml(reproduction))?;
-    output::write(&out.join("report.html"), report::of_reproduction(library, reproduction))?;
+    output::write(
+        &out.join("report.html"),
+        fspid_paper::report::of_reproduction(library, reproduction),
+    )?;
     Ok(())
 }
 

@@ -8,7 +8,8 @@ use fspid_scenario::file::Study;
 /// Error and change at each sample of a controller's flight, in the supervisor's units and within its
 /// range; nothing for fixed gains, a supervisor that sees something else, or a flight that cannot be
 /// flown.
-pub(crate) fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
+#[must_use]
+pub fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
     let scenario = &study.scenario;
     let named = scenario.controllers.iter().position(|named| named.name == name);
     let Some((index, named)) = named.and_then(|at| Some((at, scenario.controllers.get(at)?)))

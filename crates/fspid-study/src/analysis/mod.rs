@@ -31,7 +31,7 @@ pub(crate) use at_rest::held_in_words;
 pub use at_rest::{AtRest, RestGains};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use flights::Flights;
-pub(crate) use flown::flown_inputs;
+pub use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
 pub use loops::{AnalysedLoop, PlantLoop, RestLoop};

@@ -33,7 +33,7 @@ pub use against::{Comparison, Difference};
 pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
 pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
 pub use file::{Origin, Seal, from_text, to_text};
-pub(crate) use scope::in_short as scope_in_short;
+pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
 /// What came of certifying one controller with one plant.

@@ -105,7 +105,8 @@ pub(super) fn asked_in_words(range: Range) -> String {
 }
 
 /// For a cell of a table: set-points, loads, and whether limits are covered.
-pub(crate) fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
+#[must_use]
+pub fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
     let scope = certificate.scope(rechecked);
     let limits = match (scope.limits.is_empty(), scope.pitch_within_rad) {
         (true, _) => "",

@@ -106,7 +106,8 @@ impl std::error::Error for Absent {}
 pub type Measured = Result<f64, Absent>;
 
 /// A time for people: at most six decimals, none that say nothing.
-pub(crate) fn short(value: f64) -> String {
+#[must_use]
+pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -27,7 +27,7 @@ const MOST_STEPS: usize = 40;
 const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
 
 /// "2, down: +1 to −1 deg at 6.60 s".
-pub(super) fn step_name(index: usize, edge: &EdgeMetrics) -> String {
+pub fn step_name(index: usize, edge: &EdgeMetrics) -> String {
     let way = if edge.to_rad >= edge.from_rad { "up" } else { "down" };
     let (from, to) = (degrees(edge.from_rad), degrees(edge.to_rad));
     let level = |value: f64| {
@@ -77,7 +77,7 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
 }
 
 /// Every step measure of every controller.
-pub(super) fn table(caption: &str, simulation: &Simulation) -> Table {
+pub fn table(caption: &str, simulation: &Simulation) -> Table {
     let columns: Vec<&Column> = COLUMNS.iter().collect();
     let mut head = vec!["controller", "step of the command"];
     head.extend(columns.iter().map(|column| column.0));
@@ -90,11 +90,7 @@ pub(super) fn table(caption: &str, simulation: &Simulation) -> Table {
 
 /// What the paper measures, under two fits or variants side by side; both fly the same controllers
 /// and steps.
-pub(super) fn side_by_side(
-    caption: &str,
-    variants: &[(&str, &Simulation)],
-    only: &[&str],
-) -> Table {
+pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&str]) -> Table {
     let columns: Vec<&Column> =
         OF_THE_PAPER.iter().filter_map(|index| COLUMNS.get(*index)).collect();
     let mut head = vec!["controller", "step of the command"];
@@ -128,7 +124,7 @@ pub(super) fn side_by_side(
 }
 
 /// Integrals and effort of whole flights.
-pub(super) fn integrals(caption: &str, simulation: &Simulation) -> Table {
+pub fn integrals(caption: &str, simulation: &Simulation) -> Table {
     let head = [
         "controller",
         "IAE, deg s",

@@ -8,13 +8,13 @@ use fspid_scenario::file::{DerivedGains, Setting};
 const CONTROLLERS: &str = "controller";
 
 /// The settings of everything but the controllers.
-pub(super) fn of_flight(settings: &[Setting]) -> Table {
+pub fn of_flight(settings: &[Setting]) -> Table {
     let settings = settings.iter().filter(|setting| !is_of_controller(setting));
     table("Aircraft, servo, samples, command, disturbances and requirements.", "", settings)
 }
 
 /// The settings of each controller.
-pub(super) fn of_controllers(settings: &[Setting]) -> Vec<Table> {
+pub fn of_controllers(settings: &[Setting]) -> Vec<Table> {
     let settings: Vec<&Setting> = settings.iter().filter(|s| is_of_controller(s)).collect();
     let one = |settings: &[&Setting]| {
         let name = settings.first().map_or("", |setting| setting.table.as_str());
@@ -24,7 +24,7 @@ pub(super) fn of_controllers(settings: &[Setting]) -> Vec<Table> {
 }
 
 /// The gains that fly where no setting states them; none without such a controller.
-pub(super) fn derived(gains: &[DerivedGains]) -> Option<Table> {
+pub fn derived(gains: &[DerivedGains]) -> Option<Table> {
     let caption = "Gains that fly, where a schedule or a design makes them.";
     let head = ["controller", "kp", "ki, 1/s", "kd, s", "rate gain, s", "from"];
     let mut table = Table::new(caption, &head).in_cards();
@@ -62,7 +62,7 @@ fn table<'a>(caption: &str, shared: &str, settings: impl Iterator<Item = &'a Set
 const NOT_FORM: [&str; 3] = ["enters_at", "amplitude_deg", "standard_deviation_deg"];
 
 /// What disturbs, in words: "pulse (at 1 s, width 1 s)".
-pub(super) fn disturbance_forms(settings: &[Setting]) -> Vec<String> {
+pub fn disturbance_forms(settings: &[Setting]) -> Vec<String> {
     let disturbs = |setting: &&Setting| setting.table.starts_with("disturbance[");
     let settings: Vec<&Setting> = settings.iter().filter(disturbs).collect();
     settings.chunk_by(|a, b| a.table == b.table).map(form).collect()

@@ -28,12 +28,12 @@ fn nodes(range: f64, count: u32) -> Vec<f64> {
 }
 
 /// The paper's supervisor with this table; `None` for a range that no supervisor may have.
-pub(super) fn exact(table: &RuleTable, range: f64) -> Option<Supervisor<f64>> {
+pub fn exact(table: &RuleTable, range: f64) -> Option<Supervisor<f64>> {
     Supervisor::new(table, range, Defuzzifier::Exact, OutOfRange::Clamp).ok()
 }
 
 /// Fig. 4: input sets from the supervisor itself, output sets from their definition.
-pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
+pub fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
     let range = supervisor.range();
     let grid = nodes(range, POINTS + 1);
     let curve = |index: usize| {
@@ -80,17 +80,22 @@ pub(super) fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
 
 /// A cell without its counterpart: row, column, label, and the counterpart's row, column and label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct OddCell {
-    pub(super) output: Output,
-    pub(super) at: (Label, Label),
-    pub(super) found: Label,
-    pub(super) opposite: (Label, Label),
-    pub(super) there: Label,
+pub struct OddCell {
+    /// Which gain.
+    pub output: Output,
+    /// The cell: labels of the error and of its change.
+    pub at: (Label, Label),
+    /// What it says.
+    pub found: Label,
+    /// The cell opposite to it.
+    pub opposite: (Label, Label),
+    /// What that one says.
+    pub there: Label,
 }
 
 /// Cells that break the symmetry of their grid. For kp and ki: opposite inputs have opposite labels.
 /// For kd: opposite changes have the same label.
-pub(super) fn odd_cells(table: &RuleTable) -> Vec<OddCell> {
+pub fn odd_cells(table: &RuleTable) -> Vec<OddCell> {
     let mut odd = Vec::new();
     for output in Output::ALL {
         let grid = table.grid(output);
@@ -128,12 +133,7 @@ const DOUBLE_SLASHES: [(Label, Label); 3] =
     [(Label::NB, Label::PB), (Label::PB, Label::NB), (Label::PB, Label::NM)];
 
 /// The three grids of a table with their odd cells marked.
-pub(super) fn rule_tables(
-    prefix: &str,
-    name: &str,
-    table: &RuleTable,
-    marks: Marks,
-) -> Vec<Figure> {
+pub fn rule_tables(prefix: &str, name: &str, table: &RuleTable, marks: Marks) -> Vec<Figure> {
     let odd = odd_cells(table);
     let figure = |(output, letter, symbol): (Output, &str, &str)| {
         let grid = table.grid(output);
@@ -159,7 +159,7 @@ pub(super) fn rule_tables(
 }
 
 /// The rules of a supervisor, labels or numbers.
-pub(super) fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
+pub fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
     if let Some(table) = supervisor.table() {
         return rule_tables(prefix, name, &table, Marks::None);
     }
@@ -192,7 +192,7 @@ pub(super) fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> V
 
 /// What is marked in a rule table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Marks {
+pub enum Marks {
     /// Nothing.
     None,
     /// Cells without their counterpart, and cells that the paper prints oddly.
@@ -227,7 +227,7 @@ fn component(delta: Increments<f64>, output: Output) -> f64 {
 }
 
 /// The three gain surfaces: maps, and views in space if asked for.
-pub(super) fn surfaces(
+pub fn surfaces(
     prefix: &str,
     name: &str,
     supervisor: &Supervisor<f64>,
@@ -279,7 +279,7 @@ pub(super) fn surfaces(
 }
 
 /// What a supervisor adds at rest: kp, ki, kd.
-pub(super) fn at_rest(supervisor: &Supervisor<f64>) -> Option<[f64; 3]> {
+pub fn at_rest(supervisor: &Supervisor<f64>) -> Option<[f64; 3]> {
     let delta = supervisor.infer(0.0, 0.0).ok()?.delta;
     Some([delta.kp, delta.ki, delta.kd])
 }

@@ -9,22 +9,7 @@ macro_rules! templates {
     };
 }
 
-static TEMPLATES: Templates = Templates::new(templates![
-    "audit",
-    "paper",
-    "user",
-    "summary",
-    "conventions",
-    "supervisor",
-    "responses",
-    "disturbances",
-    "claims",
-    "document",
-    "identification",
-    "stability",
-    "variants",
-    "provenance",
-]);
+static TEMPLATES: Templates = Templates::new(templates!["audit", "user",]);
 
 /// The template filled with the context.
 pub(super) fn render(template: &str, context: Value) -> String {

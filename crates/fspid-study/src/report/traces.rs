@@ -7,19 +7,19 @@ use fspid_plot::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use fspid_scenario::units::degrees;
 
 /// How a flight is drawn.
-pub(super) struct Drawing<'a> {
+pub struct Drawing<'a> {
     /// Above the figure.
-    pub(super) title: &'a str,
+    pub title: &'a str,
     /// The scenario that was flown.
-    pub(super) scenario: &'a Scenario,
+    pub scenario: &'a Scenario,
     /// What happened.
-    pub(super) simulation: &'a Simulation,
+    pub simulation: &'a Simulation,
     /// Only these controllers; all of them if empty.
-    pub(super) only: &'a [&'a str],
+    pub only: &'a [&'a str],
     /// Also the elevator, and bands of 2 % about the set-points; colours by place, not by name.
-    pub(super) detailed: bool,
+    pub detailed: bool,
     /// Width, px: the narrower, the larger the letters where the figure is fitted to a column.
-    pub(super) width_px: f64,
+    pub width_px: f64,
 }
 
 /// What a nonlinear aircraft adds to the panels: label and column.
@@ -48,7 +48,7 @@ fn style(name: &str, index: usize) -> SeriesStyle {
 
 impl Drawing<'_> {
     /// Draws pitch, command and, for self-tuning controllers, the three gains.
-    pub(super) fn render(&self) -> Svg {
+    pub fn render(&self) -> Svg {
         let mut panels =
             vec![self.pitch(), self.angle("command u (deg)", |r| &r.trace.command_rad)];
         if self.detailed {
@@ -158,7 +158,7 @@ impl Drawing<'_> {
     }
 
     /// What the panels show, from above: only those that are drawn.
-    pub(super) fn panels_in_words(&self) -> String {
+    pub fn panels_in_words(&self) -> String {
         let bands = match self.bands().is_empty() {
             true => "",
             false => " with bands of 2 % of the step about each level of the command",
@@ -182,7 +182,7 @@ impl Drawing<'_> {
     }
 
     /// A sentence for the caption where the command's panel leaves spikes out.
-    pub(super) fn spikes(&self) -> String {
+    pub fn spikes(&self) -> String {
         let command: fn(&ControllerResult) -> &Vec<f64> = |result| &result.trace.command_rad;
         if self.range(&[], command).is_some() || self.without_spikes(command).is_none() {
             return String::new();
@@ -227,7 +227,7 @@ impl Drawing<'_> {
     }
 
     /// Names of flights whose lines leave a panel, which shows the range in which others can be read.
-    pub(super) fn leaving(&self) -> Vec<&str> {
+    pub fn leaving(&self) -> Vec<&str> {
         let angles: [fn(&ControllerResult) -> &Vec<f64>; 2] =
             [|result| &result.trace.command_rad, |result| &result.trace.elevator_rad];
         let beyond = |result: &ControllerResult, of: fn(&ControllerResult) -> &Vec<f64>, range| {
@@ -286,11 +286,11 @@ fn grows(result: &ControllerResult) -> bool {
 }
 
 /// True for a flight that ended before its time.
-pub(super) fn is_cut_short(result: &ControllerResult) -> bool {
+pub fn is_cut_short(result: &ControllerResult) -> bool {
     result.trace.outcome != Outcome::Completed
 }
 
 /// True for a flight without measures.
-pub(super) fn fails(result: &ControllerResult) -> bool {
+pub fn fails(result: &ControllerResult) -> bool {
     result.metrics.verdict.is_failure() || is_cut_short(result)
 }

@@ -1,0 +1,24 @@
+//! The errata and the assumptions, from the project's own documents.
+
+use crate::report::Paper;
+use crate::report::templates::render;
+use fspid_page::context;
+use fspid_page::markdown;
+use fspid_page::page::Section;
+
+const ERRATA: &str = include_str!("../../../../docs/paper/errata.md");
+const ASSUMPTIONS: &str = include_str!("../../../../docs/paper/assumptions.md");
+
+/// What is wrong or contradictory in print.
+pub(super) fn errata(_: &Paper<'_>) -> Section {
+    Section::of("errata", "Errata", render("document", context! { html => markdown::html(ERRATA) }))
+}
+
+/// What the paper leaves open and what stands in its place.
+pub(super) fn assumptions(_: &Paper<'_>) -> Section {
+    Section::of(
+        "assumptions",
+        "Assumptions",
+        render("document", context! { html => markdown::html(ASSUMPTIONS) }),
+    )
+}
