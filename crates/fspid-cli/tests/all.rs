@@ -6,6 +6,7 @@ mod campaign;
 mod certify;
 mod cli;
 mod common;
+mod equations;
 mod every_command;
 mod fly;
 mod fuzzy_system;

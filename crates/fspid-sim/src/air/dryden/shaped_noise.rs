@@ -1,6 +1,6 @@
 //! White noise through a linear filter, sampled exactly.
 //!
-//! $$ dx = A x \, dt + b \, dW, \qquad x_{k+1} = \Phi x_k + L n_k, \qquad
+//! $$ dx = A x \ dt + b \ dW, \qquad x_{k+1} = \Phi x_k + L n_k, \qquad
 //! \Phi = e^{A T}, \quad L L^T = Q = \int_0^T e^{A t} b b^T e^{A^T t} dt $$
 //!
 //! The covariance of the sampled states is that of the continuous ones whatever T is, and the start
@@ -71,8 +71,8 @@ const LARGEST_BLOCK: f64 = 1.0;
 
 /// $\Phi$ and $Q$ for a period.
 ///
-/// $$ \exp \begin{pmatrix} -A h & b b^T h \\ 0 & A^T h \end{pmatrix}
-/// = \begin{pmatrix} \cdot & \Phi_h^{-1} Q_h \\ 0 & \Phi_h^T \end{pmatrix}, \qquad
+/// $$ \exp \begin{pmatrix} -A h & b b^T h \cr 0 & A^T h \end{pmatrix}
+/// = \begin{pmatrix} \cdot & \Phi_h^{-1} Q_h \cr 0 & \Phi_h^T \end{pmatrix}, \qquad
 /// Q_{2h} = Q_h + \Phi_h Q_h \Phi_h^T $$
 ///
 /// with $h = T / 2^m$ small enough that $e^{-A h}$ does no harm, doubled m times.
