@@ -13,6 +13,7 @@ mod fuzzy_system;
 mod guide;
 mod learn;
 mod no_clock;
+mod packages;
 mod repository;
 mod small_things;
 mod tables;

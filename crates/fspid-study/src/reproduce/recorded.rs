@@ -5,9 +5,6 @@ use std::fmt::Write as _;
 use super::Reproduction;
 use super::claim::Status;
 
-/// The recorded statuses.
-const RECORDED: &str = include_str!("../../../../data/paper/statuses.toml");
-
 /// A claim that stands worse than recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fallen {
@@ -22,7 +19,7 @@ pub struct Fallen {
 /// Every claim that stands worse than recorded, or whose record cannot be read.
 #[must_use]
 pub fn fallen(reproduction: &Reproduction) -> Vec<Fallen> {
-    let table: toml::Table = RECORDED.parse().unwrap_or_default();
+    let table: toml::Table = fspid_data::STATUSES.parse().unwrap_or_default();
     let mut fallen = Vec::new();
     for (id, status) in &table {
         let recorded = status.as_str().unwrap_or_default();

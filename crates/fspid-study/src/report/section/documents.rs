@@ -1,12 +1,11 @@
 //! The errata and the assumptions, from the project's own documents.
 
+use fspid_data::{ASSUMPTIONS, ERRATA};
+
 use crate::report::html::context;
 use crate::report::markdown;
 use crate::report::page::Section;
 use crate::report::paper::Paper;
-
-const ERRATA: &str = include_str!("../../../../../docs/paper/errata.md");
-const ASSUMPTIONS: &str = include_str!("../../../../../docs/paper/assumptions.md");
 
 /// What is wrong or contradictory in print.
 pub(super) fn errata(_: &Paper<'_>) -> Section {
