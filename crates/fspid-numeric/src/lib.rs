@@ -5,13 +5,14 @@
 //! - [`Scalar`](trait@Scalar): what an equation needs; [`Dual`](scalar::Dual), [`Jet`](scalar::Jet) and
 //!   [`Interval`](scalar::Interval) are some of those that it can be asked with.
 //! - [`lanes`]: numbers side by side.
+//! - [`matrix`](mod@matrix): triangles, rotations and balancing of small matrices, over slices.
 //! - [`quadrature`]: integrals with bounds that are proved.
 //!
 //! | feature | adds | needs |
 //! | --- | --- | --- |
 //! | `simd` | `Vector`, the lanes of the machine, and `InstructionSet` | `std` |
 //!
-//! Not here: complex numbers and matrices (`fspid-lti`), and balls of arbitrary precision.
+//! Not here: complex numbers and a type of matrix (`fspid-lti`), and balls of arbitrary precision.
 #![no_std]
 #![cfg_attr(
     test,
@@ -25,6 +26,7 @@ mod exp;
 #[cfg(feature = "simd")]
 mod instruction_set;
 pub mod lanes;
+pub mod matrix;
 pub mod quadrature;
 mod real;
 pub mod scalar;
