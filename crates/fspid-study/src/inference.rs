@@ -1,11 +1,12 @@
 //! Questions to the supervisor, one at a time or a file of them.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 
 use fspid_core::fuzzy::{Defuzzifier, Inference, OutOfRange, Supervisor};
 use serde_json::{Value, json};
 
 use crate::file;
+use crate::lines;
 use crate::rows::Table;
 
 /// A supervisor as it is named on the command line.
@@ -135,8 +136,10 @@ impl Table for SupervisorTable {
         let &[e, ec] = row else { return Ok(()) };
         let answer = self.0.infer(e, ec).map_err(|problem| problem.to_string())?;
         let d = answer.delta;
-        // Writing to a string cannot fail.
-        let _ = writeln!(line, "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd);
+        lines::line(
+            line,
+            format_args!("{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd),
+        );
         Ok(())
     }
 }

@@ -24,6 +24,7 @@ pub mod fly;
 mod flyer;
 pub mod fuzzy_system;
 pub mod inference;
+pub mod lines;
 pub mod metrics;
 pub mod output;
 pub mod report;

@@ -1,11 +1,10 @@
 //! Quantities with names, told once for people and once for programs.
 
-use std::fmt::Write as _;
-
 use serde_json::{Map, Value, json};
 
 use super::number::{short, significant};
 use super::units::{Kind, Units};
+use crate::lines::line;
 
 /// Significant digits of a quantity in a text.
 const DIGITS: usize = 6;
@@ -57,8 +56,7 @@ impl Facts {
         let mut out = String::new();
         for fact in &self.0 {
             let (name, value) = (&fact.name, fact.told(units));
-            // Writing to a string cannot fail.
-            let _ = writeln!(out, "  {name:width$}  {value}");
+            line(&mut out, format_args!("  {name:width$}  {value}"));
         }
         out
     }

@@ -4,7 +4,7 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope};
 use serde_json::{Value, json};
 
-use super::text::line;
+use crate::lines::line;
 use crate::metrics::short;
 use crate::units::degrees;
 

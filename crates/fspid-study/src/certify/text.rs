@@ -1,13 +1,12 @@
 //! Certificates in words.
 
-use std::fmt::Write as _;
-
 use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 use fspid_sim::Controller;
 
 use super::scope::{Told, asked_in_words};
 use super::{Certification, Certified};
+use crate::lines::line;
 use crate::metrics::short;
 
 impl Certification {
@@ -229,9 +228,4 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
 
 pub(super) fn range(bounds: Interval) -> String {
     format!("{:.4} to {:.4}", bounds.lower(), bounds.upper())
-}
-
-/// Writing to a string cannot fail.
-pub(super) fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{text}");
 }

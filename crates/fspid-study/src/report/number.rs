@@ -1,5 +1,6 @@
 //! Numbers for people: a proper minus sign, and no more digits than mean something.
 
+use crate::digits::without_zeros;
 use crate::metrics::Measured;
 
 /// Minus signs as print has them.
@@ -38,6 +39,12 @@ pub fn significant(value: f64, digits: usize) -> String {
         return signed(format!("{value:.decimals$}"));
     }
     format!("{} \u{d7} 10{}", signed(mantissa.to_owned()), raised(exponent))
+}
+
+/// The same without zeros behind its digits.
+#[must_use]
+pub fn short(value: f64, digits: usize) -> String {
+    without_zeros(&significant(value, digits)).to_owned()
 }
 
 /// An exponent in raised digits.

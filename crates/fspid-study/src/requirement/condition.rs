@@ -1,5 +1,7 @@
 //! What counts for a requirement, and in which air.
 
+use crate::digits::rounded;
+
 /// Which air a flight must be in for a requirement to be asked of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Air {
@@ -107,8 +109,7 @@ fn range(from: Option<f64>, to: Option<f64>, unit: &str) -> Option<String> {
 
 /// Six significant digits without zeros behind them: for conditions such as 0.2 rad in degrees.
 pub(crate) fn shortest(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    format!("{rounded}")
+    format!("{}", rounded(value, 6))
 }
 
 #[cfg(test)]

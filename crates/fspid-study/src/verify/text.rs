@@ -1,11 +1,10 @@
 //! The answer for people: a table of lines with what explains each, then the verdict.
 
-use std::fmt::Write as _;
-
 use fspid_sim::{Controller, Scenario};
 
 use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
+use crate::lines::line;
 use crate::metrics::{Family, Measure};
 use crate::report::number::capital;
 use crate::requirement::{Judgement, Origin, set, shortest};
@@ -235,9 +234,8 @@ fn section(out: &mut String, heading: &str, lines: &[String]) {
     }
 }
 
-fn push(out: &mut String, line: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(out, "{}", line.trim_end());
+fn push(out: &mut String, text: &str) {
+    line(out, format_args!("{}", text.trim_end()));
 }
 
 /// Control characters would move the cursor of a terminal.

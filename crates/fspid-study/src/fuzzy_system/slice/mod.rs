@@ -2,14 +2,13 @@
 
 mod question;
 
-use std::fmt::Write as _;
-
 use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
 use crate::figure::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use crate::inference::Refused;
+use crate::lines::line;
 
 use question::Asking;
 pub(super) use question::spans;
@@ -172,8 +171,7 @@ impl Slice<'_> {
                     cell.filter(|x| !x.is_nan()).map_or(String::new(), |x| format!("{x:?}"))
                 })
                 .collect();
-            // Writing to a string cannot fail.
-            let _ = writeln!(csv, "{}", cells.join(","));
+            line(&mut csv, format_args!("{}", cells.join(",")));
         }
         csv
     }
