@@ -92,8 +92,8 @@ impl Air {
 
     /// Air of the standard atmosphere at a geopotential altitude.
     ///
-    /// $$ T = T_b + L\,(h - h_b), \quad p = p_b \left(\frac{T_b}{T}\right)^{g_0 / (R L)}
-    ///    \ \text{or}\ p_b\, e^{-g_0 (h - h_b) / (R T_b)} \ \text{where}\ L = 0 $$
+    /// $$ T = T_b + L (h - h_b), \quad p = p_b \left(\frac{T_b}{T}\right)^{g_0 / (R L)}
+    ///    \ \text{or}\ p_b e^{-g_0 (h - h_b) / (R T_b)} \ \text{where}\ L = 0 $$
     ///
     /// # Source
     /// U.S. Standard Atmosphere 1976, equations 23, 33a and 33b; up to 32 km it is the ISA of ISO 2533.
@@ -195,7 +195,7 @@ impl Environment {
 
 /// Geopotential altitude in m of a geometric altitude in m.
 ///
-/// $$ h = \frac{r_0 z}{r_0 + z}, \quad r_0 = 6\,356\,766\ \text{m} $$
+/// $$ h = \frac{r_0 z}{r_0 + z}, \quad r_0 = 6356766\ \text{m} $$
 #[must_use]
 pub fn geopotential_altitude_m(geometric_m: f64) -> f64 {
     EARTH_RADIUS_M * geometric_m / (EARTH_RADIUS_M + geometric_m)

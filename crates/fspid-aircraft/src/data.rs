@@ -273,7 +273,7 @@ impl DerivativeData {
 
     /// Forces, with the lift of the reference made equal to the weight of the reference so that this is an equilibrium.
     ///
-    /// $$ C_{L_1} = \frac{W}{\bar q S}, \quad T_1 = \bar q S\, C_{D_1} $$
+    /// $$ C_{L_1} = \frac{W}{\bar q S}, \quad T_1 = \bar q S C_{D_1} $$
     ///
     /// A loading changes none of it, but for the moments about another centre of gravity ([`Longitudinal::moved`]).
     #[must_use]

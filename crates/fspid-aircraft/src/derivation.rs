@@ -134,11 +134,11 @@ impl DimensionalDerivatives {
 
     /// Pitch over elevator with both longitudinal modes; the denominator begins with 1.
     ///
-    /// $$ \begin{pmatrix} s - X_u & -X_w & g \\
-    ///    -Z_u & (1 - Z_{\dot w}) s - Z_w & -(u_0 + Z_q) s \\
+    /// $$ \begin{pmatrix} s - X_u & -X_w & g \cr
+    ///    -Z_u & (1 - Z_{\dot w}) s - Z_w & -(u_0 + Z_q) s \cr
     ///    -M_u & -(M_{\dot w} s + M_w) & s^2 - M_q s \end{pmatrix}
-    ///    \begin{pmatrix} u \\ w \\ \theta \end{pmatrix}
-    ///    = \begin{pmatrix} X_{\delta_e} \\ Z_{\delta_e} \\ M_{\delta_e} \end{pmatrix} \delta_e $$
+    ///    \begin{pmatrix} u \cr w \cr \theta \end{pmatrix}
+    ///    = \begin{pmatrix} X_{\delta_e} \cr Z_{\delta_e} \cr M_{\delta_e} \end{pmatrix} \delta_e $$
     ///
     /// # Source
     /// As [`DimensionalDerivatives::of`]; the paper prints $M_w$ with the opposite sign, which would be unstable.
@@ -173,7 +173,7 @@ impl DimensionalDerivatives {
 
     /// Pitch over elevator with the short period alone: speed held, the denominator begins with 1.
     ///
-    /// $$ \frac{\theta}{\delta_e} = \frac{1}{s}\,
+    /// $$ \frac{\theta}{\delta_e} = \frac{1}{s}
     ///    \frac{(M_{\delta_e} + M_{\dot w} Z_{\delta_e}) s + Z_{\delta_e} M_w - Z_w M_{\delta_e}}
     ///    {s^2 - (Z_w + M_q + u_0 M_{\dot w}) s + Z_w M_q - u_0 M_w} $$
     /// for $Z_{\dot w} = Z_q = 0$; otherwise from the same two equations with them.

@@ -1,8 +1,6 @@
-//! Aircraft that fly: atmosphere, rigid body, forces, trim, linearisation and modes.
+#![doc = include_str!("../README.md")]
 //!
-//! For whoever has an aircraft as a textbook describes it and wants to fly it away from the condition of the textbook,
-//! or to know its linear model anywhere in its envelope. The Earth is flat and does not turn. Pure mathematics: no
-//! file, no controller, no clock.
+//! The Earth is flat and does not turn. No features. Not here: files, controllers, a clock.
 //!
 //! # Conventions
 //! SI units and radians. Body axes point forward, right, down; the ground's north, east, down. Elevator trailing edge

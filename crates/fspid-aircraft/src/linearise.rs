@@ -156,7 +156,7 @@ impl Linearisation {
 
     /// Change of (u, w, q, θ) into (V, α, q, θ) for small motions around the trim.
     ///
-    /// $$ dV = \cos\alpha\, du + \sin\alpha\, dw, \quad V\, d\alpha = \cos\alpha\, dw - \sin\alpha\, du $$
+    /// $$ dV = \cos\alpha\ du + \sin\alpha\ dw, \quad V\ d\alpha = \cos\alpha\ dw - \sin\alpha\ du $$
     fn speed_and_angle(&self) -> Result<Matrix, LtiError> {
         let (sin, cos) = libm::sincos(self.trim.point.alpha_rad);
         let per_speed = 1.0 / self.trim.target.airspeed_m_s;

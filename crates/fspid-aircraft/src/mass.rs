@@ -14,7 +14,7 @@ pub struct MassProperties {
     pub iy_kg_m2: f64,
     /// Moment of inertia about the downward axis.
     pub iz_kg_m2: f64,
-    /// Product of inertia $\int x z\,dm$: positive with the mass ahead low and the mass behind high.
+    /// Product of inertia $\int x z\ dm$: positive with the mass ahead low and the mass behind high.
     pub ixz_kg_m2: f64,
     /// Angular momentum of the engine's rotor along the forward axis.
     pub engine_kg_m2_s: f64,
@@ -85,7 +85,7 @@ impl MassProperties {
     ///
     /// $$ I \dot\omega = M - \omega \times H $$
     /// which written out is
-    /// $$ M = I_y \dot q + r p\,(I_x - I_z) + I_{xz}(p^2 - r^2) + r h_E $$
+    /// $$ M = I_y \dot q + r p (I_x - I_z) + I_{xz}(p^2 - r^2) + r h_E $$
     /// in pitch.
     ///
     /// # Source
@@ -104,7 +104,7 @@ impl MassProperties {
 
     /// Energy of rotation in J, without the engine's rotor.
     ///
-    /// $$ T = \tfrac{1}{2}\, \omega \cdot I \omega $$
+    /// $$ T = \tfrac{1}{2} \omega \cdot I \omega $$
     #[must_use]
     pub fn rotational_energy_j(&self, rates_rad_s: Vector3) -> f64 {
         let engine = Vector3::new(self.engine_kg_m2_s, 0.0, 0.0);

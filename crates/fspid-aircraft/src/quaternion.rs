@@ -96,7 +96,7 @@ impl Quaternion {
         Vector3::new(self.x, self.y, self.z)
     }
 
-    /// $$ v' = v + \frac{2}{|q|^2} \left( w\, a \times v + a \times (a \times v) \right) $$
+    /// $$ v' = v + \frac{2}{|q|^2} \left( w a \times v + a \times (a \times v) \right) $$
     fn rotate(self, axis: Vector3, vector: Vector3) -> Vector3 {
         let turned = axis.cross(vector);
         let scale = 2.0 / self.norm_squared();
@@ -105,7 +105,7 @@ impl Quaternion {
 
     /// Rate of change at body rates in rad/s; its length is kept by it.
     ///
-    /// $$ \dot q = \tfrac{1}{2}\, q \otimes (0, p, q, r) $$
+    /// $$ \dot q = \tfrac{1}{2} q \otimes (0, p, q, r) $$
     #[must_use]
     pub fn rate(self, rates_rad_s: Vector3) -> Self {
         let Vector3 { x: roll, y: pitch, z: yaw } = 0.5 * rates_rad_s;

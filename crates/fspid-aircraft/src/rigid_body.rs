@@ -73,7 +73,7 @@ impl RigidState {
     ///
     /// `velocity_rate_body_m_s2` is the rate of change of the components u, v, w, not the acceleration in space.
     ///
-    /// $$ \dot x_{NED} = R\, v, \quad \dot q = \tfrac{1}{2}\, q \otimes (0, \omega) $$
+    /// $$ \dot x_{NED} = R v, \quad \dot q = \tfrac{1}{2} q \otimes (0, \omega) $$
     #[must_use]
     pub fn rate(&self, accelerations: &Accelerations) -> [f64; RIGID_STATES] {
         Self {

@@ -9,7 +9,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Transfer function from one input to one output, with a denominator that begins with 1.
 ///
-/// $$ G(s) = \frac{C\, \operatorname{adj}(s I - A)\, B}{\det(s I - A)} + D $$
+/// $$ G(s) = \frac{C \operatorname{adj}(s I - A) B}{\det(s I - A)} + D $$
 ///
 /// Both polynomials come from one recursion, so they agree with each other to rounding. Meant for some ten states:
 /// with more, the coefficients of low powers lose digits. Leading coefficients of the numerator that are nothing but

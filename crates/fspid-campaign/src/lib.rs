@@ -1,11 +1,10 @@
-//! Campaigns: a dispersed scenario flown many times, its results kept, and what they say.
+#![doc = include_str!("../README.md")]
 //!
 //! ```text
 //! scenario ─plan▶ ranges of runs ─shard▶ a Parquet file each ─merge▶ one file ─summarise▶ report
 //! ```
 //!
-//! Run *i* depends on the campaign and on *i* alone, so that nothing else (shards, threads, order,
-//! interruptions) can show in the result.
+//! No features. Not here: what a scenario and its dispersions are (`fspid-study`).
 
 #![cfg_attr(
     test,

@@ -7,7 +7,7 @@ use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fspid_scenario::digits::counted;
+use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::LoadError;
 use fspid_study::output::OutputError;
 use serde_json::{Value, json};

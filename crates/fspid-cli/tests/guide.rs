@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{code, fspid, text};
+use crate::repository::repository;
 
 /// What the documents write before the program's own words.
 const PROGRAM: &str = "cargo run --release -- ";
@@ -17,10 +18,6 @@ const NOT_RUN: [(&str, &str); 6] = [
 ];
 /// Commands that do not end with 0, and what they end with.
 const CODES: [(&str, i32); 1] = [("aircraft trim navion --speed 60kt", 2)];
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// Blocks between fences: language and lines.
 fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {

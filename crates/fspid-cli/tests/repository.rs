@@ -32,35 +32,58 @@ fn every_file_of_integration_tests_is_in_the_binary_of_its_crate() {
     assert!(named > 100, "{named}");
 }
 
-/// Documents of a folder and of all folders in it, but for what is built and hidden.
-fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Files with an ending in a folder and in all folders in it, but for what is built, hidden or a symbolic link.
+pub(crate) fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
     for entry in read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|it| it.to_str()).unwrap_or_default();
-        if path.is_dir() && name != "target" && !name.starts_with('.') {
-            documents(&path, found);
-        } else if path.extension().is_some_and(|it| it == "md") {
+        if path.is_symlink() || name == "target" || name == "out" || name.starts_with('.') {
+            continue;
+        }
+        if path.is_dir() {
+            found.extend(files(&path, ending));
+        } else if path.extension().is_some_and(|it| it == ending) {
             found.push(path);
         }
     }
+    found
+}
+
+/// Where the links of a document lead, those to other places than files left out.
+fn links(document: &Path) -> Vec<PathBuf> {
+    let text = std::fs::read_to_string(document).expect("a text");
+    let targets = text.split("](").skip(1).map(|it| it.split([')', '#', ' ']).next());
+    let files = targets.flatten().filter(|it| !it.is_empty() && !it.contains("://"));
+    files.map(|it| document.parent().expect("a folder").join(it)).collect()
 }
 
 #[test]
 fn every_link_from_a_document_to_a_file_leads_to_one() {
-    let mut found = Vec::new();
-    documents(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."), &mut found);
-    let mut links = 0;
+    let found = files(&repository(), "md");
+    let mut count = 0;
     for document in &found {
-        let text = std::fs::read_to_string(document).expect("a text");
-        for link in text.split("](").skip(1) {
-            let target = link.split([')', '#', ' ']).next().unwrap_or_default();
-            if target.is_empty() || target.contains("://") {
-                continue;
-            }
-            let file = document.parent().expect("a folder").join(target);
-            assert!(file.exists(), "{}: {target}", document.display());
-            links += 1;
+        for file in links(document) {
+            assert!(file.exists(), "{}: {}", document.display(), file.display());
+            count += 1;
         }
     }
-    assert!(found.len() > 30 && links > 100, "{} documents, {links} links", found.len());
+    assert!(found.len() > 30 && count > 100, "{} documents, {count} links", found.len());
+}
+
+/// A page that the summary does not name is not in the book.
+#[test]
+fn the_summary_of_the_guide_names_each_page_once() {
+    let guide = repository().join("docs/guide");
+    let summary = guide.join("SUMMARY.md");
+    let mut named = links(&summary);
+    let mut pages = files(&guide, "md");
+    pages.retain(|page| *page != summary);
+    named.sort();
+    pages.sort();
+    assert_eq!(named, pages);
 }

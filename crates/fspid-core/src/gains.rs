@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::limits::Limits;
 
-/// Gains in parallel form: $u = k_p e + k_i \int e \, dt + k_d \dot e$.
+/// Gains in parallel form: $u = k_p e + k_i \int e \ dt + k_d \dot e$.
 ///
 /// `kp` in command per error, `ki` per second, `kd` in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ impl<R: Real> Gains<R> {
     /// No gains.
     pub const ZERO: Self = Self { kp: R::ZERO, ki: R::ZERO, kd: R::ZERO };
 
-    /// From the ISA form $u = K (e + \frac{1}{T_i} \int e \, dt + T_d \dot e)$; an infinite `ti_s`
+    /// From the ISA form $u = K (e + \frac{1}{T_i} \int e \ dt + T_d \dot e)$; an infinite `ti_s`
     /// means no integral action. A filter is [`Derivative::from_isa`](crate::Derivative::from_isa).
     ///
     /// # Errors

@@ -1,19 +1,23 @@
-//! Controllers that can fly: fixed-gain and fuzzy self-tuning PID without heap and without panic.
+#![doc = include_str!("../README.md")]
 //!
-//! A controller is configuration; its memory is passed in, and everything observable is returned:
+//! A sample that is not finite or absurdly large leaves the output and the memory as they were and latches a
+//! [fault](Faults).
+//!
+//! # In a firmware
+//!
+//! The paper's self-tuner with its rules as a constant; `checks/firmware/check.sh` builds it for a Cortex-M4F:
 //!
 //! ```
-//! use fspid_core::{Gains, Pid, Sample, PidConfig, State};
-//!
-//! let pid = Pid::new(Gains { kp: 2.0, ki: 0.5, kd: 1.0 }, PidConfig::sampled_every(0.01))?;
-//! let mut state = State::new();
-//! let step = pid.step(&mut state, Sample { setpoint_rad: 0.1, measurement_rad: 0.0, rate_rad_s: 0.0 });
-//! assert_eq!(step.command_rad, 2.0 * 0.1 + 0.5 * 0.1 * 0.01);
-//! # Ok::<(), fspid_core::ConfigError>(())
+#![doc = include_str!("../examples/firmware.rs")]
+//! # extern crate std;
+//! # fn main() -> Result<(), ConfigError> {
+//! #     let (autopilot, mut state) = (autopilot()?, State::new());
+//! #     let sample = Sample { setpoint_rad: 0.1, measurement_rad: 0.0, rate_rad_s: 0.0 };
+//! #     let command_rad = on_timer(&autopilot, &mut state, sample);
+//! #     assert!(0.1 < command_rad && command_rad <= 0.35);
+//! #     Ok(())
+//! # }
 //! ```
-//!
-//! Building a controller may fail; a step may not. A sample that is not finite or absurdly large
-//! leaves the output and the memory as they were and latches a [fault](Faults).
 //!
 //! # Control narrative
 //!
@@ -28,7 +32,8 @@
 //! and, if asked for, the integral follows the limit (anti-windup). A positive command means nose
 //! up; the sign of the elevator belongs to the plant.
 //!
-//! Not here: time (the period is fixed at construction), plants, files, units other than SI.
+//! No features: always `no_std`. Not here: time (the period is fixed at construction), plants, files, units other
+//! than SI.
 #![no_std]
 #![cfg_attr(
     test,

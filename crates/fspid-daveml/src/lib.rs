@@ -1,29 +1,11 @@
-//! Flight models in DAVE-ML (AIAA S-119): read, checked against their own check cases, computed without a heap.
+#![doc = include_str!("../README.md")]
 //!
-//! For whoever has the aerodynamics, the engine or the control law of an aircraft as a `.dml` file and wants to fly it.
 //! The subset is that of tables on grids and formulas: header, variables with MathML, breakpoints, gridded tables,
-//! functions and check cases. What is outside is refused with its place; nothing is dropped in silence. Not for
-//! ungridded tables, splines, statistics of uncertainty, or files in several parts.
-//!
-//! ```
-//! let text = r#"<DAVEfunc xmlns="http://daveml.org/2010/DAVEML">
-//!   <fileHeader name="lift"><creationDate date="2026-01-01"/></fileHeader>
-//!   <variableDef name="angleOfAttack" varID="alpha" units="deg"><isInput/></variableDef>
-//!   <variableDef name="liftCoefficient" varID="CL" units="nd">
-//!     <calculation><math xmlns="http://www.w3.org/1998/Math/MathML">
-//!       <apply><times/><cn>0.1</cn><ci>alpha</ci></apply>
-//!     </math></calculation><isOutput/>
-//!   </variableDef>
-//! </DAVEfunc>"#;
-//! let reading = fspid_daveml::read(text)?;
-//! let mut outputs = [0.0];
-//! reading.model.evaluate(&[5.0], &mut outputs)?;
-//! assert_eq!(outputs, [0.5]);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! functions and check cases. Not for ungridded tables, splines, statistics of uncertainty, or files in several parts.
+//! No features.
 //!
 //! # The same bits on every machine
-//! Formulas and tables are computed in the order of the file by the arithmetic of `fspid-fuzzy`: nothing fused,
+//! Formulas and tables are computed in the order of the file by the arithmetic of `fspid-numeric`: nothing fused,
 //! elementary functions from `libm`.
 //!
 //! # Source

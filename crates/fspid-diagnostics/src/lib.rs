@@ -1,4 +1,4 @@
-//! What is wrong with a text: places, problems, and the word that was probably meant.
+//! What is wrong with a text: places, problems, and the word that was probably meant; numbers and lines in sentences.
 //!
 //! A reader goes on after a problem and tells all of them at once, each with its place, what was found and what
 //! is allowed. [`Report`] collects them over several texts; [`Problems`] is what a caller is told.
@@ -14,6 +14,8 @@
 //!
 //! Not here: any format, and any quantity; whoever reads says what is wrong.
 
+pub mod digits;
+pub mod lines;
 mod nearest;
 mod note;
 mod place;

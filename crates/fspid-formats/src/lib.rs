@@ -1,12 +1,10 @@
-//! Fuzzy systems in the formats of other tools: MATLAB `.fis`, IEC 61131-7 `.fcl`, fuzzylite `.fll`,
-//! IEEE 1855 `.xml`.
+#![doc = include_str!("../README.md")]
 //!
-//! Reading answers the parts of a system and says what it had to assume; nothing is dropped in
-//! silence. Writing refuses what the format cannot say, unless a loss is allowed, and then states
-//! the error that it makes. Texts are read in linear time; they are data and never run.
+//! Texts are read in linear time; they are data and never run. What a tool computes is part of what its file means: a
+//! system that is read answers by the rule of the tool that the format belongs to (see [`Reading::notes`]).
 //!
-//! What a tool computes is part of what its file means: a system that is read answers by the rule of
-//! the tool that the format belongs to (see [`Reading::notes`]).
+//! No features. Not here: files and folders, evaluation (`fspid-fuzzy`), and the TOML of this project's own systems
+//! (`fspid-study`).
 #![warn(clippy::indexing_slicing)]
 #![cfg_attr(
     test,

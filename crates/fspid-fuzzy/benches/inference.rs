@@ -180,7 +180,7 @@ impl<R: Real> Inputs<R> {
 }
 
 fn table() -> RuleTable {
-    let file = include_str!("../../../data/rule-tables/printed.toml");
+    let file = fspid_data::RULE_TABLES[0].1;
     let parts: Vec<&str> = file.split("\"\"\"").collect();
     RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table")
 }

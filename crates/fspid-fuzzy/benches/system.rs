@@ -59,7 +59,7 @@ fn place(n: usize, step: f64) -> f64 {
 }
 
 fn paper() -> Parts {
-    let printed = include_str!("../../../data/rule-tables/printed.toml");
+    let printed = fspid_data::RULE_TABLES[0].1;
     let grids: Vec<&str> = printed.split("\"\"\"").collect();
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
     let rule = fspid_fuzzy::Defuzzifier::Exact;

@@ -13,7 +13,7 @@ use fspid_fuzzy::audit::{
 use fspid_fuzzy::system::{Parts, System};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 
-const PRINTED: &str = include_str!("../../../data/rule-tables/printed.toml");
+const PRINTED: &str = fspid_data::RULE_TABLES[0].1;
 
 fn main() {
     let grids: Vec<&str> = PRINTED.split("\"\"\"").collect();

@@ -38,11 +38,11 @@ pub(crate) fn centroid<L: Lanes>(rule: Defuzzifier, strengths: &[L], zero: L) ->
 /// their peaks; with $h = \min(a, b, \frac12)$ its area is $h - h^2$. No third set reaches the gap
 /// between two peaks, so the union is the sum of the cut triangles less the six overlaps:
 ///
-/// $$ A = \sum_{|i|<3} 2 (s_i - \tfrac12 s_i^2) + \sum_{i=\pm 3} (s_i - \tfrac12 s_i^2)
-///        - \sum_{i=-3}^{2} (h_i - h_i^2) $$
-/// $$ M = \sum_{|i|<3} 2 i (s_i - \tfrac12 s_i^2)
-///        + \sum_{i=\pm 3} \pm \left( 3 (s_i - \tfrac12 s_i^2) - g(s_i) \right)
-///        - \sum_{i=-3}^{2} (i + \tfrac12)(h_i - h_i^2), \qquad
+/// $$ A = \sum_{|i|<3} 2 (s_i - \tfrac12 s_i^2) + \sum_{i=\pm 3} (s_i - \tfrac12 s_i^2) -
+///        \sum_{i=-3}^{2} (h_i - h_i^2) $$
+/// $$ M = \sum_{|i|<3} 2 i (s_i - \tfrac12 s_i^2) +
+///        \sum_{i=\pm 3} \pm \left( 3 (s_i - \tfrac12 s_i^2) - g(s_i) \right) -
+///        \sum_{i=-3}^{2} (i + \tfrac12)(h_i - h_i^2), \qquad
 ///    g(s) = \tfrac12 s - \tfrac12 s^2 + \tfrac16 s^3 $$
 ///
 /// where $g$ is the moment of half a cut triangle about its own peak (the universe ends at the

@@ -1,35 +1,29 @@
 //! Balancing: a diagonal change of units, by powers of two, after which rows and columns are of similar size.
 
+use fspid_numeric::matrix::{balance as sweep, is_worthwhile};
+
 use crate::matrix::Matrix;
 
 /// Sweeps after which the matrix is taken as it is; two or three are usual.
 const SWEEPS: usize = 100;
-/// A change of unit must shrink row plus column by this factor to be worth making.
-const WORTHWHILE: f64 = 0.95;
 
 /// Replaces a square matrix A by $D^{-1} A D$ and returns the binary exponents of the diagonal D.
 ///
 /// Exact, because every factor is a power of two. Rows or columns of zeros are left alone.
 ///
 /// # Source
-/// B. N. Parlett and C. Reinsch, Balancing a matrix for calculation of eigenvalues and eigenvectors, Numer. Math. 13
-/// (1969) 293, with the Euclidean norms of R. James, J. Langou and B. R. Lowery, arXiv 1401.5766.
+/// As [`fspid_numeric::matrix::balance`], with the Euclidean norms of R. James, J. Langou and B. R. Lowery,
+/// arXiv 1401.5766.
 pub(crate) fn balance(matrix: &mut Matrix) -> Vec<i32> {
     let mut exponents = vec![0; matrix.rows()];
-    for _ in 0..SWEEPS {
-        let mut changed = false;
-        for (i, exponent) in exponents.iter_mut().enumerate() {
-            let change = worthwhile_exponent(matrix, i);
-            if change != 0 {
-                rescale(matrix, i, change);
-                *exponent += change;
-                changed = true;
-            }
+    sweep(matrix.rows(), SWEEPS, |i| {
+        let change = worthwhile_exponent(matrix, i);
+        if change != 0 {
+            rescale(matrix, i, change);
+            exponents[i] += change;
         }
-        if !changed {
-            break;
-        }
-    }
+        change != 0
+    });
     exponents
 }
 
@@ -42,8 +36,7 @@ fn worthwhile_exponent(matrix: &Matrix, i: usize) -> i32 {
         return 0;
     }
     let exponent = (libm::frexp(row).1 - libm::frexp(column).1) / 2;
-    let balanced = libm::scalbn(column, exponent) + libm::scalbn(row, -exponent);
-    if balanced < WORTHWHILE * (column + row) { exponent } else { 0 }
+    if is_worthwhile(row, column, exponent) { exponent } else { 0 }
 }
 
 /// Column i times 2^exponent, row i divided by it.

@@ -13,8 +13,8 @@ const INPUT_EXPONENT: i32 = -64;
 
 /// State and input matrices of the sampled system, for an input held over `dt_s` seconds.
 ///
-/// $$ A_d = e^{A T}, \quad B_d = \int_0^T e^{A \tau} B \, d\tau, \quad
-/// \exp \begin{pmatrix} A T & B T \\ 0 & 0 \end{pmatrix} = \begin{pmatrix} A_d & B_d \\ 0 & I \end{pmatrix} $$
+/// $$ A_d = e^{A T}, \quad B_d = \int_0^T e^{A \tau} B \ d\tau, \quad
+/// \exp \begin{pmatrix} A T & B T \cr 0 & 0 \end{pmatrix} = \begin{pmatrix} A_d & B_d \cr 0 & I \end{pmatrix} $$
 ///
 /// # Source
 /// C. F. Van Loan, Computing integrals involving the matrix exponential, IEEE Trans. Automatic Control 23 (1978) 395.

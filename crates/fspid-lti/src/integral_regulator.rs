@@ -25,7 +25,7 @@ pub struct IntegralWeights {
     pub rate_s2: f64,
 }
 
-/// The feedback $u = -k_i \int x \, dt - k_x x - k_v v$.
+/// The feedback $u = -k_i \int x \ dt - k_x x - k_v v$.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntegralRegulator {
     /// Gain $k_i$ of the integral, 1/s.
@@ -38,7 +38,7 @@ pub struct IntegralRegulator {
 
 /// The feedback that makes the least of integral, position, rate and input.
 ///
-/// $$ \min_u \int_0^\infty w_i z^2 + w_x x^2 + w_v v^2 + u^2 \, dt, \quad \dot z = x, \ \dot x = v, \ \dot v = -a v + b u $$
+/// $$ \min_u \int_0^\infty w_i z^2 + w_x x^2 + w_v v^2 + u^2 \ dt, \quad \dot z = x, \ \dot x = v, \ \dot v = -a v + b u $$
 ///
 /// The closed loop $p(s) = s^3 + c_2 s^2 + c_1 s + c_0$ is the stable factor of (Kalman 1964)
 ///
@@ -46,7 +46,7 @@ pub struct IntegralRegulator {
 ///
 /// whose coefficients give $k_i = \sqrt{w_i}$, $c_2^2 = a^2 + b^2 w_v + 2 b k_x$, $k_v = (c_2 - a) / b$ and one equation
 ///
-/// $$ k_x^2 = w_x + 2 \sqrt{w_i} \, c_2(k_x) / b $$
+/// $$ k_x^2 = w_x + 2 \sqrt{w_i} c_2(k_x) / b $$
 ///
 /// Left less right is convex and below 0 at $k_x = 0$: there is one root, and Newton's iteration falls onto it from above.
 ///

@@ -1,9 +1,7 @@
-//! Polynomials, transfer functions, state space and exact sampling of linear time-invariant systems.
+#![doc = include_str!("../README.md")]
 //!
-//! For whoever has a plant as printed in a book (coefficients, highest power first) and wants its poles, its modes,
-//! its states and its exact behaviour between two samples, and for whoever closes a loop in samples and wants its
-//! margins. Pure mathematics: no aeroplane, no controller, no file. Not for large systems: matrices are dense and
-//! everything is meant for some ten states, sampled loops for up to a hundred where most are those of a dead time.
+//! Pure mathematics: no aeroplane, no controller, no file. Not for large systems: matrices are dense and everything is
+//! meant for some ten states, sampled loops for up to a hundred where most are those of a dead time. No features.
 //!
 //! # The same bits on every machine
 //! Sums and products are written out in a fixed order, nothing is fused, every elementary function beyond the square
@@ -12,23 +10,6 @@
 //! # Errors
 //! Every check is written for the good case, so a NaN is refused like any other bad value. What cannot be computed
 //! is a [`LtiError`] that says what was found and what is allowed; nothing here panics on a caller's numbers.
-//!
-//! # Example
-//! The short-period approximation of the Navion, sampled at 20 ms:
-//! ```
-//! use fspid_lti::{LtiError, Mode, TransferFunction, zero_order_hold};
-//!
-//! # fn main() -> Result<(), LtiError> {
-//! let plant = TransferFunction::new(&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0])?;
-//! let short_period = Mode::of_pole(plant.poles()?[0])?;
-//! assert!((short_period.natural_frequency_rad_s - 3.5974).abs() < 5e-5);
-//!
-//! let model = plant.to_state_space();
-//! let (a_sampled, b_sampled) = zero_order_hold(model.a(), model.b(), 0.02)?;
-//! assert_eq!((a_sampled.rows(), b_sampled.columns()), (3, 1));
-//! # Ok(())
-//! # }
-//! ```
 
 mod balance;
 mod ball;

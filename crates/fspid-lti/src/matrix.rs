@@ -3,6 +3,8 @@
 //! For models of some ten states that are prepared before a flight. Not a linear algebra library: no views, no blocks,
 //! no vector instructions, so that every sum is added in the order in which it is written.
 
+use fspid_numeric::matrix::identity;
+
 use crate::error::LtiError;
 
 /// A dense real matrix; zero rows or columns are allowed, for systems without states.
@@ -23,7 +25,7 @@ impl Matrix {
     /// Square matrix with ones on the diagonal.
     #[must_use]
     pub fn identity(size: usize) -> Self {
-        Self::from_function(size, size, |row, column| if row == column { 1.0 } else { 0.0 })
+        Self { rows: size, columns: size, data: identity(size).collect() }
     }
 
     /// Matrix with these rows.

@@ -21,13 +21,13 @@ pub struct Regulator {
 
 /// Feedback that makes the least of states and inputs.
 ///
-/// $$ \min_u \int_0^\infty x^T Q x + u^T R u \, dt, \quad \dot x = A x + B u, \quad K = R^{-1} B^T P, $$
+/// $$ \min_u \int_0^\infty x^T Q x + u^T R u \ dt, \quad \dot x = A x + B u, \quad K = R^{-1} B^T P, $$
 /// $$ A^T P + P A - P B R^{-1} B^T P + Q = 0 $$
 ///
 /// P comes from the stable half of the Hamiltonian matrix, which its matrix sign function S picks out:
 ///
-/// $$ S = \operatorname{sgn} \begin{pmatrix} A & -B R^{-1} B^T \\ -Q & -A^T \end{pmatrix}, \quad
-///    (S + I) \begin{pmatrix} I \\ P \end{pmatrix} = 0 $$
+/// $$ S = \operatorname{sgn} \begin{pmatrix} A & -B R^{-1} B^T \cr -Q & -A^T \end{pmatrix}, \quad
+///    (S + I) \begin{pmatrix} I \cr P \end{pmatrix} = 0 $$
 ///
 /// # Source
 /// J. D. Roberts, Linear model reduction and solution of the algebraic Riccati equation by use of the sign function,

@@ -7,7 +7,7 @@ use crate::transfer_function::TransferFunction;
 
 /// Output at $0, T, 2T, \dots$ after a unit step at time 0, from rest: `samples` values.
 ///
-/// $$ x_{k+1} = e^{A T} x_k + \int_0^T e^{A \tau} B \, d\tau, \quad y_k = C x_k + D $$
+/// $$ x_{k+1} = e^{A T} x_k + \int_0^T e^{A \tau} B \ d\tau, \quad y_k = C x_k + D $$
 ///
 /// # Errors
 /// A sample period that is not above zero and finite, a system that overflows within it.

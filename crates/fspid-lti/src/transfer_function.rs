@@ -157,8 +157,8 @@ impl TransferFunction {
 
     /// Equations of state in the observability canonical form.
     ///
-    /// $$ A = \begin{pmatrix} 0 & 1 & & \\ & & \ddots & \\ & & & 1 \\ -a_0 & -a_1 & \dots & -a_{n-1} \end{pmatrix}, \quad
-    /// B = \begin{pmatrix} h_1 \\ \vdots \\ h_n \end{pmatrix}, \quad C = (1, 0, \dots, 0), \quad D = h_0 $$
+    /// $$ A = \begin{pmatrix} 0 & 1 & & \cr & & \ddots & \cr & & & 1 \cr -a_0 & -a_1 & \dots & -a_{n-1} \end{pmatrix}, \quad
+    /// B = \begin{pmatrix} h_1 \cr \vdots \cr h_n \end{pmatrix}, \quad C = (1, 0, \dots, 0), \quad D = h_0 $$
     ///
     /// with the monic denominator $s^n + a_{n-1} s^{n-1} + \dots + a_0$ and the Markov parameters $h_k$. The states are
     /// the output and its derivatives, freed of the derivatives of the input:

@@ -1,59 +1,32 @@
-//! Eigenvalues and eigenvectors of a symmetric matrix by Jacobi's cyclic rotations (Golub and Van
-//! Loan, Matrix Computations, 4th edition, section 8.5), for the covariances of an optimiser.
+//! Eigenvalues and eigenvectors of a symmetric matrix, for the covariances of an optimiser.
 
-/// Sweeps after which the rotations end in any case; ten are rarely needed.
-const SWEEPS: usize = 60;
+use fspid_numeric::matrix::{self, Jacobi, Turn};
+
+/// Ten sweeps are rarely needed.
+const ROTATIONS: Jacobi = Jacobi { sweeps: 60, turn, clears: true };
 
 /// Eigenvalues, and the eigenvectors as columns, both in the order of the axes they grew from.
 ///
 /// `matrix` is symmetric, row after row, `n` by `n`.
 pub(super) fn symmetric(matrix: &[f64], n: usize) -> (Vec<f64>, Vec<f64>) {
-    let mut a = matrix.to_vec();
-    let mut vectors = identity(n);
-    for _ in 0..SWEEPS {
-        let mut rotated = false;
-        for p in 0..n {
-            for q in p + 1..n {
-                rotated |= rotate(&mut a, &mut vectors, n, (p, q));
-            }
-        }
-        if !rotated {
-            break;
-        }
-    }
+    let (mut a, mut vectors) = (matrix.to_vec(), identity(n));
+    ROTATIONS.diagonalise(&mut a, &mut vectors, n);
     ((0..n).map(|i| a[i * n + i]).collect(), vectors)
 }
 
 pub(super) fn identity(n: usize) -> Vec<f64> {
-    (0..n * n).map(|at| if at % (n + 1) == 0 { 1.0 } else { 0.0 }).collect()
+    matrix::identity(n).collect()
 }
 
-/// Makes the entry (p, q) zero; false when it is nothing beside the diagonal already.
-fn rotate(a: &mut [f64], vectors: &mut [f64], n: usize, (p, q): (usize, usize)) -> bool {
-    let (app, aqq, apq) = (a[p * n + p], a[q * n + q], a[p * n + q]);
-    let negligible = 1e-17 * (app * aqq).abs().sqrt();
-    if !(apq.abs() > negligible) {
-        return false;
+/// The turn that makes an entry zero; none when it is nothing beside the diagonal already.
+fn turn([first, last]: [f64; 2], entry: f64) -> Option<Turn> {
+    let negligible = 1e-17 * (first * last).abs().sqrt();
+    if !(entry.abs() > negligible) {
+        return None;
     }
-    let theta = (aqq - app) / (2.0 * apq);
-    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-    let c = 1.0 / (t * t + 1.0).sqrt();
-    let s = t * c;
-    for k in 0..n {
-        let (akp, akq) = (a[k * n + p], a[k * n + q]);
-        a[k * n + p] = c * akp - s * akq;
-        a[k * n + q] = s * akp + c * akq;
-    }
-    for k in 0..n {
-        let (apk, aqk) = (a[p * n + k], a[q * n + k]);
-        a[p * n + k] = c * apk - s * aqk;
-        a[q * n + k] = s * apk + c * aqk;
-        let (vkp, vkq) = (vectors[k * n + p], vectors[k * n + q]);
-        vectors[k * n + p] = c * vkp - s * vkq;
-        vectors[k * n + q] = s * vkp + c * vkq;
-    }
-    (a[p * n + q], a[q * n + p]) = (0.0, 0.0);
-    true
+    let theta = (last - first) / (2.0 * entry);
+    let tangent = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+    Some(Turn::of_tangent(tangent, (tangent * tangent + 1.0).sqrt()))
 }
 
 #[cfg(test)]

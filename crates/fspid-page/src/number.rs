@@ -2,6 +2,8 @@
 
 use std::fmt::Display;
 
+use fspid_diagnostics::digits::without_zeros;
+
 /// Minus signs as print has them.
 fn signed(text: String) -> String {
     let negative_zero = text.starts_with('-') && !text.contains(|c: char| ('1'..='9').contains(&c));
@@ -38,6 +40,12 @@ pub fn significant(value: f64, digits: usize) -> String {
         return signed(format!("{value:.decimals$}"));
     }
     format!("{} \u{d7} 10{}", signed(mantissa.to_owned()), raised(exponent))
+}
+
+/// The same without zeros behind its digits.
+#[must_use]
+pub fn short(value: f64, digits: usize) -> String {
+    without_zeros(&significant(value, digits)).to_owned()
 }
 
 /// An exponent in raised digits.

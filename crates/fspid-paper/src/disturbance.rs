@@ -6,7 +6,7 @@
 //!
 //! - *Abrupt* is a pulse of 1 s, *continuous* a sine of 0.2 Hz to the end of the flight; both begin
 //!   after 1 s at rest in a flight of 30 s with the set-point at zero.
-//! - The cost is $J = \text{ITAE} + 0.3 \, TV$ per degree of disturbance, the time in the integral
+//! - The cost is $J = \text{ITAE} + 0.3 TV$ per degree of disturbance, the time in the integral
 //!   counted from the start of the disturbance.
 //! - Tuned controllers had the same budget each, at a size of 1 degree.
 

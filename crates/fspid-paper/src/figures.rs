@@ -78,33 +78,6 @@ pub struct Stored {
     pub text: String,
 }
 
-macro_rules! embedded {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../data/paper/", $name)))),*]
-    };
-}
-
-/// The stored scenarios, found by `fspid reproduce --identify`.
-const EMBEDDED: &[(&str, &str)] = embedded![
-    "own/figure-5.toml",
-    "own/figure-6.toml",
-    "own/figure-8a.toml",
-    "own/figure-8b.toml",
-    "own/figure-9.toml",
-    "shared/figure-5.toml",
-    "shared/figure-6.toml",
-    "shared/figure-8a.toml",
-    "shared/figure-8b.toml",
-    "shared/figure-9.toml",
-    "disturbance/abrupt-elevator.toml",
-    "disturbance/abrupt-measurement.toml",
-    "disturbance/abrupt-servo.toml",
-    "disturbance/continuous-elevator.toml",
-    "disturbance/continuous-measurement.toml",
-    "disturbance/continuous-servo.toml",
-    "long-term-change.toml",
-];
-
 /// All scenarios of a reproduction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Library(Vec<Stored>);
@@ -117,7 +90,7 @@ impl Library {
             name: (*name).to_owned(),
             text: (*text).to_owned(),
         };
-        Self(EMBEDDED.iter().map(stored).collect())
+        Self(fspid_data::PAPER.iter().map(stored).collect())
     }
 
     /// These scenarios.

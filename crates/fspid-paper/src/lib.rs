@@ -68,9 +68,6 @@ impl From<SimError> for ReproduceError {
     }
 }
 
-/// How the stored parameters were found.
-const STORED_RECORD: &str = include_str!("../../../data/paper/identification.json");
-
 /// The scenario of the long-term change.
 const LONG_TERM: &str = "long-term-change.toml";
 /// Shares of the elevator's effectiveness that claim S2 is judged with.
@@ -109,7 +106,7 @@ impl Reproduction {
     /// # Errors
     /// [`ReproduceError`] if the program was built with scenarios that are wrong.
     pub fn stored() -> Result<Self, ReproduceError> {
-        let record = Record::from_json(STORED_RECORD)
+        let record = Record::from_json(fspid_data::IDENTIFICATION)
             .ok_or(ReproduceError::Missing("record of its identification"))?;
         Self::of(&Library::stored(), record)
     }

@@ -1,8 +1,6 @@
 //! A figure's flight as a handful of numbers: what an identification moves, and the scenario file
 //! that it writes.
 
-use std::fmt::Write as _;
-
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
     ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid, PidConfig,
@@ -13,6 +11,7 @@ use fspid_sim::{
     Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
 };
 
+use fspid_diagnostics::lines::line;
 use fspid_scenario::units::{degrees, radians};
 
 /// Sample period of all figures, s (assumption A4).
@@ -193,12 +192,12 @@ impl FlightModel {
     #[must_use]
     pub(super) fn toml(&self, heading: &[String]) -> String {
         let mut out = String::new();
-        for line in heading {
-            push(&mut out, format_args!("# {line}"));
+        for comment in heading {
+            line(&mut out, format_args!("# {comment}"));
         }
-        push(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
-        push(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
-        push(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
+        line(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
+        line(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
+        line(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
         let setpoint = match self.command {
             Command::Step { .. } | Command::Rest { .. } => "kind = \"step\"".to_owned(),
             Command::Square { half_period_s, .. } => {
@@ -206,13 +205,13 @@ impl FlightModel {
             }
         };
         let (duration_s, amplitude_deg) = (self.duration_s(), self.amplitude_deg());
-        push(
+        line(
             &mut out,
             format_args!(
                 "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
             ),
         );
-        push(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"));
+        line(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"));
         for controller in &self.controllers {
             self.push_controller(&mut out, controller);
         }
@@ -221,16 +220,16 @@ impl FlightModel {
 
     fn push_controller(&self, out: &mut String, controller: &ControllerModel) {
         let ControllerModel { name, gains: [kp, ki, kd], rate_gain, scales } = controller;
-        push(out, format_args!("\n[[controller]]\nname = \"{name}\""));
+        line(out, format_args!("\n[[controller]]\nname = \"{name}\""));
         match scales {
             None if *ki == 0.0 && *kd == 0.0 => {
-                push(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
+                line(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
             }
             None => {
-                push(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
+                line(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
             }
             Some(_) => {
-                push(
+                line(
                     out,
                     format_args!(
                         "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
@@ -241,7 +240,7 @@ impl FlightModel {
             }
         }
         if *rate_gain != 0.0 {
-            push(out, format_args!("rate_gain = {rate_gain:?}"));
+            line(out, format_args!("rate_gain = {rate_gain:?}"));
         }
         if let Some(scales) = scales {
             self.push_supervisor(out, scales);
@@ -254,7 +253,7 @@ impl FlightModel {
             ErrorSign::MeasurementMinusSetpoint => "measurement-minus-setpoint",
         };
         let [kp, ki, kd] = scales.output;
-        push(
+        line(
             out,
             format_args!(
                 "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
@@ -265,11 +264,6 @@ impl FlightModel {
             ),
         );
     }
-}
-
-/// A line; writing to a string cannot fail.
-fn push(out: &mut String, line: std::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{line}");
 }
 
 #[cfg(test)]

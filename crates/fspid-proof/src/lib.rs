@@ -1,15 +1,13 @@
-//! Stability certificates of sampled loops whose gains move.
+#![doc = include_str!("../README.md")]
 //!
-//! The one-sample matrix of the loop is affine in the gains, so that one quadratic form that falls at
-//! the corners of a set of gains falls for every gain in it, however fast the gains move:
+//! The one-sample matrix of the loop is affine in the gains, so that one quadratic form that decreases at
+//! the corners of a set of gains decreases for every gain in it, however fast the gains move:
 //!
 //! $$ M(k)^T P M(k) \prec \rho^2 P \quad \text{for every corner } k $$
 //!
-//! A solver looks for the matrix P in ordinary arithmetic and need not be trusted. What is believed
-//! is the re-check: interval arithmetic that encloses the sampled plant (a matrix exponential), the
-//! gains that the supervisor can produce, and the definiteness of every difference.
+//! The plant's one-sample matrix is a matrix exponential; the re-check encloses it, too.
 //!
-//! Not here: files, texts, scenarios.
+//! No features. Not here: files, texts, scenarios.
 
 mod asked;
 mod bearing;

@@ -292,7 +292,7 @@ proptest! {
         }
     }
 
-    /// $z^T P z \le c$ with $P = T^{-T} T^{-1}$: the largest $|r z|$ is $\sqrt c \, |r T|$.
+    /// $z^T P z \le c$ with $P = T^{-T} T^{-1}$: the largest $|r z|$ is $\sqrt c |r T|$.
     #[test]
     fn the_limit_that_is_proved_is_the_largest_value_on_the_ellipsoid(
         known in known(), row in prop::collection::vec(-9_i64..=9, 6), level in 0.01..100.0_f64

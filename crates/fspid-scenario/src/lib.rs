@@ -22,7 +22,6 @@
 )]
 
 pub mod aircraft;
-pub mod digits;
 pub mod dispersion;
 pub mod file;
 pub mod flyer;

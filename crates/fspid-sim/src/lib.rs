@@ -1,15 +1,13 @@
-//! The sampled closed loop: scenario in, trace out.
+#![doc = include_str!("../README.md")]
 //!
-//! A [`Scenario`] says what flies (a [`LinearPlant`] or an [`AircraftPlant`] behind a [`Servo`]), what is commanded and what
-//! disturbs, and which [`Controller`]s answer; [`simulate`] returns what happened. It is a pure
-//! function: the same scenario gives the same bits on each machine, at each number of threads.
-//! Units are SI and radians; degrees exist in files and reports only.
+//! What flies is a [`LinearPlant`] or an [`AircraftPlant`] behind a [`Servo`], what answers a [`Controller`]. Units are
+//! SI and radians; degrees exist in files and reports only.
 //!
 //! [`Surroundings`] adds what a real flight has: moving [`air`], an [`actuator`] with limits, sensors
 //! with noise and delay. Without them the loop is that of the paper, bit for bit.
 //!
-//! Nothing here measures or judges: metrics and verdicts are in `fspid-study`. [`stability`] is the
-//! exception that the loop itself must answer: whether fixed gains hold the plant at all.
+//! No features. Not here: measures and verdicts (`fspid-study`). [`stability`] is the exception that the loop itself
+//! must answer: whether fixed gains hold the plant at all.
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")

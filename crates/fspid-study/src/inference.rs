@@ -1,11 +1,10 @@
 //! Questions to the supervisor, one at a time or a file of them.
 
-use std::fmt::Write as _;
-
 use fspid_core::fuzzy::{Inference, Supervisor};
 use serde_json::{Value, json};
 
 use crate::rows::Table;
+use fspid_diagnostics::lines;
 
 /// The answer as JSON.
 #[must_use]
@@ -63,8 +62,10 @@ impl Table for SupervisorTable {
         let &[e, ec] = row else { return Ok(()) };
         let answer = self.0.infer(e, ec).map_err(|problem| problem.to_string())?;
         let d = answer.delta;
-        // Writing to a string cannot fail.
-        let _ = writeln!(line, "{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd);
+        lines::line(
+            line,
+            format_args!("{e:.16e},{ec:.16e},{:.16e},{:.16e},{:.16e}", d.kp, d.ki, d.kd),
+        );
         Ok(())
     }
 }

@@ -1,11 +1,12 @@
-//! Studies of a closed loop: from the text of a scenario to verdicts and reports.
+#![doc = include_str!("../README.md")]
 //!
 //! ```text
 //! text ─parse▶ document ─validate▶ Study ─simulate▶ Trace ─measure▶ metrics ─judge▶ verdicts ─render▶ report
 //! ```
 //!
-//! One function per verb; the edges (command line, later Python and the browser) contain no formula.
 //! Only this crate knows TOML, JSON and HTML, and only here do degrees become radians and back.
+//!
+//! No features. Not here: many flights (`fspid-campaign`), searches (`fspid-tune`), printing (`fspid-cli`).
 
 #![cfg_attr(
     test,

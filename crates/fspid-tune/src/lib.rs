@@ -1,11 +1,11 @@
-//! Tuning: from a scenario whose free numbers are marked to a design, and from designs to a fair contest.
+#![doc = include_str!("../README.md")]
 //!
 //! ```text
 //! scenario with marks ─candidates▶ studies ─fly▶ measures ─objective▶ costs ─optimiser▶ design
 //! ```
 //!
-//! A search depends on the scenario, the optimiser, its budget and its seed alone: neither threads nor an
-//! interruption show in what it finds.
+//! No features. Not here: optimisers, which know no scenario (`fspid_study::tune::optimiser`), and many flights of one
+//! design (`fspid-campaign`).
 
 #![cfg_attr(
     test,

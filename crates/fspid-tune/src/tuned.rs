@@ -1,7 +1,7 @@
 //! What a search found, for people and programs.
 
+use fspid_diagnostics::digits::to_digits;
 use fspid_optimise::Stop;
-use fspid_scenario::digits::to_digits;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};

@@ -1,38 +1,4 @@
-//! Fuzzy self-tuning PID flight controllers, from an idea to evidence: the front door of the workbench for programs.
-//!
-//! The program `fspid` answers a terminal; this crate answers Rust. It holds no code of its own: every room of the house
-//! under one name, and a [`prelude`] with what most programs need.
-//!
-//! # From the text of a scenario to measures
-//!
-//! ```
-//! use fspid::prelude::*;
-//!
-//! let text = r#"
-//! schema = 1
-//! name = "a step of five degrees"
-//! [plant]
-//! preset = "b747-paper"
-//! [loop]
-//! sample_period_s = 0.01
-//! duration_s = 20.0
-//! [setpoint]
-//! kind = "step"
-//! amplitude_deg = 5.0
-//! [[controller]]
-//! name = "PID"
-//! kind = "pid"
-//! kp = 2.0
-//! ki = 0.5
-//! kd = 1.0
-//! "#;
-//! let study = parse(text, "step.toml", None, &[])?;
-//! let simulation = Simulation::of(&study)?;
-//! let result = &simulation.results[0];
-//! let overshoot_pct = result.metrics.first_step().overshoot_pct.expect("the loop is stable");
-//! assert!(result.metrics.verdict.is_good() && overshoot_pct < 20.0);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! # Without any file
 //!
@@ -74,7 +40,7 @@
 //! | [`campaign`], [`tune`] | many flights; optimisers, classical rules, contests |
 //! | [`lti`], [`aircraft`], [`proof`], [`numeric`] | linear systems, aircraft, proofs, numbers |
 //!
-//! Not here: the program and its arguments (`fspid-cli`), and firmware, which wants `fspid-core` alone.
+//! No features. Not here: the program and its arguments (`fspid-cli`), and firmware, which wants `fspid-core` alone.
 
 pub use fspid_aircraft as aircraft;
 pub use fspid_campaign as campaign;

@@ -12,8 +12,8 @@ use crate::vector::Vector3;
 
 /// One longitudinal coefficient and its derivatives, all without unit, angles in rad.
 ///
-/// $$ C = C_1 + C_\alpha \alpha + \frac{\bar c}{2V} \left( C_{\dot\alpha} \dot\alpha + C_q q \right)
-///      + C_u \frac{V - u_0}{u_0} + C_{\delta_e} \delta_e $$
+/// $$ C = C_1 + C_\alpha \alpha + \frac{\bar c}{2V} \left( C_{\dot\alpha} \dot\alpha + C_q q \right) +
+///      C_u \frac{V - u_0}{u_0} + C_{\delta_e} \delta_e $$
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LongitudinalCoefficient {
     /// At the reference.
@@ -32,8 +32,8 @@ pub struct LongitudinalCoefficient {
 
 /// Derivatives of one lateral coefficient, all without unit, angles in rad.
 ///
-/// $$ C = C_\beta \beta + \frac{b}{2V} \left( C_p p + C_r r \right)
-///      + C_{\delta_a} \delta_a + C_{\delta_r} \delta_r $$
+/// $$ C = C_\beta \beta + \frac{b}{2V} \left( C_p p + C_r r \right) +
+///      C_{\delta_a} \delta_a + C_{\delta_r} \delta_r $$
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LateralCoefficient {
     /// By sideslip.
@@ -106,7 +106,7 @@ pub enum ThrustLaw {
 
 /// An aircraft's forces from derivatives about one flight condition.
 ///
-/// $$ X = \bar q S\,(C_L \sin\alpha - C_D \cos\alpha) + T, \quad Z = -\bar q S\,(C_L \cos\alpha + C_D \sin\alpha) $$
+/// $$ X = \bar q S (C_L \sin\alpha - C_D \cos\alpha) + T, \quad Z = -\bar q S (C_L \cos\alpha + C_D \sin\alpha) $$
 ///
 /// A throttle of 1 is the thrust that balances the drag of the reference.
 ///
@@ -197,7 +197,7 @@ impl DerivativeModel {
         }
     }
 
-    /// Parabola less tangent: $k\,(C_{L_\alpha} \alpha)^2$.
+    /// Parabola less tangent: $k (C_{L_\alpha} \alpha)^2$.
     fn polar_excess(&self, alpha_rad: f64) -> f64 {
         let Longitudinal { lift, drag, .. } = &self.longitudinal;
         0.5 * drag.alpha / lift.reference * lift.alpha * alpha_rad * alpha_rad

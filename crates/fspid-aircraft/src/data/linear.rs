@@ -7,7 +7,7 @@ use crate::transfer::transfer_function;
 
 /// A longitudinal linear model: states and elevator.
 ///
-/// $$ \dot x = A x + b\, \delta_e $$
+/// $$ \dot x = A x + b \delta_e $$
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearData {
     /// What the states are, in the order of the rows.
@@ -86,7 +86,7 @@ impl LinearData {
     /// Forces depend on the motion through the air, so that a gust along a velocity acts as that velocity with its sign
     /// reversed; columns of $A$ for $u$ and $w$ have no part that is inertial:
     ///
-    /// $$ \dot x = A x + b\, \delta_e - A_u u_g - A_w w_g + b_q q_g, \qquad A_w = A_\alpha / V $$
+    /// $$ \dot x = A x + b \delta_e - A_u u_g - A_w w_g + b_q q_g, \qquad A_w = A_\alpha / V $$
     ///
     /// That of the pitch rate has one ($u_0 q$, and the part of $\dot w$ in the moment), and the matrix does not tell
     /// it from the air's; the source must. `None` where it does not, and for a model without the forward velocity or

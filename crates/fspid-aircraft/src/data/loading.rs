@@ -103,8 +103,8 @@ impl Longitudinal {
     /// $\hat q = q \bar c / 2 V$.
     ///
     /// $$ C_{L_q}' = C_{L_q} - 2 \Delta C_{L_\alpha}, \quad C_{D_q}' = C_{D_q} - 2 \Delta C_{D_\alpha}, \quad
-    ///    C_{m_q}' = C_{m_q} + \Delta\,(C_{L_q} - 2 C_{m_\alpha}) - 2 \Delta^2 C_{L_\alpha} $$
-    /// $$ C_{m_i}' = C_{m_i} + \Delta\, C_{L_i}, \qquad i = 1, \alpha, \dot\alpha, u, \delta_e $$
+    ///    C_{m_q}' = C_{m_q} + \Delta (C_{L_q} - 2 C_{m_\alpha}) - 2 \Delta^2 C_{L_\alpha} $$
+    /// $$ C_{m_i}' = C_{m_i} + \Delta C_{L_i}, \qquad i = 1, \alpha, \dot\alpha, u, \delta_e $$
     ///
     /// As in the books, lift stands for the force across the chord (drag adds some $C_D / C_{L_\alpha}$, a hundredth), the
     /// place moves along the forward axis of the reference flight, and the angle of attack's rate is the same at both

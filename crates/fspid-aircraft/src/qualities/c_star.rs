@@ -11,8 +11,8 @@ pub const CROSSOVER_SPEED_M_S: f64 = 121.92;
 
 /// C* over command of the short period, 1 at rest; servo and dead time left out.
 ///
-/// $$ C^* = n_z + \frac{V_{co}}{g} q, \quad
-///    \frac{C^*}{C^*_{ss}} = \frac{\omega_n^2 \left( V + V_{co} (1 + T_{\theta_2} s) + l s (1 + T_{\theta_2} s) \right)}
+/// $$ C^\ast = n_z + \frac{V_{co}}{g} q, \quad
+///    \frac{C^\ast}{C^\ast_{ss}} = \frac{\omega_n^2 \left( V + V_{co} (1 + T_{\theta_2} s) + l s (1 + T_{\theta_2} s) \right)}
 ///    {(V + V_{co}) (s^2 + 2 \zeta \omega_n s + \omega_n^2)} $$
 ///
 /// with the pilot l ahead of the centre of gravity. The lift of the elevator is left out. No level: the edges of the

@@ -1,7 +1,6 @@
 //! The measurements for people and for programs.
 
-use std::fmt::Write as _;
-
+use fspid_diagnostics::lines::{add, line};
 use serde_json::{Map, Value, json};
 
 use super::{Bench, Kind, Rates, instruction_set, program};
@@ -101,18 +100,21 @@ impl Bench {
         let threads = self.threads;
         let plural = if threads == 1 { "" } else { "s" };
         let heading = format!("{threads} thread{plural}");
-        let _ = writeln!(text, "{}, vector instructions: {}\n", program(), instruction_set());
-        let _ = writeln!(text, "{:<28}{:>39}{heading:>39}", "", "1 thread");
+        line(
+            &mut text,
+            format_args!("{}, vector instructions: {}\n", program(), instruction_set()),
+        );
+        line(&mut text, format_args!("{:<28}{:>39}{heading:>39}", "", "1 thread"));
         let columns = format!("{:>15}{:>15}{:>9}", "median", "best", "spread");
-        let _ = writeln!(text, "{:<28}{columns}{columns}{:>9}", "", "scaling");
+        line(&mut text, format_args!("{:<28}{columns}{columns}{:>9}", "", "scaling"));
         for measurement in &self.measurements {
             let kind = measurement.kind;
-            let _ = write!(text, "{:<28}", in_words(kind));
+            add(&mut text, format_args!("{:<28}", in_words(kind)));
             for rates in [&measurement.one, &measurement.all] {
                 let (median, best) = (rate(rates.median_per_s()), rate(rates.best_per_s()));
-                let _ = write!(text, "{median}{best}{:>7.1} %", rates.spread_pct());
+                add(&mut text, format_args!("{median}{best}{:>7.1} %", rates.spread_pct()));
             }
-            let _ = writeln!(text, "{:>7.0} %", self.scaling_pct(kind));
+            line(&mut text, format_args!("{:>7.0} %", self.scaling_pct(kind)));
         }
         self.summary(&mut text);
         text
@@ -120,38 +122,48 @@ impl Bench {
 
     fn summary(&self, text: &mut String) {
         let flights = self.rate_per_s(Kind::Flights);
-        let _ = writeln!(
+        line(
             text,
-            "\nOn one thread a batch makes {:.1} times as many inferences, and flights side by side {:.1} times as many steps, as one by one.",
-            self.times_by_batch(Kind::InferenceScalar, Kind::InferenceBatch),
-            self.times_by_batch(Kind::StepScalar, Kind::StepBatch)
+            format_args!(
+                "\nOn one thread a batch makes {:.1} times as many inferences, and flights side by side {:.1} times as many steps, as one by one.",
+                self.times_by_batch(Kind::InferenceScalar, Kind::InferenceBatch),
+                self.times_by_batch(Kind::StepScalar, Kind::StepBatch)
+            ),
         );
-        let _ = writeln!(
+        line(
             text,
-            "1000 flights of 50 s at 100 Hz with all measures take {:.2} s on all threads, a million {:.1} min.",
-            1e3 / flights,
-            1e6 / flights / 60.0
+            format_args!(
+                "1000 flights of 50 s at 100 Hz with all measures take {:.2} s on all threads, a million {:.1} min.",
+                1e3 / flights,
+                1e6 / flights / 60.0
+            ),
         );
-        let _ = writeln!(
+        line(
             text,
-            "Rates are medians of {} rounds; spread is from quartile to quartile, of the median. Digest of all answers, the same in every round: {}",
-            self.effort.rounds,
-            self.digest.get(..16).unwrap_or(&self.digest)
+            format_args!(
+                "Rates are medians of {} rounds; spread is from quartile to quartile, of the median. Digest of all answers, the same in every round: {}",
+                self.effort.rounds,
+                self.digest.get(..16).unwrap_or(&self.digest)
+            ),
         );
         // Inferences share nothing between threads, so that only the machine can hold them up.
         let scaling_pct = self.scaling_pct(Kind::InferenceScalar);
         if scaling_pct < SMALL_SCALING_PCT {
-            let _ = writeln!(
+            line(
                 text,
-                "warning: {} threads make {scaling_pct:.0} % of what as many processors would: some are busy with something else, or are no whole processors",
-                self.threads
+                format_args!(
+                    "warning: {} threads make {scaling_pct:.0} % of what as many processors would: some are busy with something else, or are no whole processors",
+                    self.threads
+                ),
             );
         }
         if self.is_noisy() {
-            let _ = writeln!(
+            line(
                 text,
-                "warning: a spread of {:.0} % is more than {LARGE_SPREAD_PCT:.0} %: something else uses this machine, and the numbers mean little",
-                self.largest_spread_pct()
+                format_args!(
+                    "warning: a spread of {:.0} % is more than {LARGE_SPREAD_PCT:.0} %: something else uses this machine, and the numbers mean little",
+                    self.largest_spread_pct()
+                ),
             );
         }
     }

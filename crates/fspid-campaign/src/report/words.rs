@@ -1,6 +1,6 @@
 //! Numbers, probabilities and names in words.
 
-use fspid_page::number::significant;
+use fspid_page::number::{short, significant};
 
 use crate::summary::Probability;
 pub(super) use crate::summary::words::{percent, whole as count};
@@ -12,9 +12,7 @@ pub(super) fn share(part: f64) -> String {
 
 /// A number with four digits.
 pub(super) fn number(value: f64) -> String {
-    let text = significant(value, 4);
-    let plain = text.contains('.') && !text.contains('\u{d7}');
-    if plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    short(value, 4)
 }
 
 /// A number with its unit, if it has one.

@@ -25,7 +25,7 @@ pub const BINS: [u32; 2] = [10, 60];
 impl Histogram {
     /// Of all values of a column.
     ///
-    /// The width is the round number at or below $2 \, (q_{0.75} - q_{0.25}) \, n^{-1/3}$, as far as 10 to 60 bins allow. Fewer
+    /// The width is the round number at or below $2 (q_{0.75} - q_{0.25}) n^{-1/3}$, as far as 10 to 60 bins allow. Fewer
     /// bins come where the values are so near each other that doubles between them run out; a single value repeated has one bin.
     /// `None` for a column without finite values, and for one whose edges would overflow.
     ///

@@ -15,7 +15,7 @@ pub struct Interval {
 
 /// The value that a share of the runs stays below, estimated by linear interpolation between neighbours.
 ///
-/// $$ x_{(i)} + (h - i) (x_{(i+1)} - x_{(i)}), \quad h = (n - 1) s + 1, \; i = \lfloor h \rfloor $$
+/// $$ x_{(i)} + (h - i) (x_{(i+1)} - x_{(i)}), \quad h = (n - 1) s + 1, \ i = \lfloor h \rfloor $$
 ///
 /// 0 gives the minimum, 1 the maximum, 0.5 the median. `None` for an empty column and a share outside [0, 1].
 ///

@@ -176,8 +176,8 @@ fn deviance(found: f64, expected: f64) -> f64 {
 /// What the first probability, over the chance of a miss, is multiplied with to give the tail: a continued fraction of the
 /// incomplete beta function $I_x(a, b)$, evaluated from its front.
 ///
-/// $$ \frac{a}{\beta_0 +} \, \frac{\alpha_1}{\beta_1 +} \, \frac{\alpha_2}{\beta_2 +} \cdots, \quad
-/// \alpha_m = \frac{(a+m-1)(a+b+m-1) \, m \, (b-m) \, x^2}{(a+2m-1)^2}, $$
+/// $$ \frac{a}{\beta_0 +} \frac{\alpha_1}{\beta_1 +} \frac{\alpha_2}{\beta_2 +} \cdots, \quad
+/// \alpha_m = \frac{(a+m-1)(a+b+m-1) m (b-m) x^2}{(a+2m-1)^2}, $$
 /// $$ \beta_m = m + \frac{m (b-m) x}{a+2m-1} + \frac{(a+m) (a (1-x) - b x + 1 + m (2-x))}{a+2m+1} $$
 ///
 /// All terms are positive up to the middle of the distribution, so that nothing cancels; it ends at $m = b$ at the latest

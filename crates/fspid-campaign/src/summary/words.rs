@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fspid_diagnostics::digits::without_zeros;
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
 use super::data::{Note, Probability, Severity};
@@ -46,8 +47,7 @@ pub fn whole(value: u64) -> String {
 /// A confidence or a share of the flights in percent, with the digits it has: `95 %`, `99.9 %`.
 #[must_use]
 pub fn percent(share: f64) -> String {
-    let text = format!("{:.6}", 100.0 * share);
-    format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+    format!("{} %", without_zeros(&format!("{:.6}", 100.0 * share)))
 }
 
 /// Minus signs as print has them.

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
-use fspid_scenario::digits::counted;
+use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{self, Study, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;

@@ -9,7 +9,7 @@ use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
-use fspid_scenario::digits::counted;
+use fspid_diagnostics::digits::counted;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::{Source, TuneError};
 

@@ -13,7 +13,7 @@ pub enum Gearing {
 impl Gearing {
     /// Power, 0 to 1, that is asked for by a throttle from 0 to 1.
     ///
-    /// $$ P = 0.6494\, \delta \ \text{for}\ \delta \le 0.77, \quad 2.1738\, \delta - 1.1738 \ \text{above} $$
+    /// $$ P = 0.6494 \delta \ \text{for}\ \delta \le 0.77, \quad 2.1738 \delta - 1.1738 \ \text{above} $$
     ///
     /// # Source
     /// Stevens and Lewis, *Aircraft Control and Simulation*, appendix A, `TGEAR`; NASA TM-2003-212145.

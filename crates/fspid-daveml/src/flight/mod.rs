@@ -132,7 +132,7 @@ impl TableForces {
 
     /// Loads of the air about the moment reference centre.
     ///
-    /// $$ F = \bar q S\, C_F, \quad M = \bar q S\,(b\, C_l,\ \bar c\, C_m,\ b\, C_n) $$
+    /// $$ F = \bar q S C_F, \quad M = \bar q S (b C_l,\ \bar c C_m,\ b C_n) $$
     ///
     /// With lift and drag in place of X and Z, and $\hat v$ the direction of flight in body axes,
     ///

@@ -93,7 +93,7 @@ impl Grid {
 
 /// Point on the line through two values: exactly the first at 0, the second at 1, and never outside of them between.
 ///
-/// $$ a + t\,(b - a) \ \text{for}\ t < \tfrac{1}{2}, \quad b - (1 - t)(b - a) \ \text{else} $$
+/// $$ a + t (b - a) \ \text{for}\ t < \tfrac{1}{2}, \quad b - (1 - t)(b - a) \ \text{else} $$
 fn between<N: Number>(low: N, high: N, part: N) -> N {
     let rise = high - low;
     if part.value() < 0.5 { low + part * rise } else { high - (N::one() - part) * rise }

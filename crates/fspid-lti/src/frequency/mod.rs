@@ -21,7 +21,7 @@ const BLUR_RAD: f64 = 0.1;
 
 /// Response of a system followed by a dead time.
 ///
-/// $$ L(j \omega) = G(j \omega)\, e^{-j \omega \tau} $$
+/// $$ L(j \omega) = G(j \omega) e^{-j \omega \tau} $$
 ///
 /// # Example
 /// The paper's Navion with its servo and proportional control of gain 1 is neutral at a gain of 4:

@@ -7,7 +7,7 @@ use crate::polynomial::Polynomial;
 /// Coefficients by rising powers of $w = \omega^2$.
 type Powers = Vec<f64>;
 
-/// $P(j\omega) = E(w) + j \omega\, O(w)$: squared gain and slope of the phase.
+/// $P(j\omega) = E(w) + j \omega O(w)$: squared gain and slope of the phase.
 ///
 /// $$ |P|^2 = E^2 + w O^2, \quad \frac{d \angle P}{d \omega} = \frac{E (O + 2 w O') - 2 w E' O}{|P|^2} $$
 pub(super) struct Parts {

@@ -17,7 +17,7 @@ const LEAST: f64 = 1e-12;
 /// $T = L / (1 + L)$ as a continuous system, $D + C (s I - A)^{-1} B$.
 ///
 /// $$ s = \frac{z - 1}{z + 1} = j \tan \frac{\omega T}{2}, \quad A = (2 I + E)^{-1} E, \quad
-/// B = \sqrt{2} (2 I + E)^{-1} b, \quad C = \sqrt{2}\, c\, (2 I + E)^{-1}, \quad D = -c (2 I + E)^{-1} b $$
+/// B = \sqrt{2} (2 I + E)^{-1} b, \quad C = \sqrt{2} c (2 I + E)^{-1}, \quad D = -c (2 I + E)^{-1} b $$
 ///
 /// with $E = A_z - b c - I$. A stable loop has no closed-loop pole at $z = -1$, however singular its state matrix and
 /// whatever integrators it has. The other map, $1/s$, exchanges rest and Nyquist's frequency.
@@ -72,7 +72,7 @@ impl Mapped {
     /// Angles near which $|T - t_0|$ has a value, and others, for a real $t_0$.
     ///
     /// $$ \gamma^2 - |T - t_0|^2 = 0 \iff j \tan \frac{\omega T}{2} \in \operatorname{eig} \begin{pmatrix}
-    /// A + B \tilde D C / R & B B^T / R \\ -\gamma^2 C^T C / R & -(A + B \tilde D C / R)^T \end{pmatrix}, \quad
+    /// A + B \tilde D C / R & B B^T / R \cr -\gamma^2 C^T C / R & -(A + B \tilde D C / R)^T \end{pmatrix}, \quad
     /// \tilde D = D - t_0, \quad R = \gamma^2 - \tilde D^2 $$
     ///
     /// Of the maps the first that is far from trouble at its blind place, or the one that is farthest.

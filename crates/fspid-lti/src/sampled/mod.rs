@@ -44,7 +44,7 @@ const HALVINGS_MAX: u32 = 20;
 
 /// A sampled loop of one input and one output, to be closed with negative feedback.
 ///
-/// $$ L(z) = c\, (z I - A)^{-1} b, \quad z = e^{j \omega T} $$
+/// $$ L(z) = c (z I - A)^{-1} b, \quad z = e^{j \omega T} $$
 ///
 /// # Example
 /// An integrator with a delay of one sample is stable up to a gain of 1 per sample:

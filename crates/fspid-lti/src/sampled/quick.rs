@@ -3,6 +3,8 @@
 //! The same iteration with less care: norms without protection from overflow, which balancing makes unnecessary, and a
 //! Hessenberg form by elimination. For candidates of frequencies, which are tried anyway, and for poles beside a limit.
 
+use fspid_numeric::matrix::balance;
+
 use crate::complex::Complex;
 use crate::eigenvalues::{eigenvalues, two_by_two};
 use crate::error::LtiError;
@@ -66,33 +68,31 @@ impl Work {
 
     /// Makes rows and columns of similar size by powers of two.
     fn balance(&mut self) {
+        balance(self.size, SWEEPS, |i| self.improve(i));
+    }
+
+    /// As of the careful iteration, but with sums for norms and without calls of a library: a third of the time.
+    fn improve(&mut self, i: usize) -> bool {
         let n = self.size;
-        for _ in 0..SWEEPS {
-            let mut changed = false;
-            for i in 0..n {
-                let (mut column, mut row) = (0.0, 0.0);
-                for k in (0..n).filter(|&k| k != i) {
-                    column += self.at(k, i).abs();
-                    row += self.at(i, k).abs();
-                }
-                if !(column > 0.0 && row > 0.0) {
-                    continue;
-                }
-                let factor = power_of_two(row / column);
-                if (column * factor + row / factor) < 0.95 * (column + row) {
-                    changed = true;
-                    for k in 0..n {
-                        self.h[k * n + i] *= factor;
-                    }
-                    for value in &mut self.h[i * n..(i + 1) * n] {
-                        *value /= factor;
-                    }
-                }
+        let (mut column, mut row) = (0.0, 0.0);
+        for k in (0..n).filter(|&k| k != i) {
+            column += self.at(k, i).abs();
+            row += self.at(i, k).abs();
+        }
+        if !(column > 0.0 && row > 0.0) {
+            return false;
+        }
+        let factor = power_of_two(row / column);
+        let worthwhile = (column * factor + row / factor) < 0.95 * (column + row);
+        if worthwhile {
+            for k in 0..n {
+                self.h[k * n + i] *= factor;
             }
-            if !changed {
-                break;
+            for value in &mut self.h[i * n..(i + 1) * n] {
+                *value /= factor;
             }
         }
+        worthwhile
     }
 
     /// As [`hessenberg`].

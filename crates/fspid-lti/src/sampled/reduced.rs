@@ -10,7 +10,7 @@ const SHORT: usize = 25;
 
 /// Loop in the variable $\zeta = z - 1$, balanced, with a Hessenberg matrix and one output coefficient.
 ///
-/// $$ L = \gamma\, e_n^T (\zeta I - H)^{-1} b, \quad H \sim A - I $$
+/// $$ L = \gamma e_n^T (\zeta I - H)^{-1} b, \quad H \sim A - I $$
 ///
 /// In $\zeta$ the slow poles of a quickly sampled loop lie near the origin, where floating point numbers are dense,
 /// instead of near 1, where they are not. With the output coefficients turned into the last unit vector, elimination

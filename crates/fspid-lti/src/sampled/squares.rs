@@ -22,8 +22,8 @@ const STEPS: [f64; 8] = [1.0, 1.7, 0.6, 2.6, 0.37, 4.1, 0.23, 7.3];
 ///
 /// $$ N = ((1 - s_0) E - 2 s_0 I)((1 + s_0) E + 2 s_0 I), \quad K = N^{-1} (2 I + E), \quad M = K (2 I + E) $$
 ///
-/// $$ p \in \operatorname{eig}\left(M - \frac{K b\, c K}{c N^{-1} b}\right) \iff \operatorname{Im} T_f = 0, \quad
-/// p \in \operatorname{eig}\left(M + \frac{2 K b\, c N^{-1} E}{G}\right) \iff \operatorname{Re} T_f = \frac{f}{2}, \quad
+/// $$ p \in \operatorname{eig}\left(M - \frac{K b c K}{c N^{-1} b}\right) \iff \operatorname{Im} T_f = 0, \quad
+/// p \in \operatorname{eig}\left(M + \frac{2 K b c N^{-1} E}{G}\right) \iff \operatorname{Re} T_f = \frac{f}{2}, \quad
 /// G = \frac{T_f(s_0) + T_f(-s_0) - f}{2} $$
 ///
 /// Nothing here is singular at $z = \pm 1$, where loops have integrators and dead times leave their mark; $s_0$ only

@@ -1,7 +1,7 @@
 //! Gauss and Legendre's rule of ten points on a panel, with its remainder.
 //!
-//! $$ \int_{-h}^{h} f(m + t) \, dt = h \sum_i w_i f(m + h t_i) + R, \quad
-//!    R = \frac{(n!)^4 \, (2h)^{2n+1}}{(2n+1) \, ((2n)!)^2} \cdot \frac{f^{(2n)}(\xi)}{(2n)!} $$
+//! $$ \int_{-h}^{h} f(m + t) \ dt = h \sum_i w_i f(m + h t_i) + R, \quad
+//!    R = \frac{(n!)^4 (2h)^{2n+1}}{(2n+1) ((2n)!)^2} \cdot \frac{f^{(2n)}(\xi)}{(2n)!} $$
 //!
 //! Nodes and weights are irrational; here they are intervals of two neighbouring floats. They were
 //! made by `oracles/make_gauss.py`.

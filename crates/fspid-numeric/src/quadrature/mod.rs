@@ -95,9 +95,9 @@ pub struct Quadrature<'a> {
 /// The integrals of a curve: intervals that hold the true values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrals {
-    /// $\int f(x) \, dx$
+    /// $\int f(x) \ dx$
     pub area: Interval,
-    /// $\int (x - a) f(x) \, dx$ about the middle $a$ of the domain.
+    /// $\int (x - a) f(x) \ dx$ about the middle $a$ of the domain.
     pub moment: Interval,
     /// The point $a$.
     pub about: f64,
@@ -124,7 +124,7 @@ impl Integrals {
         some.then(|| Interval::point(self.about) + self.moment / self.area)
     }
 
-    /// $\int x f(x) \, dx$; wider than [`moment`](Self::moment) where the domain is far from zero.
+    /// $\int x f(x) \ dx$; wider than [`moment`](Self::moment) where the domain is far from zero.
     #[must_use]
     pub fn moment_about_zero(&self) -> Interval {
         self.moment + Interval::point(self.about) * self.area

@@ -2,12 +2,10 @@
 
 use crate::report::Paper;
 use crate::report::templates::render;
+use fspid_data::{ASSUMPTIONS, ERRATA};
 use fspid_page::context;
 use fspid_page::markdown;
 use fspid_page::page::Section;
-
-const ERRATA: &str = include_str!("../../../../docs/paper/errata.md");
-const ASSUMPTIONS: &str = include_str!("../../../../docs/paper/assumptions.md");
 
 /// What is wrong or contradictory in print.
 pub(super) fn errata(_: &Paper<'_>) -> Section {

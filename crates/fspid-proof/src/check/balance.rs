@@ -1,9 +1,9 @@
 //! Units of states by powers of two, after which rows and columns are of similar size.
 
+use fspid_numeric::matrix::{balance as sweep, is_worthwhile};
+
 /// Sweeps after which the matrix is taken as it is; two or three are usual.
 const SWEEPS: usize = 60;
-/// A change of unit must shrink row plus column by this factor to be worth making.
-const WORTHWHILE: f64 = 0.95;
 /// No unit moves further than this, so that nothing leaves the range of floats.
 const FURTHEST: i32 = 300;
 
@@ -13,24 +13,18 @@ const FURTHEST: i32 = 300;
 /// change of units is exact; only the width of what follows depends on it.
 ///
 /// # Source
-/// B. N. Parlett and C. Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*,
-/// Numer. Math. 13 (1969) 293.
+/// As [`fspid_numeric::matrix::balance`], with sums for norms: intervals ask for no more.
 pub(super) fn balance(mut magnitudes: Vec<f64>, size: usize) -> Vec<i32> {
-    let mut exponents = vec![0; size];
-    for _ in 0..SWEEPS {
-        let mut changed = false;
-        for (i, exponent) in exponents.iter_mut().enumerate() {
-            let change = worthwhile(&magnitudes, size, i);
-            if change != 0 && (*exponent + change).abs() <= FURTHEST {
-                rescale(&mut magnitudes, size, i, change);
-                *exponent += change;
-                changed = true;
-            }
+    let mut exponents: Vec<i32> = vec![0; size];
+    sweep(size, SWEEPS, |i| {
+        let change = worthwhile(&magnitudes, size, i);
+        let changes = change != 0 && (exponents[i] + change).abs() <= FURTHEST;
+        if changes {
+            rescale(&mut magnitudes, size, i, change);
+            exponents[i] += change;
         }
-        if !changed {
-            break;
-        }
-    }
+        changes
+    });
     exponents
 }
 
@@ -43,10 +37,8 @@ fn worthwhile(magnitudes: &[f64], size: usize, i: usize) -> i32 {
     if !(ratio > 0.0 && ratio.is_finite()) {
         return 0;
     }
-    let (_, exponent) = libm::frexp(ratio);
-    let change = exponent / 2;
-    let after = libm::scalbn(column, change) + libm::scalbn(row, -change);
-    if after < WORTHWHILE * (column + row) { change } else { 0 }
+    let change = libm::frexp(ratio).1 / 2;
+    if is_worthwhile(row, column, change) { change } else { 0 }
 }
 
 fn rescale(magnitudes: &mut [f64], size: usize, i: usize, change: i32) {

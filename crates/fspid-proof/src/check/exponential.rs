@@ -60,8 +60,8 @@ pub fn exponential(matrix: &IntervalMatrix) -> Result<IntervalMatrix, NotProved>
 
 /// State and input matrices of a sampled system whose inputs are held over a time.
 ///
-/// $$ \Phi = e^{A t}, \quad \Gamma = \int_0^t e^{A \tau} B \, d\tau, \quad
-/// \exp \begin{pmatrix} A t & B t \\ 0 & 0 \end{pmatrix} = \begin{pmatrix} \Phi & \Gamma \\ 0 & I \end{pmatrix} $$
+/// $$ \Phi = e^{A t}, \quad \Gamma = \int_0^t e^{A \tau} B \ d\tau, \quad
+/// \exp \begin{pmatrix} A t & B t \cr 0 & 0 \end{pmatrix} = \begin{pmatrix} \Phi & \Gamma \cr 0 & I \end{pmatrix} $$
 ///
 /// Both hold every pair that belongs to matrices inside A and B and a time inside `time_s`.
 ///

@@ -1,6 +1,8 @@
 //! Cholesky factors in ordinary arithmetic. Nothing is proved here: what follows from a factor is
 //! checked by whoever asked for it.
 
+use fspid_numeric::matrix::{self, definite};
+
 /// A symmetric matrix without a Cholesky factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stopped {
@@ -13,25 +15,13 @@ pub(super) struct Stopped {
 }
 
 /// The upper triangular R with $A = R^T R$, row after row; only the upper half of A is read.
-///
-/// # Source
-/// G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th edition, algorithm 4.2.1.
 pub(super) fn cholesky(matrix: &[f64], size: usize) -> Result<Vec<f64>, Stopped> {
-    let mut factor = vec![0.0; size * size];
-    for i in 0..size {
-        for j in i..size {
-            let known: f64 = (0..i).map(|k| factor[k * size + i] * factor[k * size + j]).sum();
-            let rest = matrix[i * size + j] - known;
-            if j > i {
-                factor[i * size + j] = rest / factor[i * size + i];
-            } else if rest > 0.0 && rest.is_finite() {
-                factor[i * size + i] = rest.sqrt();
-            } else {
-                return Err(stopped(&factor, size, i, rest));
-            }
-        }
-    }
-    Ok(factor)
+    let mut lower = vec![0.0; size * size];
+    let entry = |row: usize, column: usize| matrix[column * size + row];
+    let done = matrix::cholesky(&mut lower, size, entry, definite);
+    let upper: Vec<f64> = (0..size * size).map(|at| lower[at % size * size + at / size]).collect();
+    done.map_err(|it| stopped(&upper, size, it.row, it.pivot))?;
+    Ok(upper)
 }
 
 /// The direction $(-A_{11}^{-1} a, 1, 0)$, along which the form is the pivot $\alpha - a^T A_{11}^{-1} a$:

@@ -114,7 +114,7 @@ fn weighed(tau: f64, q: &IntervalMatrix, size: usize) -> Result<IntervalMatrix, 
 
 /// Proves that $|r z| \le$ `limit` wherever $z^T P z \le$ `level`, for every row r inside `row`:
 ///
-/// $$ \begin{pmatrix} P & r^T \\ r & \text{limit}^2 / \text{level} \end{pmatrix} \succ 0 $$
+/// $$ \begin{pmatrix} P & r^T \cr r & \text{limit}^2 / \text{level} \end{pmatrix} \succ 0 $$
 ///
 /// This holds exactly where P is positive definite and $r P^{-1} r^T <$ limit²/level, the largest value
 /// of $(r z)^2$ over the ellipsoid being level times the left side.
@@ -139,7 +139,7 @@ pub fn inside_limit(p: &Matrix, level: f64, row: &[Interval], limit: f64) -> Res
 }
 
 /// A bound of $|r z|$ over the ellipsoid $z^T P z \le$ `level`, for every row r inside `row`:
-/// $\sqrt{c\, r P^{-1} r^T}$, as in [`inside_limits`].
+/// $\sqrt{c r P^{-1} r^T}$, as in [`inside_limits`].
 ///
 /// # Errors
 /// [`NotProved`] where shapes do not fit, a number is not allowed, or P is not symmetric and positive definite.

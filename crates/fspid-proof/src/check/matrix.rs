@@ -8,7 +8,7 @@ use super::rounding::{exact_sum, sum_up, times_power};
 
 /// A dense matrix of intervals: all real matrices whose entries lie within a radius of a middle.
 ///
-/// $$ \{ A : |a_{ij} - m_{ij}| \le r_{ij} \} $$
+/// $$ \lbrace A : |a_{ij} - m_{ij}| \le r_{ij} \rbrace $$
 ///
 /// Sums, products and scalings hold every result that matrices inside can have, rounding included.
 /// An entry without bounds (after an overflow, or from NaN) has an infinite radius and is passed on;

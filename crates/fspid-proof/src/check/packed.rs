@@ -83,7 +83,8 @@ impl Packed {
     /// $$ \lVert \Delta \rVert_2 \le \frac{\gamma_{n+1}}{1 - \gamma_{n+1}} \operatorname{tr} \tilde S,
     /// \quad \gamma_k = \frac{k u}{1 - k u} $$
     ///
-    /// and $R^T R$ is not negative. So all is proved if c is above this, the rounding of the difference
+    /// and $R^T R$ is not negative. (Not the loop of `fspid_numeric`: this one works from the right, in packed rows, because
+    /// thousands of inequalities are checked with it, and needs no more of a factor than that there is one.) So all is proved if c is above this, the rounding of the difference
     /// and the largest row sum of the radii, which bounds their norm.
     ///
     /// # Source

@@ -181,7 +181,7 @@ fn chosen(simplex: &[Point], part: usize) -> impl Iterator<Item = Point> {
 /// them.
 ///
 /// $$ p_0 + \sum_i t_i d_i, \qquad d_i = p_i - p_0, \qquad
-///    \sum_j (d_i \cdot d_j) \, t_j = -d_i \cdot p_0 $$
+///    \sum_j (d_i \cdot d_j) t_j = -d_i \cdot p_0 $$
 ///
 /// Edges that are not there have no part in it.
 fn foot(first: Point, rest: impl Iterator<Item = Point>) -> Option<Point> {

@@ -237,7 +237,7 @@ impl<'a> Enclosure<'a> {
 /// only what is below $2 + h$ and below $3 - h$, hence below 8/3. The former's moment about 8/3, up
 /// to the strength $s$, is
 ///
-/// $$ \int_0^s \left( \tfrac{h}{2} - \tfrac16 \right) (1 - h) \,dh = -\tfrac{s}{6} (1 - s)^2 \le 0 $$
+/// $$ \int_0^s \left( \tfrac{h}{2} - \tfrac16 \right) (1 - h) \ dh = -\tfrac{s}{6} (1 - s)^2 \le 0 $$
 fn furthest(range: f64, rule: Defuzzifier) -> f64 {
     if rule == Defuzzifier::Exact {
         let spacing = Interval::point(range) / Interval::point(3.0);

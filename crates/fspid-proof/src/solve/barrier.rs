@@ -73,7 +73,7 @@ impl Part<'_> {
         }
     }
 
-    /// $-s\, w_j \operatorname{tr}(U^T Z U X_j)$.
+    /// $-s w_j \operatorname{tr}(U^T Z U X_j)$.
     fn add_slope(&self, form: &Form, turned: &Dense, gradient: &mut [f64]) {
         let slope = pack(turned);
         for &(number, weight) in &form.weights {

@@ -3,7 +3,7 @@
 //! In a cell $\kappa = c + \sum_j s_j h_j e_j$, $s \in [-1, 1]^g$, the difference is a polynomial of degree 3 in
 //! each $s_j$,
 //!
-//! $$ F(s) = \rho^2 P(s) - M(s)^T P^+(s) M(s) = \sum_m C_m s^m = \sum_b B_b \, \beta_b(s) $$
+//! $$ F(s) = \rho^2 P(s) - M(s)^T P^+(s) M(s) = \sum_m C_m s^m = \sum_b B_b \beta_b(s) $$
 //!
 //! and Bernstein's polynomials $\beta_b$ are not negative and sum up to 1: where all matrices $B_b$ are
 //! positive definite, F is so in the whole cell. A cell where they are not is halved.

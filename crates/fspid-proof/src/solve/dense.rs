@@ -6,6 +6,7 @@
 use core::ops::{Index, IndexMut};
 
 use fspid_lti::Matrix;
+use fspid_numeric::matrix::{cholesky, definite, identity};
 
 /// A dense real matrix, row after row.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +42,7 @@ impl Dense {
     }
 
     pub(super) fn identity(size: usize) -> Self {
-        Self::from_function(size, size, |row, column| if row == column { 1.0 } else { 0.0 })
+        Self { rows: size, columns: size, data: identity(size).collect() }
     }
 
     pub(super) fn from_function(
@@ -151,21 +152,9 @@ impl Dense {
 
     /// Lower triangular L with $L L^T = A$; `None` unless every pivot is above zero.
     pub(super) fn cholesky(&self) -> Option<Self> {
-        let size = self.rows;
-        let mut lower = Self::zeros(size, size);
-        for row in 0..size {
-            for column in 0..=row {
-                let known = dot(&lower.row(row)[..column], &lower.row(column)[..column]);
-                let rest = self[(row, column)] - known;
-                if row > column {
-                    lower[(row, column)] = rest / lower[(column, column)];
-                } else if rest > 0.0 && rest.is_finite() {
-                    lower[(row, row)] = rest.sqrt();
-                } else {
-                    return None;
-                }
-            }
-        }
+        let mut lower = Self::zeros(self.rows, self.rows);
+        let entry = |row, column| self[(row, column)];
+        cholesky(&mut lower.data, self.rows, entry, definite).ok()?;
         Some(lower)
     }
 

@@ -3,7 +3,7 @@
 //! A system is a list of symmetric matrices that are linear in the unknowns and must all become positive
 //! definite:
 //!
-//! $$ F_i(x) = \sum_f s_f \, U_f \Bigl( \sum_j w_{fj} X_j \Bigr) U_f^T + \sum_g \tau_g A_g \succ 0 $$
+//! $$ F_i(x) = \sum_f s_f U_f \Bigl( \sum_j w_{fj} X_j \Bigr) U_f^T + \sum_g \tau_g A_g \succ 0 $$
 //!
 //! with symmetric $X_j$, all of one size, and numbers $\tau_g$ as unknowns. The factor $s_f$ is the level
 //! $\lambda = \rho^2$ for a rated term and 1 otherwise: the level says how fast the form must fall.
@@ -49,7 +49,7 @@ impl Factor {
 /// Symmetric unknowns by number, each with the factor that multiplies it.
 pub(super) type Weights = Vec<(usize, f64)>;
 
-/// $s\, U (\sum_j w_j X_j) U^T$.
+/// $s U (\sum_j w_j X_j) U^T$.
 #[derive(Debug, Clone)]
 pub(super) struct Form {
     pub(super) factor: Factor,

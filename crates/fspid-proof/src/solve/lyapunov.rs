@@ -1,6 +1,7 @@
 //! One quadratic form that falls under every matrix of a set.
 
 use fspid_lti::{Matrix, spectral_radius};
+use fspid_numeric::matrix::balance;
 
 use super::Effort;
 use super::centres::{Chart, Descent, Goal, descend};
@@ -219,8 +220,8 @@ fn starting_coordinates(matrices: &[Dense]) -> Option<(Dense, Dense)> {
 /// Powers of two by which the states are to be multiplied so that rows and columns become comparable.
 ///
 /// # Source
-/// B. N. Parlett and C. Reinsch, Balancing a matrix for calculation of eigenvalues and eigenvectors,
-/// Numer. Math. 13 (1969) 293.
+/// As [`fspid_numeric::matrix::balance`], to the nearest power of two however little it gains: of many matrices, only
+/// the largest entries are looked at.
 fn balancing_scales(matrices: &[Dense]) -> Vec<f64> {
     const SWEEPS: usize = 10;
     let size = matrices.first().map_or(0, |matrix| matrix.rows);
@@ -228,18 +229,16 @@ fn balancing_scales(matrices: &[Dense]) -> Vec<f64> {
         matrices.iter().map(|matrix| matrix[(i, j)].abs()).fold(0.0, f64::max)
     });
     let mut scales = vec![1.0; size];
-    for _ in 0..SWEEPS {
-        for i in 0..size {
-            let others = (0..size).filter(|&j| j != i);
-            let row =
-                others.clone().fold(0.0, |sum, j| sum + largest[(i, j)] * scales[j]) / scales[i];
-            let column = others.fold(0.0, |sum, j| sum + largest[(j, i)] / scales[j]) * scales[i];
-            let ratio = (row / column).sqrt();
-            if ratio > 0.0 && ratio.is_finite() {
-                scales[i] *= libm::exp2(libm::round(libm::log2(ratio)));
-            }
-        }
-    }
+    balance(size, SWEEPS, |i| {
+        let others = (0..size).filter(|&j| j != i);
+        let row = others.clone().fold(0.0, |sum, j| sum + largest[(i, j)] * scales[j]) / scales[i];
+        let column = others.fold(0.0, |sum, j| sum + largest[(j, i)] / scales[j]) * scales[i];
+        let ratio = (row / column).sqrt();
+        let steps =
+            if ratio > 0.0 && ratio.is_finite() { libm::round(libm::log2(ratio)) } else { 0.0 };
+        scales[i] *= libm::exp2(steps);
+        steps != 0.0
+    });
     scales
 }
 

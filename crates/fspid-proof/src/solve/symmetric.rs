@@ -2,10 +2,12 @@
 
 use core::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
+use fspid_numeric::matrix::{Jacobi, Turn};
+
 use super::dense::{Dense, add_scaled};
 
-/// Sweeps of rotations before giving up; the error squares with each one, six to eight are usual.
-const SWEEPS_MAX: usize = 40;
+/// Six to eight sweeps are usual.
+const ROTATIONS: Jacobi = Jacobi { sweeps: 40, turn, clears: false };
 
 /// Eigenvalues of a symmetric matrix with their unit eigenvectors in the columns, smallest first.
 pub(super) struct Spectrum {
@@ -15,23 +17,10 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     /// By cyclic rotations.
-    ///
-    /// # Source
-    /// C. G. J. Jacobi, 1846; G. H. Golub and C. F. Van Loan, Matrix Computations, 4th edition, section 8.5.
     pub(super) fn of(matrix: &Dense) -> Self {
         let size = matrix.rows;
         let (mut work, mut vectors) = (matrix.symmetric(), Dense::identity(size));
-        for _ in 0..SWEEPS_MAX {
-            let mut rotated = false;
-            for p in 0..size {
-                for q in p + 1..size {
-                    rotated |= rotate(&mut work, &mut vectors, p, q);
-                }
-            }
-            if !rotated {
-                break;
-            }
-        }
+        ROTATIONS.diagonalise(&mut work.data, &mut vectors.data, size);
         let mut order: Vec<usize> = (0..size).collect();
         order.sort_by(|&left, &right| work[(left, left)].total_cmp(&work[(right, right)]));
         Self {
@@ -56,33 +45,17 @@ impl Spectrum {
     }
 }
 
-/// Turns the entry (p, q) to zero; false when it is already negligible beside its diagonal.
-fn rotate(work: &mut Dense, vectors: &mut Dense, p: usize, q: usize) -> bool {
-    let entry = work[(p, q)];
-    let size = (work[(p, p)].abs() * work[(q, q)].abs()).sqrt();
-    let floor = f64::EPSILON * (work[(p, p)].abs() + work[(q, q)].abs()) * 1e-3;
+/// The turn that makes an entry zero; none when it is already negligible beside its diagonal.
+fn turn([first, last]: [f64; 2], entry: f64) -> Option<Turn> {
+    let size = (first.abs() * last.abs()).sqrt();
+    let floor = f64::EPSILON * (first.abs() + last.abs()) * 1e-3;
     if !(entry.abs() > 0.25 * f64::EPSILON * size + floor) {
-        return false;
+        return None;
     }
-    let theta = 0.5 * (work[(q, q)] - work[(p, p)]) / entry;
+    let theta = 0.5 * (last - first) / entry;
     let root = libm::hypot(theta, 1.0);
     let tangent = if theta < 0.0 { 1.0 / (theta - root) } else { 1.0 / (theta + root) };
-    let cosine = 1.0 / libm::hypot(tangent, 1.0);
-    let sine = tangent * cosine;
-    for k in 0..work.rows {
-        turn(work, (k, p), (k, q), (cosine, sine));
-        turn(vectors, (k, p), (k, q), (cosine, sine));
-    }
-    for k in 0..work.rows {
-        turn(work, (p, k), (q, k), (cosine, sine));
-    }
-    true
-}
-
-fn turn(matrix: &mut Dense, at: (usize, usize), and: (usize, usize), (cosine, sine): (f64, f64)) {
-    let (first, second) = (matrix[at], matrix[and]);
-    matrix[at] = cosine * first - sine * second;
-    matrix[and] = sine * first + cosine * second;
+    Some(Turn::of_tangent(tangent, libm::hypot(tangent, 1.0)))
 }
 
 /// Number of entries of a symmetric matrix on and above its diagonal.

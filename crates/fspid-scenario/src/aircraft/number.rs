@@ -1,12 +1,10 @@
 //! Numbers in tables for a terminal: plain signs, as many digits as mean something.
 
+use fspid_diagnostics::digits::without_zeros;
+
 /// `value` with so many significant digits, without zeros behind them.
 pub fn short(value: f64, digits: usize) -> String {
-    let text = significant(value, digits);
-    if !text.contains('.') || text.contains('e') {
-        return text;
-    }
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    without_zeros(&significant(value, digits)).to_owned()
 }
 
 /// `value` with so many significant digits.

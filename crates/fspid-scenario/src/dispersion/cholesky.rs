@@ -1,5 +1,7 @@
 //! A correlation matrix as the square of a triangle.
 
+use fspid_numeric::matrix::{Entry, cholesky};
+
 use super::error::DispersionError;
 
 /// How far a correlation may be from its mirror image, from 1 on the diagonal, and beyond what the
@@ -24,39 +26,33 @@ pub(super) fn triangle(
     correlation: &[Vec<f64>],
 ) -> Result<Vec<Vec<f64>>, DispersionError> {
     check(entries, correlation)?;
-    let mut triangle: Vec<Vec<f64>> = Vec::with_capacity(entries);
-    for (row, correlations) in correlation.iter().enumerate() {
-        let new = next_row(row, correlations, &triangle)?;
-        triangle.push(new);
-    }
-    Ok(triangle)
+    let mut triangle = vec![0.0; entries * entries];
+    // Variance that the columns so far do not explain: summed up as each row grows, so that it is never below 0.
+    let mut left: f64 = 1.0;
+    let matrix = |row: usize, column: usize| correlation[row][column];
+    cholesky(&mut triangle, entries, matrix, |entry| {
+        if entry.column == 0 {
+            left = 1.0;
+        }
+        let Some(diagonal) = entry.diagonal else { return Ok(libm::sqrt(left)) };
+        let value = next_entry(entry, diagonal, libm::sqrt(left))?;
+        left = (left - value * value).max(0.0);
+        Ok(value)
+    })?;
+    Ok((0..entries).map(|row| triangle[row * entries..][..=row].to_vec()).collect())
 }
 
-/// A row of the triangle, from those above.
-fn next_row(
-    row: usize,
-    correlations: &[f64],
-    triangle: &[Vec<f64>],
-) -> Result<Vec<f64>, DispersionError> {
-    let mut new = Vec::with_capacity(row + 1);
-    // Variance that the columns so far do not explain.
-    let mut left: f64 = 1.0;
-    for (column, (&value, above)) in correlations.iter().zip(triangle).enumerate() {
-        let explained: f64 = new.iter().zip(above).map(|(a, b)| a * b).sum();
-        let diagonal = above.last().copied().filter(|diagonal| *diagonal > NOTHING).unwrap_or(0.0);
-        let most = libm::sqrt(left);
-        let reach = most * diagonal;
-        let rest = value - explained;
-        if !(rest.abs() <= reach + TOLERANCE) {
-            let (lowest, highest) = (explained - reach, explained + reach);
-            return Err(DispersionError::Contradiction { row, column, value, lowest, highest });
-        }
-        let entry = if diagonal > 0.0 { (rest / diagonal).clamp(-most, most) } else { 0.0 };
-        left = (left - entry * entry).max(0.0);
-        new.push(entry);
+/// An entry below the diagonal, where at most `most` is left for it.
+fn next_entry(entry: Entry, diagonal: f64, most: f64) -> Result<f64, DispersionError> {
+    let Entry { row, column, value, known, .. } = entry;
+    let diagonal = if diagonal > NOTHING { diagonal } else { 0.0 };
+    let reach = most * diagonal;
+    let rest = entry.rest();
+    if !(rest.abs() <= reach + TOLERANCE) {
+        let (lowest, highest) = (known - reach, known + reach);
+        return Err(DispersionError::Contradiction { row, column, value, lowest, highest });
     }
-    new.push(libm::sqrt(left));
-    Ok(new)
+    Ok(if diagonal > 0.0 { (rest / diagonal).clamp(-most, most) } else { 0.0 })
 }
 
 /// Refuses what is no correlation matrix at first sight.

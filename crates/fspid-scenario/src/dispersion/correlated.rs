@@ -7,7 +7,7 @@ use super::standard_normal::quantile;
 
 /// Several normal distributions, truncated or not, joined by a Gaussian copula.
 ///
-/// $$ z = L \, \Phi^{-1}(u), \qquad L L^T = C, \qquad x_i = F_i^{-1}(\Phi(z_i)) $$
+/// $$ z = L \Phi^{-1}(u), \qquad L L^T = C, \qquad x_i = F_i^{-1}(\Phi(z_i)) $$
 ///
 /// with the correlation matrix C and the distribution $F_i$ of each entry. Each entry alone has
 /// exactly its own distribution, limits included. Without limits C is the correlation of the

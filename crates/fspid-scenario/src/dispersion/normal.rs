@@ -136,7 +136,7 @@ impl Normal {
 
     /// The value with shares p of the values below and q above it, $p + q = 1$.
     ///
-    /// $$ \Phi^{-1}(\Phi(a) + p\,P), \qquad -\Phi^{-1}(Q(b) + q\,P) $$
+    /// $$ \Phi^{-1}(\Phi(a) + p P), \qquad -\Phi^{-1}(Q(b) + q P) $$
     ///
     /// with the limits a and b in standard deviations, the share P between them, and
     /// $Q = 1 - \Phi$. Of these the one with the smaller probability is taken: it has all its

@@ -45,7 +45,7 @@ impl Uniform {
 /// Numbers between two limits whose logarithm is uniform: as many between 1 and 2 as between 2 and
 /// 4. Both limits are above 0, or both are below and the size is what is distributed so.
 ///
-/// $$ x = l \, (h / l)^u $$
+/// $$ x = l (h / l)^u $$
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogUniform {
     lower: f64,

@@ -9,6 +9,7 @@ use fspid_aircraft::aerodynamics::derivatives::{
 };
 use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, Loading, ModelData, Reference};
 use fspid_aircraft::{Range, Travel, Validity};
+use fspid_data::AIRCRAFT;
 
 use crate::file::check;
 use crate::file::document::{self, Item};
@@ -19,17 +20,6 @@ use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 use fspid_diagnostics::Problems;
 use fspid_diagnostics::Report;
-
-/// Aircraft by name.
-const AIRCRAFT: [(&str, &str); 7] = [
-    ("navion", include_str!("../../../../data/aircraft/navion.toml")),
-    ("b747-approach", include_str!("../../../../data/aircraft/b747-approach.toml")),
-    ("b747-cruise-low", include_str!("../../../../data/aircraft/b747-cruise-low.toml")),
-    ("b747-cruise-high", include_str!("../../../../data/aircraft/b747-cruise-high.toml")),
-    ("cessna-172", include_str!("../../../../data/aircraft/cessna-172.toml")),
-    ("etkin-747", include_str!("../../../../data/aircraft/etkin-747.toml")),
-    ("ctms-transport", include_str!("../../../../data/aircraft/ctms-transport.toml")),
-];
 
 /// Units that a key may end with, and their size in SI; degrees stand apart.
 const UNITS: [(&str, f64); 19] = [

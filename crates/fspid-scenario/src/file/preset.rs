@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fspid_data::{PLANTS, RULE_TABLES};
 use fspid_fuzzy::RuleTable;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
@@ -13,21 +14,6 @@ use crate::file::section::Section;
 use crate::file::spec::PLANT_FILE;
 use fspid_diagnostics::Problems;
 use fspid_diagnostics::Report;
-
-/// Plants by name.
-const PLANTS: [(&str, &str); 5] = [
-    ("b747-paper", include_str!("../../../../data/plants/b747-paper.toml")),
-    ("navion-paper", include_str!("../../../../data/plants/navion-paper.toml")),
-    ("b747-short-period", include_str!("../../../../data/plants/b747-short-period.toml")),
-    ("navion-full", include_str!("../../../../data/plants/navion-full.toml")),
-    ("ctms-pitch", include_str!("../../../../data/plants/ctms-pitch.toml")),
-];
-
-/// Rule tables by name.
-const RULE_TABLES: [(&str, &str); 2] = [
-    ("printed", include_str!("../../../../data/rule-tables/printed.toml")),
-    ("mirrored", include_str!("../../../../data/rule-tables/mirrored.toml")),
-];
 
 /// Names of the plants that the program carries.
 #[must_use]

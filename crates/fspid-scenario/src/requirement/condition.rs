@@ -1,6 +1,6 @@
 //! What counts for a requirement, and in which air.
 
-use crate::digits::to_digits;
+use fspid_diagnostics::digits::to_digits;
 
 /// Which air a flight must be in for a requirement to be asked of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,16 +2,11 @@
 
 use std::sync::OnceLock;
 
+use fspid_data::REQUIREMENTS as SETS;
+
 use super::condition::Air;
 use super::{AskedIn, Conditions, Confidence, Origin, Requirement};
 use crate::measure::Measure;
-
-/// Ready sets by name.
-const SETS: [(&str, &str); 3] = [
-    ("mil-f-9490d", include_str!("../../../../data/requirements/mil-f-9490d.toml")),
-    ("mil-f-8785c", include_str!("../../../../data/requirements/mil-f-8785c.toml")),
-    ("ctms", include_str!("../../../../data/requirements/ctms.toml")),
-];
 
 /// Names of the ready sets.
 pub const SET_NAMES: [&str; SETS.len()] = [SETS[0].0, SETS[1].0, SETS[2].0];

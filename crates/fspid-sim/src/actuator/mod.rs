@@ -5,7 +5,7 @@
 //! (travel), backlash, bias. Everything is counted in the sense of the command: nose up positive for
 //! an elevator, so that a travel of 17 deg trailing edge down and 23 deg up is from -17 to 23 deg.
 //!
-//! $$ v = \text{dead}(\text{limit}(c)), \qquad \tau \dot x = v - x \;\text{ or }\;
+//! $$ v = \text{dead}(\text{limit}(c)), \qquad \tau \dot x = v - x \ \text{ or }
 //! \ddot x = \omega_n^2 (v - x) - 2 \zeta \omega_n \dot x, \qquad |\dot x| \le R, \quad
 //! x_- \le x \le x_+ $$
 //! $$ y = x \text{ through the play } w, \qquad \delta = y + b $$

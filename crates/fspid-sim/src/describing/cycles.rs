@@ -142,8 +142,8 @@ pub fn limit_cycles_at(
 ///
 /// # Stability
 /// With $F = 1 + N L = U + j V$, a cycle that is larger by dA obeys
-/// $F_A\, dA + F_\omega (d\omega - j \sigma) = 0$ with the growth σ, so that
-/// $\sigma = -(U_A V_\omega - U_\omega V_A)\, dA / |F_\omega|^2$: the cycle is stable where the mapping
+/// $F_A\ dA + F_\omega (d\omega - j \sigma) = 0$ with the growth σ, so that
+/// $\sigma = -(U_A V_\omega - U_\omega V_A)\ dA / |F_\omega|^2$: the cycle is stable where the mapping
 /// from (A, ω) to (U, V) keeps its sense of turning, which is Loeb's criterion.
 fn cycle(open: &OpenLoop, path: &LimitedPath, zero: &Zero) -> Option<LimitCycle> {
     let Zero { amplitude_rad, frequency_rad_s, turns_forward } = *zero;

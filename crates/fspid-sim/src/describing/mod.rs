@@ -4,7 +4,7 @@
 //! and the describing function N(A, ω) is its ratio to what comes without the limit. A loop whose open
 //! loop without limits is L can then go on oscillating where
 //!
-//! $$ N(A, \omega)\, L(e^{j \omega T}) = -1. $$
+//! $$ N(A, \omega) L(e^{j \omega T}) = -1. $$
 //!
 //! # What this is worth
 //! It is an approximation, and neither proves a cycle nor its absence: harmonics are taken to die out

@@ -75,7 +75,7 @@ impl LimitedPath {
     /// The describing function of the path relative to that without limits,
     ///
     /// $$ N(A, \omega) = \frac{c_1[\text{limited}]}{c_1[\text{unlimited}]}, \qquad
-    /// c_1[\delta] = \frac{\omega}{\pi} \int_0^{2 \pi / \omega} \delta(t)\, e^{-j \omega t} dt $$
+    /// c_1[\delta] = \frac{\omega}{\pi} \int_0^{2 \pi / \omega} \delta(t) e^{-j \omega t} dt $$
     ///
     /// for a command $A \cos \omega t$ of amplitude `amplitude_rad` and frequency `frequency_rad_s`.
     /// The actuator itself flies it in 512 steps of held command a period, from the crest of the sine

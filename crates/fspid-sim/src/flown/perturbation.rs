@@ -9,7 +9,7 @@ pub(super) const MOST_DELAY_SAMPLES: f64 = 10_000.0;
 
 /// A discrete all-pass of first order: it delays the phase and leaves every amplitude as it is.
 ///
-/// $$ y_k = a\, x_k + x_{k-1} - a\, y_{k-1}, \qquad
+/// $$ y_k = a x_k + x_{k-1} - a y_{k-1}, \qquad
 /// H(z) = \frac{a + z^{-1}}{1 + a z^{-1}}, \quad -1 < a \le 1 $$
 ///
 /// At rest it is 1. Its lag grows with the frequency, from 0 to 180 deg at half the sampling rate.

@@ -3,7 +3,7 @@
 //! Plant and actuator between two samples, the queue of delayed commands, what the sensors still hold
 //! back, and the controller as it is implemented:
 //!
-//! $$ z_{k+1} = M(k_p, k_i, k_d)\, z_k, \qquad
+//! $$ z_{k+1} = M(k_p, k_i, k_d) z_k, \qquad
 //! z = (x, \delta, \text{commands}, \text{pitch}, \text{rate}, I, d, c_{k-1}) $$
 //!
 //! with the set-point at zero and no limit at work. The bumpless integral, the literal one, a filtered

@@ -8,7 +8,7 @@ const SAME_SAMPLE: f64 = 1e-6;
 /// A sensor as the loop around rest sees it: scale and age. Bias, drift and noise are no part of a linear
 /// loop; resolution is a bounded disturbance of it.
 ///
-/// $$ m_k = s \left( (1 - f)\, y_{k-n} + f\, y_{k-n-1} \right) $$
+/// $$ m_k = s \left( (1 - f) y_{k-n} + f y_{k-n-1} \right) $$
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
     /// Factor s on the quantity.

@@ -5,14 +5,14 @@
 //! literal integral is $k_i T \sum e$ with a sum that stands still. Where a gain moves with the error, so does
 //! that part of the command:
 //!
-//! $$ \delta u = k_p e + \dots + A \frac{\partial k_p}{\partial x} \cdot \delta x
-//!  + C \frac{\partial k_i}{\partial x} \cdot \delta x, \qquad A = (b - 1) r, \quad C = \frac{I}{k_i} $$
+//! $$ \delta u = k_p e + \dots + A \frac{\partial k_p}{\partial x} \cdot \delta x +
+//!  C \frac{\partial k_i}{\partial x} \cdot \delta x, \qquad A = (b - 1) r, \quad C = \frac{I}{k_i} $$
 //!
 //! with the supervisor's inputs x and the integral's term I at rest. With b = 1 and the bumpless integral
 //! both are zero, and the loop at rest is the same at every set-point.
 //!
 //! A rate sensor with a bias shows a rate at rest. Where the gain of the rate loop follows kd, that adds
-//! $-s_r q\, \partial k_d / \partial x$ in the same way.
+//! $-s_r q \partial k_d / \partial x$ in the same way.
 //!
 //! The surfaces of rules have kinks, often right at rest: there the loop is another one on each side, see [`Stand`].
 //!

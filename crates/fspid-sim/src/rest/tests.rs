@@ -4,9 +4,9 @@ use core::f64::consts::PI;
 
 use fspid_core::{
     Change, ErrorSign, Fspid, GainCoupling, Gains, InputScale, IntegralForm, PidConfig,
-    ReferenceModel, Sample, SecondInput, SelfTuner, State, TunerSettings,
+    ReferenceModel, Sample, SecondInput, SelfTuner, State, TunerSettings, paper,
 };
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
 use super::{Holding, RestPoint, slopes};
 
@@ -31,10 +31,7 @@ impl Dice {
 }
 
 fn supervisor() -> Supervisor<f64> {
-    let file = include_str!("../../../../data/rule-tables/printed.toml");
-    let parts: Vec<&str> = file.split("\"\"\"").collect();
-    let table = RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table");
-    Supervisor::new(&table, RANGE, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
+    Supervisor::new(&paper::rules(), RANGE, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
 }
 
 fn controller(dice: &mut Dice) -> Fspid<f64> {

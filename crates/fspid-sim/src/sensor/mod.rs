@@ -5,14 +5,14 @@
 //! this order: erection (vertical gyros only), scale, bias and drift, noise, quantisation. The value
 //! is available a delay later and is held until the next one:
 //!
-//! $$ m(t) = Q \left( (1 + s) \, y(t_j) + b + d_j + \sigma n_j \right), \qquad
+//! $$ m(t) = Q \left( (1 + s) y(t_j) + b + d_j + \sigma n_j \right), \qquad
 //! j = \left\lfloor \frac{t - t_d}{T_s} \right\rfloor $$
 //!
 //! A sensor without a sampling time of its own looks at every sample of the loop. Between samples of
 //! the loop the quantity is taken to be a straight line; before the first it was what it is there.
 //!
 //! $$ \sigma = N \sqrt{\frac{1}{2 T_s}}, \qquad
-//! d_{j+1} = e^{-T_s / T_d} d_j + \sigma_d \sqrt{1 - e^{-2 T_s / T_d}} \, n_j $$
+//! d_{j+1} = e^{-T_s / T_d} d_j + \sigma_d \sqrt{1 - e^{-2 T_s / T_d}} n_j $$
 //!
 //! with the one-sided noise density N, unit/√Hz, over the bandwidth $1 / 2 T_s$, the bias b from run
 //! to run of standard deviation $\sigma_b$, and the drift d, a process of Gauss and Markov that

@@ -1,9 +1,8 @@
 //! Quantities with names, told once for people and once for programs.
 
-use std::fmt::Write as _;
-
 use serde_json::{Map, Value, json};
 
+use fspid_diagnostics::lines::line;
 use fspid_scenario::aircraft::number::{short, significant};
 use fspid_scenario::aircraft::units::{Kind, Units};
 
@@ -57,8 +56,7 @@ impl Facts {
         let mut out = String::new();
         for fact in &self.0 {
             let (name, value) = (&fact.name, fact.told(units));
-            // Writing to a string cannot fail.
-            let _ = writeln!(out, "  {name:width$}  {value}");
+            line(&mut out, format_args!("  {name:width$}  {value}"));
         }
         out
     }

@@ -1,6 +1,6 @@
 //! Columns under headings: words to the left, numbers to the right.
 
-use std::fmt::Write as _;
+use fspid_diagnostics::lines::line;
 
 /// A table for a terminal; the first column is text, and so is any with a word in it.
 pub(super) fn table(headings: &[&str], rows: &[Vec<String>]) -> String {
@@ -21,8 +21,7 @@ pub(super) fn table(headings: &[&str], rows: &[Vec<String>]) -> String {
             true => format!("{:width$}", cell(row, column)),
             false => format!("{:>width$}", cell(row, column)),
         });
-        // Writing to a string cannot fail.
-        let _ = writeln!(out, "  {}", cells.collect::<Vec<_>>().join("  ").trim_end());
+        line(&mut out, format_args!("  {}", cells.collect::<Vec<_>>().join("  ").trim_end()));
     }
     out
 }

@@ -1,11 +1,10 @@
 //! The answer of `analyse` for people.
 
-use std::fmt::Write as _;
-
 use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
 use crate::metrics::Absent;
+use fspid_diagnostics::lines::line;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 
@@ -255,9 +254,4 @@ fn not_holding(map: &FrozenMap) -> String {
 /// Gains for people.
 pub(super) fn triple(gains: Gains<f64>) -> String {
     format!("kp {:.4}, ki {:.4}, kd {:.4}", gains.kp, gains.ki, gains.kd)
-}
-
-/// Writing to a string cannot fail.
-fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{text}");
 }

@@ -6,7 +6,8 @@ use super::against::Comparison;
 use super::checked::{Answer, CheckedFile};
 use super::file::Seal;
 use super::scope::Told;
-use super::text::{line, push_claim, push_rechecked, range, refuted, sentence};
+use super::text::{push_claim, push_rechecked, range, refuted, sentence};
+use fspid_diagnostics::lines::line;
 
 impl CheckedFile {
     /// The answer of `certify --check`.

@@ -4,8 +4,8 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope};
 use serde_json::{Value, json};
 
-use super::text::line;
 use crate::metrics::short;
+use fspid_diagnostics::lines::line;
 use fspid_scenario::units::degrees;
 
 /// The scope of a claim, ready to be told.

@@ -1,7 +1,5 @@
 //! Certificates in words.
 
-use std::fmt::Write as _;
-
 use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 use fspid_sim::Controller;
@@ -9,6 +7,7 @@ use fspid_sim::Controller;
 use super::scope::{Told, asked_in_words};
 use super::{Certification, Certified};
 use crate::metrics::short;
+use fspid_diagnostics::lines::line;
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -229,9 +228,4 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
 
 pub(super) fn range(bounds: Interval) -> String {
     format!("{:.4} to {:.4}", bounds.lower(), bounds.upper())
-}
-
-/// Writing to a string cannot fail.
-pub(super) fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{text}");
 }

@@ -1,10 +1,11 @@
 //! The conversation itself, over any pair of streams.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::io::{self, BufRead, Write};
 
 use super::line::LONGEST_LINE;
 use super::pilot::Pilot;
+use fspid_diagnostics::lines;
 
 /// Why a conversation ended before its input.
 #[derive(Debug)]
@@ -41,8 +42,7 @@ pub fn fly(
     while next_line(input, &mut line).map_err(StreamError::Reading)? {
         if let Some(answer) = pilot.answer(&line) {
             text.clear();
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{answer}");
+            lines::line(&mut text, format_args!("{answer}"));
             let written = output.write_all(text.as_bytes()).and_then(|()| output.flush());
             written.map_err(StreamError::Writing)?;
         }

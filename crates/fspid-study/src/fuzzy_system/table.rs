@@ -1,11 +1,10 @@
 //! A general system as something that answers the rows of a table.
 
-use std::fmt::Write as _;
-
 use fspid_fuzzy::system::{System, Workspace};
 
 use super::answer::{check, evaluate};
 use crate::rows::Table;
+use fspid_diagnostics::lines::add;
 
 /// A general system with its memory.
 #[derive(Debug)]
@@ -46,12 +45,11 @@ impl Table for SystemTable<'_> {
         }
         for (index, value) in row.iter().enumerate() {
             let comma = if index > 0 { "," } else { "" };
-            // Writing to a string cannot fail.
-            let _ = write!(line, "{comma}{value:?}");
+            add(line, format_args!("{comma}{value:?}"));
         }
         for (answer, previous) in workspace.answers().iter().zip(previous) {
             match answer.value {
-                Some(value) => _ = write!(line, ",{value:?}"),
+                Some(value) => add(line, format_args!(",{value:?}")),
                 None => line.push(','),
             }
             *previous = answer.value;

@@ -7,7 +7,7 @@ use fspid_sim::RestPoint;
 use serde_json::{Map, Value, json};
 
 use crate::analysis::held_in_words;
-use fspid_scenario::digits::to_digits;
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::units::degrees;
 
 /// A step of the command.

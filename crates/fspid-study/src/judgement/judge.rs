@@ -3,7 +3,7 @@
 use super::{Case, Evidence, NotEvaluated, Place};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
-use fspid_scenario::digits;
+use fspid_diagnostics::digits;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::Family;
 use fspid_scenario::requirement::Requirement;

@@ -7,7 +7,7 @@ use fspid_sim::SimError;
 
 use super::case::Place;
 use crate::metrics::Absent;
-use fspid_scenario::digits::to_digits;
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::requirement::Air;
 
 /// Why a requirement could not be evaluated; it is not met then.

@@ -1,6 +1,6 @@
 //! Integrals of the error, and the effort of the command.
 //!
-//! By the rectangle rule over all samples, $\int f \, dt \approx T \sum_k f_k$; the time in the
+//! By the rectangle rule over all samples, $\int f \ dt \approx T \sum_k f_k$; the time in the
 //! weighted integrals starts anew at each step of the command.
 
 use super::extreme::{extreme, largest_of_both};

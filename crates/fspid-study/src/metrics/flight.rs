@@ -9,7 +9,7 @@ use fspid_sim::{Exit, Outcome, Timing, Trace};
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, left_validity, short,
 };
-use fspid_scenario::digits::to_digits;
+use fspid_diagnostics::digits::to_digits;
 
 /// What a flight comes to, in one word.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,6 +13,8 @@ pub use step::{StepMetrics, StepWindow};
 
 use std::fmt;
 
+use fspid_diagnostics::digits::without_zeros;
+
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -108,6 +110,5 @@ pub type Measured = Result<f64, Absent>;
 /// A time for people: at most six decimals, none that say nothing.
 #[must_use]
 pub fn short(value: f64) -> String {
-    let text = format!("{value:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    without_zeros(&format!("{value:.6}")).to_owned()
 }

@@ -3,6 +3,7 @@
 use super::traces::fails;
 use crate::metrics::{EdgeMetrics, FlightMetrics, Measured, StepMetrics};
 use crate::simulation::{ControllerResult, Simulation};
+use fspid_diagnostics::digits::without_zeros;
 use fspid_page::number;
 use fspid_page::page::{Cell, Row, Table};
 use fspid_scenario::units::degrees;
@@ -30,10 +31,7 @@ const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
 pub fn step_name(index: usize, edge: &EdgeMetrics) -> String {
     let way = if edge.to_rad >= edge.from_rad { "up" } else { "down" };
     let (from, to) = (degrees(edge.from_rad), degrees(edge.to_rad));
-    let level = |value: f64| {
-        let text = number::fixed(value, 3);
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    };
+    let level = |value: f64| without_zeros(&number::fixed(value, 3)).to_owned();
     let (from, to, at_s) = (level(from), level(to), number::fixed(edge.at_s, 2));
     let both = edge.disturbed_in_words();
     format!("{}, {way}: {from} to {to} deg at {at_s} s{both}", index + 1)

@@ -1,10 +1,9 @@
 //! The trace as columns: angles in degrees, shortest digits that read back as the same number.
 
-use std::fmt::Write as _;
-
 use fspid_sim::{Column, Trace};
 
 use super::{ControllerResult, Simulation};
+use fspid_diagnostics::lines::add;
 use fspid_scenario::units::degrees;
 
 /// Columns of one controller.
@@ -80,8 +79,7 @@ fn in_degrees(column: &Column, value: f64) -> f64 {
 
 /// The shortest digits that read back as `value`, zero without a sign.
 fn push(text: &mut String, value: f64) {
-    // Writing to a string cannot fail.
-    let _ = write!(text, "{:?}", value + 0.0);
+    add(text, format_args!("{:?}", value + 0.0));
 }
 
 /// A heading that holds a comma, quote or line end, as CSV readers want it.

@@ -69,7 +69,7 @@ impl FailedFlight {
 /// What is added where something is said of a ready set's own flight.
 pub(crate) fn on_its_own(own_step_deg: Option<f64>) -> String {
     own_step_deg.map_or(String::new(), |step_deg| {
-        let step = fspid_scenario::digits::to_digits(step_deg, 6);
+        let step = fspid_diagnostics::digits::to_digits(step_deg, 6);
         format!(", on a flight of its own with a step of {step} deg")
     })
 }

@@ -1,9 +1,8 @@
 //! The answer for people.
 
-use std::fmt::Write as _;
-
 use super::{ControllerResult, Judgement, Simulation, on_its_own};
 use crate::metrics::{Absent, Measured, StepMetrics};
+use fspid_diagnostics::lines::line;
 use fspid_scenario::units::degrees;
 
 impl Simulation {
@@ -89,11 +88,6 @@ fn push_judgement(out: &mut String, judgement: &Judgement) {
     };
     let own = on_its_own(judgement.own_step_deg);
     line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}{own}"));
-}
-
-/// Writing to a string cannot fail.
-fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{text}");
 }
 
 fn step(step: &StepMetrics) -> String {

@@ -8,7 +8,7 @@ use fspid_sim::stability::Unstable;
 use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains, held_in_words};
 use crate::metrics::{EdgeMetrics, left_validity, short};
-use fspid_scenario::digits::to_digits;
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::file::RangeRule;
 
 /// What is asked where the first movement is steadily away from the set-point.

@@ -45,7 +45,10 @@ impl Verification {
         let message = escaped(&failed.failures.join("; "));
         // One name each: a reader that keeps the last of two cases must not lose one.
         let name = failed.own_step_deg.map_or("flight".to_owned(), |step_deg| {
-            format!("flight with a step of {} deg", fspid_scenario::digits::to_digits(step_deg, 6))
+            format!(
+                "flight with a step of {} deg",
+                fspid_diagnostics::digits::to_digits(step_deg, 6)
+            )
         });
         format!(
             "    <testcase name=\"{name}\" classname=\"{}\" time=\"0\">\n      <failure type=\"failed flight\" message=\"{message}\">{message}</failure>\n    </testcase>\n",

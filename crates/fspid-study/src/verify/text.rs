@@ -1,15 +1,14 @@
 //! The answer for people: a table of lines with what explains each, then the verdict.
 
-use std::fmt::Write as _;
-
 use fspid_sim::{Controller, Scenario};
 
 use super::Verification;
 use crate::analysis::not_in_the_linear_loop;
 use crate::judgement::Judgement;
 use crate::shell;
+use fspid_diagnostics::digits::to_digits;
+use fspid_diagnostics::lines::line;
 use fspid_page::number::capital;
-use fspid_scenario::digits::to_digits;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Origin, set};
 
@@ -237,9 +236,8 @@ fn section(out: &mut String, heading: &str, lines: &[String]) {
     }
 }
 
-fn push(out: &mut String, line: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(out, "{}", line.trim_end());
+fn push(out: &mut String, text: &str) {
+    line(out, format_args!("{}", text.trim_end()));
 }
 
 /// Control characters would move the cursor of a terminal.

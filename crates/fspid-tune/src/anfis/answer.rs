@@ -1,7 +1,6 @@
 //! What was learned, in words and for programs.
 
-use std::fmt::Write as _;
-
+use fspid_diagnostics::lines::line;
 use serde_json::{Value, json};
 
 use super::{Epoch, Learned};
@@ -13,11 +12,13 @@ impl Learned {
         let (done, best) = (self.history.len(), self.best());
         let first = self.history.first().copied().unwrap_or(best);
         let mut out = format!("{done} epoch(s); {}\n", self.stop);
-        // Writing to a string cannot fail.
-        let _ = writeln!(out, "best epoch  {}", self.best + 1);
-        let _ = writeln!(out, "training    {:.6e}, {:.6e} at first", best.training, first.training);
+        line(&mut out, format_args!("best epoch  {}", self.best + 1));
+        line(
+            &mut out,
+            format_args!("training    {:.6e}, {:.6e} at first", best.training, first.training),
+        );
         if let (Some(best), Some(first)) = (best.validation, first.validation) {
-            let _ = writeln!(out, "validation  {best:.6e}, {first:.6e} at first");
+            line(&mut out, format_args!("validation  {best:.6e}, {first:.6e} at first"));
         }
         out.push_str("Errors are roots of the mean square over rows and outputs.\n");
         out

@@ -108,7 +108,7 @@ impl Premises {
 
     /// The parts with their sets moved downhill by `length`, measured in the sizes of what moves.
     ///
-    /// $$ \Delta p = -k \, s_p \, g_p / \lVert g \rVert $$
+    /// $$ \Delta p = -k s_p g_p / \lVert g \rVert $$
     ///
     /// with the slope $g_p$ per size $s_p$. The sets of an input that would break a rule go half as far, and half again:
     /// a set stays a set, a width or slope keeps its sign, and terms stay in their order from left to right.

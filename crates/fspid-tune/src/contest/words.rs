@@ -1,6 +1,6 @@
 //! Numbers and findings in words.
 
-use fspid_page::number::{fixed, significant};
+use fspid_page::number::{fixed, short};
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Over, Tuning};
 
@@ -42,9 +42,7 @@ pub(super) fn number(value: f64) -> String {
     if value.is_infinite() {
         return "lost".to_owned();
     }
-    let text = significant(value, 4);
-    let is_plain = text.contains('.') && !text.contains('\u{d7}');
-    if is_plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    short(value, 4)
 }
 
 /// Median and quartiles: "1.234 (1.2 to 1.3)".

@@ -1,4 +1,4 @@
-//! Gains as the rules give them: $u = K (e + \frac{1}{T_i} \int e \, dt + T_d \dot e)$.
+//! Gains as the rules give them: $u = K (e + \frac{1}{T_i} \int e \ dt + T_d \dot e)$.
 
 use fspid_core::{ConfigError, Gains};
 

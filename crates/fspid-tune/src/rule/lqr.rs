@@ -109,7 +109,7 @@ pub(super) fn cost(
     Ok(summed(model.closed_matrix(gains)?, weight, &start)?.unwrap_or(f64::INFINITY))
 }
 
-/// $\sum w\, c^T c\, T$ over rows c with their weights.
+/// $\sum w c^T c T$ over rows c with their weights.
 fn weighted(rows: &[(f64, Vec<f64>)], dt_s: f64) -> Result<Matrix, RuleError> {
     let size = rows.first().map_or(0, |(_, row)| row.len());
     let mut sum = Matrix::zeros(size, size);

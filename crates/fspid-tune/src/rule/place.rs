@@ -23,7 +23,7 @@ pub struct PlacedPoles {
 /// Gains for which the pair, and for `pid` the third pole, are poles of the sampled closed loop:
 ///
 /// $$ k_p + k_i \frac{T z}{z - 1} + k_d \frac{z - 1}{(T_f + T) z - T_f} = -\frac{1}{P(z)},
-/// \quad z = e^{s T}, \; s = -\zeta \omega \pm j \omega \sqrt{1 - \zeta^2}, \; -\alpha \omega $$
+/// \quad z = e^{s T}, \ s = -\zeta \omega \pm j \omega \sqrt{1 - \zeta^2}, \ -\alpha \omega $$
 ///
 /// which is linear in the gains.
 pub(super) fn placed(

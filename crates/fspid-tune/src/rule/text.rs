@@ -1,7 +1,6 @@
 //! A design for people.
 
-use core::fmt::Write as _;
-
+use fspid_diagnostics::lines::{add, line};
 use fspid_lti::modulus;
 use fspid_scenario::units::degrees;
 use fspid_study::analysis::{Margins, PlantLoop};
@@ -74,7 +73,7 @@ impl Design {
         let mut text = format!("kp {:.4}", gains.kp);
         for (name, gain, unit) in [("ki", gains.ki, "1/s"), ("kd", gains.kd, "s")] {
             if gain != 0.0 {
-                let _ = write!(text, ", {name} {gain:.4} {unit}");
+                add(&mut text, format_args!(", {name} {gain:.4} {unit}"));
             }
         }
         let isa = self.isa().filter(|_| self.form != Form::P);
@@ -181,7 +180,7 @@ fn push_model(out: &mut String, fitted: &FittedModel) {
     });
     let mut values = values.collect::<Vec<_>>().join(", ");
     if let Some(relative) = fitted.model.relative_dead_time() {
-        let _ = write!(values, "; L/(L + T) {relative:.3}");
+        add(&mut values, format_args!("; L/(L + T) {relative:.3}"));
     }
     let [low, high] = fitted.band_rad_s;
     line(out, format_args!("  model              {}: {values}", fitted.model.equation()));
@@ -234,9 +233,4 @@ fn push_margins(out: &mut String, margins: &Margins) {
             margins.disk_margin, margins.sensitivity_peak
         ),
     );
-}
-
-/// Writing to a string cannot fail.
-fn line(out: &mut String, text: core::fmt::Arguments<'_>) {
-    let _ = writeln!(out, "{text}");
 }

@@ -7,7 +7,7 @@ use super::super::Format;
 use super::{Place, Planned};
 use crate::argument::InFile;
 use crate::exit::Failure;
-use fspid_scenario::digits::counted;
+use fspid_diagnostics::digits::counted;
 
 /// Plan a campaign without flying it: for machines that share the shards.
 #[derive(Debug, Args)]

@@ -1,7 +1,5 @@
 //! The text of a document.
 
-use std::fmt::Write as _;
-
 use fspid_fuzzy::system::{
     Antecedent, Conclusion, FallbackValue, Input, Membership, Output, Parts, Rule, RuleBlock,
     SNorm, Statement, TNorm, Universe, Variable,
@@ -38,11 +36,9 @@ const ELEMENTS: [(Kind, [&str; 5]); 3] = [
 impl Writer<'_> {
     pub(super) fn text(&mut self) -> String {
         let parts = self.parts;
-        let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "<fuzzySystem xmlns=\"http://www.ieee1855.org\" name=\"{}\">\n  <knowledgeBase>",
+        let mut text = format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+             <fuzzySystem xmlns=\"http://www.ieee1855.org\" name=\"{}\">\n  <knowledgeBase>\n",
             escaped(&parts.name)
         );
         parts.inputs.iter().for_each(|input| text += &self.input(input));
@@ -178,9 +174,9 @@ impl Writer<'_> {
         for statement in &statements {
             text += &self.statement(statement)?;
         }
-        let _ = writeln!(text, "      </antecedent>\n      <{consequent}>\n        <{then}>");
         Ok(format!(
-            "{text}{conclusions}        </{then}>\n      </{consequent}>\n    </{element}>\n"
+            "{text}      </antecedent>\n      <{consequent}>\n        <{then}>\n\
+             {conclusions}        </{then}>\n      </{consequent}>\n    </{element}>\n"
         ))
     }
 
@@ -277,7 +273,7 @@ fn shape_text(set: &Membership) -> String {
     let Some((element, params)) = shape::written(set) else { return points_text(set) };
     let mut text = format!("        <{element}");
     for (index, value) in params.iter().enumerate() {
-        let _ = write!(text, " param{}=\"{}\"", index + 1, number(*value));
+        text += &format!(" param{}=\"{}\"", index + 1, number(*value));
     }
     text + "/>\n"
 }
@@ -287,7 +283,7 @@ fn points_text(set: &Membership) -> String {
     let mut text = String::from("        <pointSetShape interpolationMethod=\"linear\">\n");
     for pair in params.chunks_exact(2) {
         if let &[x, y] = pair {
-            let _ = writeln!(text, "          <point x=\"{}\" y=\"{}\"/>", number(x), number(y));
+            text += &format!("          <point x=\"{}\" y=\"{}\"/>\n", number(x), number(y));
         }
     }
     text + "        </pointSetShape>\n"

@@ -136,8 +136,8 @@ fn edge(layers: &Layers, slice: &Slice, levels: &[f64], x: f64) -> f64 {
 ///
 /// With $\underline\mu \le \mu \le \overline\mu$ and any $c$
 ///
-/// $$ \int (x - c) \mu \,dx \ge G(c) =
-///    \int_{x < c} (x - c) \overline\mu \,dx + \int_{x > c} (x - c) \underline\mu \,dx $$
+/// $$ \int (x - c) \mu \ dx \ge G(c) =
+///    \int_{x < c} (x - c) \overline\mu \ dx + \int_{x > c} (x - c) \underline\mu \ dx $$
 ///
 /// so that $c$ is a lower bound where $G(c) \ge 0$. $G$ falls at least as fast as the area under
 /// the lower edge, $G(c - \delta) \ge G(c) + \delta \underline A$; this makes a bound of any guess

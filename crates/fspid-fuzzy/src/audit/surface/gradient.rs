@@ -2,7 +2,7 @@
 //!
 //! With $A$ the area and $c$ the centre of gravity of the joined set $\mu$
 //!
-//! $$ \frac{\partial c}{\partial p} = \frac1A \int (x - c) \frac{\partial \mu}{\partial p} \,dx $$
+//! $$ \frac{\partial c}{\partial p} = \frac1A \int (x - c) \frac{\partial \mu}{\partial p} \ dx $$
 //!
 //! Where a layer's cut is the upper edge, $\partial \mu / \partial p$ is the slope of its level;
 //! where the side of a set is, it is zero. Over a box of inputs a place may have several candidates

@@ -301,7 +301,7 @@ impl<'d> Adjoint<'d> {
     }
 
     /// From the ends of the highest plateau to the degree that cuts it and the set that is cut: with
-    /// $\mu(a) = d$ at an end, $\mu'(a)\,da = dd - \partial_p\mu\,dp$.
+    /// $\mu(a) = d$ at an end, $\mu'(a)\ da = dd - \partial_p\mu\ dp$.
     pub(crate) fn through_top(
         &mut self,
         index: usize,

@@ -144,7 +144,7 @@ impl Search {
 /// All grades in a part: what interval arithmetic says, cut down by the mean value theorem where the
 /// curve is smooth, without which rising and falling sets that are added up would take forever.
 ///
-/// $$ f(x) \in f(m) + f'(X) \, (X - m) $$
+/// $$ f(x) \in f(m) + f'(X) (X - m) $$
 fn range<C: Curve>(curve: &C, part: &Part) -> Interval {
     let x = Interval::between(part.x[0], part.x[1]);
     let series = curve.at(Jet::<Interval, 2>::variable(x));

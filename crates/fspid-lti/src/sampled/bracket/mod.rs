@@ -198,7 +198,7 @@ impl<const W: usize> Proved<W> {
         difference(WideBall::from(1.0), &over, &under)
     }
 
-    /// Imaginary part of $N D^*$.
+    /// Imaginary part of $N D^\ast$.
     fn across(&self) -> Vec<WideBall<W>> {
         self.parts.over.across(&self.parts.under)
     }

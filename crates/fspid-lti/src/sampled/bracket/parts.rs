@@ -147,7 +147,7 @@ impl<const W: usize> States<W> {
     /// can tell whether they are 0. What such states have in common stays in D and N.
     ///
     /// $$ M_1 = I, \quad d_{n-k} = -\tfrac{1}{k} \operatorname{tr}(H M_k), \quad M_{k+1} = H M_k + d_{n-k} I, \quad N =
-    /// \sum_k c\, M_k\, b\, \zeta^{n-k} $$
+    /// \sum_k c M_k b \zeta^{n-k} $$
     ///
     /// # Source
     /// Faddeev and LeVerrier's recurrence: F. R. Gantmacher, The Theory of Matrices I, Chelsea (1959), chapter IV, § 5.

@@ -4,7 +4,7 @@ use super::number::Number;
 use crate::complex::Complex;
 use crate::wide::WideBall;
 
-/// $R(w) + j t\, I(w)$, $w = t^2$: a polynomial in $s = j t$.
+/// $R(w) + j t I(w)$, $w = t^2$: a polynomial in $s = j t$.
 ///
 /// With 256 bits and more: where all modes are fast, as those of a long dead time, the coefficients are far larger than what they
 /// sum up to.

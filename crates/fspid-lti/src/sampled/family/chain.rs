@@ -12,7 +12,7 @@ const SHORT: usize = 12;
 
 /// A Hessenberg matrix whose first state alone hears the input, in $\zeta = z - 1$, and two outputs.
 ///
-/// $$ (\zeta I - H)\, x = d\, e_1, \quad d = \det(\zeta I - H), \quad c\, (z I - A)^{-1} b = \frac{c\, x}{d} $$
+/// $$ (\zeta I - H) x = d e_1, \quad d = \det(\zeta I - H), \quad c (z I - A)^{-1} b = \frac{c x}{d} $$
 ///
 /// From a known last entry of x each equation but the first gives the entry before, and the first gives d: no
 /// division by anything that depends on ζ.

@@ -5,8 +5,8 @@ use crate::error::LtiError;
 
 /// A sampled controller that is linear in its gains, as a series of real poles.
 ///
-/// $$ C(z) = \sum_i k_i \left( a_{i0} + \frac{a_{i1}}{\zeta - \rho_1}
-/// + \frac{a_{i2}}{(\zeta - \rho_1)(\zeta - \rho_2)} + \dots \right), \quad \zeta = z - 1 $$
+/// $$ C(z) = \sum_i k_i \left( a_{i0} + \frac{a_{i1}}{\zeta - \rho_1} +
+/// \frac{a_{i2}}{(\zeta - \rho_1)(\zeta - \rho_2)} + \dots \right), \quad \zeta = z - 1 $$
 ///
 /// # Example
 /// PID control with the period T, $k_p + k_i T z/(z - 1) + k_d (z - 1)/(T z)$. The pole of the derivative comes first:

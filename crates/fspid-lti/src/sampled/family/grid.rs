@@ -25,7 +25,7 @@ const HALVINGS: usize = 20;
 /// Places beyond which no more are put between them: each lightly damped pole needs some twenty.
 const PLACES_MAX: usize = 3000;
 
-/// What is known at one place: $d$, and $c\,x$ for each output, divided by their size.
+/// What is known at one place: $d$, and $c x$ for each output, divided by their size.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Known {
     pub(super) place: f64,

@@ -27,7 +27,7 @@ pub use control::SeriesControl;
 
 /// Sampled loops of one plant with a controller that is linear in some gains, to be closed with negative feedback.
 ///
-/// $$ L(z) = \left( c_0 + C(z; k)\, c \right) (z I - A)^{-1} b $$
+/// $$ L(z) = \left( c_0 + C(z; k) c \right) (z I - A)^{-1} b $$
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopFamily {
     chain: Chain,

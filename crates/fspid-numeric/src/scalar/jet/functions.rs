@@ -1,7 +1,7 @@
 //! Elementary functions of Taylor polynomials.
 //!
 //! Most rest on one recurrence: for $y = F(a(t))$ with $F' = g$,
-//! $y_k = \frac1k \sum_{j=1}^{k} j \, a_j \, g_{k-j}$.
+//! $y_k = \frac1k \sum_{j=1}^{k} j a_j g_{k-j}$.
 
 use super::{Jet, convolution, number};
 use crate::scalar::{Base, Scalar};
@@ -10,13 +10,13 @@ use crate::scalar::{Base, Scalar};
 const MAX_WHOLE_POWER: i32 = 64;
 
 impl<S: Base, const K: usize> Jet<S, K> {
-    /// $j \, a_j$: the derivative, times the distance from the centre.
+    /// $j a_j$: the derivative, times the distance from the centre.
     fn weighted(&self) -> [S; K] {
         let weighted = |k: usize, _: &[S; K]| number::<S>(k) * self.coefficients[k];
         Self::from_recurrence(S::zero(), self.degree, weighted).coefficients
     }
 
-    /// $\frac1k \sum_{j=1}^{k} j \, a_j \, g_{k-j}$
+    /// $\frac1k \sum_{j=1}^{k} j a_j g_{k-j}$
     #[inline]
     fn chained(&self, weighted: &[S; K], slope: &[S; K], k: usize) -> S {
         convolution(weighted, slope, k, 1, k.min(self.degree)) / number(k)
@@ -61,7 +61,7 @@ impl<S: Base, const K: usize> Jet<S, K> {
     }
 
     /// A power with a constant exponent, where the base is not zero:
-    /// $a\,y' = p\,a'\,y$, so $y_k = \frac1{k a_0} \sum_{j=1}^k (p j - k + j)\, a_j\, y_{k-j}$.
+    /// $a y' = p a' y$, so $y_k = \frac1{k a_0} \sum_{j=1}^k (p j - k + j) a_j y_{k-j}$.
     fn constant_power(self, power: S) -> Self {
         let (base, a) = (self.value(), &self.coefficients);
         self.function(base.pow(power), |k, y| {

@@ -10,7 +10,7 @@ use fspid_diagnostics::Report;
 
 /// The controller of a sound section.
 ///
-/// $$ u = k_i \int (r - \theta) \, dt + k_\theta (b r - \theta) - k_q q $$
+/// $$ u = k_i \int (r - \theta) \ dt + k_\theta (b r - \theta) - k_q q $$
 ///
 /// with the gains that are optimal in continuous time; $b$, the set-point weight, is no part of the design.
 pub(super) fn controller(report: &mut Report, section: &Section, dt_s: f64) -> Option<Controller> {

@@ -193,8 +193,8 @@ fn first_order(sigma: f64, lag_s: f64, dt_s: f64) -> Result<ShapedNoise<1>, SimE
 
 /// $\sigma \sqrt \tau (1 + \sqrt 3 \tau s) / (1 + \tau s)^2$ in partial fractions, and its lag.
 ///
-/// $$ H = \sigma \sqrt \tau \left( \frac{\sqrt 3}{1 + \tau s}
-/// + \frac{1 - \sqrt 3}{(1 + \tau s)^2} \right), \qquad \tau_p \dot x_2 = x_0 + x_1 - x_2 $$
+/// $$ H = \sigma \sqrt \tau \left( \frac{\sqrt 3}{1 + \tau s} +
+/// \frac{1 - \sqrt 3}{(1 + \tau s)^2} \right), \qquad \tau_p \dot x_2 = x_0 + x_1 - x_2 $$
 fn second_order(
     sigma: f64,
     lag_s: f64,
@@ -209,7 +209,7 @@ fn second_order(
     ShapedNoise::new(a, [sigma * root / lag_s.sqrt(), 0.0, 0.0], dt_s)
 }
 
-/// Root mean square of p: $\sigma_p^2 = \int_0^\infty \Phi_p \, d\Omega
+/// Root mean square of p: $\sigma_p^2 = \int_0^\infty \Phi_p \ d\Omega
 /// = 0.8 \frac{\sigma_w^2}{L_w} \left( \frac{\pi L_w}{4 b} \right)^{1/3} \frac{\pi^2}{8 b}$.
 fn roll_sigma_rad_s(sigma_w: f64, length_m: f64, span_m: f64) -> f64 {
     let pi = std::f64::consts::PI;

@@ -1,6 +1,6 @@
 //! White noise through a linear filter, sampled exactly.
 //!
-//! $$ dx = A x \, dt + b \, dW, \qquad x_{k+1} = \Phi x_k + L n_k, \qquad
+//! $$ dx = A x \ dt + b \ dW, \qquad x_{k+1} = \Phi x_k + L n_k, \qquad
 //! \Phi = e^{A T}, \quad L L^T = Q = \int_0^T e^{A t} b b^T e^{A^T t} dt $$
 //!
 //! The covariance of the sampled states is that of the continuous ones whatever T is, and the start
@@ -8,7 +8,10 @@
 //! $L$ is lower triangular: state i takes the first i + 1 normal numbers only, so that states added
 //! at the end never change those before them.
 
+use core::convert::Infallible;
+
 use fspid_lti::{Matrix, exponential};
+use fspid_numeric::matrix::cholesky;
 
 use crate::error::SimError;
 use crate::math::dot;
@@ -43,8 +46,8 @@ impl<const N: usize> ShapedNoise<N> {
         let stationary = stationary(a, b)?;
         Ok(Self {
             transition: array(&transition),
-            noise: cholesky(array(&covariance)),
-            start: cholesky(stationary),
+            noise: factor(array(&covariance)),
+            start: factor(stationary),
         })
     }
 
@@ -71,8 +74,8 @@ const LARGEST_BLOCK: f64 = 1.0;
 
 /// $\Phi$ and $Q$ for a period.
 ///
-/// $$ \exp \begin{pmatrix} -A h & b b^T h \\ 0 & A^T h \end{pmatrix}
-/// = \begin{pmatrix} \cdot & \Phi_h^{-1} Q_h \\ 0 & \Phi_h^T \end{pmatrix}, \qquad
+/// $$ \exp \begin{pmatrix} -A h & b b^T h \cr 0 & A^T h \end{pmatrix}
+/// = \begin{pmatrix} \cdot & \Phi_h^{-1} Q_h \cr 0 & \Phi_h^T \end{pmatrix}, \qquad
 /// Q_{2h} = Q_h + \Phi_h Q_h \Phi_h^T $$
 ///
 /// with $h = T / 2^m$ small enough that $e^{-A h}$ does no harm, doubled m times.
@@ -143,22 +146,17 @@ fn array<const N: usize>(matrix: &Matrix) -> [[f64; N]; N] {
 const ROUNDING: f64 = 1e-15;
 
 /// The lower triangular factor of a covariance, also of one without full rank.
-fn cholesky<const N: usize>(covariance: [[f64; N]; N]) -> [[f64; N]; N] {
+fn factor<const N: usize>(covariance: [[f64; N]; N]) -> [[f64; N]; N] {
     let mut factor = [[0.0; N]; N];
-    for row in 0..N {
-        for column in 0..=row {
-            let known = dot(&factor[row][..column], &factor[column][..column]);
-            let left = covariance[row][column] - known;
-            factor[row][column] = if column < row {
-                let pivot = factor[column][column];
-                if pivot > 0.0 { left / pivot } else { 0.0 }
-            } else if left > ROUNDING * covariance[row][row] {
-                left.sqrt()
-            } else {
-                0.0
-            };
-        }
-    }
+    let matrix = |row: usize, column: usize| covariance[row][column];
+    let Ok(()) = cholesky(factor.as_flattened_mut(), N, matrix, |entry| {
+        let rest = entry.rest();
+        Ok::<_, Infallible>(match entry.diagonal {
+            Some(pivot) if pivot > 0.0 => rest / pivot,
+            None if rest > ROUNDING * entry.value => rest.sqrt(),
+            _ => 0.0,
+        })
+    });
     factor
 }
 

@@ -8,13 +8,13 @@ use crate::math::exp;
 /// An axisymmetric microburst that obeys continuity.
 ///
 /// $$ u_r = \frac{\lambda R^2}{2 r} \left( 1 - e^{-(r/R)^2} \right)
-/// \left( e^{-z/z^*} - e^{-z/\varepsilon} \right) $$
-/// $$ w_{up} = -\lambda e^{-(r/R)^2} \left( \varepsilon ( e^{-z/\varepsilon} - 1 )
-/// - z^* ( e^{-z/z^*} - 1 ) \right) $$
+/// \left( e^{-z/z^\ast} - e^{-z/\varepsilon} \right) $$
+/// $$ w_{up} = -\lambda e^{-(r/R)^2} \left( \varepsilon ( e^{-z/\varepsilon} - 1 ) -
+/// z^\ast ( e^{-z/z^\ast} - 1 ) \right) $$
 ///
-/// with $r$ from the axis and $z$ above the ground. With $z^* = 12.5 \, \varepsilon$ the largest
-/// outflow is $0.2357 \, \lambda R$, at $r = 1.121 R$ and $z = 0.2196 \, z^*$; from it and its height
-/// $\lambda$ and $z^*$ follow. Gradients over the aircraft's own size are neglected: no rates.
+/// with $r$ from the axis and $z$ above the ground. With $z^\ast = 12.5 \varepsilon$ the largest
+/// outflow is $0.2357 \lambda R$, at $r = 1.121 R$ and $z = 0.2196 z^\ast$; from it and its height
+/// $\lambda$ and $z^\ast$ follow. Gradients over the aircraft's own size are neglected: no rates.
 ///
 /// # Source
 /// R. M. Oseguera and R. L. Bowles, A simple, analytic 3-dimensional downburst model based on
@@ -31,7 +31,7 @@ pub struct Microburst {
     pub axis_m: [f64; 2],
 }
 
-/// $z^* / \varepsilon$.
+/// $z^\ast / \varepsilon$.
 const DEPTH_RATIO: f64 = 12.5;
 /// Largest $(1 - e^{-x^2}) / 2x$, at $x$ = 1.120 906 423.
 const RADIAL_PEAK: f64 = 0.319_086_343_169_475_74;

@@ -7,8 +7,8 @@ use super::{AirMotion, Corners, Place, WindField, first, number, size};
 
 /// A gust that rises over a length and then stays.
 ///
-/// $$ V(x) = 0 \; (x < 0), \quad \frac{V_m}{2} \left( 1 - \cos \frac{\pi x}{d_m} \right)
-/// \; (0 \le x \le d_m), \quad V_m \; (x > d_m) $$
+/// $$ V(x) = 0 \ (x < 0), \quad \frac{V_m}{2} \left( 1 - \cos \frac{\pi x}{d_m} \right)
+/// \ (0 \le x \le d_m), \quad V_m \ (x > d_m) $$
 ///
 /// with $x$ the distance flown into the gust. The length $d_m$ is tuned to excite the short period:
 /// half its period times the airspeed.

@@ -183,11 +183,11 @@ impl Done {
 
     /// The small-signal equations of `PidConfig::step`: with $e = -y$ and gains that move,
     ///
-    /// $$ \partial u = k_p\, \partial e + p\, \partial k_p + \partial I + k_d\, \partial d +
-    /// d\, \partial k_d - K_r\, \partial q $$
-    /// $$ \partial I = \partial I_{k-1} + T (k_i\, \partial e + e\, \partial k_i) $$
+    /// $$ \partial u = k_p \partial e + p \partial k_p + \partial I + k_d \partial d +
+    /// d \partial k_d - K_r \partial q $$
+    /// $$ \partial I = \partial I_{k-1} + T (k_i \partial e + e \partial k_i) $$
     ///
-    /// (bumpless; of the literal form $\partial I = T (k_i\, \partial S + S\, \partial k_i)$), p being
+    /// (bumpless; of the literal form $\partial I = T (k_i \partial S + S \partial k_i)$), p being
     /// what the proportional term acts on. A command that is cut moves with its limit, and the memory
     /// as the anti-windup moves it.
     pub(super) fn rows(

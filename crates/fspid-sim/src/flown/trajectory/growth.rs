@@ -1,6 +1,9 @@
 //! How a small disturbance grows over a flight.
 
+use core::convert::Infallible;
+
 use fspid_lti::{LtiError, Matrix, eigenvalues, spectral_radius};
+use fspid_numeric::matrix::{cholesky, identity};
 
 use super::SmallSignal;
 
@@ -133,8 +136,8 @@ impl Follower {
 
 impl Product {
     fn identity(size: usize, from_s: f64) -> Self {
-        let row = |place: usize| (0..size).map(|n| if n == place { 1.0 } else { 0.0 }).collect();
-        Self { from_s, rows: (0..size).map(row).collect(), log: 0.0 }
+        let entries: Vec<f64> = identity(size).collect();
+        Self { from_s, rows: entries.chunks(size.max(1)).map(<[f64]>::to_vec).collect(), log: 0.0 }
     }
 
     fn multiply(&mut self, matrix: &[Vec<f64>]) {
@@ -244,15 +247,13 @@ fn transposed(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
 /// Upper triangle R with $R^T R$ a positive definite matrix, by Cholesky.
 fn root_of(gram: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let size = gram.len();
-    let mut root = vec![vec![0.0; size]; size];
-    for row in 0..size {
-        for column in row..size {
-            let known: f64 = (0..row).map(|k| root[k][row] * root[k][column]).sum();
-            let left = gram[row][column] - known;
-            // The identity is part of the sum: nothing on the diagonal is below 1 but for rounding.
-            root[row][column] =
-                if column == row { left.max(f64::EPSILON).sqrt() } else { left / root[row][row] };
-        }
-    }
-    root
+    let mut lower = vec![0.0; size * size];
+    let upper_half = |row: usize, column: usize| gram[column][row];
+    let Ok(()) = cholesky(&mut lower, size, upper_half, |entry| {
+        let rest = entry.rest();
+        // The identity is part of the sum: nothing on the diagonal is below 1 but for rounding.
+        let on_diagonal = || rest.max(f64::EPSILON).sqrt();
+        Ok::<_, Infallible>(entry.diagonal.map_or_else(on_diagonal, |diagonal| rest / diagonal))
+    });
+    (0..size).map(|row| (0..size).map(|column| lower[column * size + row]).collect()).collect()
 }

@@ -1,7 +1,7 @@
 //! A flown loop linearised along its way, with the derivatives of the gains.
 //!
 //! Frozen at the gains of a sample, a self-tuning loop is
-//! $z_{k+1} = M(k_p, k_i, k_d)\, z_k$ for small changes. The gains of the sample come from the error and
+//! $z_{k+1} = M(k_p, k_i, k_d) z_k$ for small changes. The gains of the sample come from the error and
 //! its change, however, so that
 //!
 //! $$ J_k = M(k) + \frac{\partial z_{k+1}}{\partial k}

@@ -1,5 +1,7 @@
 //! Proved numbers for people.
 
+use fspid_diagnostics::digits::without_zeros;
+
 /// A number with at most five significant digits.
 pub(crate) fn short(value: f64) -> String {
     if value == 0.0 {
@@ -9,12 +11,7 @@ pub(crate) fn short(value: f64) -> String {
         return format!("{value:.3e}");
     }
     let decimals = 4_i32.saturating_sub(value.abs().log10().floor() as i32).clamp(0, 8);
-    let text = format!("{value:.*}", usize::try_from(decimals).unwrap_or(0));
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    without_zeros(&format!("{value:.*}", usize::try_from(decimals).unwrap_or(0))).to_owned()
 }
 
 /// A number that lies between proved bounds: one number where they are close, else both.

@@ -1,8 +1,7 @@
 //! An audit for people.
 
-use std::fmt::Write as _;
-
 use super::{Audit, Mark};
+use fspid_diagnostics::lines::line;
 
 /// Longest line, in characters, where words allow it.
 const WIDTH: usize = 110;
@@ -15,26 +14,30 @@ impl Audit<'_> {
         let mut out = String::new();
         for chapter in self.chapters() {
             let gap = if out.is_empty() { "" } else { "\n" };
-            // Writing to a string cannot fail.
-            let _ = writeln!(out, "{gap}{}", chapter.title);
+            line(&mut out, format_args!("{gap}{}", chapter.title));
             let width = chapter.findings.iter().map(|f| f.about.chars().count()).max().unwrap_or(0);
             for found in &chapter.findings {
                 let lines = wrapped(&found.sentence, WIDTH.saturating_sub(width + 6));
                 let indent = " ".repeat(width + 6);
                 let sentence = lines.join(&format!("\n{indent}"));
-                let _ = writeln!(out, "  {} {:width$}  {sentence}", found.mark.sign(), found.about);
+                line(
+                    &mut out,
+                    format_args!("  {} {:width$}  {sentence}", found.mark.sign(), found.about),
+                );
             }
         }
-        let _ = writeln!(
-            out,
-            "\n{} holds, {} worth knowing, {} probably not meant, {} not proved within the budget\n\
+        line(
+            &mut out,
+            format_args!(
+                "\n{} holds, {} worth knowing, {} probably not meant, {} not proved within the budget\n\
              {} rules, {} boxes",
-            Mark::Holds.sign(),
-            Mark::Worth.sign(),
-            Mark::Broken.sign(),
-            Mark::Open.sign(),
-            parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
-            self.surface.boxes
+                Mark::Holds.sign(),
+                Mark::Worth.sign(),
+                Mark::Broken.sign(),
+                Mark::Open.sign(),
+                parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
+                self.surface.boxes
+            ),
         );
         out
     }

@@ -1,11 +1,10 @@
 //! An explanation for people.
 
-use std::fmt::Write as _;
-
 use super::Explanation;
 use super::share::{Basis, Shares};
 use super::why_not::{Lack, WhyNot};
 use crate::fuzzy_system::{answer, words};
+use fspid_diagnostics::lines::line;
 
 /// Most rules that are listed.
 const MOST: usize = 20;
@@ -38,7 +37,6 @@ impl Explanation<'_> {
         words::name(self.system().parts(), block, rule)
     }
 
-    // Writing to a string cannot fail.
     fn rules_in_words(&self, out: &mut String) {
         if self.rules.is_empty() {
             out.push_str("\nno rule fires\n");
@@ -51,18 +49,18 @@ impl Explanation<'_> {
             let idle =
                 if firing.acting > 0.0 { "" } else { "  (left out by the block's activation)" };
             let strength = grade(firing.strength);
-            let _ = writeln!(out, "  {strength}  {name}: {text}{idle}");
+            line(out, format_args!("  {strength}  {name}: {text}{idle}"));
         }
         let more = self.rules.len().saturating_sub(MOST);
         if more > 0 {
-            let _ = writeln!(out, "  and {more} more");
+            line(out, format_args!("  and {more} more"));
         }
     }
 
     fn shares_in_words(&self, index: usize, shares: &Shares, out: &mut String) {
         let Some(output) = self.system().parts().outputs.get(index) else { return };
         let (name, what) = (&output.name, kind_of(shares.basis));
-        let _ = writeln!(out, "\nshares in {name}{what}");
+        line(out, format_args!("\nshares in {name}{what}"));
         let shown = |part: f64| part.abs() >= SMALL;
         for share in shares.list.iter().filter(|share| shown(share.part)) {
             let [block, rule, _] = share.of.origin;
@@ -71,14 +69,14 @@ impl Explanation<'_> {
             let rule = self.rule_name(block, rule);
             let contribution =
                 contribution.map_or("no number".to_owned(), |it| format!("{it:+.6}"));
-            let _ = writeln!(out, "  {part:6.2} %  {contribution:>9}  {rule}: {term}");
+            line(out, format_args!("  {part:6.2} %  {contribution:>9}  {rule}: {term}"));
         }
         let small = shares.list.iter().filter(|share| !shown(share.part)).count();
         if small > 0 {
-            let _ = writeln!(out, "  and {small} that fire without a part of at least 0.005 %");
+            line(out, format_args!("  and {small} that fire without a part of at least 0.005 %"));
         }
         if let Some(sum) = shares.sum {
-            let _ = writeln!(out, "  100.00 %  {sum:+.6}  together");
+            line(out, format_args!("  100.00 %  {sum:+.6}  together"));
             self.difference(index, sum, out);
         }
     }
@@ -99,7 +97,7 @@ impl Explanation<'_> {
             }
             None => format!("is computed by {}", answer::rule(output)),
         };
-        let _ = writeln!(out, "  the answer, {value:.6}, {why}");
+        line(out, format_args!("  the answer, {value:.6}, {why}"));
     }
 
     fn why_not_in_words(&self, why_not: &WhyNot, out: &mut String) {
@@ -107,32 +105,32 @@ impl Explanation<'_> {
         let term = output.and_then(|output| output.terms.get(why_not.term));
         let (output, term) =
             (output.map_or("", |output| &output.name), term.map_or("", |term| &term.name));
-        let _ = writeln!(out, "\nwhy not {output} = {term}");
+        line(out, format_args!("\nwhy not {output} = {term}"));
         if why_not.rules.is_empty() {
-            let _ = writeln!(out, "  no rule concludes it");
+            line(out, format_args!("  no rule concludes it"));
         }
         for lack in why_not.rules.iter().take(MOST) {
             self.lack_in_words(lack, out);
         }
         let more = why_not.rules.len().saturating_sub(MOST);
         if more > 0 {
-            let _ = writeln!(out, "  and {more} weaker rules");
+            line(out, format_args!("  and {more} weaker rules"));
         }
     }
 
     fn lack_in_words(&self, lack: &Lack, out: &mut String) {
         let [block, rule] = lack.rule;
         let (name, text) = (self.rule_name(block, rule), self.rule(block, rule));
-        let _ = writeln!(out, "  {}  {name}: {text}", grade(lack.strength));
+        line(out, format_args!("  {}  {name}: {text}", grade(lack.strength)));
         if !lack.enabled {
-            let _ = writeln!(out, "            it is switched off");
+            line(out, format_args!("            it is switched off"));
         } else if lack.acting <= 0.0 && lack.strength > 0.0 {
-            let _ = writeln!(out, "            the block's activation leaves it out");
+            line(out, format_args!("            the block's activation leaves it out"));
         }
         for (index, (statement, found)) in lack.statements.iter().enumerate() {
             let text = words::statement(statement, self.system().parts());
             let limit = if lack.limit == Some(index) { "  <- holds it down" } else { "" };
-            let _ = writeln!(out, "            {}  {text}{limit}", grade(*found));
+            line(out, format_args!("            {}  {text}{limit}", grade(*found)));
         }
     }
 }

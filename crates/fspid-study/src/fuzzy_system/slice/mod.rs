@@ -2,12 +2,11 @@
 
 mod question;
 
-use std::fmt::Write as _;
-
 use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
+use fspid_diagnostics::lines::line;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use fspid_scenario::supervisor::Refused;
 
@@ -172,8 +171,7 @@ impl Slice<'_> {
                     cell.filter(|x| !x.is_nan()).map_or(String::new(), |x| format!("{x:?}"))
                 })
                 .collect();
-            // Writing to a string cannot fail.
-            let _ = writeln!(csv, "{}", cells.join(","));
+            line(&mut csv, format_args!("{}", cells.join(",")));
         }
         csv
     }

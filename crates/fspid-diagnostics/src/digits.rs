@@ -27,6 +27,13 @@ pub fn shortest(value: f64) -> String {
     }
 }
 
+/// The digits of a number without the zeros behind its point; powers of ten stay as they are.
+#[must_use]
+pub fn without_zeros(text: &str) -> &str {
+    let is_plain = text.contains('.') && !text.contains(['e', '\u{d7}']);
+    if is_plain { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
 /// "1 controller", "2 controllers".
 #[must_use]
 pub fn counted(count: usize, noun: &str) -> String {
@@ -43,6 +50,10 @@ mod tests {
         let texts = [0.123_456_7, 1234.567, 123_456.7, 999_999.0, 1e300, -2.5e-7, 1e-4, -0.0]
             .map(|value| to_digits(value, 3));
         assert_eq!(texts, ["0.123", "1230", "123000", "1e6", "1e300", "-2.5e-7", "0.0001", "0"]);
+        assert_eq!(
+            ["1.50", "2.000", "100", "1.00e-7"].map(without_zeros),
+            ["1.5", "2", "100", "1.00e-7"]
+        );
         assert_eq!(shortest(f64::INFINITY), "inf");
         assert_eq!(shortest(0.1 + 0.2), "0.30000000000000004");
     }
