@@ -1,9 +1,6 @@
-//! Optimisers over the unit cube: one file each. An optimiser is asked for candidates and told their
-//! costs, so that whoever evaluates them may do so anywhere.
+#![doc = include_str!("../README.md")]
 //!
-//! Every random number depends on the seed, the generation and the member alone, so that neither the
-//! order of evaluation nor the number of threads changes a bit. A state is plain data: written, read
-//! and resumed, it goes on with the same bits. A cost that is not a number counts as infinite.
+//! No features. Not here: scenarios and flights (`fspid-tune`).
 
 #![cfg_attr(
     test,

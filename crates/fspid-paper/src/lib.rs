@@ -1,7 +1,6 @@
-//! The paper flown again: its figures, its claims, and what became of each.
+#![doc = include_str!("../README.md")]
 //!
-//! The unpublished numbers are stored as scenario files in `data/paper`, found by [`identify`]; the
-//! engine that flies them is the one that flies a user's own scenario.
+//! No features. Not here: anything that a scenario of one's own needs.
 
 mod claim;
 pub mod disturbance;

@@ -1,12 +1,10 @@
-//! Figures: data in, one self-contained SVG out.
+#![doc = include_str!("../README.md")]
 //!
-//! All inputs are plain owned data in display units (degrees, seconds); all outputs are [`Svg`]. A figure
-//! never fails: what is not finite interrupts a line, what is empty is drawn empty. The same input gives
-//! the same bytes. Colours are CSS variables with fallbacks, so one file is right on white paper and
-//! inline in a dark page; [`page_style`] is the style sheet for such a page.
+//! Colours are CSS variables with fallbacks, so that one file is right on white paper and inline in a dark page;
+//! [`page_style`] is the style sheet for such a page. Why `kuva` draws the line charts and our own code the rest is in
+//! `docs/decisions/0001-figures.md`.
 //!
-//! This crate draws and does not compute: peaks, tolerances and ratios come from its callers. Why `kuva`
-//! draws the line charts and our own code the rest is in `docs/decisions/0001-figures.md`.
+//! No features. Not here: what is drawn is computed elsewhere; a figure finds no peak and no margin.
 
 mod analysis;
 mod axis;

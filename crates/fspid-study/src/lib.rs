@@ -1,12 +1,10 @@
 #![doc = include_str!("../README.md")]
 //!
 //! ```text
-//! text ─parse▶ document ─validate▶ Study ─simulate▶ Trace ─measure▶ metrics ─judge▶ verdicts ─render▶ report
+//! Study ─simulate▶ Trace ─measure▶ metrics ─judge▶ verdicts ─render▶ report
 //! ```
 //!
-//! Only this crate knows TOML, JSON and HTML, and only here do degrees become radians and back.
-//!
-//! No features. Not here: many flights (`fspid-campaign`), searches (`fspid-tune`), printing (`fspid-cli`).
+//! No features. Not here: how a study is read (`fspid-scenario`), many flights (`fspid-campaign`), searches (`fspid-tune`), printing (`fspid-cli`).
 
 #![cfg_attr(
     test,

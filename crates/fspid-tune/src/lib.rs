@@ -4,7 +4,7 @@
 //! scenario with marks ─candidates▶ studies ─fly▶ measures ─objective▶ costs ─optimiser▶ design
 //! ```
 //!
-//! No features. Not here: optimisers, which know no scenario (`fspid_study::tune::optimiser`), and many flights of one
+//! No features. Not here: optimisers, which know no scenario (`fspid-optimise`), and many flights of one
 //! design (`fspid-campaign`).
 
 #![cfg_attr(

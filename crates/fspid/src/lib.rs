@@ -36,8 +36,10 @@
 //! | [`core`](mod@core) | controllers that can fly; `no_std`, no heap, `step` cannot fail |
 //! | [`fuzzy`] | the supervisor, general fuzzy systems, audits |
 //! | [`sim`] | the sampled closed loop: scenario in, trace out |
-//! | [`study`] | files, measures, verdicts, margins, certificates, figures, reports |
-//! | [`campaign`], [`tune`] | many flights; optimisers, classical rules, contests |
+//! | [`scenario`] | scenarios, fuzzy systems and requirements as text, and what is true of them |
+//! | [`study`] | measures, verdicts, margins, certificates, reports |
+//! | [`campaign`], [`tune`] | many flights; searches, classical rules, contests |
+//! | [`optimise`], [`plot`], [`page`] | optimisers, figures as SVG, pages of HTML: free of flights |
 //! | [`lti`], [`aircraft`], [`proof`], [`numeric`] | linear systems, aircraft, proofs, numbers |
 //!
 //! No features. Not here: the program and its arguments (`fspid-cli`), and firmware, which wants `fspid-core` alone.
@@ -48,7 +50,11 @@ pub use fspid_core as core;
 pub use fspid_fuzzy as fuzzy;
 pub use fspid_lti as lti;
 pub use fspid_numeric as numeric;
+pub use fspid_optimise as optimise;
+pub use fspid_page as page;
+pub use fspid_plot as plot;
 pub use fspid_proof as proof;
+pub use fspid_scenario as scenario;
 pub use fspid_sim as sim;
 pub use fspid_study as study;
 pub use fspid_tune as tune;
