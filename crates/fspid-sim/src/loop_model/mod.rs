@@ -15,6 +15,8 @@
 //! floats are of the same loop.
 
 mod assembly;
+#[cfg(test)]
+mod from_the_core;
 mod memory;
 mod opening;
 mod parts;

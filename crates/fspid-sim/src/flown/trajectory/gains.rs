@@ -123,11 +123,24 @@ impl<'a> TunerSlopes<'a> {
                 }
                 // Samples that move with the strengths: no closed form.
                 Err(GradientError::Jumps { .. }) => self.difference(inputs, output),
-                // What the supervisor refuses or answers as for the clamped inputs does not move.
-                Err(_) => [0.0; 2],
+                Err(_) => self.clamped(inputs, output),
             };
         }
         derivatives
+    }
+
+    /// Derivatives where every rule has underflowed and the answer is that for the clamped inputs: an
+    /// input within the range still moves it. What is refused does not get here.
+    fn clamped(&mut self, inputs: [f64; 2], output: usize) -> [f64; 2] {
+        let range = self.tuner.supervisor().range();
+        let ends = inputs.map(|input| input.clamp(-range, range));
+        let gradient = self.differentiator.gradient(&ends, output, &mut self.workspace);
+        [0, 1].map(|input| match &gradient {
+            Ok(gradient) if inputs[input].abs() <= range => {
+                gradient.inputs.get(input).copied().unwrap_or(0.0)
+            }
+            _ => 0.0,
+        })
     }
 
     fn difference(&self, inputs: [f64; 2], output: usize) -> [f64; 2] {
