@@ -38,6 +38,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod equations;
 mod error;
 mod gains;
 mod guard;
