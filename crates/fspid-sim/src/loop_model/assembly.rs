@@ -200,7 +200,10 @@ impl<T: Base> LoopModel<T> {
     /// sees and remembers; and, where there is a change gain g, $u + g (c - c_{k-1})$.
     fn controller(&self, gains: Gains<T>, layout: &Layout) -> ControllerRows<T> {
         let places = [layout.integral, layout.derivative, layout.previous];
-        let slopes = Slopes::at_rest(&self.settings.config, gains);
+        // A part of the memory that is left away is one that no gain lets out.
+        let ki = if layout.integral.is_some() { gains.ki } else { T::zero() };
+        let kd = if layout.previous.is_some() { gains.kd } else { T::zero() };
+        let slopes = Slopes::at_rest(&self.settings.config, Gains { ki, kd, ..gains });
         let row = |slope: &Slope<T>| {
             let mut row = vec![T::zero(); layout.size];
             for (place, by) in places.into_iter().zip(&slope.derivative[REMEMBERED..]) {

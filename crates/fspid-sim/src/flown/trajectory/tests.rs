@@ -1,14 +1,13 @@
 //! A sample's derivatives are the differences of the core's own step, for every option.
 
 use fspid_core::{
-    Fspid, GainCoupling, InputSets, PidConfig, Previous, Sample, SecondInput, SelfTuner, State,
-    TunerSettings,
+    Fspid, InputSets, Previous, Sample, SecondInput, SelfTuner, State, TunerSettings,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::controller::{Inputs, Places, Rows, Twin};
-use super::gains::{GainSlopes, Seen, TunerSlopes, system_of};
+use super::controller::{Done, Inputs, Places, Rows, Twin};
+use super::gains::{TunerSlopes, system_of};
 use crate::Controller;
 use crate::options::{any_controller, labels};
 
@@ -77,15 +76,10 @@ fn column(rows: &Rows, place: usize) -> Answer {
     column
 }
 
-fn rows(
-    slopes: Option<&mut TunerSlopes<'_>>,
-    (twin, config): (&mut Twin<'_>, &PidConfig<f64>),
-    sample: Sample<f64>,
-) -> Rows {
-    let done = twin.step(sample);
-    let seen = Seen { error_rad: done.error_rad, change_rad: done.change_rad, gains: done.gains };
-    let slopes = slopes.map_or(GainSlopes::default(), |slopes| slopes.at(seen));
-    done.rows(config, &PLACES, &Inputs { pitch: &unit(0), rate: &unit(1), slopes })
+fn rows(controller: &Controller, slopes: Option<&mut TunerSlopes<'_>>, done: Done) -> Rows {
+    let asked = slopes.zip(done.seen);
+    let slopes = Some(asked.map_or([[0.0; 2]; 3], |(slopes, seen)| slopes.at(seen)));
+    done.rows(controller, &PLACES, &Inputs { pitch: &unit(0), rate: &unit(1), slopes })
 }
 
 /// How many entries of how many were smooth enough to be compared; an error tells the first that differs.
@@ -96,14 +90,14 @@ fn compared(controller: &Controller, samples: &[Sample<f64>]) -> Result<[usize; 
     };
     let mut slopes = match (controller, &system) {
         (Controller::SelfTuning(fspid), Some(system)) => {
-            Some(TunerSlopes::new(fspid.tuner(), system, fspid.config().dt_s))
+            Some(TunerSlopes::new(fspid.tuner(), system))
         }
         _ => None,
     };
     let (mut twin, mut state, mut count) = (Twin::new(controller), State::new(), [0; 2]);
     for (k, &sample) in samples.iter().enumerate() {
-        let (before, rows) =
-            (state, rows(slopes.as_mut(), (&mut twin, controller.config()), sample));
+        let (before, done) = (state, twin.step(sample));
+        let rows = rows(controller, slopes.as_mut(), done);
         controller.step(&mut state, sample);
         // Before the first sample there are no gains that could be moved.
         let places = if before.previous.is_some() { STATES } else { STATES - 3 };
@@ -131,16 +125,19 @@ fn compared(controller: &Controller, samples: &[Sample<f64>]) -> Result<[usize; 
     Ok(count)
 }
 
-/// The same controller with the structure that is linearised along a flight.
-fn plain(controller: Controller) -> Controller {
+/// The same controller without what brings states or slopes of its own: a reference model, uneven sets,
+/// rules that conclude numbers. Along flights fewer are linearised, see `SelfTuner::is_plain`.
+fn derivable(controller: Controller) -> Controller {
     let Controller::SelfTuning(fspid) = controller else {
         return controller;
     };
     let tuner = fspid.tuner();
     let settings = TunerSettings {
-        second_input: SecondInput::Change,
+        second_input: match tuner.settings().second_input {
+            SecondInput::ModelError(_) => SecondInput::Change,
+            change_or_rate => change_or_rate,
+        },
         input_sets: InputSets::EVEN,
-        gain_coupling: GainCoupling::NONE,
         ..*tuner.settings()
     };
     let supervisor = match tuner.supervisor().numbers() {
@@ -174,7 +171,7 @@ proptest! {
     fn a_sample_is_linearised_as_the_core_answers_it(
         controller in any_controller(), samples in samples(),
     ) {
-        let controller = plain(controller);
+        let controller = derivable(controller);
         let [smooth, all] = compared(&controller, &samples).map_err(TestCaseError::fail)?;
         prop_assert!(2 * smooth > all, "{} of {} entries are smooth", smooth, all);
     }
