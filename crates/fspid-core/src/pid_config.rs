@@ -99,9 +99,20 @@ impl<R: Real> PidConfig<R> {
 
     /// True if the command is a linear function of samples and memory.
     pub fn is_linear(&self) -> bool {
-        self.limits.is_none()
-            && self.slew_rad_s.is_none()
-            && !matches!(self.anti_windup, AntiWindup::Clamping(_))
+        // In full, so that somebody says of a new option whether it is linear.
+        let Self {
+            dt_s: _,
+            rate_gain_s: _,
+            setpoint_weights: _,
+            derivative: _,
+            integral: _,
+            anti_windup,
+            limits,
+            slew_rad_s,
+            guard: _,
+        } = self;
+        let clamped = matches!(anti_windup, AntiWindup::Clamping(_));
+        limits.is_none() && slew_rad_s.is_none() && !clamped
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {

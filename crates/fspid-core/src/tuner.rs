@@ -176,9 +176,22 @@ impl<R: Real> TunerSettings<R> {
     /// True where a change of the error is what the supervisor sees, its sets are even and nothing but
     /// the gains moves: the structure that proofs and gains along a trajectory are written for.
     pub fn is_plain(&self) -> bool {
-        self.second_input == SecondInput::Change
-            && self.input_sets.are_even()
-            && self.gain_coupling == GainCoupling::NONE
+        // In full, so that somebody says of a new setting whether it is plain.
+        let Self {
+            error_sign: _,
+            second_input,
+            change: _,
+            input_scale: _,
+            input_sets,
+            output_scale: _,
+            gain_coupling,
+            law: _,
+            gain_limits: _,
+            dead_zone: _,
+        } = self;
+        *second_input == SecondInput::Change
+            && input_sets.are_even()
+            && *gain_coupling == GainCoupling::NONE
     }
 }
 

@@ -12,7 +12,9 @@
 //!
 //! Not here: what is admitted, faults, overflow and the supervisor's answer, which have no derivative.
 
-use fspid_numeric::Scalar;
+use fspid_numeric::{Real, Scalar};
+
+use crate::limits::Limits;
 
 mod pid;
 mod tuner;
@@ -81,4 +83,10 @@ numbers! {
 #[inline(always)]
 fn limited<S: Scalar>(value: S, lower: S, upper: S) -> S {
     value.if_less(lower, lower, upper.if_less(value, upper, value))
+}
+
+/// Lower and upper end of limits, infinite where there are none.
+fn ends<R: Real>(limits: Option<Limits<R>>) -> (R, R) {
+    let infinity = R::from_f64(f64::INFINITY);
+    limits.map_or((-infinity, infinity), |limits| (limits.lower(), limits.upper()))
 }

@@ -2,7 +2,7 @@
 
 use fspid_numeric::{Real, Scalar};
 
-use super::{Memory, limited, numbers};
+use super::{Memory, ends, limited, numbers};
 use crate::gains::Gains;
 use crate::integral::{AntiWindup, IntegralForm};
 use crate::pid_config::PidConfig;
@@ -20,6 +20,17 @@ pub enum AntiWindupKind {
     Conditional,
     /// The memory is pulled.
     BackCalculation,
+}
+
+impl AntiWindupKind {
+    fn of<R>(anti_windup: AntiWindup<R>) -> Self {
+        match anti_windup {
+            AntiWindup::None => Self::None,
+            AntiWindup::Clamping(_) => Self::Clamping,
+            AntiWindup::Conditional => Self::Conditional,
+            AntiWindup::BackCalculation { .. } => Self::BackCalculation,
+        }
+    }
 }
 
 /// Which equations a controller has.
@@ -122,19 +133,12 @@ impl<R: Real> PidEquations<R> {
             slew_rad_s,
             guard: _,
         } = *config;
-        let infinity = R::from_f64(f64::INFINITY);
-        let ends = limits.map(|limits| (limits.lower(), limits.upper()));
-        let (lower_rad, upper_rad) = ends.unwrap_or((-infinity, infinity));
-        let (anti_windup, (term_lower_rad, term_upper_rad), tracking_s) = match anti_windup {
-            AntiWindup::None => (AntiWindupKind::None, (-infinity, infinity), R::ONE),
-            AntiWindup::Clamping(limits) => {
-                (AntiWindupKind::Clamping, (limits.lower(), limits.upper()), R::ONE)
-            }
-            AntiWindup::Conditional => (AntiWindupKind::Conditional, (-infinity, infinity), R::ONE),
-            AntiWindup::BackCalculation { tracking_s } => {
-                (AntiWindupKind::BackCalculation, (-infinity, infinity), tracking_s)
-            }
+        let (lower_rad, upper_rad) = ends(limits);
+        let term_limits = match anti_windup {
+            AntiWindup::Clamping(limits) => Some(limits),
+            AntiWindup::None | AntiWindup::Conditional | AntiWindup::BackCalculation { .. } => None,
         };
+        let (term_lower_rad, term_upper_rad) = ends(term_limits);
         let coupled = coupling != GainCoupling::NONE;
         let numbers = PidNumbers {
             dt_s,
@@ -148,11 +152,15 @@ impl<R: Real> PidEquations<R> {
             filter_s: derivative.filter_s,
             lower_rad,
             upper_rad,
-            slew_rad: slew_rad_s.map_or(infinity, |slew_rad_s| slew_rad_s * dt_s),
+            slew_rad: slew_rad_s.map_or(R::from_f64(f64::INFINITY), |slew_rad_s| slew_rad_s * dt_s),
             term_lower_rad,
             term_upper_rad,
-            tracking_s,
+            tracking_s: match anti_windup {
+                AntiWindup::BackCalculation { tracking_s } => tracking_s,
+                AntiWindup::None | AntiWindup::Clamping(_) | AntiWindup::Conditional => R::ONE,
+            },
         };
+        let anti_windup = AntiWindupKind::of(anti_windup);
         let limited = limits.is_some() || slew_rad_s.is_some();
         Self { structure: PidStructure { integral, anti_windup, coupled, limited }, numbers }
     }
@@ -289,8 +297,7 @@ impl<S: Scalar> PidEquations<S> {
                 let shift_rad = excess_rad * n.dt_s / n.tracking_s;
                 let moved = self.remembered(shift_rad, ki, free.wound, |shift| free.wound - shift);
                 // Without a gain nothing winds up, and nothing would bring it back.
-                let zero = S::zero();
-                ki.if_less(zero, moved, zero.if_less(ki, moved, free.wound))
+                S::zero().if_less(ki.abs(), moved, free.wound)
             }
         }
     }

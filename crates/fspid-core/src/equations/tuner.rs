@@ -2,7 +2,7 @@
 
 use fspid_numeric::{Real, Scalar};
 
-use super::{Memory, limited, numbers};
+use super::{Memory, ends, limited, numbers};
 use crate::gains::Gains;
 use crate::second_input::{ModelState, ReferenceModel, SecondInput};
 use crate::state::Sample;
@@ -35,6 +35,21 @@ pub struct TunerStructure {
     pub second_input: SecondInputKind,
     /// How increments become gains.
     pub law: LawKind,
+}
+
+impl TunerStructure {
+    fn of<R>(second_input: SecondInput<R>, law: Law<R>) -> Self {
+        let second_input = match second_input {
+            SecondInput::Change => SecondInputKind::Change,
+            SecondInput::Rate => SecondInputKind::Rate,
+            SecondInput::ModelError(_) => SecondInputKind::ModelError,
+        };
+        let law = match law {
+            Law::Memoryless => LawKind::Memoryless,
+            Law::Accumulating { .. } => LawKind::Accumulating,
+        };
+        Self { second_input, law }
+    }
 }
 
 numbers! {
@@ -104,16 +119,13 @@ impl<R: Real> TunerEquations<R> {
         } = *settings;
         let zone = dead_zone.map(|zone| (zone.error_rad, zone.change_rad));
         let (zone_error_rad, zone_change_rad) = zone.unwrap_or((-R::ONE, -R::ONE));
-        let (second_input, (bandwidth_rad_s, damping)) = match second_input {
-            SecondInput::Change => (SecondInputKind::Change, (R::ZERO, R::ZERO)),
-            SecondInput::Rate => (SecondInputKind::Rate, (R::ZERO, R::ZERO)),
-            SecondInput::ModelError(ReferenceModel { bandwidth_rad_s, damping }) => {
-                (SecondInputKind::ModelError, (bandwidth_rad_s, damping))
-            }
+        let (bandwidth_rad_s, damping) = match second_input {
+            SecondInput::ModelError(model) => (model.bandwidth_rad_s, model.damping),
+            SecondInput::Change | SecondInput::Rate => (R::ZERO, R::ZERO),
         };
-        let (law, leakage_per_s) = match law {
-            Law::Memoryless => (LawKind::Memoryless, R::ZERO),
-            Law::Accumulating { leakage_per_s } => (LawKind::Accumulating, leakage_per_s),
+        let leakage_per_s = match law {
+            Law::Accumulating { leakage_per_s } => leakage_per_s,
+            Law::Memoryless => R::ZERO,
         };
         let numbers = TunerNumbers {
             dt_s,
@@ -133,7 +145,7 @@ impl<R: Real> TunerEquations<R> {
             bandwidth_rad_s,
             damping,
         };
-        let structure = TunerStructure { second_input, law };
+        let structure = TunerStructure::of(second_input, law);
         Self { structure, numbers, gains: gain_numbers(settings, nominal, output_scale) }
     }
 
@@ -160,12 +172,13 @@ fn gain_numbers<R: Real>(
     nominal: Gains<R>,
     scale: Gains<R>,
 ) -> [GainNumbers<R>; 3] {
-    let infinity = R::from_f64(f64::INFINITY);
-    let ends = settings.gain_limits.map(|limits| {
-        [limits.kp, limits.ki, limits.kd].map(|limits| (limits.lower(), limits.upper()))
-    });
-    let [kp, ki, kd] = ends.unwrap_or([(-infinity, infinity); 3]);
-    let of = |nominal, scale, (lower, upper)| GainNumbers { nominal, scale, lower, upper };
+    let (kp, ki, kd) = settings
+        .gain_limits
+        .map_or((None, None, None), |limits| (Some(limits.kp), Some(limits.ki), Some(limits.kd)));
+    let of = |nominal, scale, limits| {
+        let (lower, upper) = ends(limits);
+        GainNumbers { nominal, scale, lower, upper }
+    };
     [of(nominal.kp, scale.kp, kp), of(nominal.ki, scale.ki, ki), of(nominal.kd, scale.kd, kd)]
 }
 
