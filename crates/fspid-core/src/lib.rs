@@ -43,6 +43,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod equations;
 mod error;
 mod gains;
 mod guard;

@@ -2,18 +2,20 @@
 
 use fspid_numeric::Real;
 
+use crate::equations::{PidEquations, TunerEquations};
 use crate::error::ConfigError;
 use crate::gains::Gains;
-use crate::pid_config::PidConfig;
+use crate::pid_config::{PidConfig, SetpointWeights};
 use crate::second_input::ModelState;
 use crate::state::{Sample, State, Step};
-use crate::tuner::{SelfTuner, Tuned};
+use crate::tuner::{GainCoupling, SelfTuner};
 
 /// A PID controller with fixed gains (`ki = kd = 0`: the paper's proportional controller).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pid<R> {
     gains: Gains<R>,
     config: PidConfig<R>,
+    equations: PidEquations<R>,
 }
 
 impl<R: Real> Pid<R> {
@@ -23,7 +25,9 @@ impl<R: Real> Pid<R> {
     /// [`ConfigError`] names the first setting that is not allowed.
     pub fn new(gains: Gains<R>, config: PidConfig<R>) -> Result<Self, ConfigError> {
         config.check()?;
-        Ok(Self { gains: gains.checked()?, config })
+        let gains = gains.checked()?;
+        let equations = PidEquations::new(&config, gains, GainCoupling::NONE);
+        Ok(Self { gains, config, equations })
     }
 
     /// The gains.
@@ -36,14 +40,22 @@ impl<R: Real> Pid<R> {
         &self.config
     }
 
+    /// The same in numbers, with which it flies.
+    pub fn equations(&self) -> &PidEquations<R> {
+        &self.equations
+    }
+
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
+        let (equations, gains) = (&self.equations, self.gains);
+        let sample = match self.config.admitted(sample, self.config.uses_rate()) {
+            Ok(sample) => sample,
+            Err(fault) => return self.config.hold(state, fault, gains),
+        };
+        let memory = state.memory_for(equations, &sample, &gains);
         let no_model = ModelState::at(R::ZERO);
-        match self.config.admitted(sample, self.config.uses_rate()) {
-            Ok(sample) => self.config.step(state, sample, (self.gains, no_model)),
-            Err(fault) => self.config.hold(state, fault, self.gains),
-        }
+        self.config.step(state, (equations, &memory), sample, (gains, no_model))
     }
 }
 
@@ -56,6 +68,8 @@ impl<R: Real> Pid<R> {
 pub struct Fspid<R> {
     tuner: SelfTuner<R>,
     config: PidConfig<R>,
+    equations: PidEquations<R>,
+    tuner_equations: TunerEquations<R>,
 }
 
 impl<R: Real> Fspid<R> {
@@ -67,7 +81,10 @@ impl<R: Real> Fspid<R> {
     pub fn new(tuner: SelfTuner<R>, config: PidConfig<R>) -> Result<Self, ConfigError> {
         config.check()?;
         tuner.check_period(config.dt_s)?;
-        Ok(Self { tuner, config })
+        let (settings, nominal) = (tuner.settings(), tuner.nominal());
+        let equations = PidEquations::new(&config, nominal, settings.gain_coupling);
+        let tuner_equations = TunerEquations::new(settings, nominal, config.dt_s);
+        Ok(Self { tuner, config, equations, tuner_equations })
     }
 
     /// Where the gains come from.
@@ -80,18 +97,30 @@ impl<R: Real> Fspid<R> {
         &self.config
     }
 
+    /// The controller behind its gains in numbers, with which it flies.
+    pub fn equations(&self) -> &PidEquations<R> {
+        &self.equations
+    }
+
+    /// The way from a sample to its gains in numbers, but for the rules.
+    pub fn tuner_equations(&self) -> &TunerEquations<R> {
+        &self.tuner_equations
+    }
+
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
-        let nominal = self.tuner.nominal();
+        let (equations, nominal) = (&self.equations, self.tuner.nominal());
         let sample = match self.config.admitted(sample, self.uses_rate()) {
             Ok(sample) => sample,
             Err(fault) => return self.config.hold(state, fault, nominal),
         };
-        match self.tuner.tuned(state, sample, self.config.dt_s) {
-            Ok(Tuned { gains, model, fault }) => {
+        let memory = state.memory_for(equations, &sample, &nominal);
+        match self.tuner.gains(&self.tuner_equations, &memory, &sample) {
+            Ok((gains, fault)) => {
                 state.latch(fault);
-                self.tuner.config_at(&self.config, gains).step(state, sample, (gains, model))
+                let model = self.tuner_equations.next_model(&memory, &sample);
+                self.config.step(state, (equations, &memory), sample, (gains, model))
             }
             Err(fault) => self.config.hold(state, fault, nominal),
         }
@@ -106,6 +135,8 @@ impl<R: Real> Fspid<R> {
 
     /// Everything but the gains, as it is at these gains: with what follows them.
     pub fn config_at(&self, gains: Gains<R>) -> PidConfig<R> {
-        self.tuner.config_at(&self.config, gains)
+        let (proportional, rate_gain_s) = self.equations.coupled(&gains);
+        let setpoint_weights = SetpointWeights { proportional, ..self.config.setpoint_weights };
+        PidConfig { setpoint_weights, rate_gain_s, ..self.config }
     }
 }

@@ -2,10 +2,11 @@
 
 use fspid_numeric::Real;
 
+use crate::equations::{Free, Memory, PidEquations, Regulated};
 use crate::error::{ConfigError, allowed_if, finite, not_negative, positive};
 use crate::gains::Gains;
 use crate::guard::{Faults, Guard};
-use crate::integral::{AntiWindup, IntegralForm, Integrator};
+use crate::integral::{AntiWindup, IntegralForm};
 use crate::limits::Limits;
 use crate::second_input::ModelState;
 use crate::state::{Previous, Sample, State, Step};
@@ -98,9 +99,20 @@ impl<R: Real> PidConfig<R> {
 
     /// True if the command is a linear function of samples and memory.
     pub fn is_linear(&self) -> bool {
-        self.limits.is_none()
-            && self.slew_rad_s.is_none()
-            && !matches!(self.anti_windup, AntiWindup::Clamping(_))
+        // In full, so that somebody says of a new option whether it is linear.
+        let Self {
+            dt_s: _,
+            rate_gain_s: _,
+            setpoint_weights: _,
+            derivative: _,
+            integral: _,
+            anti_windup,
+            limits,
+            slew_rad_s,
+            guard: _,
+        } = self;
+        let clamped = matches!(anti_windup, AntiWindup::Clamping(_));
+        limits.is_none() && slew_rad_s.is_none() && !clamped
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {
@@ -151,32 +163,22 @@ impl<R: Real> PidConfig<R> {
         self.rate_gain_s != R::ZERO
     }
 
-    /// One sample with the gains of the moment; `model` is to be remembered. `sample` has been [admitted](Self::admitted).
+    /// One sample by its equations with the gains of the moment, from a memory; `model` is to be
+    /// remembered. `sample` has been [admitted](Self::admitted).
     ///
     /// Either the whole memory moves on, or none of it (overflow: held and latched).
     #[inline(always)]
     pub(crate) fn step(
         &self,
         state: &mut State<R>,
+        (equations, memory): (&PidEquations<R>, &Memory<R>),
         sample: Sample<R>,
         (gains, model): (Gains<R>, ModelState<R>),
     ) -> Step<R> {
-        let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
-        let weights = self.setpoint_weights;
-        let error_rad = setpoint_rad - measurement_rad;
-        let proportional_rad = gains.kp * (weights.proportional * setpoint_rad - measurement_rad);
-
-        let integrator = self.integrator(gains.ki);
-        let wound = integrator.wound(state.integral, error_rad);
-
-        let derivative_input_rad = weights.derivative * setpoint_rad - measurement_rad;
-        let derivative_rad_s = self.derivative_of(state, derivative_input_rad);
-
-        let free_rad = proportional_rad + integrator.term_rad(wound) + gains.kd * derivative_rad_s
-            - self.rate_gain_s * rate_rad_s;
-        let command_rad = self.limited(state.command_rad, free_rad);
-        let excess_rad = free_rad - command_rad;
-        let integral = integrator.unwound(state.integral, wound, excess_rad, error_rad);
+        let free = equations.free(memory, &sample, &gains);
+        let regulated = equations.regulated(memory, &free, gains.ki);
+        let Free { error_rad, derivative_input_rad, derivative_rad_s, wound, .. } = free;
+        let Regulated { command_rad, excess_rad, integral } = regulated;
 
         // Not only what is infinite: from a memory near overflow the way to any other sample would
         // overflow, however good that sample, and the output would be held for ever.
@@ -185,7 +187,7 @@ impl<R: Real> PidConfig<R> {
             && leave(INTEGRAL_ROOM, [wound, integral])
             && leave(RATE_ROOM, [model.pitch_rad, model.rate_rad_s]);
         // Before the limits, which would turn an overflow into a number.
-        if !(clear && free_rad.is_finite()) {
+        if !(clear && free.command_rad.is_finite()) {
             return self.hold(state, Faults::OVERFLOW, gains);
         }
         let previous = Previous { error_rad, derivative_input_rad, gains, model };
@@ -197,25 +199,5 @@ impl<R: Real> PidConfig<R> {
             faults: state.faults,
         };
         Step { command_rad, gains, saturated: excess_rad != R::ZERO, faults: state.faults }
-    }
-
-    fn integrator(&self, ki: R) -> Integrator<R> {
-        Integrator { form: self.integral, anti_windup: self.anti_windup, dt_s: self.dt_s, ki }
-    }
-
-    fn derivative_of(&self, state: &State<R>, input_rad: R) -> R {
-        let Some(previous) = state.previous else {
-            return R::ZERO;
-        };
-        let filter_s = self.derivative.filter_s;
-        let difference_rad = input_rad - previous.derivative_input_rad;
-        (filter_s * state.derivative_rad_s + difference_rad) / (filter_s + self.dt_s)
-    }
-
-    fn limited(&self, last_rad: R, free_rad: R) -> R {
-        let slewed = self.slew_rad_s.map_or(free_rad, |slew| {
-            free_rad.limited(last_rad - slew * self.dt_s, last_rad + slew * self.dt_s)
-        });
-        self.limits.map_or(slewed, |limits| limits.clamp(slewed))
     }
 }

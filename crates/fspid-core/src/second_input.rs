@@ -1,6 +1,6 @@
 //! What the supervisor sees beside the error, and how the sets of its inputs lie.
 
-use fspid_numeric::Real;
+use fspid_numeric::{Real, Scalar};
 
 use crate::error::{ConfigError, allowed_if, positive};
 
@@ -89,12 +89,14 @@ impl<R: Real> ReferenceModel<R> {
         allowed_if(slow, what, self.bandwidth_rad_s, "at most half per sample period")?;
         Ok(())
     }
+}
 
+impl<S: Scalar> ReferenceModel<S> {
     /// Where the model is at the next sample.
     #[inline(always)]
-    pub fn next(&self, now: ModelState<R>, setpoint_rad: R, dt_s: R) -> ModelState<R> {
+    pub fn next(&self, now: ModelState<S>, setpoint_rad: S, dt_s: S) -> ModelState<S> {
         let spring = self.bandwidth_rad_s * self.bandwidth_rad_s;
-        let brake = R::from_f64(2.0) * self.damping * self.bandwidth_rad_s;
+        let brake = S::constant(2.0) * self.damping * self.bandwidth_rad_s;
         let pull = spring * (setpoint_rad - now.pitch_rad) - brake * now.rate_rad_s;
         let rate_rad_s = now.rate_rad_s + pull * dt_s;
         ModelState { pitch_rad: now.pitch_rad + rate_rad_s * dt_s, rate_rad_s }

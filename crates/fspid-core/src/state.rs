@@ -2,6 +2,7 @@
 
 use fspid_numeric::Real;
 
+use crate::equations::{Memory, PidEquations};
 use crate::gains::Gains;
 use crate::guard::Faults;
 use crate::second_input::ModelState;
@@ -94,9 +95,46 @@ impl<R: Real> State<R> {
         self.previous.map(|previous| previous.gains)
     }
 
-    /// $e_k - e_{k-1}$, zero at the first sample.
-    pub(crate) fn error_delta(&self, error_rad: R) -> R {
-        self.previous.map_or(R::ZERO, |previous| error_rad - previous.error_rad)
+    /// What is remembered, in numbers; `None` before the first good sample.
+    #[inline(always)]
+    pub fn memory(&self) -> Option<Memory<R>> {
+        let Previous { error_rad, derivative_input_rad, gains, model } = self.previous?;
+        Some(Memory {
+            command_rad: self.command_rad,
+            integral: self.integral,
+            derivative_rad_s: self.derivative_rad_s,
+            error_rad,
+            derivative_input_rad,
+            kp: gains.kp,
+            ki: gains.ki,
+            kd: gains.kd,
+            model_rad: model.pitch_rad,
+            model_rad_s: model.rate_rad_s,
+        })
+    }
+
+    /// The memory with which these equations answer a sample, the first one too.
+    #[inline(always)]
+    pub(crate) fn memory_for(
+        &self,
+        equations: &PidEquations<R>,
+        sample: &Sample<R>,
+        nominal: &Gains<R>,
+    ) -> Memory<R> {
+        let Self { command_rad, integral, .. } = *self;
+        let first = || Memory { command_rad, integral, ..equations.at_first(sample, nominal) };
+        self.memory().unwrap_or_else(first)
+    }
+
+    /// What remembers these numbers and faults.
+    #[inline(always)]
+    pub fn remembering(memory: Memory<R>, faults: Faults) -> Self {
+        let Memory { command_rad, integral, derivative_rad_s, .. } = memory;
+        let Memory { error_rad, derivative_input_rad, kp, ki, kd, .. } = memory;
+        let model = ModelState { pitch_rad: memory.model_rad, rate_rad_s: memory.model_rad_s };
+        let gains = Gains { kp, ki, kd };
+        let previous = Some(Previous { error_rad, derivative_input_rad, gains, model });
+        Self { command_rad, integral, derivative_rad_s, previous, faults }
     }
 
     pub(crate) fn latch(&mut self, fault: Faults) {

@@ -3,12 +3,12 @@
 use fspid_fuzzy::Supervisor;
 use fspid_numeric::Real;
 
+use crate::equations::{Memory, TunerEquations};
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
-use crate::pid_config::{PidConfig, SetpointWeights};
-use crate::second_input::{ModelState, SecondInput, SetCentres};
-use crate::state::{Previous, Sample, State};
+use crate::second_input::{SecondInput, SetCentres};
+use crate::state::Sample;
 
 /// Which difference the supervisor sees as its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -176,20 +176,23 @@ impl<R: Real> TunerSettings<R> {
     /// True where a change of the error is what the supervisor sees, its sets are even and nothing but
     /// the gains moves: the structure that proofs and gains along a trajectory are written for.
     pub fn is_plain(&self) -> bool {
-        self.second_input == SecondInput::Change
-            && self.input_sets.are_even()
-            && self.gain_coupling == GainCoupling::NONE
+        // In full, so that somebody says of a new setting whether it is plain.
+        let Self {
+            error_sign: _,
+            second_input,
+            change: _,
+            input_scale: _,
+            input_sets,
+            output_scale: _,
+            gain_coupling,
+            law: _,
+            gain_limits: _,
+            dead_zone: _,
+        } = self;
+        *second_input == SecondInput::Change
+            && input_sets.are_even()
+            && *gain_coupling == GainCoupling::NONE
     }
-}
-
-/// What a self-tuner makes of a sample.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tuned<R> {
-    pub(crate) gains: Gains<R>,
-    /// The reference model at the next sample.
-    pub(crate) model: ModelState<R>,
-    /// To be latched.
-    pub(crate) fault: Faults,
 }
 
 /// The gains of the moment from error and change of error.
@@ -252,26 +255,22 @@ impl<R: Real> SelfTuner<R> {
         Ok(())
     }
 
-    /// Scaled increments $s \Delta k$ for an error and its change as the loop has them.
+    /// Scaled increments $s \Delta k$ for an error and what is seen beside it, as the loop has them.
     #[inline(always)]
-    fn increments(&self, error_rad: R, change_rad: R) -> Result<(Gains<R>, Faults), Faults> {
-        let settings = &self.settings;
-        if let Some(zone) = settings.dead_zone
-            && error_rad.abs() <= zone.error_rad
-            && change_rad.abs() <= zone.change_rad
-        {
+    fn increments(
+        &self,
+        equations: &TunerEquations<R>,
+        error_rad: R,
+        second_rad: R,
+    ) -> Result<(Gains<R>, Faults), Faults> {
+        if equations.is_silent(error_rad, second_rad) {
             return Ok((Gains::ZERO, Faults::NONE));
         }
-        let sign = match settings.error_sign {
-            ErrorSign::SetpointMinusMeasurement => R::ONE,
-            ErrorSign::MeasurementMinusSetpoint => -R::ONE,
-        };
-        let error = sign * (settings.input_scale.error_per_rad * error_rad);
-        let change = sign * (settings.input_scale.change_per_rad * change_rad);
-        if !(error.is_finite() && change.is_finite()) {
+        let [error, second] = equations.seen(error_rad, second_rad);
+        if !(error.is_finite() && second.is_finite()) {
             return Err(Faults::OVERFLOW);
         }
-        self.inferred(error, change)
+        self.inferred(error, second)
     }
 
     /// Scaled increments for inputs as the supervisor sees them.
@@ -302,69 +301,37 @@ impl<R: Real> SelfTuner<R> {
         self.inferred(error, change).ok().map(|(increments, _)| increments)
     }
 
-    /// The gains of this sample, and what has to be remembered with them. A supervisor that refuses
-    /// the input leaves the gains as they were.
+    /// The gains of a sample; with them a fault to latch. A supervisor that refuses the input leaves the
+    /// gains as they were.
     ///
     /// # Errors
     /// [`Faults::OVERFLOW`] where there are none.
     #[inline(always)]
-    pub(crate) fn tuned(
+    pub(crate) fn gains(
         &self,
-        state: &State<R>,
-        sample: Sample<R>,
-        dt_s: R,
-    ) -> Result<Tuned<R>, Faults> {
-        let error_rad = sample.setpoint_rad - sample.measurement_rad;
-        let mut model = ModelState::at(R::ZERO);
-        let change_rad = match self.settings.second_input {
-            SecondInput::Change => {
-                let delta_rad = state.error_delta(error_rad);
-                match self.settings.change {
-                    Change::Rate => delta_rad / dt_s,
-                    Change::Delta => delta_rad,
-                }
-            }
-            SecondInput::Rate => -sample.rate_rad_s,
-            SecondInput::ModelError(reference) => {
-                let rest = ModelState::at(sample.measurement_rad);
-                let now = state.previous.map_or(rest, |previous| previous.model);
-                model = reference.next(now, sample.setpoint_rad, dt_s);
-                now.pitch_rad - sample.measurement_rad
-            }
-        };
-        let (gains, fault) = self.gains(state.previous, error_rad, change_rad, dt_s)?;
-        Ok(Tuned { gains, model, fault })
-    }
-
-    /// The gains for an error and what is seen beside it; with them a fault to latch.
-    ///
-    /// # Errors
-    /// [`Faults::OVERFLOW`] where there are none.
-    #[inline(always)]
-    fn gains(
-        &self,
-        previous: Option<Previous<R>>,
-        error_rad: R,
-        change_rad: R,
-        dt_s: R,
+        equations: &TunerEquations<R>,
+        memory: &Memory<R>,
+        sample: &Sample<R>,
     ) -> Result<(Gains<R>, Faults), Faults> {
-        let previous = previous.map_or(self.nominal, |previous| previous.gains);
-        let (scaled, fault) = match self.increments(error_rad, change_rad) {
-            Err(Faults::OUT_OF_RANGE) => return Ok((previous, Faults::OUT_OF_RANGE)),
+        let error_rad = sample.setpoint_rad - sample.measurement_rad;
+        let second_rad = equations.second_rad(memory, sample);
+        let before = Gains { kp: memory.kp, ki: memory.ki, kd: memory.kd };
+        let (scaled, fault) = match self.increments(equations, error_rad, second_rad) {
+            Err(Faults::OUT_OF_RANGE) => return Ok((before, Faults::OUT_OF_RANGE)),
             answer => answer?,
         };
-        let free = match self.settings.law {
-            Law::Memoryless => self.nominal.zip(scaled, |nominal, delta| nominal + delta),
-            Law::Accumulating { leakage_per_s } => {
-                let pull = previous.zip(self.nominal, |g, nominal| leakage_per_s * (g - nominal));
-                let slope = scaled.zip(pull, |delta, pull| delta - pull);
-                previous.zip(slope, |gain, slope| gain + slope * dt_s)
-            }
+        let [kp, ki, kd] = &equations.gains;
+        let free = Gains {
+            kp: equations.free_gain(kp, before.kp, scaled.kp),
+            ki: equations.free_gain(ki, before.ki, scaled.ki),
+            kd: equations.free_gain(kd, before.kd, scaled.kd),
         };
         if !free.are_finite() {
             return Err(Faults::OVERFLOW);
         }
-        Ok((self.limited(free), fault))
+        let limited =
+            Gains { kp: kp.limited(free.kp), ki: ki.limited(free.ki), kd: kd.limited(free.kd) };
+        Ok((limited, fault))
     }
 
     /// The gains at rest, e = 0 and no change: nominal plus what the rules add at the origin.
@@ -373,34 +340,15 @@ impl<R: Real> SelfTuner<R> {
     /// leaks; with a leakage they settle at $k' + s \Delta k / \lambda$.
     pub fn gains_at_rest(&self) -> Gains<R> {
         // The origin is within every range, so there always is an answer.
-        let (added, _) = self.increments(R::ZERO, R::ZERO).unwrap_or((Gains::ZERO, Faults::NONE));
-        self.limited(self.nominal.zip(added, |nominal, delta| nominal + delta))
+        let equations = TunerEquations::new(&self.settings, self.nominal, R::ONE);
+        let added = self.increments(&equations, R::ZERO, R::ZERO);
+        let (added, _) = added.unwrap_or((Gains::ZERO, Faults::NONE));
+        let gains = self.nominal.zip(added, |nominal, delta| nominal + delta);
+        self.settings.gain_limits.map_or(gains, |limits| limits.apply(gains))
     }
 
     /// True if the supervisor sees the measured pitch rate.
     pub fn sees_rate(&self) -> bool {
         self.settings.second_input == SecondInput::Rate
-    }
-
-    /// A configuration with what follows the gains.
-    #[inline(always)]
-    pub(crate) fn config_at(&self, config: &PidConfig<R>, gains: Gains<R>) -> PidConfig<R> {
-        let gain_coupling = self.settings.gain_coupling;
-        if gain_coupling == GainCoupling::NONE {
-            return *config;
-        }
-        let (weights, nominal) = (config.setpoint_weights, self.nominal);
-        let proportional =
-            weights.proportional + gain_coupling.setpoint_weight * (gains.kp - nominal.kp);
-        PidConfig {
-            setpoint_weights: SetpointWeights { proportional, ..weights },
-            rate_gain_s: config.rate_gain_s + gain_coupling.rate_gain * (gains.kd - nominal.kd),
-            ..*config
-        }
-    }
-
-    fn limited(&self, gains: Gains<R>) -> Gains<R> {
-        let limits = self.settings.gain_limits;
-        limits.map_or(gains, |limits| limits.apply(gains))
     }
 }

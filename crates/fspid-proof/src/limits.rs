@@ -11,6 +11,7 @@ use core::fmt;
 use fspid_core::{AntiWindup, Gains, Limits};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Base;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
@@ -114,7 +115,7 @@ pub(crate) fn within_at_rest(
 ///
 /// Of each limit so much is left for motions as rest itself does not take, with the resolution of the sensors
 /// that may show in the command at once.
-pub(crate) fn rows<T: Scalar + Magnitude>(
+pub(crate) fn rows<T: Base + Magnitude>(
     description: &LoopDescription,
     model: &LoopModel<T>,
     gains: Gains<T>,
@@ -206,7 +207,7 @@ impl LoopDescription {
     }
 
     /// How far it may take the command off at once, rad.
-    fn blur_of_command<T: Scalar + Magnitude>(&self, model: &LoopModel<T>, gains: Gains<T>) -> f64 {
+    fn blur_of_command<T: Base + Magnitude>(&self, model: &LoopModel<T>, gains: Gains<T>) -> f64 {
         let sizes = model.command_by_seen(gains).map(|entry| Interval::point(entry.largest()));
         let [by_pitch, by_rate] = sizes;
         let [pitch, rate] = self.blurs().map(Interval::point);

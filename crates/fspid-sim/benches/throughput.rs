@@ -15,7 +15,10 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fspid_core::fuzzy::{Defuzzifier, Label, NumberTable, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings};
+use fspid_core::{
+    AntiWindup, Derivative, Fspid, Gains, InputScale, Limits, Pid, PidConfig, SelfTuner,
+    TunerSettings,
+};
 use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
@@ -145,6 +148,15 @@ fn scenario(seed: u64) -> Scenario {
         Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
     };
     let pid = Pid::new(gains, config).expect("allowed");
+    let limited = PidConfig {
+        rate_gain_s: 0.2,
+        derivative: Derivative { filter_s: 0.05 },
+        anti_windup: AntiWindup::BackCalculation { tracking_s: 0.5 },
+        limits: Some(Limits::new("command", -0.4, 0.4).expect("in order")),
+        slew_rad_s: Some(20.0),
+        ..config
+    };
+    let limited = Pid::new(gains, limited).expect("allowed");
     let named = |name: &str, controller| NamedController { name: name.to_owned(), controller };
     Scenario {
         name: "throughput".to_owned(),
@@ -158,6 +170,7 @@ fn scenario(seed: u64) -> Scenario {
             named("FSPID", tuned(supervisor())),
             named("FSPID by numbers", tuned(numbers())),
             named("PID", Controller::Fixed(pid)),
+            named("PID with limits", Controller::Fixed(limited)),
         ],
         surroundings: Surroundings::default(),
     }

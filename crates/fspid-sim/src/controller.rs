@@ -1,5 +1,6 @@
 //! The controllers a loop can be flown with.
 
+use fspid_core::equations::PidEquations;
 use fspid_core::{Fspid, Gains, Pid, PidConfig, Sample, State, Step};
 
 /// A controller of the loop; it sees radians and answers radians.
@@ -49,6 +50,15 @@ impl Controller {
         match self {
             Self::Fixed(pid) => *pid.config(),
             Self::SelfTuning(fspid) => fspid.config_at(gains),
+        }
+    }
+
+    /// Everything behind the gains in numbers, with which it flies.
+    #[must_use]
+    pub fn equations(&self) -> &PidEquations<f64> {
+        match self {
+            Self::Fixed(pid) => pid.equations(),
+            Self::SelfTuning(fspid) => fspid.equations(),
         }
     }
 

@@ -30,6 +30,8 @@ pub mod load;
 mod longitudinal;
 pub mod loop_model;
 mod math;
+#[cfg(test)]
+mod options;
 mod plant;
 mod propagation;
 mod propagator;

@@ -7,7 +7,7 @@ use core::fmt;
 
 use fspid_core::{Change, Fspid, Gains, Law};
 use fspid_lti::Matrix;
-use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Base;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
@@ -412,7 +412,7 @@ fn points(gains: Gains<f64>) -> Gains<Interval> {
 }
 
 /// Rows from the state to what the supervisor sees of error and change, but for the sign that both share.
-pub(crate) fn input_rows<T: Scalar>(model: &LoopModel<T>, fspid: &Fspid<f64>) -> [Vec<T>; 2] {
+pub(crate) fn input_rows<T: Base>(model: &LoopModel<T>, fspid: &Fspid<f64>) -> [Vec<T>; 2] {
     let settings = fspid.tuner().settings();
     let time_s = match settings.change {
         Change::Rate => T::constant(model.settings().config.dt_s),

@@ -28,6 +28,8 @@ mod pid_lanes;
 mod plant;
 mod refusal;
 mod row;
+#[cfg(test)]
+mod tests;
 
 pub use fspid_numeric::InstructionSet;
 pub use refusal::Refusal;

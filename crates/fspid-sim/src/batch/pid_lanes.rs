@@ -1,10 +1,11 @@
 //! The controllers of all lanes.
 
-use fspid_core::{AntiWindup, Faults, GainCoupling, Gains, IntegralForm, PidConfig, Sample, Step};
+use fspid_core::equations::{AntiWindupKind, Memory, PidEquations, PidNumbers, PidStructure};
+use fspid_core::{Faults, GainCoupling, Gains, IntegralForm, PidConfig, Sample, Step};
 use fspid_numeric::InstructionSet;
 
 use super::gains::SelfTuners;
-use super::lane::{Lanes, Mask, NO, YES, all, limited, mask, numbers};
+use super::lane::{Lanes, Mask, NO, YES, all, mask};
 use super::memory::Memories;
 use super::refusal::Refusal;
 use crate::controller::Controller;
@@ -14,103 +15,61 @@ use crate::controller::Controller;
 /// answered by a single controller.
 pub(super) const FAR: f64 = 1e200;
 
-numbers! {
-    /// One flight's numbers of a controller.
-    PidLane,
-    /// Those of all lanes.
-    PidLanes:
-    dt_s,
-    rate_gain_s,
+/// Which samples are answered side by side, and what of them.
+#[derive(Clone, Debug)]
+struct Admission<const W: usize> {
     /// 1 where the pitch rate is used, else 0.
-    uses_rate,
-    /// Set-point weights.
-    proportional,
-    derivative,
-    /// What follows the gains, by how much per unit.
-    weight_per_kp,
-    rate_gain_per_kd,
-    filter_s,
-    /// Filter and sample period together.
-    filter_and_dt_s,
-    lower_rad,
-    upper_rad,
-    /// Largest change of the command in a sample.
-    slew_rad,
-    guard_rad,
+    uses_rate: Lanes<W>,
+    guard_rad: Lanes<W>,
     /// Largest error whose rate is not far.
-    steep_rad,
-    /// Limits of the integral term.
-    term_lower_rad,
-    term_upper_rad,
-    tracking_s,
-    fixed_kp,
-    fixed_ki,
-    fixed_kd,
+    steep_rad: Lanes<W>,
 }
 
-impl PidLane {
-    /// One that answers zeros by zeros.
-    const PARKED: Self = Self {
-        dt_s: 1.0,
-        rate_gain_s: 0.0,
-        uses_rate: 0.0,
-        proportional: 1.0,
-        derivative: 1.0,
-        weight_per_kp: 0.0,
-        rate_gain_per_kd: 0.0,
-        filter_s: 0.0,
-        filter_and_dt_s: 1.0,
-        lower_rad: f64::NEG_INFINITY,
-        upper_rad: f64::INFINITY,
-        slew_rad: f64::INFINITY,
-        guard_rad: FAR,
-        steep_rad: FAR,
-        term_lower_rad: f64::NEG_INFINITY,
-        term_upper_rad: f64::INFINITY,
-        tracking_s: 1.0,
-        fixed_kp: 0.0,
-        fixed_ki: 0.0,
-        fixed_kd: 0.0,
-    };
+impl<const W: usize> Admission<W> {
+    const PARKED: Self = Self { uses_rate: [0.0; W], guard_rad: [FAR; W], steep_rad: [FAR; W] };
 
-    fn new(controller: &Controller) -> Self {
-        let (config, gains) = (controller.config(), controller.nominal());
-        let filter_s = config.derivative.filter_s;
-        let mut one = Self {
-            dt_s: config.dt_s,
-            rate_gain_s: config.rate_gain_s,
-            uses_rate: if controller.uses_rate() { 1.0 } else { 0.0 },
-            proportional: config.setpoint_weights.proportional,
-            derivative: config.setpoint_weights.derivative,
-            filter_s,
-            filter_and_dt_s: filter_s + config.dt_s,
-            guard_rad: config.guard.limit_rad(),
-            steep_rad: FAR * config.dt_s.min(1.0),
-            fixed_kp: gains.kp,
-            fixed_ki: gains.ki,
-            fixed_kd: gains.kd,
-            ..Self::PARKED
-        };
-        if let Controller::SelfTuning(fspid) = controller {
-            let gain_coupling = fspid.tuner().settings().gain_coupling;
-            one.weight_per_kp = gain_coupling.setpoint_weight;
-            one.rate_gain_per_kd = gain_coupling.rate_gain;
-        }
-        if let Some(limits) = config.limits {
-            (one.lower_rad, one.upper_rad) = (limits.lower(), limits.upper());
-        }
-        if let Some(slew_rad_s) = config.slew_rad_s {
-            one.slew_rad = slew_rad_s * config.dt_s;
-        }
-        match config.anti_windup {
-            AntiWindup::Clamping(limits) => {
-                (one.term_lower_rad, one.term_upper_rad) = (limits.lower(), limits.upper());
-            }
-            AntiWindup::BackCalculation { tracking_s } => one.tracking_s = tracking_s,
-            AntiWindup::None | AntiWindup::Conditional => {}
-        }
-        one
+    fn load(&mut self, lane: usize, controller: &Controller) {
+        let config = controller.config();
+        self.uses_rate[lane] = if controller.uses_rate() { 1.0 } else { 0.0 };
+        self.guard_rad[lane] = config.guard.limit_rad();
+        self.steep_rad[lane] = FAR * config.dt_s.min(1.0);
     }
+
+    fn park(&mut self, lane: usize) {
+        self.uses_rate[lane] = 0.0;
+        (self.guard_rad[lane], self.steep_rad[lane]) = (FAR, FAR);
+    }
+
+    /// The rates as they are used: zero where they are not.
+    #[inline(always)]
+    fn used_rate_rad_s(&self, rate_rad_s: &Lanes<W>) -> Lanes<W> {
+        let mut used_rad_s = *rate_rad_s;
+        for lane in 0..W {
+            used_rad_s[lane] = if self.uses_rate[lane] == 0.0 { 0.0 } else { rate_rad_s[lane] };
+        }
+        used_rad_s
+    }
+
+    /// Which samples are believed and so small that nothing comes near overflow.
+    #[inline(always)]
+    fn believed(&self, samples: Samples<'_, W>) -> Mask<W> {
+        let mut believed = [NO; W];
+        for lane in 0..W {
+            let Sample { setpoint_rad, measurement_rad, rate_rad_s } = samples.of(lane);
+            let error_rad = setpoint_rad - measurement_rad;
+            let small = (setpoint_rad.abs() <= self.guard_rad[lane])
+                & (measurement_rad.abs() <= self.guard_rad[lane])
+                & (rate_rad_s.abs() <= self.guard_rad[lane])
+                & (error_rad.abs() <= self.steep_rad[lane]);
+            believed[lane] = mask(small);
+        }
+        believed
+    }
+}
+
+/// The equations of a lane that answers zeros by zeros.
+fn parked() -> PidEquations<f64> {
+    PidEquations::new(&PidConfig::sampled_every(1.0), Gains::ZERO, GainCoupling::NONE)
 }
 
 /// What all lanes see at a sample.
@@ -122,7 +81,8 @@ pub(super) struct Samples<'a, const W: usize> {
 }
 
 impl<const W: usize> Samples<'_, W> {
-    fn of(&self, lane: usize) -> Sample<f64> {
+    #[inline(always)]
+    pub(super) fn of(&self, lane: usize) -> Sample<f64> {
         Sample {
             setpoint_rad: self.setpoint_rad[lane],
             measurement_rad: self.measurement_rad[lane],
@@ -144,13 +104,12 @@ pub(super) struct Steps<const W: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Controllers<'a, const W: usize> {
     singles: Vec<&'a Controller>,
-    numbers: PidLanes<W>,
-    form: IntegralForm,
-    /// Whose numbers mean nothing.
-    anti_windup: AntiWindup<f64>,
+    admission: Admission<W>,
+    structure: PidStructure,
+    numbers: PidNumbers<Lanes<W>>,
+    /// Gains of controllers that have no tuner.
+    fixed: [Lanes<W>; 3],
     tuners: Option<SelfTuners<W>>,
-    /// Whether something follows the gains in some lane.
-    follows: bool,
     memories: Memories<W>,
     next: Memories<W>,
     pub(super) steps: Steps<W>,
@@ -161,18 +120,19 @@ impl<'a, const W: usize> Controllers<'a, W> {
         singles: Vec<&'a Controller>,
         instructions: InstructionSet,
     ) -> Result<Self, Refusal> {
-        let first = singles.first().map(|controller| *controller.config());
-        let first = first.unwrap_or_else(|| PidConfig::sampled_every(1.0));
-        let tuners = singles.first().and_then(|controller| match controller {
+        let parked = parked();
+        let first = singles.first();
+        let tuners = first.and_then(|controller| match controller {
             Controller::Fixed(_) => None,
-            Controller::SelfTuning(fspid) => Some(SelfTuners::new(fspid.tuner(), instructions)),
+            Controller::SelfTuning(fspid) => Some(SelfTuners::new(fspid, instructions)),
         });
+        let structure = first.map_or(parked.structure, |first| first.equations().structure);
         let mut all = Self {
-            numbers: PidLanes::same(PidLane::PARKED),
-            form: first.integral,
-            anti_windup: first.anti_windup,
+            admission: Admission::PARKED,
+            structure,
+            numbers: parked.numbers.map(|&number| [number; W]),
+            fixed: [[0.0; W]; 3],
             tuners,
-            follows: false,
             memories: Memories::at_rest(),
             next: Memories::at_rest(),
             steps: Steps {
@@ -192,182 +152,162 @@ impl<'a, const W: usize> Controllers<'a, W> {
     fn load(&mut self, lane: usize) -> Result<(), Refusal> {
         let differs = |what| Refusal::Differs { flight: lane, what };
         let controller = self.singles[lane];
-        let config = controller.config();
-        if config.integral != self.form {
+        let PidEquations { structure, numbers } = *controller.equations();
+        let PidStructure { integral, anti_windup, coupled, limited } = structure;
+        if integral != self.structure.integral {
             return Err(differs("the form of its integral"));
         }
-        if std::mem::discriminant(&config.anti_windup) != std::mem::discriminant(&self.anti_windup)
-        {
+        if anti_windup != self.structure.anti_windup {
             return Err(differs("its anti-windup"));
         }
+        // Where nothing is coupled the factors are 0, where nothing limits the limits are infinite.
+        self.structure.coupled |= coupled;
+        self.structure.limited |= limited;
         match (controller, &mut self.tuners) {
             (Controller::Fixed(_), None) => {}
             (Controller::SelfTuning(fspid), Some(tuners)) => {
-                if let Some(what) = tuners.difference(fspid.tuner()) {
+                if let Some(what) = tuners.difference(fspid) {
                     return Err(differs(what));
                 }
-                tuners.load(lane, fspid.tuner(), config.dt_s);
-                self.follows |= fspid.tuner().settings().gain_coupling != GainCoupling::NONE;
+                tuners.load(lane, fspid);
             }
             _ => return Err(differs("its kind of controller")),
         }
-        self.numbers.set(lane, PidLane::new(controller));
+        self.admission.load(lane, controller);
+        self.numbers.put(numbers, |column, number| column[lane] = number);
+        let Gains { kp, ki, kd } = controller.nominal();
+        self.fix(lane, [kp, ki, kd]);
         self.memories.has_previous[lane] = NO;
         Ok(())
     }
 
+    fn fix(&mut self, lane: usize, gains: [f64; 3]) {
+        for (column, gain) in self.fixed.iter_mut().zip(gains) {
+            column[lane] = gain;
+        }
+    }
+
     /// Makes a lane one that answers zeros by zeros.
     pub(super) fn park(&mut self, lane: usize) {
-        self.numbers.set(lane, PidLane::PARKED);
+        self.admission.park(lane);
+        self.numbers.put(parked().numbers, |column, number| column[lane] = number);
+        self.fix(lane, [0.0; 3]);
         if let Some(tuners) = &mut self.tuners {
             tuners.park(lane);
         }
-        let mut rest = Memories::<1>::at_rest().state(0);
-        rest.faults = Faults::NONE;
-        self.memories.set(lane, &rest);
+        self.memories.park(lane);
     }
 
     /// One sample, as [`Controller::step`] in each lane.
     #[inline(always)]
     pub(super) fn step(&mut self, samples: Samples<'_, W>) {
-        let (mut plain, error_rad) = self.admitted(samples);
+        let used_rad_s = self.admission.used_rate_rad_s(samples.rate_rad_s);
+        let samples = Samples { rate_rad_s: &used_rad_s, ..samples };
+        let mut plain = self.admitted(samples);
         let gains = match &self.tuners {
-            None => [self.numbers.fixed_kp, self.numbers.fixed_ki, self.numbers.fixed_kd],
-            Some(tuners) => tuners.gains(&self.memories, samples, &error_rad, &mut plain),
+            None => self.fixed,
+            Some(tuners) => {
+                tuners.advance(&self.memories, samples, &mut self.next, &mut plain);
+                tuners.gains(&self.memories, samples, &mut plain)
+            }
         };
-        self.regulate(samples, &error_rad, gains, &mut plain);
-        if let Some(tuners) = &self.tuners {
-            tuners.advance(&self.memories, samples, &mut self.next, &mut plain);
-        }
-        self.steps.command_rad = self.next.command_rad;
-        self.steps.gains = self.next.gains;
+        self.regulate(samples, &gains, &mut plain);
+        self.steps.command_rad = self.next.numbers.command_rad;
+        self.steps.gains = gains;
+        self.steps.faults = self.memories.faults;
+        self.next.has_previous = self.memories.has_previous;
+        self.next.faults = self.memories.faults;
         if !all(&plain) {
             self.step_one_by_one(samples, &plain);
         }
         std::mem::swap(&mut self.memories, &mut self.next);
     }
 
-    /// The errors, and which lanes can be answered side by side.
+    /// Which lanes can be answered side by side.
     #[inline(always)]
-    fn admitted(&self, samples: Samples<'_, W>) -> (Mask<W>, Lanes<W>) {
-        let n = &self.numbers;
-        let (mut plain, mut error_rad) = (self.memories.has_previous, [0.0; W]);
+    fn admitted(&self, samples: Samples<'_, W>) -> Mask<W> {
+        let mut plain = self.admission.believed(samples);
         for lane in 0..W {
-            let setpoint_rad = samples.setpoint_rad[lane];
-            let measurement_rad = samples.measurement_rad[lane];
-            let rate_rad_s = used_rate(n.uses_rate[lane], samples.rate_rad_s[lane]);
-            error_rad[lane] = setpoint_rad - measurement_rad;
-            let believed = (setpoint_rad.abs() <= n.guard_rad[lane])
-                & (measurement_rad.abs() <= n.guard_rad[lane])
-                & (rate_rad_s.abs() <= n.guard_rad[lane])
-                & (error_rad[lane].abs() <= n.steep_rad[lane]);
-            plain[lane] &= mask(believed);
+            plain[lane] &= self.memories.has_previous[lane];
         }
-        (plain, error_rad)
+        plain
     }
 
-    /// As `PidConfig::step`, into the next memories; strikes lanes out of `plain` that come near overflow.
+    /// The equations of all lanes, in a loop of its own for each structure, without cases in it. (No
+    /// closures: one that is called from many places is not inlined, and then has no vectors.)
     #[inline(always)]
-    fn regulate(
+    fn regulate(&mut self, samples: Samples<'_, W>, gains: &[Lanes<W>; 3], plain: &mut Mask<W>) {
+        use AntiWindupKind::{BackCalculation, Clamping, Conditional, None};
+        match self.structure.anti_windup {
+            None => self.regulate_with(None, samples, gains, plain),
+            Clamping => self.regulate_with(Clamping, samples, gains, plain),
+            Conditional => self.regulate_with(Conditional, samples, gains, plain),
+            BackCalculation => self.regulate_with(BackCalculation, samples, gains, plain),
+        }
+    }
+
+    #[inline(always)]
+    fn regulate_with(
         &mut self,
+        anti_windup: AntiWindupKind,
         samples: Samples<'_, W>,
-        error_rad: &Lanes<W>,
-        gains: [Lanes<W>; 3],
+        gains: &[Lanes<W>; 3],
         plain: &mut Mask<W>,
     ) {
-        let (n, before, next) = (&self.numbers, &self.memories, &mut self.next);
-        let [kp, ki, kd] = &gains;
-        let (mut weight, mut rate_gain_s) = (n.proportional, n.rate_gain_s);
-        if self.follows {
-            for lane in 0..W {
-                weight[lane] += n.weight_per_kp[lane] * (kp[lane] - n.fixed_kp[lane]);
-                rate_gain_s[lane] += n.rate_gain_per_kd[lane] * (kd[lane] - n.fixed_kd[lane]);
-            }
+        let (bumpless, literal) = (IntegralForm::Bumpless, IntegralForm::Literal);
+        let structure = PidStructure { anti_windup, ..self.structure };
+        let of = |integral| PidStructure { integral, ..structure };
+        match structure.integral {
+            IntegralForm::Bumpless => self.regulate_as(of(bumpless), samples, gains, plain),
+            IntegralForm::Literal => self.regulate_as(of(literal), samples, gains, plain),
         }
-        let wound = wound(self.form, before, ki, error_rad, &n.dt_s);
-        let mut term_rad = unclamped(self.form, ki, &wound, &n.dt_s);
-        if matches!(self.anti_windup, AntiWindup::Clamping(_)) {
-            for lane in 0..W {
-                term_rad[lane] =
-                    limited(term_rad[lane], n.term_lower_rad[lane], n.term_upper_rad[lane]);
-            }
-        }
-        let mut excess_rad = [0.0; W];
-        for lane in 0..W {
-            let setpoint_rad = samples.setpoint_rad[lane];
-            let measurement_rad = samples.measurement_rad[lane];
-            let rate_rad_s = used_rate(n.uses_rate[lane], samples.rate_rad_s[lane]);
-            let proportional_rad = kp[lane] * (weight[lane] * setpoint_rad - measurement_rad);
-            let input_rad = n.derivative[lane] * setpoint_rad - measurement_rad;
-            let difference_rad = input_rad - before.derivative_input_rad[lane];
-            let derivative_rad_s = (n.filter_s[lane] * before.derivative_rad_s[lane]
-                + difference_rad)
-                / n.filter_and_dt_s[lane];
-            let free_rad = proportional_rad + term_rad[lane] + kd[lane] * derivative_rad_s
-                - rate_gain_s[lane] * rate_rad_s;
-            let (last_rad, slew_rad) = (before.command_rad[lane], n.slew_rad[lane]);
-            let slewed_rad = limited(free_rad, last_rad - slew_rad, last_rad + slew_rad);
-            let command_rad = limited(slewed_rad, n.lower_rad[lane], n.upper_rad[lane]);
-            excess_rad[lane] = free_rad - command_rad;
-            let clear = (input_rad.abs() <= n.steep_rad[lane])
-                & (free_rad.abs() <= FAR)
-                & (wound[lane].abs() <= FAR);
-            plain[lane] &= mask(clear);
-            next.command_rad[lane] = command_rad;
-            next.derivative_rad_s[lane] = derivative_rad_s;
-            next.derivative_input_rad[lane] = input_rad;
-            self.steps.saturated[lane] = mask(excess_rad[lane] != 0.0);
-        }
-        next.error_rad = *error_rad;
-        next.integral = wound;
-        self.unwind(ki, &excess_rad, plain);
-        self.next.gains = gains;
-        self.next.has_previous = self.memories.has_previous;
-        self.next.faults = self.memories.faults;
-        self.steps.faults = self.memories.faults;
     }
 
-    /// As `Integrator::unwound` on the wound integrals in the next memories.
+    /// From gains to commands, into the next memories; strikes lanes out of `plain` that come near
+    /// overflow.
     #[allow(clippy::float_cmp, reason = "any cut is a cut")]
     #[inline(always)]
-    fn unwind(&mut self, ki: &Lanes<W>, excess_rad: &Lanes<W>, plain: &mut Mask<W>) {
-        let n = &self.numbers;
-        let Memories { integral, error_rad, .. } = &mut self.next;
-        let literal = self.form == IntegralForm::Literal;
-        match self.anti_windup {
-            AntiWindup::None => return,
-            AntiWindup::Clamping(_) => {
-                let term_rad = unclamped(self.form, ki, integral, &n.dt_s);
-                for lane in 0..W {
-                    let (lower, upper) = (n.term_lower_rad[lane], n.term_upper_rad[lane]);
-                    let kept_rad = limited(term_rad[lane], lower, upper);
-                    let memory = memory_of(literal, kept_rad, ki[lane], n.dt_s[lane]);
-                    let cut = mask(kept_rad != term_rad[lane]) & mask(memory.is_finite());
-                    integral[lane] = if cut == YES { memory } else { integral[lane] };
-                }
-            }
-            AntiWindup::Conditional => {
-                for lane in 0..W {
-                    let (excess_rad, drive) = (excess_rad[lane], ki[lane] * error_rad[lane]);
-                    let further_out = (mask(excess_rad > 0.0) & mask(drive > 0.0))
-                        | (mask(excess_rad < 0.0) & mask(drive < 0.0));
-                    let before = self.memories.integral[lane];
-                    integral[lane] = if further_out == YES { before } else { integral[lane] };
-                }
-            }
-            AntiWindup::BackCalculation { .. } => {
-                for lane in 0..W {
-                    let shift_rad = excess_rad[lane] * n.dt_s[lane] / n.tracking_s[lane];
-                    let shift = memory_of(literal, shift_rad, ki[lane], n.dt_s[lane]);
-                    let moves = mask(ki[lane] != 0.0) & mask(shift.is_finite());
-                    let moved = integral[lane] - shift;
-                    integral[lane] = if moves == YES { moved } else { integral[lane] };
-                }
-            }
-        }
+    fn regulate_as(
+        &mut self,
+        structure: PidStructure,
+        samples: Samples<'_, W>,
+        [kp, ki, kd]: &[Lanes<W>; 3],
+        plain: &mut Mask<W>,
+    ) {
+        // In full, so that nothing is forgotten that a controller remembers.
+        let Memory {
+            command_rad,
+            integral,
+            derivative_rad_s,
+            error_rad,
+            derivative_input_rad,
+            kp: next_kp,
+            ki: next_ki,
+            kd: next_kd,
+            // The tuners have been here.
+            model_rad: _,
+            model_rad_s: _,
+        } = &mut self.next.numbers;
         for lane in 0..W {
-            plain[lane] &= mask(integral[lane].abs() <= FAR);
+            let numbers = self.numbers.map(|column| column[lane]);
+            let (equations, memory) = (PidEquations { structure, numbers }, self.memories.at(lane));
+            let sample = samples.of(lane);
+            let gains = Gains { kp: kp[lane], ki: ki[lane], kd: kd[lane] };
+            let free = equations.free(&memory, &sample, &gains);
+            let regulated = equations.regulated(&memory, &free, gains.ki);
+            let clear = (free.derivative_input_rad.abs() <= self.admission.steep_rad[lane])
+                & (free.command_rad.abs() <= FAR)
+                & (free.wound.abs() <= FAR)
+                & (regulated.integral.abs() <= FAR);
+            plain[lane] &= mask(clear);
+            self.steps.saturated[lane] = mask(regulated.excess_rad != 0.0);
+            command_rad[lane] = regulated.command_rad;
+            integral[lane] = regulated.integral;
+            derivative_rad_s[lane] = free.derivative_rad_s;
+            derivative_input_rad[lane] = free.derivative_input_rad;
+            error_rad[lane] = free.error_rad;
         }
+        (*next_kp, *next_ki, *next_kd) = (*kp, *ki, *kd);
     }
 
     /// The sample anew in lanes that are not plain, as a single flight's.
@@ -390,58 +330,4 @@ impl<'a, const W: usize> Controllers<'a, W> {
             self.steps.faults[lane] = faults;
         }
     }
-}
-
-/// Where the rate is not used it is zero.
-#[inline(always)]
-fn used_rate(uses_rate: f64, rate_rad_s: f64) -> f64 {
-    if uses_rate == 0.0 { 0.0 } else { rate_rad_s }
-}
-
-/// As `Integrator::wound`.
-#[inline(always)]
-fn wound<const W: usize>(
-    form: IntegralForm,
-    before: &Memories<W>,
-    ki: &Lanes<W>,
-    error_rad: &Lanes<W>,
-    dt_s: &Lanes<W>,
-) -> Lanes<W> {
-    let mut wound = before.integral;
-    match form {
-        IntegralForm::Bumpless => {
-            for lane in 0..W {
-                wound[lane] += ki[lane] * error_rad[lane] * dt_s[lane];
-            }
-        }
-        IntegralForm::Literal => {
-            for lane in 0..W {
-                wound[lane] += error_rad[lane];
-            }
-        }
-    }
-    wound
-}
-
-/// As `Integrator::unclamped_rad`.
-#[inline(always)]
-fn unclamped<const W: usize>(
-    form: IntegralForm,
-    ki: &Lanes<W>,
-    memory: &Lanes<W>,
-    dt_s: &Lanes<W>,
-) -> Lanes<W> {
-    let mut term_rad = *memory;
-    if form == IntegralForm::Literal {
-        for lane in 0..W {
-            term_rad[lane] = ki[lane] * memory[lane] * dt_s[lane];
-        }
-    }
-    term_rad
-}
-
-/// As `Integrator::memory_of`; not finite where there is none.
-#[inline(always)]
-fn memory_of(literal: bool, term_rad: f64, ki: f64, dt_s: f64) -> f64 {
-    if literal { term_rad / (ki * dt_s) } else { term_rad }
 }

@@ -1,6 +1,8 @@
 //! Plants and servos of all lanes.
 
-use super::lane::{Lanes, Mask, NO, YES, limited, mask};
+use super::lane::{Lanes, Mask, NO, YES, mask};
+use fspid_numeric::Real;
+
 use crate::error::SimError;
 use crate::propagator::{INPUTS, PlantState, Propagator};
 
@@ -140,7 +142,7 @@ impl<const W: usize> Plants<W> {
         let mut inside_rad = *command_rad;
         for lane in 0..W {
             let limit_rad = self.position_limit_rad[lane];
-            inside_rad[lane] = limited(inside_rad[lane], -limit_rad, limit_rad);
+            inside_rad[lane] = inside_rad[lane].limited(-limit_rad, limit_rad);
         }
         inside_rad
     }

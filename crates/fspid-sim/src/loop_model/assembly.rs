@@ -1,9 +1,11 @@
 //! From plant, queues and controller to one matrix.
 
-use fspid_core::{Gains, IntegralForm};
+use fspid_core::equations::{Memory, PidEquations};
+use fspid_core::{AntiWindup, GainCoupling, Gains, PidConfig, Sample};
 use fspid_numeric::Scalar;
+use fspid_numeric::scalar::{Base, Dual};
 
-use super::{BreakPoint, LoopModel, LoopSettings, Sensing};
+use super::{BreakPoint, LoopModel, Sensing};
 
 /// Where the parts of the state stand; a part that is not there has no place.
 #[derive(Clone, Debug)]
@@ -63,6 +65,7 @@ pub(super) struct Assembly<T> {
     own_command: Vec<T>,
     command_by_pitch: T,
     command_by_rate: T,
+    term_by_integral: T,
 }
 
 /// A loop that is broken: next state by state and by the signal that enters, and what comes back.
@@ -91,11 +94,13 @@ struct ControllerRows<T> {
     command: Vec<T>,
     command_by_pitch: T,
     command_by_rate: T,
+    /// The integral's term of the command by its memory.
+    term_by_integral: T,
     /// Place in the state, next value by state, by seen pitch.
     memory: Vec<(usize, Vec<T>, T)>,
 }
 
-impl<T: Scalar> LoopModel<T> {
+impl<T: Base> LoopModel<T> {
     pub(super) fn layout(&self) -> Layout {
         let settings = &self.settings;
         let plant = self.plant.states;
@@ -149,6 +154,7 @@ impl<T: Scalar> LoopModel<T> {
             own_command: controller.command,
             command_by_pitch: controller.command_by_pitch,
             command_by_rate: controller.command_by_rate,
+            term_by_integral: controller.term_by_integral,
         }
     }
 
@@ -190,56 +196,88 @@ impl<T: Scalar> LoopModel<T> {
         }
     }
 
-    /// The controller of `PidConfig::step` with the set-point at zero, $e = -y$:
-    ///
-    /// $$ u = -k_p y + I + k_d d - K_r q, \quad I = I_{k-1} - k_i T y, \quad
-    /// d = \frac{T_f d_{k-1} - y - c_{k-1}}{T_f + T}, \quad c = -y $$
-    ///
-    /// and, where there is a change gain g, $u + g (c - c_{k-1})$.
+    /// The controller's own equations with the set-point at zero and no limit at work, derived by what it
+    /// sees and remembers; and, where there is a change gain g, $u + g (c - c_{k-1})$.
     fn controller(&self, gains: Gains<T>, layout: &Layout) -> ControllerRows<T> {
-        let config = &self.settings.config;
-        let constant = T::constant;
-        let size = layout.size;
-        let mut command = vec![T::zero(); size];
-        let mut command_by_pitch = -gains.kp;
-        let mut memory = Vec::new();
-        if let Some(place) = layout.integral {
-            let by_error = gains.ki * constant(config.dt_s);
-            // What is remembered is I in rad (bumpless) or the sum of errors (literal).
-            let (by_memory, by_sum) = match config.integral {
-                IntegralForm::Bumpless => (T::one(), by_error),
-                IntegralForm::Literal => (by_error, T::one()),
-            };
-            command[place] = by_memory;
-            command_by_pitch = command_by_pitch - by_error;
-            memory.push((place, unit(place, size), -by_sum));
+        let places = [layout.integral, layout.derivative, layout.previous];
+        // A part of the memory that is left away is one that no gain lets out.
+        let ki = if layout.integral.is_some() { gains.ki } else { T::zero() };
+        let kd = if layout.previous.is_some() { gains.kd } else { T::zero() };
+        let slopes = Slopes::at_rest(&self.settings.config, Gains { ki, kd, ..gains });
+        let row = |slope: &Slope<T>| {
+            let mut row = vec![T::zero(); layout.size];
+            for (place, by) in places.into_iter().zip(&slope.derivative[REMEMBERED..]) {
+                if let Some(place) = place {
+                    row[place] = *by;
+                }
+            }
+            row
+        };
+        let Slopes { command, memory, term_by_integral } = slopes;
+        let mut rows = ControllerRows {
+            command: row(&command),
+            command_by_pitch: command.derivative[PITCH],
+            command_by_rate: command.derivative[RATE],
+            term_by_integral,
+            memory: Vec::new(),
+        };
+        for (place, next) in places.into_iter().zip(&memory) {
+            rows.memory.extend(place.map(|place| (place, row(next), next.derivative[PITCH])));
         }
         if let Some(previous) = layout.previous {
-            let filter_s = constant(config.derivative.filter_s);
-            let time_s = filter_s + constant(config.dt_s);
-            let by_difference = T::one() / time_s;
-            let mut derivative = vec![T::zero(); size];
-            derivative[previous] = -by_difference;
-            if let Some(place) = layout.derivative {
-                derivative[place] = filter_s / time_s;
-            }
-            for (own, by) in command.iter_mut().zip(&derivative) {
-                *own = *own + gains.kd * *by;
-            }
-            command_by_pitch = command_by_pitch - gains.kd * by_difference;
-            command[previous] = command[previous] - self.change_gain;
-            command_by_pitch = command_by_pitch - self.change_gain;
-            if let Some(place) = layout.derivative {
-                memory.push((place, derivative, -by_difference));
-            }
-            memory.push((previous, vec![T::zero(); size], -T::one()));
+            rows.command[previous] = rows.command[previous] - self.change_gain;
+            rows.command_by_pitch = rows.command_by_pitch - self.change_gain;
         }
-        let command_by_rate = -constant(config.rate_gain_s);
-        ControllerRows { command, command_by_pitch, command_by_rate, memory }
+        rows
     }
 }
 
-impl<T: Scalar> Assembly<T> {
+/// What the controller sees and remembers: pitch, rate, integral, derivative, last sample.
+const INPUTS: usize = 5;
+const PITCH: usize = 0;
+const RATE: usize = 1;
+/// The first that is remembered.
+const REMEMBERED: usize = 2;
+
+/// A number of the controller and how it moves with each of them.
+type Slope<T> = Dual<T, INPUTS>;
+
+/// The controller at rest.
+struct Slopes<T> {
+    command: Slope<T>,
+    /// Next integral, derivative and last sample.
+    memory: [Slope<T>; INPUTS - REMEMBERED],
+    /// The integral's term of the command by its memory.
+    term_by_integral: T,
+}
+
+impl<T: Base> Slopes<T> {
+    fn at_rest(config: &PidConfig<f64>, gains: Gains<T>) -> Self {
+        let no_limit = PidConfig { anti_windup: AntiWindup::None, ..*config };
+        let equations = PidEquations::new(&no_limit, Gains::ZERO, GainCoupling::NONE).lifted();
+        let [measurement_rad, rate_rad_s, integral, derivative_rad_s, last_rad] =
+            Slope::variables([T::zero(); INPUTS]);
+        let sample = Sample { setpoint_rad: Slope::zero(), measurement_rad, rate_rad_s };
+        let Gains { kp, ki, kd } = gains;
+        let gains = Gains { kp: Slope::fixed(kp), ki: Slope::fixed(ki), kd: Slope::fixed(kd) };
+        let memory = Memory {
+            integral,
+            derivative_rad_s,
+            error_rad: last_rad,
+            derivative_input_rad: last_rad,
+            ..equations.at_first(&sample, &gains)
+        };
+        let free = equations.free(&memory, &sample, &gains);
+        let term_rad = equations.unclamped_rad(integral, gains.ki);
+        Self {
+            command: free.command_rad,
+            memory: [free.wound, free.derivative_rad_s, free.derivative_input_rad],
+            term_by_integral: term_rad.derivative[REMEMBERED],
+        }
+    }
+}
+
+impl<T: Base> Assembly<T> {
     /// Command by state, through pitch and rate where these loops are closed.
     fn command_through(&self, pitch: bool, rate: bool) -> Vec<T> {
         let by_pitch = if pitch { self.command_by_pitch } else { T::zero() };
@@ -307,18 +345,13 @@ impl<T: Scalar> Assembly<T> {
         }
     }
 
-    pub(super) fn integral_term(&self, ki: T, settings: &LoopSettings) -> Vec<T> {
+    pub(super) fn integral_term(&self) -> Vec<T> {
         let Some(place) = self.layout.integral else {
             return vec![T::zero(); self.layout.size];
         };
-        // What is remembered next, by state, is the term itself (bumpless) or the sum of errors.
-        let factor = match settings.config.integral {
-            IntegralForm::Bumpless => T::one(),
-            IntegralForm::Literal => ki * T::constant(settings.config.dt_s),
-        };
         let by_pitch = self.memory_by_pitch[place];
         let next = self.free[place].iter().zip(&self.pitch);
-        next.map(|(own, pitch)| factor * (*own + by_pitch * *pitch)).collect()
+        next.map(|(own, pitch)| self.term_by_integral * (*own + by_pitch * *pitch)).collect()
     }
 
     pub(super) fn pitch_off(&self, pitch: T, scale: f64) -> Vec<T> {

@@ -8,13 +8,17 @@
 //!
 //! with the set-point at zero and no limit at work. The bumpless integral, the literal one, a filtered
 //! or plain derivative and whole-sample delays all leave M affine in the three gains, which is what
-//! proofs over corners of a set of gains rest on. An adapted filter or set-point weight would not;
-//! there is none.
+//! proofs over corners of a set of gains rest on. A set-point weight that moves with the gains leaves it
+//! so, the set-point being zero; a gain of the rate loop that moves with `kd` is taken as it is at the
+//! gains in question ([`Controller::config_at`](crate::Controller::config_at)).
 //!
-//! The equations are generic over the number, so that an enclosure in intervals and the analysis in
-//! floats are of the same loop.
+//! The controller's rows are derivatives of the equations that fly, [`fspid_core::equations`]. They are
+//! generic over the number, so that an enclosure in intervals and the analysis in floats are of the same
+//! loop.
 
 mod assembly;
+#[cfg(test)]
+mod from_the_core;
 mod memory;
 mod opening;
 mod parts;
@@ -25,7 +29,7 @@ mod tests;
 use fspid_core::{Gains, PidConfig};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
-use fspid_numeric::scalar::Interval;
+use fspid_numeric::scalar::{Base, Interval};
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;
@@ -108,7 +112,7 @@ pub struct LoopModel<T> {
     change_gain: T,
 }
 
-impl<T: Scalar> LoopModel<T> {
+impl<T: Base> LoopModel<T> {
     /// A loop of a sampled plant.
     #[must_use]
     pub fn new(plant: SampledPlant<T>, settings: LoopSettings) -> Self {
@@ -179,7 +183,7 @@ impl<T: Scalar> LoopModel<T> {
     /// The row from the state to the integral's term of the command, rad; zeros without an integral.
     #[must_use]
     pub fn integral_row(&self, gains: Gains<T>) -> Vec<T> {
-        self.assembly(gains).integral_term(gains.ki, &self.settings)
+        self.assembly(gains).integral_term()
     }
 
     /// The state in which the pitch angle is off by `pitch`, as long as the loop remembers, and

@@ -19,6 +19,8 @@
 mod controller;
 mod gains;
 mod growth;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 use std::ops::ControlFlow;

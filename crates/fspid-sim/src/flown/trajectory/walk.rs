@@ -6,7 +6,7 @@ use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Faults, Fspid, Gains, Law, Sample};
 
 use super::controller::{Done, Inputs, Places, Twin};
-use super::gains::{GainSlopes, Seen, TunerSlopes, system_of};
+use super::gains::{IncrementSlopes, TunerSlopes, system_of};
 use crate::closed_loop::{Coming, Instant, fly, watch};
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -79,7 +79,7 @@ pub(super) fn walk(
     };
     let slopes = match (controller, &system) {
         (Controller::SelfTuning(fspid), Some(system)) => {
-            Some(TunerSlopes::new(fspid.tuner(), system, fspid.config().dt_s))
+            Some(TunerSlopes::new(fspid.tuner(), system))
         }
         _ => None,
     };
@@ -156,19 +156,18 @@ impl<'a> Walk<'a> {
         let cut = coming.propagation.is_limited(coming.motion, coming.command_rad);
         let begun = prepared.stages.partition_point(|stage| stage.from <= instant.k);
         let parts = self.parts(begun, coming, cut)?;
-        let seen =
-            Seen { error_rad: done.error_rad, change_rad: done.change_rad, gains: done.gains };
-        let slopes = self.slopes.as_mut().map(|slopes| slopes.at(seen)).unwrap_or_default();
+        // A supervisor that is silent does not move.
+        let asked = self.slopes.as_mut().zip(done.seen);
+        let slopes = asked.map_or([[0.0; 2]; 3], |(slopes, seen)| slopes.at(seen));
         let frozen = self.places(&parts, false);
         let moving = self.places(&parts, self.carries_gains);
-        let config = self.controller.config();
         let small = SmallSignal {
             k: instant.k,
             time_s: prepared.timing.time_s(instant.k),
             gains: done.gains,
-            limited: cut || !done.is_free(config),
-            frozen: self.matrix(&parts, &frozen, (&done, GainSlopes::default())),
-            matrix: self.matrix(&parts, &moving, (&done, slopes)),
+            limited: cut || !done.is_free(),
+            frozen: self.matrix(&parts, &frozen, (&done, None)),
+            matrix: self.matrix(&parts, &moving, (&done, Some(slopes))),
             by_command: padded(&parts.by_command, moving.size),
         };
         self.parts = Some((begun, parts)).filter(|_| !cut && is_linear(coming.propagation));
@@ -221,11 +220,11 @@ impl<'a> Walk<'a> {
         &self,
         parts: &LoopParts,
         places: &Places,
-        (done, slopes): (&Done, GainSlopes),
+        (done, slopes): (&Done, Option<IncrementSlopes>),
     ) -> Vec<Vec<f64>> {
         let (pitch, rate) = (padded(&parts.pitch, places.size), padded(&parts.rate, places.size));
         let inputs = Inputs { pitch: &pitch, rate: &rate, slopes };
-        let controller = done.rows(self.controller.config(), places, &inputs);
+        let controller = done.rows(self.controller, places, &inputs);
         let mut rows: Vec<Vec<f64>> =
             parts.matrix.iter().map(|row| padded(row, places.size)).collect();
         for (row, by) in rows.iter_mut().zip(&parts.by_command) {
