@@ -19,6 +19,7 @@ pub mod design;
 mod error;
 mod flights;
 pub mod history;
+mod kept;
 mod problem;
 pub mod rule;
 mod score;
@@ -28,6 +29,7 @@ mod space;
 mod tuned;
 
 pub use error::TuneError;
+pub use kept::{Beginning, Kept, Then, Unfit};
 pub use problem::{Problem, controllers_with_marks};
 pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};

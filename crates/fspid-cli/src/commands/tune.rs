@@ -11,11 +11,14 @@ use super::{Format, drawings, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
-use fspid_scenario::file::{known_words, unread_in_words};
+use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
-use fspid_tune::{Effort, Problem, Search, Source, State, TuneError, Tuned, design, history};
+use fspid_tune::{
+    Beginning, Effort, Kept, Problem, Search, Source, Then, TuneError, Tuned, Unfit, design,
+    history,
+};
 
 /// How often the state of a search is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(2);
@@ -129,14 +132,14 @@ fn all(arguments: &Arguments, source: &Source) -> Result<Vec<Tuned>, Failure> {
 fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tuned, Failure> {
     let problem = Problem::new(source, name).map_err(failure)?;
     problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
-    let out = arguments.out.as_ref().map(|out| place(arguments, out, problem.controller()));
+    let out = arguments.out.as_ref().map(|out| design_file(arguments, out, problem.controller()));
     if let Some(out) = &out {
         design::check_place(source, out).map_err(failure)?;
     }
     let effort = effort(arguments, &problem);
-    let mut kept = Kept::of(arguments, out.as_deref(), problem.controller());
+    let mut place = kept(arguments, out.as_deref(), problem.controller());
     let tuned =
-        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &mut kept)));
+        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &mut place)));
     let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
     if let Some(out) = &out {
         let heading = tuned.heading(&effort.command(source, name));
@@ -144,12 +147,14 @@ fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tun
         output::write(out, text)?;
         wrote(out);
     }
-    kept.remove();
+    if let Err(path) = place.remove() {
+        note(format_args!("warning: {} could not be removed", path.display()));
+    }
     Ok(tuned)
 }
 
 /// Where the design of a controller is written.
-fn place(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
+fn design_file(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
     if !arguments.all || is_standard(out) {
         return out.to_owned();
     }
@@ -232,30 +237,37 @@ fn search(
     problem: &Problem,
     (effort, place): (&Effort, &mut Kept),
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
-    let mut search = place.begun(problem, effort)?;
+    let (mut search, beginning) = place.begun(problem, effort)?;
+    match beginning {
+        Beginning::Anew => {}
+        Beginning::Resumed(path) => note(format_args!(
+            "going on after {} candidates, from {}",
+            grouped(search.spent() as u64),
+            path.display()
+        )),
+        Beginning::Unkept(why) => {
+            note(format_args!("warning: {why}; it stays as it is, and this search keeps no state"))
+        }
+    }
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let begun_at = (Instant::now(), search.spent());
-    // The first generation is kept at once: what is found must not be lost, nor whether it can be kept.
-    let (mut told, mut kept) = (Instant::now(), None::<Instant>);
-    let stop = loop {
-        if let Some(stop) = search.advance() {
-            break stop;
-        }
+    let (mut told, mut saved) = (Instant::now(), None::<Instant>);
+    let stop = place.search(&mut search, &mut |search| {
         if telling != Telling::Nothing && told.elapsed() >= telling.period() {
             told = Instant::now();
-            tell(telling, &line(&search, begun_at));
+            tell(telling, &line(search, begun_at));
         }
         if interrupt::asked() {
-            return Err(match place.save(&search)? {
-                true => TuneError::Stopped,
-                false => TuneError::NotKept,
-            });
+            return Then::Stop;
         }
-        if kept.is_none_or(|kept| kept.elapsed() >= SAVED_EVERY) {
-            place.save(&search)?;
-            kept = Some(Instant::now());
+        // The first generation is kept at once: what is found must not be lost, nor whether it can be kept.
+        let is_due = saved.is_none_or(|saved| saved.elapsed() >= SAVED_EVERY);
+        if search.spent() == begun_at.1 || !is_due {
+            return Then::GoOn;
         }
-    };
+        saved = Some(Instant::now());
+        Then::Save
+    })?;
     if telling != Telling::Nothing {
         answer_after(telling, &line(&search, begun_at));
     }
@@ -266,95 +278,19 @@ fn search(
     Ok((tuned, search.best().point.clone()))
 }
 
-/// Where the state of a search is kept while it goes on, so that it can be interrupted.
-struct Kept {
-    /// None for a scenario that is no file and a design that is none, and where the state of another search is kept.
-    path: Option<PathBuf>,
-    /// Whether it stands for a design that was asked for: then a state that does not fit is told, and one that cannot
-    /// be written ends the search.
-    is_asked: bool,
-}
-
-impl Kept {
-    /// Beside the design; beside the scenario where none is written.
-    fn of(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Self {
-        let beside = |path: &Path, ending: &str| {
-            let mut name = path.as_os_str().to_owned();
-            name.push(ending);
-            PathBuf::from(name)
-        };
-        if let Some(out) = out.filter(|out| !is_standard(out)) {
-            return Self { path: Some(beside(out, ".state.json")), is_asked: true };
-        }
-        let scenario = Some(&*arguments.scenario).filter(|path| !is_standard(path));
-        let ending = format!(".{}.state.json", drawings::file_name(controller));
-        Self { path: scenario.map(|path| beside(path, &ending)), is_asked: false }
+/// Where the state is kept: beside the design; beside the scenario where none is written.
+fn kept(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Kept {
+    let beside = |path: &Path, ending: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    if let Some(out) = out.filter(|out| !is_standard(out)) {
+        return Kept::at(Some(beside(out, ".state.json")), Unfit::Refused);
     }
-
-    /// The search where it was, or from the start.
-    fn begun<'a>(
-        &mut self,
-        problem: &'a Problem,
-        effort: &Effort,
-    ) -> Result<Search<'a>, TuneError> {
-        let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
-            return Search::begin(problem, effort.clone());
-        };
-        match Self::resumed(path, problem, effort) {
-            // Of another search, or another scenario of that name. Hours of somebody's work may be in it.
-            Err(TuneError::State { path, reason }) if !self.is_asked => {
-                note(format_args!(
-                    "warning: {path}: {reason}; it stays as it is, and this search keeps no state"
-                ));
-                self.path = None;
-                Search::begin(problem, effort.clone())
-            }
-            found => found,
-        }
-    }
-
-    fn resumed<'a>(
-        path: &Path,
-        problem: &'a Problem,
-        effort: &Effort,
-    ) -> Result<Search<'a>, TuneError> {
-        let name = path.display().to_string();
-        let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
-        let text = std::fs::read_to_string(path).map_err(|error| wrong(unread_in_words(&error)))?;
-        let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        let search = Search::resume(problem, effort, state, &name)?;
-        note(format_args!(
-            "going on after {} candidates, from {name}",
-            grouped(search.spent() as u64)
-        ));
-        Ok(search)
-    }
-
-    /// Whether it could be kept.
-    fn save(&self, search: &Search<'_>) -> Result<bool, TuneError> {
-        let Some(path) = &self.path else {
-            return Ok(false);
-        };
-        match output::write(path, json_text(&state_json(&search.state()))) {
-            Ok(()) => Ok(true),
-            // Nobody asked for a file there: the folder may be one that nobody may write to.
-            Err(_) if !self.is_asked => Ok(false),
-            Err(error) => Err(error.into()),
-        }
-    }
-
-    /// The state of a search that is over is of no use any more.
-    fn remove(&self) {
-        if let Some(path) = self.path.as_deref().filter(|path| path.exists())
-            && std::fs::remove_file(path).is_err()
-        {
-            note(format_args!("warning: {} could not be removed", path.display()));
-        }
-    }
-}
-
-fn state_json(state: &State) -> serde_json::Value {
-    serde_json::to_value(state).unwrap_or_default()
+    let scenario = Some(&*arguments.scenario).filter(|path| !is_standard(path));
+    let ending = format!(".{}.state.json", drawings::file_name(controller));
+    Kept::at(scenario.map(|path| beside(path, &ending)), Unfit::Left)
 }
 
 fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {

@@ -43,13 +43,14 @@ use fspid_campaign::Folder;
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use fspid_study::output;
 
+pub use crate::kept::Then;
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
 pub use summary::{Mirror, Part, Spread, Summary};
-pub use tuning::{Found, Progress, Then};
+pub use tuning::{Found, Progress};
 pub use two_way::{TwoWay, holm};
 
 use crate::error::TuneError;

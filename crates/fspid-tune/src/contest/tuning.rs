@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::design;
 use crate::error::TuneError;
+use crate::kept::{Kept, Then, Unfit};
 use crate::problem::Problem;
-use crate::search::{Effort, Search, State, stop_in_words};
+use crate::search::{Effort, stop_in_words};
 use crate::source::Source;
 use crate::tuned::{Number, Tuned};
 
@@ -59,17 +60,6 @@ pub struct Progress {
     pub was_there: bool,
 }
 
-/// What is done after progress was told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Then {
-    /// The next generation.
-    GoOn,
-    /// The state of the search is saved first.
-    Save,
-    /// The state of the search is saved, and the contest ends there until it is begun again.
-    Stop,
-}
-
 /// A search that is asked for.
 pub(crate) struct Task<'a> {
     pub(crate) source: &'a Source,
@@ -98,19 +88,10 @@ impl Task<'_> {
                 _ => Ok(found),
             };
         }
-        let mut search = self.begun()?;
-        let stop = loop {
-            let then = tell(&self.progress(search.spent(), false));
-            if then != Then::GoOn {
-                output::write(&self.path("state.json"), json(&search.state()))?;
-            }
-            if then == Then::Stop {
-                return Err(TuneError::Stopped);
-            }
-            if let Some(stop) = search.advance() {
-                break stop;
-            }
-        };
+        let mut place = Kept::at(Some(self.path("state.json")), Unfit::Replaced);
+        let (mut search, _) = place.begun(self.problem, &self.effort)?;
+        let stop =
+            place.search(&mut search, &mut |search| tell(&self.progress(search.spent(), false)))?;
         let tuned = Tuned::of(self.problem, &search, stop);
         let found = self.found(&tuned);
         let heading =
@@ -120,7 +101,7 @@ impl Task<'_> {
         output::write(&self.path("toml"), text)?;
         output::write(&self.path("json"), json(&found))?;
         // A state that stays is not used again: what was found comes before it.
-        let _ = std::fs::remove_file(self.path("state.json"));
+        let _ = place.remove();
         Ok(found)
     }
 
@@ -137,20 +118,6 @@ impl Task<'_> {
             && point.iter().all(|x| (0.0..=1.0).contains(x))
             && self.path("toml").exists();
         fits.then_some(found)
-    }
-
-    /// The search where it was when its state was saved, if that is of the same search.
-    fn begun(&self) -> Result<Search<'_>, TuneError> {
-        let path = self.path("state.json");
-        let text = std::fs::read_to_string(&path).ok();
-        let state = text.and_then(|text| serde_json::from_str::<State>(&text).ok());
-        let name = path.display().to_string();
-        let resumed =
-            state.and_then(|it| Search::resume(self.problem, &self.effort, it, &name).ok());
-        match resumed {
-            Some(search) => Ok(search),
-            None => Search::begin(self.problem, self.effort.clone()),
-        }
     }
 
     fn progress(&self, spent: usize, was_there: bool) -> Progress {

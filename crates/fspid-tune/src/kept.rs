@@ -1,0 +1,150 @@
+//! A search whose state is kept in a file, so that it goes on where it was after an interruption.
+
+use std::path::{Path, PathBuf};
+
+use fspid_optimise::Stop;
+use fspid_scenario::file::unread_in_words;
+use fspid_study::output;
+
+use crate::error::TuneError;
+use crate::problem::Problem;
+use crate::search::{Effort, Search, State};
+
+/// What is done before the next generation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Then {
+    /// Nothing.
+    GoOn,
+    /// The state of the search is saved.
+    Save,
+    /// The state of the search is saved, and it ends there until it is begun again.
+    Stop,
+}
+
+/// What becomes of a state that is there and of another search, or cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unfit {
+    /// It is told, and nothing is searched: somebody asked for a file there.
+    Refused,
+    /// It stays as it is, and the search keeps no state: hours of somebody's work may be in it.
+    Left,
+    /// It is written over.
+    Replaced,
+}
+
+/// Where the state of a search is kept while it goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// None where nothing can be kept.
+    path: Option<PathBuf>,
+    unfit: Unfit,
+}
+
+/// How a search began.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Beginning {
+    /// At its start.
+    Anew,
+    /// Where it was: from which file.
+    Resumed(PathBuf),
+    /// At its start, without a place for its state: what is there is not its own, and why.
+    Unkept(String),
+}
+
+impl Kept {
+    /// Kept in this file, if there is one.
+    #[must_use]
+    pub fn at(path: Option<PathBuf>, unfit: Unfit) -> Self {
+        Self { path, unfit }
+    }
+
+    /// The search where it was, or from the start.
+    ///
+    /// # Errors
+    /// A start without a cost, and a state that is refused.
+    pub fn begun<'a>(
+        &mut self,
+        problem: &'a Problem,
+        effort: &Effort,
+    ) -> Result<(Search<'a>, Beginning), TuneError> {
+        let anew = || Search::begin(problem, effort.clone());
+        let Some(path) = self.path.clone().filter(|path| path.exists()) else {
+            return Ok((anew()?, Beginning::Anew));
+        };
+        match (resumed(&path, problem, effort), self.unfit) {
+            (Ok(search), _) => Ok((search, Beginning::Resumed(path))),
+            (Err(_), Unfit::Replaced) => Ok((anew()?, Beginning::Anew)),
+            (Err(TuneError::State { path, reason }), Unfit::Left) => {
+                self.path = None;
+                Ok((anew()?, Beginning::Unkept(format!("{path}: {reason}"))))
+            }
+            (Err(error), _) => Err(error),
+        }
+    }
+
+    /// Searches to the end; `then` is asked before each generation.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`] where `then` says so, [`TuneError::NotKept`] if the state could not be kept then, and a
+    /// state that somebody asked for and that cannot be written.
+    pub fn search(
+        &self,
+        search: &mut Search<'_>,
+        then: &mut dyn FnMut(&Search<'_>) -> Then,
+    ) -> Result<Stop, TuneError> {
+        loop {
+            match then(search) {
+                Then::GoOn => {}
+                Then::Save => {
+                    self.save(search)?;
+                }
+                Then::Stop => {
+                    return Err(match self.save(search)? {
+                        true => TuneError::Stopped,
+                        false => TuneError::NotKept,
+                    });
+                }
+            }
+            if let Some(stop) = search.advance() {
+                return Ok(stop);
+            }
+        }
+    }
+
+    /// Whether it could be kept.
+    fn save(&self, search: &Search<'_>) -> Result<bool, TuneError> {
+        let Some(path) = &self.path else {
+            return Ok(false);
+        };
+        let state = serde_json::to_value(search.state()).unwrap_or_default();
+        match output::write(path, format!("{state:#}\n")) {
+            Ok(()) => Ok(true),
+            // Nobody asked for a file there: the folder may be one that nobody may write to.
+            Err(_) if self.unfit == Unfit::Left => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Removes the state: that of a search that is over is of no use any more.
+    ///
+    /// # Errors
+    /// The file that could not be removed.
+    pub fn remove(&self) -> Result<(), &Path> {
+        let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
+            return Ok(());
+        };
+        std::fs::remove_file(path).map_err(|_| path)
+    }
+}
+
+fn resumed<'a>(
+    path: &Path,
+    problem: &'a Problem,
+    effort: &Effort,
+) -> Result<Search<'a>, TuneError> {
+    let name = path.display().to_string();
+    let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(unread_in_words(&error)))?;
+    let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    Search::resume(problem, effort, state, &name)
+}
