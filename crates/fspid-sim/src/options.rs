@@ -3,7 +3,7 @@
 //! Each struct of settings is written out field by field, never with `..`: an option that is added to the
 //! controller does not compile here until it is drawn, and then is drawn in all of these tests.
 
-use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
 use fspid_core::{
     AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
     Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
@@ -199,21 +199,15 @@ fn settings(
     )
 }
 
-fn table() -> RuleTable {
-    let file = include_str!("../../../data/rule-tables/printed.toml");
-    let parts: Vec<&str> = file.split("\"\"\"").collect();
-    RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table")
-}
-
 /// The paper's rules.
 pub(crate) fn labels(policy: OutOfRange) -> Supervisor<f64> {
-    Supervisor::new(&table(), 5.0, Defuzzifier::Exact, policy).expect("allowed")
+    Supervisor::new(&fspid_core::paper::rules(), 5.0, Defuzzifier::Exact, policy).expect("allowed")
 }
 
 fn supervisor(structure: TunerStructure) -> BoxedStrategy<Supervisor<f64>> {
     let policy = structure.out_of_range;
     if !structure.numbers {
-        let labels = Supervisor::new(&table(), 5.0, structure.defuzzifier, policy);
+        let labels = Supervisor::new(&fspid_core::paper::rules(), 5.0, structure.defuzzifier, policy);
         return Just(labels.expect("allowed")).boxed();
     }
     prop::array::uniform32(-5.0..5.0)

@@ -1,4 +1,4 @@
-//! What holds for the figures of loop analysis; what holds for every figure is in `figure::tests`.
+//! What holds for the figures of loop analysis; what holds for every figure is in the tests of the crate.
 
 use super::*;
 use crate::tests::Draw;

@@ -1,4 +1,4 @@
-//! What holds for the figures of campaigns; what holds for every figure is in `figure::tests`.
+//! What holds for the figures of campaigns; what holds for every figure is in the tests of the crate.
 
 use super::*;
 use crate::analysis::tests::text_boxes;
