@@ -106,7 +106,7 @@ impl<S: Scalar> ReferenceModel<S> {
 /// Where the centres of the small and the medium sets of an input lie, as fractions of its range:
 /// those of the positive ones, the negative ones mirrored. Even is `[1/3, 2/3]`.
 ///
-/// The input is bent before the rules, which keep their even sets: an odd, increasing function, linear
+/// The input is transformed before the rules, which keep their even sets: an odd, increasing function, linear
 /// from 0 to the small centre, on to the medium one and to the range, takes these centres to one and
 /// two thirds of the range.
 ///
@@ -130,9 +130,9 @@ impl<R: Real> SetCentres<R> {
     /// # Errors
     /// [`ConfigError::Number`] unless $0 < small < medium < 1$.
     pub fn new(small: R, medium: R) -> Result<Self, ConfigError> {
-        let what = "place of the small sets";
+        let what = "centre of the small sets";
         let small = allowed_if(small > R::ZERO && small < R::ONE, what, small, "above 0, below 1")?;
-        let (what, good) = ("place of the medium sets", medium > small && medium < R::ONE);
+        let (what, good) = ("centre of the medium sets", medium > small && medium < R::ONE);
         let medium = allowed_if(good, what, medium, "above that of the small sets, below 1")?;
         Ok(Self { small, medium })
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::place::LineStarts;
+use crate::place::{LineStarts, Place};
 use crate::problem::{Problem, Problems};
 
 /// Longest excerpt of a file in a message, in characters.
@@ -54,6 +54,17 @@ impl Report {
         source.and_then(|source| source.text.get(place.start..place.end)).unwrap_or_default()
     }
 
+    /// Where a stretch begins, in people's terms.
+    pub fn place(&self, place: Span) -> Option<Place> {
+        let source = self.sources.get(place.source)?;
+        Some(source.lines.place(&source.text, place.start))
+    }
+
+    /// What the text of a stretch is called; `None` for the file itself.
+    fn origin(&self, place: Span) -> Option<&str> {
+        self.sources.get(place.source)?.origin.as_deref()
+    }
+
     /// How many problems there are so far.
     pub fn count(&self) -> usize {
         self.problems.len() + self.omitted
@@ -103,9 +114,7 @@ impl Report {
             self.omitted += 1;
             return;
         }
-        let source = self.sources.get(place.source);
-        let origin = source.and_then(|source| source.origin.clone());
-        let at = source.map(|source| source.lines.place(&source.text, place.start));
+        let (origin, at) = (self.origin(place).map(str::to_owned), self.place(place));
         let path = path.to_owned();
         let problem = Problem { origin, path, place: at, message, found, allowed };
         self.problems.push((place.source, problem));
@@ -114,6 +123,17 @@ impl Report {
     /// Something that is allowed and probably not meant.
     pub fn warn(&mut self, warning: String) {
         self.warnings.push(warning);
+    }
+
+    /// The same of a stretch: its line, or what it was written in, comes first.
+    pub fn warn_at(&mut self, place: Span, warning: &str) {
+        let line = self.place(place).map_or(1, |place| place.line);
+        let stands = match self.origin(place) {
+            Some(origin) if origin.starts_with("--set") => origin.to_owned(),
+            Some(file) => format!("{file}:{line}"),
+            None => format!("line {line}"),
+        };
+        self.warn(format!("{stands}: {warning}"));
     }
 
     /// The warnings, or the problems if there are any: in the order of the texts, each once.

@@ -86,17 +86,17 @@ fn an_accumulating_law_without_limits_is_warned_of() {
 fn a_supervisor_that_sees_something_else_than_the_change_is_described_in_words() {
     let words = [
         "reference model of second order with 1.250 rad",
-        "lie at 0.2000 and 0.5000",
+        "have their centres at 0.2000 and 0.5000",
         "moves by 3.000 per unit of kd",
     ];
     let plain = of_flight(file::starter());
     let text = file::starter().replace(
         "range = 5.0",
-        "range = 5.0\nsees = \"error-and-model-error\"\nmodel = { bandwidth_rad_s = 1.25 }\nerror_sets = [0.2, 0.5]",
+        "range = 5.0\nsecond_input = \"error-and-model-error\"\nmodel = { bandwidth_rad_s = 1.25 }\nerror_set_centres = [0.2, 0.5]",
     );
     let text = text.replace(
         "law = \"memoryless\"",
-        "law = \"memoryless\"\nfollowers = { rate_gain_per_kd = 3.0 }",
+        "law = \"memoryless\"\ngain_coupling = { rate_gain_per_kd = 3.0 }",
     );
     let html = of_flight(&text);
     assert_sound(&html);

@@ -11,7 +11,7 @@ use crate::file::spec::dispersion::{
 };
 use crate::file::{NewValue, SettingPath, Template};
 use fspid_diagnostics::Problems;
-use fspid_diagnostics::Report;
+use fspid_diagnostics::{Report, Span};
 
 /// Most values that a choice is made from.
 const MOST_VALUES: usize = 1000;
@@ -119,16 +119,16 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
     }
     let key = if section.given("path") { "path" } else { "paths" };
     let texts = match section.text("path") {
-        Some(text) => Some(vec![text.to_owned()]),
-        None => section.item("paths").and_then(texts),
+        Some(text) => Some(vec![(section.at(key), text.to_owned())]),
+        None => section.item("paths").and_then(placed_texts),
     };
     let Some(texts) = texts.filter(|texts| !texts.is_empty()) else {
         report.value(section.at(key), &section.path(key), "wrong type", paths_in_words());
         return None;
     };
     let mut paths = Vec::new();
-    for text in &texts {
-        let Some(path) = SettingPath::parse(text) else {
+    for (place, text) in texts {
+        let Some((path, renamed)) = SettingPath::renamed(&text) else {
             let allowed = "names joined by dots, such as controller[0].kp";
             let message = format!("the path `{text}` cannot be read");
             report.missing(section.at(key), &section.path(key), message, allowed);
@@ -140,6 +140,9 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
             report.missing(section.at(key), &section.path(key), message, allowed);
             return None;
         }
+        if let Some(key) = renamed {
+            key.warn(report, place, text.trim());
+        }
         paths.push(path);
     }
     Some(paths)
@@ -147,11 +150,16 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
 
 /// A list of texts, if it is one.
 pub(super) fn texts(item: &Item) -> Option<Vec<String>> {
+    Some(placed_texts(item)?.into_iter().map(|(_, text)| text).collect())
+}
+
+/// A list of texts with their places, if it is one.
+pub(super) fn placed_texts(item: &Item) -> Option<Vec<(Span, String)>> {
     let Value::Array(items) = &item.value else {
         return None;
     };
     let text = |item: &Item| match &item.value {
-        Value::Text(text) => Some(text.clone()),
+        Value::Text(text) => Some((item.place, text.clone())),
         _ => None,
     };
     items.iter().map(text).collect()

@@ -183,7 +183,7 @@ fn rows(grid: &NumberGrid<f64>, place: Span) -> Value {
 }
 
 /// A name as a step of a path.
-fn bare(name: &str) -> String {
+pub(super) fn bare(name: &str) -> String {
     let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if is_bare && !name.is_empty() { name.to_owned() } else { format!("\"{name}\"") }
 }

@@ -26,6 +26,7 @@ mod mark;
 mod overrides;
 mod paths;
 mod preset;
+mod renamed;
 mod requirement;
 mod rewrite;
 pub(crate) mod schema;
@@ -296,6 +297,7 @@ fn changed_document(
         return None;
     }
     let mut document = document::read(report, None, text)?;
+    renamed::in_item(report, &mut document, &mut Vec::new());
     overrides::apply_listed(report, files, &mut document);
     for text in extra.overrides {
         files.digest(text);

@@ -5,6 +5,8 @@
 
 use crate::file::document::{Item, Member, Value, read_value};
 use crate::file::files::Files;
+use crate::file::mark::bare;
+use crate::file::renamed;
 use fspid_diagnostics::nearest;
 use fspid_diagnostics::{Report, Span, excerpt};
 
@@ -28,11 +30,14 @@ pub(crate) fn apply_listed(report: &mut Report, files: &mut Files<'_>, document:
         return;
     };
     let text = |item: &Item| match &item.value {
-        Value::Text(text) => Some(text.clone()),
+        Value::Text(text) => Some((item.place, text.clone())),
         _ => None,
     };
-    let texts: Vec<String> = items.iter().filter_map(text).collect();
-    texts.iter().for_each(|text| apply(report, files, document, text));
+    let texts: Vec<(Span, String)> = items.iter().filter_map(text).collect();
+    for (place, text) in texts {
+        let text = renamed::in_change(report, place, text);
+        apply(report, files, document, &text);
+    }
 }
 
 /// What the key may hold, in words.
@@ -62,14 +67,18 @@ pub(crate) fn apply(report: &mut Report, files: &mut Files<'_>, document: &mut I
         let allowed = "path=value, such as loop.sample_period_s=0.02";
         return report.missing(place, "", "there is no `=`", allowed);
     };
-    let Some(steps) = steps(path) else {
+    let Some(mut steps) = steps(path) else {
         let place = whole(report, &origin, path);
         let allowed = "names joined by dots, such as controller[0].kp or controller.\"my PID\".kp";
         return report.value(place, "", "the path cannot be read", allowed);
     };
-    let Some(item) = read_value(report, origin.clone(), value.trim()) else {
+    let Some(mut item) = read_value(report, origin.clone(), value.trim()) else {
         return;
     };
+    if let Some(key) = renamed::in_steps(&mut steps) {
+        key.warn(report, item.place, path.trim());
+    }
+    renamed::in_item(report, &mut item, &mut steps.clone());
     let set = Setting { origin, item };
     put(report, files, document, (&steps, &set));
 }
@@ -173,6 +182,19 @@ pub(crate) fn steps(path: &str) -> Option<Vec<Step>> {
         }
         rest = rest.strip_prefix('.')?;
     }
+}
+
+/// The path of the steps, as [`steps`] reads it.
+pub(crate) fn path_of(steps: &[Step]) -> String {
+    let mut path = String::new();
+    for step in steps {
+        match step {
+            Step::Index(index) => path.push_str(&format!("[{index}]")),
+            Step::Name(name) if path.is_empty() => path.push_str(&bare(name)),
+            Step::Name(name) => path.push_str(&format!(".{}", bare(name))),
+        }
+    }
+    path
 }
 
 /// Follows the steps and sets what is there. Answers the path of a text on the way and the steps

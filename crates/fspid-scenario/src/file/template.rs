@@ -8,6 +8,7 @@ use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::Files;
 use super::overrides::{self, Found, Setting, Step};
+use super::renamed::{self, Renamed};
 use crate::tuning::Mark;
 use fspid_diagnostics::Problems;
 use fspid_diagnostics::{Report, Span};
@@ -26,8 +27,15 @@ impl SettingPath {
     /// Reads a path; `None` for a text that is none.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
-        let steps = overrides::steps(text)?;
-        Some(Self { text: text.trim().to_owned(), steps })
+        Self::renamed(text).map(|(path, _)| path)
+    }
+
+    /// The same, and the key in it that was called by its old name.
+    pub(super) fn renamed(text: &str) -> Option<(Self, Option<&'static Renamed>)> {
+        let mut steps = overrides::steps(text)?;
+        let key = renamed::in_steps(&mut steps);
+        let text = key.map_or_else(|| text.trim().to_owned(), |_| overrides::path_of(&steps));
+        Some((Self { text, steps }, key))
     }
 
     /// The first name in it.
@@ -38,7 +46,7 @@ impl SettingPath {
         }
     }
 
-    /// As it was written.
+    /// As it was written, but for an old key.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text

@@ -1,7 +1,8 @@
 //! Tuning and contest as files have them.
 
-use crate::file::dispersion::texts;
+use crate::file::dispersion::placed_texts;
 use crate::file::overrides;
+use crate::file::renamed;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
@@ -124,7 +125,7 @@ fn cases(report: &mut Report, sections: &[Section]) -> Vec<Case> {
 
 fn case(report: &mut Report, section: &Section) -> Option<Case> {
     let item = section.item("set")?;
-    let set = texts(item);
+    let set = placed_texts(item);
     if set.is_none() {
         let allowed = overrides::listed_in_words();
         report.value(item.place, &section.path("set"), "no list of changes", allowed);
@@ -132,7 +133,7 @@ fn case(report: &mut Report, section: &Section) -> Option<Case> {
     Some(Case {
         name: section.text("name")?.to_owned(),
         group: section.text("group").unwrap_or_default().to_owned(),
-        set: set?,
+        set: set?.into_iter().map(|(place, it)| renamed::in_change(report, place, it)).collect(),
         weight: section.number("weight")?,
         mirror_of: section.text("mirror_of").map(str::to_owned),
     })

@@ -34,7 +34,7 @@ pub(super) fn is_one(text: &str) -> bool {
 
 /// The supervisor of the controller of this name, or of the only one that has any.
 ///
-/// What stands between the flight and the supervisor (factors, bent inputs, the dead zone) is not part of it.
+/// What stands between the flight and the supervisor (factors, centres of sets, the dead zone) is not part of it.
 pub(super) fn read(path: &Path, text: &str, name: Option<&str>) -> Result<Loaded, LoadError> {
     let shown = path.display().to_string();
     let study = file::parse(text, &shown, path.parent(), &[]).map_err(LoadError::Problems)?;
@@ -63,7 +63,7 @@ pub(super) fn read(path: &Path, text: &str, name: Option<&str>) -> Result<Loaded
     let mut notes = Vec::new();
     if !tuner.settings().input_sets.are_even() {
         notes.push(format!(
-            "{name}: its sets are uneven; the system has the even sets behind the bent inputs"
+            "{name}: its sets are uneven; the system has even sets, and its inputs are to be moved onto them"
         ));
     }
     Ok(Loaded { system: built(parts)?, notes })

@@ -9,7 +9,7 @@ use crate::file::{repository, text};
 const GOLDEN: &str = "crates/fspid-scenario/tests/scenarios/messages.txt";
 
 /// A mistake: what it is, what is replaced in the starter, and by what.
-const MISTAKES: [(&str, &str, &str); 36] = [
+const MISTAKES: [(&str, &str, &str); 37] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
     ("a key that does not exist", "name = \"my first flight\"", "name = \"x\"\ncolour = \"red\""),
@@ -68,12 +68,21 @@ const MISTAKES: [(&str, &str, &str); 36] = [
     (
         "a change that nobody sees",
         "range = 5.0",
-        "range = 5.0\nsees = \"error-and-rate\"\nchange = \"delta\"",
+        "range = 5.0\nsecond_input = \"error-and-rate\"\nchange = \"delta\"",
     ),
-    ("a model that is not there", "range = 5.0", "range = 5.0\nsees = \"error-and-model-error\""),
+    (
+        "an old key beside its new one",
+        "range = 5.0",
+        "range = 5.0\nsees = \"error-and-rate\"\nsecond_input = \"error-and-rate\"",
+    ),
+    (
+        "a model that is not there",
+        "range = 5.0",
+        "range = 5.0\nsecond_input = \"error-and-model-error\"",
+    ),
     ("a model that nobody sees", "range = 5.0", "range = 5.0\nmodel = { bandwidth_rad_s = 1.0 }"),
-    ("sets out of their order", "range = 5.0", "range = 5.0\nerror_sets = [0.6, 0.3]"),
-    ("a set at the end of the range", "range = 5.0", "range = 5.0\nerror_sets = [0.3, 1.0]"),
+    ("sets out of their order", "range = 5.0", "range = 5.0\nerror_set_centres = [0.6, 0.3]"),
+    ("a set at the end of the range", "range = 5.0", "range = 5.0\nerror_set_centres = [0.3, 1.0]"),
     ("an unknown defuzzifier", "range = 5.0", "range = 5.0\ndefuzzifier = \"centroid\""),
     ("a rule file that is not there", "table = \"mirrored\"", "table = \"my-rules.toml\""),
     ("a table for a list of tables", "[[disturbance]]", "[disturbance]"),

@@ -11,6 +11,7 @@ mod messages;
 mod numbers;
 mod overrides;
 mod reading;
+mod renamed;
 mod schedule;
 mod schema;
 mod settings;

@@ -43,8 +43,8 @@ fn every_word_of_a_controller_builds_something_of_its_own() {
         &[
             &["controller.FSPID.supervisor.change=rate"],
             &["controller.FSPID.supervisor.change=delta"],
-            &["controller.FSPID.supervisor.sees=error-and-rate"],
-            &["controller.FSPID.supervisor.sees=error-and-model-error", MODEL],
+            &["controller.FSPID.supervisor.second_input=error-and-rate"],
+            &["controller.FSPID.supervisor.second_input=error-and-model-error", MODEL],
         ],
         &[
             &["controller.FSPID.supervisor.out_of_range=clamp"],

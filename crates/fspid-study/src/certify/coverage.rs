@@ -247,9 +247,9 @@ pub const COVERAGE: &[Row] = &[
         "within it the rules add nothing; at its border the gains may jump",
     ),
     row(
-        "controller.followers.*",
+        "controller.gain_coupling.*",
         Refused,
-        "where something follows: the matrix is not affine in the gains",
+        "where a number moves with the gains: the matrix is not affine in the gains",
     ),
     row("controller.supervisor.range", Covered, "the cells over which gains are enclosed fill it"),
     row("controller.supervisor.table", Covered, GAINS),
@@ -276,15 +276,23 @@ pub const COVERAGE: &[Row] = &[
         Covered,
         "all inputs are in the claim, whatever the scale; it says which cells lie side by side in flight, and what a held command adds",
     ),
-    row("controller.supervisor.error_sets", Refused, "sets that are not even are not enclosed"),
+    row(
+        "controller.supervisor.error_set_centres",
+        Refused,
+        "sets that are not even are not enclosed",
+    ),
     row("controller.supervisor.change", Covered, "as for the scales: per second or per sample"),
     row(
         "controller.supervisor.change_scale",
         Covered,
         "all inputs are in the claim, whatever the scale; it says which cells lie side by side in flight, and what a held command adds",
     ),
-    row("controller.supervisor.change_sets", Refused, "sets that are not even are not enclosed"),
-    row("controller.supervisor.sees", Refused, "what is not error and change"),
+    row(
+        "controller.supervisor.change_set_centres",
+        Refused,
+        "sets that are not even are not enclosed",
+    ),
+    row("controller.supervisor.second_input", Refused, "what is not error and change"),
     row("controller.supervisor.model.*", Refused, "the error of a reference model is not enclosed"),
     row(
         "controller.supervisor.output_scale.*",

@@ -291,13 +291,13 @@ fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
         )),
     }
     let InputSets { error, change } = settings.input_sets;
-    for (places, input) in [(error, "error"), (change, settings.second_input.beside())] {
-        sentences.extend(places.map(|places| {
+    for (centres, input) in [(error, "error"), (change, settings.second_input.beside())] {
+        sentences.extend(centres.map(|centres| {
             format!(
-                "The small and the medium sets of the {input} lie at {} and {} of the range; figures show \
-                 it bent, so that they are even.",
-                significant(places.small(), 4),
-                significant(places.medium(), 4)
+                "The small and the medium sets of the {input} have their centres at {} and {} of the range; \
+                 figures show it transformed, so that they are even.",
+                significant(centres.small(), 4),
+                significant(centres.medium(), 4)
             )
         }));
     }

@@ -51,7 +51,8 @@ fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
 #[test]
 fn a_supervisor_that_sees_the_rate_rests_where_one_that_sees_the_change_does() {
     let plain = analysed(TUNED, &[]);
-    let second_input = analysed(TUNED, &["controller.C.supervisor.sees=\"error-and-rate\""]);
+    let second_input =
+        analysed(TUNED, &["controller.C.supervisor.second_input=\"error-and-rate\""]);
     assert_eq!(second_input.loops[0].equilibrium, plain.loops[0].equilibrium);
     assert_eq!(second_input.loops[0].margins(), plain.loops[0].margins());
 }
@@ -59,7 +60,7 @@ fn a_supervisor_that_sees_the_rate_rests_where_one_that_sees_the_change_does() {
 #[test]
 fn the_margins_at_rest_and_of_frozen_gains_are_those_of_the_rate_gain_that_has_followed() {
     // The rules take 0.16666 off kd at rest; the rate gain follows with a factor of -3.
-    let gain_coupling = "controller.C.followers={rate_gain_per_kd = -3.0}";
+    let gain_coupling = "controller.C.gain_coupling={rate_gain_per_kd = -3.0}";
     let analysis = analysed(TUNED, &[gain_coupling]);
     let rate_gain = format!("controller.C.rate_gain={:?}", {
         let Equilibrium::AtRest(gains) = analysis.loops[0].equilibrium else { panic!("at rest") };
@@ -119,7 +120,7 @@ fn with_cells(cells: &[([usize; 2], [f64; 2])]) -> String {
 fn every_number_is_among_the_frozen_gains_and_the_worst_of_them_is_found() {
     // Error PS, change NM; and error NM, change PB, which is on no point of the map either.
     let text = with_cells(&[([4, 1], [5.0, 0.0]), ([1, 6], [-1.5, 2.0])]);
-    let sets = ["controller.C.supervisor.error_sets=[0.1, 0.5]"];
+    let sets = ["controller.C.supervisor.error_set_centres=[0.1, 0.5]"];
     for (set, [small, medium]) in [(&[][..], [5.0 / 3.0, 10.0 / 3.0]), (&sets, [0.5, 2.5])] {
         let analysis = analysed(&text, set);
         let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");

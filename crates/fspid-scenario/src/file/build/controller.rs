@@ -221,8 +221,8 @@ fn tuner(
         change: part.word("change")?,
         input_scale: input_scale(report, part)?,
         input_sets: InputSets {
-            error: set_places(report, part, "error_sets")?,
-            change: set_places(report, part, "change_sets")?,
+            error: set_centres(report, part, "error_set_centres")?,
+            change: set_centres(report, part, "change_set_centres")?,
         },
         output_scale: output_scale(part),
         gain_coupling: gain_coupling(section),
@@ -261,10 +261,11 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
 
 /// What the supervisor sees beside the error; what would go unused is refused.
 fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>> {
-    let (second_input, model): (SecondInputWord, _) = (part.word("sees")?, part.section("model"));
+    let (second_input, model): (SecondInputWord, _) =
+        (part.word("second_input")?, part.section("model"));
     if second_input != SecondInputWord::Change && part.word("change") == Some(Change::Delta) {
         let message = format!("the supervisor sees no change, but \"{}\"", second_input.name());
-        let allowed = "only with sees = \"error-and-change\"";
+        let allowed = "only with second_input = \"error-and-change\"";
         report.value(part.at("change"), &part.path("change"), message, allowed);
         return None;
     }
@@ -277,12 +278,12 @@ fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>>
         }
         (SecondInputWord::ModelError, None) => {
             let (message, allowed) = ("it has no reference model", "together with `model`");
-            report.missing(part.at("sees"), &part.path("sees"), message, allowed);
+            report.missing(part.at("second_input"), &part.path("second_input"), message, allowed);
             None
         }
         (SecondInputWord::Rate | SecondInputWord::Change, Some(model)) => {
             let message = format!("the supervisor sees no model, but \"{}\"", second_input.name());
-            let allowed = "only with sees = \"error-and-model-error\"";
+            let allowed = "only with second_input = \"error-and-model-error\"";
             report.value(part.at("model"), &model.path, message, allowed);
             None
         }
@@ -293,7 +294,7 @@ fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>>
 
 /// Where the sets of an input lie; the inner `None` where nothing is said, the outer one for a problem.
 #[allow(clippy::option_option, reason = "left out and refused are two things")]
-fn set_places(
+fn set_centres(
     report: &mut Report,
     part: &Section,
     key: &'static str,
@@ -307,7 +308,7 @@ fn set_places(
 }
 
 fn gain_coupling(section: &Section) -> GainCoupling<f64> {
-    let part = section.section("followers");
+    let part = section.section("gain_coupling");
     let number = |key| part.and_then(|part| part.number(key)).unwrap_or(0.0);
     GainCoupling {
         setpoint_weight: number("setpoint_weight_per_kp"),

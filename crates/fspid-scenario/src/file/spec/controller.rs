@@ -269,8 +269,8 @@ const TUNER: &[Key] = &[
         "Pulls the gains of the accumulating law back to nominal; 0 if left out.",
     ),
     optional(
-        "followers",
-        Kind::Table(&FOLLOWERS),
+        "gain_coupling",
+        Kind::Table(&GAIN_COUPLING),
         "What moves with the gains; nothing if left out.",
     ),
     optional(
@@ -337,12 +337,12 @@ const SUPERVISOR_KEYS: &[Key] = &[
         "The supervisor sees this times the error in degrees.",
     ),
     optional(
-        "error_sets",
+        "error_set_centres",
         Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-        "Where the small and the medium sets of the error lie, as parts of the range; a third and two thirds if left out.",
+        "Centres of the small and the medium sets of the error, as parts of the range; a third and two thirds if left out.",
     ),
     defaulted(
-        "sees",
+        "second_input",
         Kind::Word(SecondInputWord::WORDS),
         Default::Word("error-and-change"),
         "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
@@ -361,9 +361,9 @@ const SUPERVISOR_KEYS: &[Key] = &[
         "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
     ),
     optional(
-        "change_sets",
+        "change_set_centres",
         Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-        "As `error_sets`, of what is seen beside the error.",
+        "As `error_set_centres`, of what is seen beside the error.",
     ),
     optional(
         "output_scale",
@@ -389,7 +389,7 @@ static MODEL: Table = plain(
     ]],
 );
 
-static FOLLOWERS: Table = plain(
+static GAIN_COUPLING: Table = plain(
     "What moves with the gains, by how much per unit of their distance from nominal.",
     &[&[
         defaulted(
