@@ -127,7 +127,11 @@ mod tests {
     use crate::{Parameter, Scale};
 
     fn rosenbrock(point: &[f64]) -> f64 {
-        point.windows(2).map(|p| 100.0 * (p[1] - p[0] * p[0]).powi(2) + (1.0 - p[0]).powi(2)).sum()
+        let term = |p: &[f64]| {
+            let (bend, rest) = (p[1] - p[0] * p[0], 1.0 - p[0]);
+            100.0 * bend * bend + rest * rest
+        };
+        point.windows(2).map(term).sum()
     }
 
     fn space() -> Space {

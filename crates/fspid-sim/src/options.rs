@@ -207,7 +207,8 @@ pub(crate) fn labels(policy: OutOfRange) -> Supervisor<f64> {
 fn supervisor(structure: TunerStructure) -> BoxedStrategy<Supervisor<f64>> {
     let policy = structure.out_of_range;
     if !structure.numbers {
-        let labels = Supervisor::new(&fspid_core::paper::rules(), 5.0, structure.defuzzifier, policy);
+        let labels =
+            Supervisor::new(&fspid_core::paper::rules(), 5.0, structure.defuzzifier, policy);
         return Just(labels.expect("allowed")).boxed();
     }
     prop::array::uniform32(-5.0..5.0)
