@@ -35,7 +35,7 @@ pub struct GridMark {
     pub start: Grid,
     /// How many labels a cell may move from there, 1 to 6.
     pub reach: u8,
-    /// Whether a fall is answered as a rise: cell (i, j) is cell (6 - i, 6 - j).
+    /// Whether opposite error and change have the same answer: cell (i, j) is cell (6 - i, 6 - j).
     pub symmetric: bool,
     /// The label of no error and no change, where it is fixed.
     pub at_rest: Option<Label>,
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_symmetric_grid_answers_a_fall_as_a_rise() {
+    fn a_symmetric_grid_answers_opposite_error_and_change_alike() {
         let mark = mark(Monotone::No, None);
         assert_eq!(mark.cells().len(), 25);
         let levels = levels(&mark.at(&units(25, 3)));

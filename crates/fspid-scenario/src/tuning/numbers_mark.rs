@@ -16,7 +16,7 @@ pub struct NumbersMark {
     pub start: NumberGrid<f64>,
     /// How far a cell may move from there; above 0.
     pub reach: f64,
-    /// Whether a fall is answered as a rise: cell (i, j) is cell (6 - i, 6 - j).
+    /// Whether opposite error and change have the same answer: cell (i, j) is cell (6 - i, 6 - j).
     pub symmetric: bool,
 }
 

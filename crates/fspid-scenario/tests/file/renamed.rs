@@ -2,6 +2,8 @@
 
 use fspid_scenario::file::{self, Extra, Problems, Study, Template};
 
+use crate::file::{repository, shipped, text};
+
 /// The starter with these lines in its supervisor, and these in its self-tuning controller.
 fn scenario(supervisor: &str, controller: &str) -> String {
     let text = file::starter().replacen("range = 5.0", &format!("range = 5.0\n{supervisor}"), 1);
@@ -189,6 +191,20 @@ fn an_old_key_in_a_case_becomes_the_new_one_with_the_line_of_the_case() {
         let place = format!("line {}", line_of(&text, change));
         let warning = told(&place, path, "sees", "second_input");
         assert_eq!(study.warnings.iter().filter(|it| **it == warning).count(), 1, "{table}");
+    }
+}
+
+#[test]
+fn nothing_that_is_shipped_has_an_old_key() {
+    let learned = ["light", "transport"].map(|name| {
+        let path = format!("data/designs/learned/{name}.toml");
+        (path.clone(), text(&path))
+    });
+    let scenarios = shipped().into_iter().map(|(name, text)| (format!("scenarios/{name}"), text));
+    for (name, text) in scenarios.chain(learned) {
+        let study = file::parse(&text, &name, repository(&name).parent(), &[]);
+        let study = study.unwrap_or_else(|problems| panic!("{problems}"));
+        assert!(!study.warnings.iter().any(|it| it.contains("the old key")), "{name}");
     }
 }
 
