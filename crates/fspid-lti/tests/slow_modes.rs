@@ -1,7 +1,6 @@
 //! Loops whose slow modes lie close to z = 1, where level sets lost their peaks.
 
-use crate::slow;
-use crate::support;
+use crate::{slow, support};
 
 use fspid_lti::{
     LtiError, Matrix, SampledLoop, SampledMargins, Stability, TransferFunction, zero_order_hold,

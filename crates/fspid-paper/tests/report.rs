@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fspid_paper::report;
-use fspid_paper::{CLAIMS, Library, Reproduction};
+use fspid_paper::{CLAIMS, Library, Reproduction, report};
 use fspid_scenario::file;
 
 use crate::sound::assert_sound;

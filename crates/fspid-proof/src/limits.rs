@@ -11,8 +11,7 @@ use core::fmt;
 use fspid_core::{AntiWindup, Gains, Limits};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
-use fspid_numeric::scalar::Base;
-use fspid_numeric::scalar::Interval;
+use fspid_numeric::scalar::{Base, Interval};
 use fspid_sim::loop_model::LoopModel;
 
 use crate::check::{ActuatorLag, IntervalMatrix, NotProved, inside_limit};

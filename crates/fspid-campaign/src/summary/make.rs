@@ -4,8 +4,10 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::data::{ControllerSummary, Limits, MeasureSummary, Note, Probability, Summary};
-use super::data::{Sensitivity, SensitivityTarget, SummarySettings};
+use super::data::{
+    ControllerSummary, Limits, MeasureSummary, Note, Probability, Sensitivity, SensitivityTarget,
+    Summary, SummarySettings,
+};
 use super::flights::{self, Flights};
 use super::sensitivity::{Factors, Selections};
 use super::source::Source;

@@ -6,8 +6,7 @@ use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::file;
-use fspid_study::analysis::BreakPoint;
-use fspid_study::analysis::{Analysis, Question};
+use fspid_study::analysis::{Analysis, BreakPoint, Question};
 use fspid_study::{output, report};
 
 /// Analyse the sampled loop of each controller: margins, poles, sensitivity, and every gain that a self-tuning

@@ -8,8 +8,7 @@ use crate::argument::{OutFile, Source, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::file::known_words;
 use fspid_scenario::fuzzy_system;
-use fspid_scenario::fuzzy_system::Dialect;
-use fspid_scenario::fuzzy_system::Target;
+use fspid_scenario::fuzzy_system::{Dialect, Target};
 use fspid_study::output;
 
 /// Write a fuzzy system in another format; the ending of OUT says which.

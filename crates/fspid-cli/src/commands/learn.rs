@@ -6,8 +6,7 @@ use super::{Format, Loading, interrupt, json_text};
 use crate::argument::{InFile, OutFile, Source, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::fuzzy_system;
-use fspid_scenario::fuzzy_system::Target;
-use fspid_scenario::fuzzy_system::{NUMBER_GRID, Parts};
+use fspid_scenario::fuzzy_system::{NUMBER_GRID, Parts, Target};
 use fspid_study::output;
 use fspid_tune::anfis::{Data, Learned, Order, Plan, learn, sugeno};
 

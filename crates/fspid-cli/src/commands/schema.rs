@@ -4,8 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::Format;
 use crate::exit::{Failure, print};
-use fspid_scenario::file;
-use fspid_scenario::fuzzy_system;
+use fspid_scenario::{file, fuzzy_system};
 
 /// Print the JSON Schema of a scenario file or of a fuzzy system's file, for editors.
 #[derive(Debug, Args)]

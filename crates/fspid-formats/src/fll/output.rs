@@ -14,9 +14,8 @@ use crate::lexer::{Kind, Token};
 use crate::report::Report;
 use crate::term;
 use crate::tokens::Tokens;
-use crate::vocabulary::known;
-use crate::vocabulary::methods;
 use crate::vocabulary::norms::{self, S_NORMS};
+use crate::vocabulary::{known, methods};
 
 /// What the conclusions of an output may name.
 #[derive(Clone, Copy)]

@@ -6,9 +6,8 @@ use fspid_fuzzy::system::{Input, Membership, Parts, Rule, RuleBlock, Term};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
 use super::lines::{self, Line, numbers};
-use super::output;
-use super::readable;
 use super::sections::{HEADINGS, Kindred, Section};
+use super::{output, readable};
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer, Token};
 use crate::names::Names;

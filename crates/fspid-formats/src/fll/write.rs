@@ -6,16 +6,14 @@ use fspid_fuzzy::system::{
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
-use super::RESOLUTION;
-use super::{activation, readable};
-use crate::adapt;
-use crate::identifiers;
+use super::{RESOLUTION, activation, readable};
 use crate::loss::Loss;
 use crate::note::{WriteOptions, Writing};
 use crate::number::{written as number, written_all};
 use crate::rule::{self, Style};
 use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{methods, norms};
+use crate::{adapt, identifiers};
 use fspid_diagnostics::Problems;
 
 /// Writes a system in the FuzzyLite Language, with every digit that a number needs.

@@ -12,8 +12,9 @@ use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, SetReading};
 use super::firing::hedged;
 use super::output::{AggregatedSet, Outline, Room, roomy_clone, value};
-use super::parts::{Activation, Variable};
-use super::parts::{Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement};
+use super::parts::{
+    Activation, Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement, Variable,
+};
 use super::program::{STACK, Step};
 use super::workspace::Workspace;
 use crate::defuzzifier::SampleGrid;

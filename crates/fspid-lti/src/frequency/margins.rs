@@ -2,8 +2,7 @@
 
 use core::f64::consts::PI;
 
-use super::FrequencyResponse;
-use super::crossing;
+use super::{FrequencyResponse, crossing};
 use crate::complex::modulus;
 use crate::error::LtiError;
 

@@ -11,8 +11,7 @@ use crate::disturbance::{
 };
 use crate::report::Paper;
 use fspid_page::context;
-use fspid_page::number::capital;
-use fspid_page::number::{exact, fixed, significant};
+use fspid_page::number::{capital, exact, fixed, significant};
 use fspid_page::page::{Cell, Figure, Row, Section, Table};
 use fspid_plot::{RatioFigure, Series, SeriesStyle};
 use fspid_scenario::file::Study;

@@ -3,9 +3,8 @@
 use crate::report::Paper;
 use crate::report::templates::render;
 use fspid_data::{ASSUMPTIONS, ERRATA};
-use fspid_page::context;
-use fspid_page::markdown;
 use fspid_page::page::Section;
+use fspid_page::{context, markdown};
 
 /// What is wrong or contradictory in print.
 pub(super) fn errata(_: &Paper<'_>) -> Section {

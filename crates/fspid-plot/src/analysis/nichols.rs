@@ -2,10 +2,9 @@
 
 use super::bode::critical_phases;
 use super::chart::{self, Chart};
-use super::dots;
-use super::frequency;
 use super::label::Point;
 use super::response::{LoopCurve, Polar, polar_at};
+use super::{dots, frequency};
 use crate::axis::{Axis, extent, short_number};
 use crate::page::{self, EDGE, Entry, Legend, Swatch};
 use crate::plot::Frame;

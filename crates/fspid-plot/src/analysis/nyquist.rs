@@ -1,10 +1,9 @@
 //! Open loops in the complex plane near the critical point.
 
 use super::chart::{self, Chart};
-use super::dots;
-use super::frequency;
 use super::label::Point;
 use super::response::LoopCurve;
+use super::{dots, frequency};
 use crate::page::{self, EDGE, Entry, Legend, Swatch};
 use crate::sign::Sign;
 use crate::style::{Role, SeriesStyle};

@@ -7,8 +7,7 @@ use core::fmt;
 
 use fspid_core::{Change, Fspid, Gains, Law};
 use fspid_lti::Matrix;
-use fspid_numeric::scalar::Base;
-use fspid_numeric::scalar::Interval;
+use fspid_numeric::scalar::{Base, Interval};
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 

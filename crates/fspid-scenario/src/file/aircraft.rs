@@ -18,8 +18,7 @@ use crate::file::section::Section;
 use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
 use crate::file::tables::tables;
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::Report;
+use fspid_diagnostics::{Problems, Report};
 
 /// Units that a key may end with, and their size in SI; degrees stand apart.
 const UNITS: [(&str, f64); 19] = [

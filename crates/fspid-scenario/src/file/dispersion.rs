@@ -10,8 +10,7 @@ use crate::file::spec::dispersion::{
     DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
 };
 use crate::file::{NewValue, SettingPath, Template};
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Problems, Report, Span};
 
 /// Most values that a choice is made from.
 const MOST_VALUES: usize = 1000;

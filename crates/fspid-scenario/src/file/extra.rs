@@ -5,8 +5,7 @@ use crate::file::document::{self, Item, Member, Value};
 use crate::file::files::Files;
 use crate::file::spec::REQUIREMENT_FILE;
 use crate::requirement::SET_NAMES;
-use fspid_diagnostics::nearest;
-use fspid_diagnostics::{Report, Span, excerpt};
+use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// Everything that comes from outside of a scenario's file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

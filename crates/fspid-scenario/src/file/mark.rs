@@ -8,8 +8,7 @@ use crate::file::document::{Item, Member, Value};
 use crate::file::setting::{grid_text, named_step};
 use crate::file::{NewValue, SettingPath, Template};
 use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
-use fspid_diagnostics::{Problems, nearest};
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Problems, Report, Span, nearest};
 use fspid_optimise::Scale;
 
 /// The key that makes a table a mark.

@@ -7,8 +7,7 @@ use crate::file::document::{Item, Member, Value, read_value};
 use crate::file::files::Files;
 use crate::file::mark::bare;
 use crate::file::renamed;
-use fspid_diagnostics::nearest;
-use fspid_diagnostics::{Report, Span, excerpt};
+use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// A step of a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,13 +7,11 @@ use fspid_fuzzy::RuleTable;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
 use crate::file::build::{data, elevator_sign};
-use crate::file::check;
-use crate::file::document;
 use crate::file::files::Files;
 use crate::file::section::Section;
 use crate::file::spec::PLANT_FILE;
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::Report;
+use crate::file::{check, document};
+use fspid_diagnostics::{Problems, Report};
 
 /// Names of the plants that the program carries.
 #[must_use]

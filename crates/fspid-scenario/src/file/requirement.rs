@@ -11,8 +11,7 @@ use crate::requirement::{
     Air, AskedIn, Choices, Conditions, Confidence, Origin, Requirement, RequirementSet, SET_NAMES,
     SetLine, set, set_text,
 };
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::Report;
+use fspid_diagnostics::{Problems, Report};
 
 /// The requirements of a scenario whose controllers have these names.
 pub(crate) fn requirements(

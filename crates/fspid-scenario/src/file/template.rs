@@ -10,8 +10,7 @@ use super::files::Files;
 use super::overrides::{self, Found, Setting, Step};
 use super::renamed::{self, Renamed};
 use crate::tuning::Mark;
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Problems, Report, Span};
 
 use super::{LoadError, Study, changed_document, check, spec};
 

@@ -1,12 +1,11 @@
 //! Tuning and contest as files have them.
 
 use crate::file::dispersion::placed_texts;
-use crate::file::overrides;
-use crate::file::renamed;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::section::Section;
 use crate::file::spec::FRONT;
 use crate::file::spec::tuning::{ConstantLoadWord, OverWord};
+use crate::file::{overrides, renamed};
 use crate::measure::Measure;
 use crate::requirement::Requirement;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};

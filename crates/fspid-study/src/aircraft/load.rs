@@ -5,8 +5,7 @@ use std::path::Path;
 use fspid_aircraft::data::AircraftData;
 
 use fspid_scenario::aircraft::AircraftFailure;
-use fspid_scenario::file::{self, aircraft_names};
-use fspid_scenario::file::{STANDARD_INPUT, read_regular};
+use fspid_scenario::file::{self, STANDARD_INPUT, aircraft_names, read_regular};
 
 /// The aircraft of a name that the program carries, or of a `.toml` file.
 ///

@@ -2,10 +2,9 @@
 
 use core::f64::consts::PI;
 
-use super::LoopFamily;
-use super::bowl;
 use super::grid::{Known, turns_far};
 use super::place;
+use super::{LoopFamily, bowl};
 use crate::complex::{Complex, modulus};
 use crate::sampled::crossings::{excess, sine};
 use crate::sampled::reduced::Response;

@@ -5,12 +5,11 @@ use fspid_lti::LtiError;
 use fspid_sim::{ElevatorSign, LinearPlant, SimError};
 
 use super::elevator_sign;
-use crate::file::check;
-use crate::file::document;
 use crate::file::files::Files;
 use crate::file::preset::{plant_text, rule_table_text};
 use crate::file::section::Section;
 use crate::file::spec::{PLANT_FILE, RULE_FILE, Table};
+use crate::file::{check, document};
 use fspid_diagnostics::{Report, Span};
 
 /// The plant of a table with `preset`, `file` or coefficients.

@@ -10,8 +10,7 @@ pub(super) use value::allowed;
 use crate::file::document::{Item, Member, Value};
 use crate::file::section::{Checked, Entry, Section};
 use crate::file::spec::{Default, Key, Presence, Table, Variant};
-use fspid_diagnostics::nearest;
-use fspid_diagnostics::{Report, Span, excerpt};
+use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// Checks a table. What comes back holds the sound values and says whether all were.
 pub(crate) fn table(

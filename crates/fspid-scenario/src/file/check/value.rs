@@ -7,8 +7,7 @@ use crate::file::document::{Item, Value};
 use crate::file::preset::rule_table_names;
 use crate::file::section::Checked;
 use crate::file::spec::{Kind, Range, Table};
-use fspid_diagnostics::nearest;
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Report, Span, nearest};
 
 /// The value if it is of its kind; otherwise its problems are reported.
 pub(super) fn check(

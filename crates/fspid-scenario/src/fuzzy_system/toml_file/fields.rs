@@ -1,8 +1,7 @@
 //! Tables whose keys depend on what is in them: checked key by key, with every problem reported.
 
 use crate::file::document::{Item, Member, Value};
-use fspid_diagnostics::nearest;
-use fspid_diagnostics::{Report, Span, excerpt};
+use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// The members of a table in the order in which they are written.
 pub(super) fn in_order(members: &[Member]) -> Vec<&Member> {
