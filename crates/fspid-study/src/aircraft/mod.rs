@@ -1,7 +1,7 @@
 //! Aircraft for people: what is known of them, trim, linear models, modes and where their equations lead.
 //!
 //! One function per verb; each answers in text and JSON. The mathematics is `fspid-aircraft`'s; here are names, files,
-//! units and words. Without a unit, a number is in the chosen [`Units`].
+//! units and words. Without a unit, a number is in the chosen [`Units`](fspid_scenario::aircraft::Units).
 
 mod condition;
 
