@@ -1,6 +1,6 @@
 #![doc = include_str!("README.md")]
 //!
-//! No features, no dependencies. Not here: any reader of these texts (`fspid-study`), and `designs/`, which are for
+//! No features, no dependencies. Not here: any reader of these texts (`fspid-scenario`), and `designs/`, which are for
 //! people and tests.
 #![no_std]
 

@@ -4,7 +4,7 @@
 //! scenario ─plan▶ ranges of runs ─shard▶ a Parquet file each ─merge▶ one file ─summarise▶ report
 //! ```
 //!
-//! No features. Not here: what a scenario and its dispersions are (`fspid-study`).
+//! No features. Not here: what a scenario and its dispersions are (`fspid-scenario`).
 
 #![cfg_attr(
     test,

@@ -1,6 +1,6 @@
 //! `fspid`: the workbench for fuzzy self-tuning PID flight controllers, on the command line.
 //!
-//! One file a command; each calls one function of `fspid-study` and prints what it answers. Standard
+//! One file a command; each calls one function of a library and prints what it answers. Standard
 //! output is data, standard error is for people.
 
 mod argument;

@@ -75,3 +75,26 @@ fn is_test(path: &Path) -> bool {
     let name = path.to_string_lossy();
     name.starts_with("tests") || name.starts_with("benches") || name.contains("tests.rs")
 }
+
+/// Packages outside of the workspace are built by hand: a target of the fuzzer named a crate that its module had left.
+#[test]
+fn packages_outside_of_the_workspace_name_the_crates_that_they_use() {
+    let mut used = 0;
+    for folder in ["fuzz", "checks/no-panic", "checks/firmware"] {
+        let package = repository().join(folder);
+        let manifest = read_to_string(package.join("Cargo.toml")).expect("a manifest");
+        for source in files(&package, "rs") {
+            let text = read_to_string(&source).expect("a source");
+            for part in text.split("fspid_").skip(1) {
+                let Some((name, _)) = part.split_once("::") else { continue };
+                if !name.chars().all(|c| c.is_ascii_lowercase()) {
+                    continue;
+                }
+                let named = manifest.contains(&format!("fspid-{name} = "));
+                assert!(named, "{}: fspid-{name}", source.display());
+                used += 1;
+            }
+        }
+    }
+    assert!(used > 5, "{used}");
+}

@@ -4,7 +4,7 @@
 //! system that is read answers by the rule of the tool that the format belongs to (see [`Reading::notes`]).
 //!
 //! No features. Not here: files and folders, evaluation (`fspid-fuzzy`), and the TOML of this project's own systems
-//! (`fspid-study`).
+//! (`fspid-scenario`).
 #![warn(clippy::indexing_slicing)]
 #![cfg_attr(
     test,

@@ -22,7 +22,9 @@ pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
 use flight::Flown;
 use fspid_sim::signal::Disturbance;
-use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
+use fspid_sim::{
+    ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+};
 pub use range_rule::RangeRule;
 use schedule::Pressure;
 
@@ -64,10 +66,7 @@ pub(crate) fn scenario(
     let flown = flight::flown(report, files, section);
     let drive = drive(report, section);
     let servo = drive.map(|drive| drive.servo);
-    let linear = flown.as_ref().and_then(|flown| flown.plant.linear());
-    if let (Some(plant), Some(timing), Some(servo)) = (linear, timing, servo) {
-        timing::check_plant(report, section, plant, (timing, servo));
-    }
+    check_linear(report, section, (flown.as_ref(), timing, servo));
     let setpoint =
         sound(section.section("setpoint")).and_then(|part| signal::setpoint(report, part));
     let disturbances = disturbances(report, section);
@@ -115,6 +114,18 @@ pub(crate) fn scenario(
         contest,
         range_rule,
     })
+}
+
+/// Asks of a linear plant what it has to be at this period and with this servo, where all three are sound.
+fn check_linear(
+    report: &mut Report,
+    section: &Section,
+    (flown, timing, servo): (Option<&flight::Flown>, Option<Timing>, Option<Servo>),
+) {
+    let linear = flown.and_then(|flown| flown.plant.linear());
+    if let (Some(plant), Some(timing), Some(servo)) = (linear, timing, servo) {
+        timing::check_plant(report, section, plant, (timing, servo));
+    }
 }
 
 /// What moves the elevator, and how.
