@@ -16,6 +16,7 @@ pub mod dispersion;
 pub mod file;
 pub mod flyer;
 pub mod fuzzy_system;
+mod keyed;
 pub mod measure;
 pub mod requirement;
 pub mod supervisor;

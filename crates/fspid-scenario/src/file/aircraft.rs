@@ -11,37 +11,30 @@ use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, Loading, Model
 use fspid_aircraft::{Range, Travel, Validity};
 use fspid_data::AIRCRAFT;
 
-use crate::file::check;
-use crate::file::document::{self, Item};
 use crate::file::files::Files;
-use crate::file::section::Section;
+use crate::file::spec::aircraft as keys;
 use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
 use crate::file::tables::tables;
+use crate::keyed::{
+    Key, Section, check,
+    document::{self, Item},
+};
 use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
 use fspid_diagnostics::{Problems, Report};
 
-/// Units that a key may end with, and their size in SI; degrees stand apart.
-const UNITS: [(&str, f64); 19] = [
-    ("kt", KNOT_M_S),
-    ("ft_s", FOOT_M),
-    ("m_s", 1.0),
-    ("ft_s2", FOOT_M),
-    ("m_s2", 1.0),
-    ("ft", FOOT_M),
-    ("m", 1.0),
-    ("ft2", FOOT_M * FOOT_M),
-    ("m2", 1.0),
-    ("lbf", POUND_FORCE_N),
-    ("n", 1.0),
-    ("psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
-    ("pa", 1.0),
-    ("slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
-    ("slug_ft2_s", SLUG_KG * FOOT_M * FOOT_M),
-    ("slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
-    ("kg_m2", 1.0),
-    ("kg_m2_s", 1.0),
-    ("kg_m3", 1.0),
-];
+/// Size in SI of a unit that a key of an aircraft may have; degrees stand apart, and all others are SI.
+pub(super) fn unit_size(unit: &str) -> f64 {
+    match unit {
+        "kt" => KNOT_M_S,
+        "ft" | "ft/s" | "ft/s2" => FOOT_M,
+        "ft2" => FOOT_M * FOOT_M,
+        "lbf" => POUND_FORCE_N,
+        "psf" => POUND_FORCE_N / (FOOT_M * FOOT_M),
+        "slug ft2" | "slug ft2/s" => SLUG_KG * FOOT_M * FOOT_M,
+        "slug/ft3" => SLUG_KG / (FOOT_M * FOOT_M * FOOT_M),
+        _ => 1.0,
+    }
+}
 
 /// Names of the aircraft that the program carries.
 #[must_use]
@@ -106,10 +99,11 @@ pub(super) struct Given {
 impl Given {
     /// The weight that a file has, before it is changed.
     pub(super) fn of(written: Option<&Item>, cg_mac: Option<f64>) -> Self {
-        let mass = written.and_then(|file| file.member("mass"));
-        let weight = |(key, size): (&str, f64)| Some(size * mass?.member(key)?.number()?);
-        let weight_n =
-            [("weight_lbf", POUND_FORCE_N), ("weight_n", 1.0)].into_iter().find_map(weight);
+        let mass = written.and_then(|file| file.member(keys::MASS.name.as_str()));
+        let weight = |key: Key<f64>| {
+            Some(unit_size(key.unit()) * mass?.member(key.name.as_str())?.number()?)
+        };
+        let weight_n = keys::WEIGHT.into_iter().find_map(weight);
         Self { weight_n, cg_mac }
     }
 }
@@ -121,7 +115,7 @@ pub(super) fn aircraft_data(
     (section, place): (&Section, &Path),
     given: Given,
 ) -> Option<AircraftData> {
-    let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
+    let text = |key| section.get::<str>(key).unwrap_or_default().to_owned();
     let model = match section.variant()? {
         AircraftKind::Linear => ModelData::Linear(linear::model(report, section)?),
         AircraftKind::Tables => {
@@ -132,158 +126,159 @@ pub(super) fn aircraft_data(
         }
     };
     Some(AircraftData {
-        name: text("name"),
-        title: text("title"),
-        source: text("source"),
-        notes: text("notes"),
+        name: text(keys::NAME),
+        title: text(keys::TITLE),
+        source: text(keys::SOURCE),
+        notes: text(keys::NOTES),
         model,
     })
 }
 
 fn derivatives(report: &mut Report, section: &Section, given: Given) -> Option<DerivativeData> {
-    let part = |name: &str| section.section(name);
-    let reference = reference(part("reference")?)?;
-    let flown_n = quantity(part("mass")?, "weight")?;
+    let part = |key| section.get(key);
+    let reference = reference(part(keys::REFERENCE)?)?;
+    let flown_n = quantity(part(keys::MASS)?, keys::WEIGHT)?;
     let weight_n = given.weight_n.unwrap_or(flown_n);
     // A scenario that changes the weight loads the aircraft; its wing carries what the file says.
     let mass_kg = flown_n.total_cmp(&weight_n).is_ne().then_some(flown_n / reference.gravity_m_s2);
     let data = DerivativeData {
         reference,
-        geometry: geometry(part("geometry")?)?,
+        geometry: geometry(part(keys::GEOMETRY)?)?,
         weight_n,
-        inertia: inertia(part("mass")?)?,
+        inertia: inertia(part(keys::MASS)?)?,
         loading: Loading { mass_kg, ..Loading::default() },
-        longitudinal: longitudinal(part("longitudinal")?)?,
-        lateral: part("lateral").and_then(lateral),
-        validity: validity(part("validity")?)?,
-        travel: travel(part("travel")?)?,
+        longitudinal: longitudinal(part(keys::LONGITUDINAL)?)?,
+        lateral: part(keys::LATERAL).and_then(lateral),
+        validity: validity(part(keys::VALIDITY)?)?,
+        travel: travel(part(keys::TRAVEL)?)?,
     };
     match data.mass_properties().validate() {
         Ok(()) => Some(data),
         Err(error) => {
             let allowed = "moments of inertia that a body can have".to_owned();
-            report.value(section.at("mass"), &section.path("mass"), error.to_string(), allowed);
+            report.value(
+                section.at(keys::MASS),
+                &section.path(keys::MASS),
+                error.to_string(),
+                allowed,
+            );
             None
         }
     }
 }
 
 fn reference(section: &Section) -> Option<Reference> {
-    let airspeed_m_s = quantity(section, "airspeed")?;
-    let density_kg_m3 = section.number("density_kg_m3").or_else(|| quantity(section, "density"))?;
+    let airspeed_m_s = quantity(section, keys::REFERENCE_AIRSPEED)?;
+    let density_kg_m3 = quantity(section, keys::DENSITY)?;
     let own_pa = 0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s;
     Some(Reference {
         airspeed_m_s,
-        altitude_m: quantity(section, "altitude")?,
+        altitude_m: quantity(section, keys::REFERENCE_ALTITUDE)?,
         density_kg_m3,
-        dynamic_pressure_pa: quantity(section, "dynamic_pressure").unwrap_or(own_pa),
-        mach: section.number("mach")?,
-        gravity_m_s2: quantity(section, "gravity")?,
-        alpha_rad: radians(section.number("alpha_deg")?),
-        cg_mac: section.number("cg_mac"),
+        dynamic_pressure_pa: quantity(section, keys::DYNAMIC_PRESSURE).unwrap_or(own_pa),
+        mach: section.get(keys::REFERENCE_MACH)?,
+        gravity_m_s2: quantity(section, keys::GRAVITY)?,
+        alpha_rad: radians(section.get(keys::REFERENCE_ALPHA_DEG)?),
+        cg_mac: section.get(keys::CG_MAC),
     })
 }
 
 fn geometry(section: &Section) -> Option<Geometry> {
     Some(Geometry {
-        area_m2: quantity(section, "area")?,
-        span_m: quantity(section, "span")?,
-        chord_m: quantity(section, "chord")?,
+        area_m2: quantity(section, keys::AREA)?,
+        span_m: quantity(section, keys::SPAN)?,
+        chord_m: quantity(section, keys::CHORD)?,
     })
 }
 
 fn inertia(section: &Section) -> Option<Inertia> {
     Some(Inertia {
-        ix_kg_m2: quantity(section, "ix")?,
-        iy_kg_m2: quantity(section, "iy")?,
-        iz_kg_m2: quantity(section, "iz")?,
-        ixz_kg_m2: quantity(section, "ixz")?,
+        ix_kg_m2: quantity(section, keys::IX)?,
+        iy_kg_m2: quantity(section, keys::IY)?,
+        iz_kg_m2: quantity(section, keys::IZ)?,
+        ixz_kg_m2: quantity(section, keys::IXZ)?,
     })
 }
 
 fn longitudinal(section: &Section) -> Option<Longitudinal> {
-    let row = |name: &str| section.section(name).map(longitudinal_row);
+    let row = |key| section.get(key).map(longitudinal_row);
     Some(Longitudinal {
-        lift: row("lift")?,
-        drag: row("drag")?,
-        pitch: row("pitch")?,
-        thrust_speed: plain(section, "thrust_speed"),
+        lift: row(keys::LIFT)?,
+        drag: row(keys::DRAG)?,
+        pitch: row(keys::PITCH)?,
+        thrust_speed: plain(section, keys::THRUST_SPEED),
     })
 }
 
 fn longitudinal_row(row: &Section) -> LongitudinalCoefficient {
     LongitudinalCoefficient {
-        reference: plain(row, "reference"),
-        alpha: plain(row, "alpha"),
-        alpha_rate: plain(row, "alpha_rate"),
-        pitch_rate: plain(row, "pitch_rate"),
-        speed: plain(row, "speed"),
-        elevator: plain(row, "elevator"),
+        reference: plain(row, keys::COEFFICIENT_REFERENCE),
+        alpha: plain(row, keys::ALPHA),
+        alpha_rate: plain(row, keys::ALPHA_RATE),
+        pitch_rate: plain(row, keys::PITCH_RATE),
+        speed: plain(row, keys::SPEED),
+        elevator: plain(row, keys::ELEVATOR),
     }
 }
 
 fn lateral(section: &Section) -> Option<Lateral> {
-    let row = |name: &str| section.section(name).map(lateral_row);
-    Some(Lateral { side: row("side")?, roll: row("roll")?, yaw: row("yaw")? })
+    let row = |key| section.get(key).map(lateral_row);
+    Some(Lateral { side: row(keys::SIDE)?, roll: row(keys::ROLL)?, yaw: row(keys::YAW)? })
 }
 
 fn lateral_row(row: &Section) -> LateralCoefficient {
     LateralCoefficient {
-        beta: plain(row, "beta"),
-        roll_rate: plain(row, "roll_rate"),
-        yaw_rate: plain(row, "yaw_rate"),
-        aileron: plain(row, "aileron"),
-        rudder: plain(row, "rudder"),
+        beta: plain(row, keys::BETA),
+        roll_rate: plain(row, keys::ROLL_RATE),
+        yaw_rate: plain(row, keys::YAW_RATE),
+        aileron: plain(row, keys::AILERON),
+        rudder: plain(row, keys::RUDDER),
     }
 }
 
 fn validity(section: &Section) -> Option<Validity> {
     Some(Validity {
-        airspeed_m_s: range(section, "airspeed")?,
-        mach: range(section, "mach")?,
-        alpha_rad: range(section, "alpha")?,
-        beta_rad: range(section, "beta")?,
-        altitude_m: range(section, "altitude")?,
+        airspeed_m_s: range(section, keys::VALIDITY_AIRSPEED)?,
+        mach: range(section, [keys::VALIDITY_MACH])?,
+        alpha_rad: range(section, [keys::VALIDITY_ALPHA_DEG])?,
+        beta_rad: range(section, [keys::BETA_DEG])?,
+        altitude_m: range(section, keys::VALIDITY_ALTITUDE)?,
     })
 }
 
 fn travel(section: &Section) -> Option<Travel> {
-    Some(Travel { throttle: range(section, "throttle")?, ..surfaces(section)? })
+    Some(Travel { throttle: range(section, [keys::THROTTLE])?, ..surfaces(section)? })
 }
 
 /// Travel of the surfaces, with a throttle from 0 to 1.
 pub(super) fn surfaces(section: &Section) -> Option<Travel> {
     Some(Travel {
-        elevator_rad: range(section, "elevator")?,
-        aileron_rad: range(section, "aileron")?,
-        rudder_rad: range(section, "rudder")?,
+        elevator_rad: range(section, [keys::ELEVATOR_DEG])?,
+        aileron_rad: range(section, [keys::AILERON_DEG])?,
+        rudder_rad: range(section, [keys::RUDDER_DEG])?,
         throttle: Range { min: 0.0, max: 1.0 },
     })
 }
 
 /// A coefficient, 0 if it is left out.
-fn plain(section: &Section, name: &str) -> f64 {
-    section.number(name).unwrap_or(0.0)
+fn plain(section: &Section, key: Key<f64>) -> f64 {
+    section.get(key).unwrap_or(0.0)
 }
 
-/// The value in SI of the key that begins with a name and ends with a unit.
-pub(super) fn quantity(section: &Section, name: &str) -> Option<f64> {
-    let given =
-        |(unit, size): &(&str, f64)| Some(size * section.number(&format!("{name}_{unit}"))?);
-    UNITS.iter().find_map(given)
+/// The value in SI of the one of these keys that is given; they differ in their units.
+pub(super) fn quantity<const N: usize>(section: &Section, keys: [Key<f64>; N]) -> Option<f64> {
+    keys.into_iter().find_map(|key| Some(unit_size(key.unit()) * section.get(key)?))
 }
 
-/// As [`quantity`], for two ends; degrees become radians, and a key may have no unit.
-fn range(section: &Section, name: &str) -> Option<Range> {
-    if let Some((min, max)) = section.interval(&format!("{name}_deg")) {
-        return Some(Range { min: radians(min), max: radians(max) });
-    }
-    let given = |(unit, size): &(&str, f64)| {
-        section.interval(&format!("{name}_{unit}")).map(|ends| (ends, *size))
-    };
-    let plain = || section.interval(name).map(|ends| (ends, 1.0));
-    let ((min, max), size) = UNITS.iter().find_map(given).or_else(plain)?;
-    Some(Range { min: size * min, max: size * max })
+/// As [`quantity`], for two ends; degrees become radians.
+fn range<const N: usize>(section: &Section, keys: [Key<(f64, f64)>; N]) -> Option<Range> {
+    keys.into_iter().find_map(|key| {
+        let (min, max) = section.get(key)?;
+        Some(match key.unit() {
+            "deg" => Range { min: radians(min), max: radians(max) },
+            unit => Range { min: unit_size(unit) * min, max: unit_size(unit) * max },
+        })
+    })
 }
 
 #[cfg(test)]

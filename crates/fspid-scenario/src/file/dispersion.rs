@@ -4,12 +4,13 @@ use crate::dispersion::{
     Choice, Correlated, Dispersion, DispersionError, Distribution, LogUniform, Normal, Target,
     Uniform,
 };
-use crate::file::document::{Item, Value};
-use crate::file::section::Section;
+use crate::file::spec::dispersion as keys;
 use crate::file::spec::dispersion::{
     DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
 };
 use crate::file::{NewValue, SettingPath, Template};
+use crate::keyed::Section;
+use crate::keyed::document::{Item, Value};
 use fspid_diagnostics::{Problems, Report, Span};
 
 /// Most values that a choice is made from.
@@ -28,7 +29,7 @@ pub(crate) fn dispersions(report: &mut Report, sections: &[Section]) -> Vec<Disp
 }
 
 fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
-    let word: DistributionWord = section.word("distribution")?;
+    let word: DistributionWord = section.get(keys::DISTRIBUTION)?;
     let before = report.count();
     check_keys(report, section, word);
     let paths = paths(report, section);
@@ -48,13 +49,13 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
         Ok(distribution) => distribution,
         Err(error) => {
             let key = match word {
-                DistributionWord::Correlated => "correlation",
-                DistributionWord::Choice => "weights",
-                DistributionWord::Normal if !section.given("lower") => "mean",
+                DistributionWord::Correlated => keys::CORRELATION.name,
+                DistributionWord::Choice => keys::WEIGHTS.name,
+                DistributionWord::Normal if !section.given(keys::LOWER) => keys::MEAN.name,
                 DistributionWord::Normal
                 | DistributionWord::Uniform
-                | DistributionWord::LogUniform => "lower",
-                DistributionWord::Seed => "distribution",
+                | DistributionWord::LogUniform => keys::LOWER.name,
+                DistributionWord::Seed => keys::DISTRIBUTION.name,
             };
             let text = error.to_string();
             let (message, allowed) = in_two(&text);
@@ -62,9 +63,9 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
             return None;
         }
     };
-    let relative = section.boolean("relative")?;
+    let relative = section.get(keys::RELATIVE)?;
     if relative && (word == DistributionWord::Seed || choices.iter().any(|it| !is_number(it))) {
-        let (place, path) = (section.at("relative"), section.path("relative"));
+        let (place, path) = (section.at(keys::RELATIVE), section.path(keys::RELATIVE));
         report.value(place, &path, "only numbers can be factors", "false");
         return None;
     }
@@ -85,14 +86,14 @@ fn is_number(value: &NewValue) -> bool {
 fn check_keys(report: &mut Report, section: &Section, distribution: DistributionWord) {
     let [needed, allowed] = keys_of(distribution);
     let word = distribution.name();
-    for key in needed.iter().filter(|key| !section.given(key)) {
+    for key in needed.iter().copied().filter(|key| !section.given(*key)) {
         let message = format!("missing key; distribution \"{word}\" needs it");
         report.missing(section.place, &section.path(key), message, "");
     }
-    for key in OWN_KEYS.into_iter().filter(|key| section.given(key)) {
+    for key in OWN_KEYS.into_iter().filter(|key| section.given(*key)) {
         if !needed.contains(&key) && !allowed.contains(&key) {
             let message = format!("says nothing to distribution \"{word}\"");
-            let may: Vec<&str> = needed.iter().chain(allowed).copied().collect();
+            let may = needed.iter().chain(allowed).map(|key| key.as_str()).collect::<Vec<_>>();
             report.value(section.at(key), &section.path(key), message, may.join(", "));
         }
     }
@@ -100,7 +101,7 @@ fn check_keys(report: &mut Report, section: &Section, distribution: Distribution
 
 /// Refuses lists that have not one number for each path.
 fn check_lengths(report: &mut Report, section: &Section, paths: usize) {
-    for key in ["means", "standard_deviations", "lowers", "uppers"] {
+    for key in [keys::MEANS, keys::STANDARD_DEVIATIONS, keys::LOWERS, keys::UPPERS] {
         let found = section.numbers(key).map_or(paths, |numbers| numbers.len());
         if found != paths {
             let message = format!("{found} numbers for {paths} paths");
@@ -111,15 +112,15 @@ fn check_lengths(report: &mut Report, section: &Section, paths: usize) {
 
 /// The places, each with its steps.
 fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
-    if section.given("path") == section.given("paths") {
+    if section.given(keys::PATH) == section.given(keys::PATHS) {
         let message = "exactly one of `path` and `paths` must be there";
-        report.missing(section.place, &section.path("path"), message, "path or paths");
+        report.missing(section.place, &section.path(keys::PATH), message, "path or paths");
         return None;
     }
-    let key = if section.given("path") { "path" } else { "paths" };
-    let texts = match section.text("path") {
+    let key = if section.given(keys::PATH) { keys::PATH.name } else { keys::PATHS.name };
+    let texts = match section.get(keys::PATH) {
         Some(text) => Some(vec![(section.at(key), text.to_owned())]),
-        None => section.item("paths").and_then(placed_texts),
+        None => section.get(keys::PATHS).and_then(placed_texts),
     };
     let Some(texts) = texts.filter(|texts| !texts.is_empty()) else {
         report.value(section.at(key), &section.path(key), "wrong type", paths_in_words());
@@ -166,7 +167,7 @@ pub(super) fn placed_texts(item: &Item) -> Option<Vec<(Span, String)>> {
 
 /// What a choice chooses from.
 fn values(report: &mut Report, section: &Section) -> Option<Vec<NewValue>> {
-    let item = section.item("values")?;
+    let item = section.get(keys::VALUES)?;
     let value = |item: &Item| match &item.value {
         Value::Integer(_, Some(whole)) => Some(NewValue::Integer(*whole)),
         Value::Float(number) if number.is_finite() => Some(NewValue::Number(*number)),
@@ -181,14 +182,14 @@ fn values(report: &mut Report, section: &Section) -> Option<Vec<NewValue>> {
         _ => None,
     };
     if values.is_none() {
-        report.value(item.place, &section.path("values"), "wrong values", values_in_words());
+        report.value(item.place, &section.path(keys::VALUES), "wrong values", values_in_words());
     }
     values
 }
 
 /// A matrix by its rows.
 fn matrix(report: &mut Report, section: &Section) -> Option<Vec<Vec<f64>>> {
-    let item = section.item("correlation")?;
+    let item = section.get(keys::CORRELATION)?;
     let number = |item: &Item| match &item.value {
         Value::Float(number) | Value::Integer(number, _) if number.is_finite() => Some(*number),
         _ => None,
@@ -202,7 +203,7 @@ fn matrix(report: &mut Report, section: &Section) -> Option<Vec<Vec<f64>>> {
         _ => None,
     };
     if rows.is_none() {
-        report.value(item.place, &section.path("correlation"), "no matrix", matrix_in_words());
+        report.value(item.place, &section.path(keys::CORRELATION), "no matrix", matrix_in_words());
     }
     rows
 }
@@ -220,21 +221,22 @@ impl Numbers<'_> {
         word: DistributionWord,
     ) -> Option<Result<Distribution, DispersionError>> {
         let section = self.section;
-        let number = |key: &str| section.number(key);
+        let number = |key| section.get(key);
         Some(match word {
             DistributionWord::Normal => {
-                let (mean, deviation) = (number("mean")?, number("standard_deviation")?);
-                normal(mean, deviation, [number("lower"), number("upper")])
+                let (mean, deviation) = (number(keys::MEAN)?, number(keys::STANDARD_DEVIATION)?);
+                normal(mean, deviation, [number(keys::LOWER), number(keys::UPPER)])
                     .map(Distribution::Normal)
             }
             DistributionWord::Uniform => {
-                Uniform::new(number("lower")?, number("upper")?).map(Distribution::Uniform)
+                Uniform::new(number(keys::LOWER)?, number(keys::UPPER)?).map(Distribution::Uniform)
             }
             DistributionWord::LogUniform => {
-                LogUniform::new(number("lower")?, number("upper")?).map(Distribution::LogUniform)
+                LogUniform::new(number(keys::LOWER)?, number(keys::UPPER)?)
+                    .map(Distribution::LogUniform)
             }
             DistributionWord::Choice => {
-                let weights = section.numbers("weights");
+                let weights = section.numbers(keys::WEIGHTS);
                 Choice::new(self.choices, weights.as_deref()).map(Distribution::Choice)
             }
             DistributionWord::Seed => Ok(Distribution::Seed),
@@ -243,9 +245,10 @@ impl Numbers<'_> {
     }
 
     fn correlated(&self) -> Option<Result<Distribution, DispersionError>> {
-        let numbers = |key: &str| self.section.numbers(key);
-        let (means, deviations) = (numbers("means")?, numbers("standard_deviations")?);
-        let [lowers, uppers] = ["lowers", "uppers"].map(|key| numbers(key).unwrap_or_default());
+        let numbers = |key| self.section.numbers(key);
+        let (means, deviations) = (numbers(keys::MEANS)?, numbers(keys::STANDARD_DEVIATIONS)?);
+        let [lowers, uppers] =
+            [keys::LOWERS, keys::UPPERS].map(|key| numbers(key).unwrap_or_default());
         let entry = |(index, (mean, deviation)): (usize, (f64, f64))| {
             normal(mean, deviation, [lowers.get(index).copied(), uppers.get(index).copied()])
         };
@@ -270,9 +273,14 @@ fn targets(
     paths: Vec<SettingPath>,
     correlated: bool,
 ) -> Option<Vec<Target>> {
-    if correlated && section.given("name") {
+    if correlated && section.given(keys::NAME) {
         let message = "correlated numbers are called by their paths";
-        report.value(section.at("name"), &section.path("name"), message, "nothing; leave it out");
+        report.value(
+            section.at(keys::NAME),
+            &section.path(keys::NAME),
+            message,
+            "nothing; leave it out",
+        );
         return None;
     }
     if correlated {
@@ -280,7 +288,7 @@ fn targets(
         return Some(paths.into_iter().map(target).collect());
     }
     let first = paths.first().map(|path| path.text().to_owned());
-    let name = section.text("name").map(str::to_owned).or(first)?;
+    let name = section.get(keys::NAME).map(str::to_owned).or(first)?;
     Some(vec![Target { name, paths }])
 }
 

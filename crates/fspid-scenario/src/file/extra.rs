@@ -1,9 +1,10 @@
 //! What is asked of a scenario from outside of its file: changes, ready sets, files of requirements.
 
-use crate::file::check;
-use crate::file::document::{self, Item, Member, Value};
 use crate::file::files::Files;
 use crate::file::spec::REQUIREMENT_FILE;
+use crate::file::spec::requirement as keys;
+use crate::keyed::check;
+use crate::keyed::document::{self, Item, Member, Value};
 use crate::requirement::SET_NAMES;
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
@@ -95,7 +96,7 @@ fn set_entry(report: &mut Report, text: &str) -> Option<Item> {
 fn file_entries(report: &mut Report, name: &str, text: &str) -> Vec<Item> {
     let document = document::read(report, Some(name.to_owned()), text);
     let section = document.and_then(|item| check::table(report, &REQUIREMENT_FILE, &item, ""));
-    let Some(list) = section.as_ref().and_then(|section| section.item("requirement")) else {
+    let Some(list) = section.as_ref().and_then(|section| section.get(keys::REQUIREMENT)) else {
         return Vec::new();
     };
     match &list.value {

@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 
 use sha2::{Digest as _, Sha256};
 
-use crate::file::document::{FILE_LIMIT, Item};
 use crate::file::overrides::Change;
-use crate::file::section::Section;
-use crate::file::spec::Table;
+use crate::keyed::Section;
+use crate::keyed::Table;
+use crate::keyed::document::{FILE_LIMIT, Item};
 use fspid_diagnostics::Report;
 
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.

@@ -3,10 +3,10 @@
 
 use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
-use crate::file::check::number_grid;
-use crate::file::document::{Item, Member, Value};
 use crate::file::setting::{grid_text, named_step};
 use crate::file::{NewValue, SettingPath, Template};
+use crate::keyed::check::number_grid;
+use crate::keyed::document::{Item, Member, Value};
 use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
 use fspid_diagnostics::{Problems, Report, Span, nearest};
 use fspid_optimise::Scale;

@@ -17,9 +17,7 @@
 
 mod aircraft;
 mod build;
-pub(crate) mod check;
 mod dispersion;
-pub(crate) mod document;
 mod extra;
 pub(crate) mod files;
 mod mark;
@@ -29,8 +27,7 @@ mod preset;
 mod renamed;
 mod requirement;
 mod rewrite;
-pub(crate) mod schema;
-pub(crate) mod section;
+mod schema;
 mod setting;
 pub(crate) mod spec;
 pub(crate) mod tables;
@@ -47,6 +44,7 @@ use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
 use crate::fuzzy_system::other_kind;
+use crate::keyed::{check, document};
 use crate::tuning::{Contest, Mark, Tuning};
 use fspid_diagnostics::{Place, Report, Span};
 

@@ -3,10 +3,10 @@
 //! A path may lead through a key that names a file or preset into what that says, as in
 //! `plant.preset.numerator[0]`. Such a change waits in [`Files`] until the file has been read.
 
-use crate::file::document::{Item, Member, Value, read_value};
 use crate::file::files::Files;
 use crate::file::mark::bare;
 use crate::file::renamed;
+use crate::keyed::document::{Item, Member, Value, read_value};
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// A step of a path.

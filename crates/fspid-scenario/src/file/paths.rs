@@ -4,14 +4,14 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::check::{self, allowed};
 use super::files::Files;
 use super::mark::FIXED;
-use super::schema::kind as schema_of;
-use super::section::{Checked, Entry, Section};
-use super::setting::{join, number, quoted, step, written};
-use super::spec::{Key, Kind, Presence, SCENARIO, Table, Way};
+use super::setting::{number, quoted, step, written};
+use super::spec::SCENARIO;
 use super::{LoadError, build, changed_document, extra::Extra, read_text};
+use crate::keyed::check::{self, allowed};
+use crate::keyed::schema::{self, kind as schema_of};
+use crate::keyed::{Checked, Entry, KeyName, KeyRow, Kind, Section, Table, Way, join};
 use fspid_diagnostics::Report;
 
 /// Top-level keys whose numbers cannot differ from run to run.
@@ -126,10 +126,10 @@ fn cut(text: &str, most: usize) -> String {
 }
 
 /// True for a key of another way of saying what the table says already: an aircraft beside a plant.
-fn is_excluded(spec: &Table, section: &Section, name: &str) -> bool {
+fn is_excluded(spec: &Table, section: &Section, name: KeyName) -> bool {
     spec.choices.iter().any(|choice| {
         let has = |way: &&Way| way.required.contains(&name) || way.optional.contains(&name);
-        let is_used = |way: &&Way| way.required.iter().any(|key| section.given(key));
+        let is_used = |way: &&Way| way.required.iter().any(|key| section.given(*key));
         let mut ways = choice.ways.iter();
         choice.ways.iter().any(|way| has(&way)) && ways.any(|way| is_used(&way) && !has(&way))
     })
@@ -150,21 +150,21 @@ impl Walk<'_> {
             self.kind(spec, path, Some(section.kind));
         }
         for key in spec.keys_of(section.kind) {
-            let inner = join(path, key.name);
+            let (name, inner) = (key.name(), join(path, key.name().as_str()));
             if path.is_empty() {
-                key.name.clone_into(&mut self.root);
+                name.as_str().clone_into(&mut self.root);
             }
-            match section.entry(key.name) {
-                Some(entry) => self.entry(key, entry, inner, &section.path(key.name)),
-                None if is_excluded(spec, section, key.name) => {}
+            match section.entry(name) {
+                Some(entry) => self.entry(key, entry, inner, &section.path(name)),
+                None if is_excluded(spec, section, name) => {}
                 None => self.absent(key, inner, true),
             }
         }
     }
 
-    fn entry(&mut self, key: &'static Key, entry: &Entry, path: String, place: &str) {
-        match (&entry.value, &key.kind) {
-            (Checked::Section(section), Kind::Table(spec) | Kind::Rules(spec)) => {
+    fn entry(&mut self, key: KeyRow, entry: &Entry, path: String, place: &str) {
+        match (&entry.value, key.kind()) {
+            (Checked::Section(section), Kind::Table(spec) | Kind::Rules { grids: spec, .. }) => {
                 self.keys(spec, section, &path);
             }
             (Checked::Sections(sections), Kind::Tables { table, .. }) => {
@@ -206,10 +206,10 @@ impl Walk<'_> {
     }
 
     /// A key that the file leaves out, with those of its table; its default flies where its table `is_there`.
-    fn absent(&mut self, key: &'static Key, path: String, is_there: bool) {
-        match (&key.presence, &key.kind) {
-            (Presence::Default(default), kind) if is_there => {
-                self.push(kind, path, Some(whole(&check::default_value(kind, *default))), false);
+    fn absent(&mut self, key: KeyRow, path: String, is_there: bool) {
+        match (key.default(), key.kind()) {
+            (Some(default), kind) if is_there => {
+                self.push(kind, path, Some(whole(&default)), false);
             }
             // Lists that are left out have no entry to be changed.
             (_, Kind::Tables { .. }) => {}
@@ -219,12 +219,13 @@ impl Walk<'_> {
                     self.kind(spec, &path, None);
                 }
                 // Kinds may share a key.
-                let mut told: Vec<&str> = Vec::new();
-                let of_kinds = spec.variants.iter().flat_map(|kind| kind.table.keys());
-                for key in spec.keys().chain(of_kinds) {
-                    if !told.contains(&key.name) {
-                        told.push(key.name);
-                        self.absent(key, join(&path, key.name), is_there && spec.may_be_empty());
+                let mut told: Vec<KeyName> = Vec::new();
+                for key in spec.all_keys() {
+                    let name = key.name();
+                    if !told.contains(&name) {
+                        told.push(name);
+                        let path = join(&path, name.as_str());
+                        self.absent(key, path, is_there && spec.may_be_empty());
                     }
                 }
             }
@@ -246,7 +247,7 @@ impl Walk<'_> {
         let (words, schema) = match kind {
             // One of its numbers.
             Kind::Numbers { unit, range, .. } | Kind::Interval { unit, range } => {
-                (range.words(unit), super::schema::number(*range).as_object().cloned())
+                (range.words(unit), schema::number(*range).as_object().cloned())
             }
             kind => (allowed(kind), Some(schema_of(kind))),
         };
@@ -264,7 +265,7 @@ impl Walk<'_> {
             Kind::Text
             | Kind::FreeText
             | Kind::Own { .. }
-            | Kind::Rules(_)
+            | Kind::Rules { .. }
             | Kind::Grid
             | Kind::NumberGrid
             | Kind::Table(_)

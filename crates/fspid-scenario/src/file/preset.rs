@@ -8,9 +8,10 @@ use fspid_sim::{ElevatorSign, LinearPlant};
 
 use crate::file::build::{data, elevator_sign};
 use crate::file::files::Files;
-use crate::file::section::Section;
 use crate::file::spec::PLANT_FILE;
+use crate::file::spec::data as keys;
 use crate::file::{check, document};
+use crate::keyed::Section;
 use fspid_diagnostics::{Problems, Report};
 
 /// Names of the plants that the program carries.
@@ -100,23 +101,23 @@ fn plant_file(report: &mut Report, section: &Section) -> Option<PlantFile> {
     if !section.sound {
         return None;
     }
-    let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
-    let condition = section.section("condition").map(|section| Condition {
-        aircraft: section.text("aircraft").map(str::to_owned),
-        speed_m_s: section.number("speed_m_s"),
-        altitude_m: section.number("altitude_m"),
-        mach: section.number("mach"),
-        mass_kg: section.number("mass_kg"),
+    let text = |key| section.get::<str>(key).unwrap_or_default().to_owned();
+    let condition = section.get(keys::CONDITION).map(|section| Condition {
+        aircraft: section.get(keys::AIRCRAFT).map(str::to_owned),
+        speed_m_s: section.get(keys::SPEED_M_S),
+        altitude_m: section.get(keys::ALTITUDE_M),
+        mach: section.get(keys::MACH),
+        mass_kg: section.get(keys::MASS_KG),
     });
     Some(PlantFile {
-        name: text("name"),
-        title: text("title"),
-        numerator: section.numbers("numerator")?,
-        denominator: section.numbers("denominator")?,
+        name: text(keys::NAME),
+        title: text(keys::TITLE),
+        numerator: section.numbers(keys::NUMERATOR)?,
+        denominator: section.numbers(keys::DENOMINATOR)?,
         elevator_sign: elevator_sign(section)?,
         condition: condition.unwrap_or_default(),
-        source: text("source"),
-        notes: text("notes"),
+        source: text(keys::PLANT_SOURCE),
+        notes: text(keys::NOTES),
         plant: data::coefficients(report, section, elevator_sign(section)?)?,
     })
 }

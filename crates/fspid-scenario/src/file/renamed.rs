@@ -3,8 +3,8 @@
 //! A text is renamed where it is read, and a path where it is parsed, so that nothing else knows an old key. The schema, the
 //! lists of paths and the words that a mistyped key is compared with have the new ones alone.
 
-use crate::file::document::{Item, Member, Value};
 use crate::file::overrides::{Step, path_of, steps};
+use crate::keyed::document::{Item, Member, Value};
 use fspid_diagnostics::{Report, Span, excerpt};
 
 /// A key by both of its names.
@@ -139,25 +139,22 @@ fn is(part: &str, step: &Step) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::spec::{Kind, SCENARIO, Table};
+    use crate::file::spec::SCENARIO;
+    use crate::keyed::{Kind, Table};
 
     /// Names of the keys of the table at a path, of all kinds.
     fn names(path: &str) -> Vec<&'static str> {
         let mut tables: Vec<&'static Table> = vec![&SCENARIO];
         for part in path.split('.').filter(|part| *part != EACH) {
-            let keys = tables.iter().flat_map(|table| every_key(table));
-            let inner = keys.filter(|key| key.name == part).filter_map(|key| match &key.kind {
-                Kind::Table(table) | Kind::Tables { table, .. } => Some(*table),
-                _ => None,
-            });
+            let keys = tables.iter().flat_map(|table| table.all_keys());
+            let inner =
+                keys.filter(|key| key.name().as_str() == part).filter_map(|key| match key.kind() {
+                    Kind::Table(table) | Kind::Tables { table, .. } => Some(*table),
+                    _ => None,
+                });
             tables = inner.collect();
         }
-        tables.into_iter().flat_map(every_key).map(|key| key.name).collect()
-    }
-
-    fn every_key(table: &'static Table) -> Vec<&'static crate::file::spec::Key> {
-        let of_kinds = table.variants.iter().flat_map(|variant| variant.table.keys());
-        table.keys().chain(of_kinds).collect()
+        tables.into_iter().flat_map(Table::all_keys).map(|key| key.name().as_str()).collect()
     }
 
     #[test]

@@ -1,15 +1,18 @@
 //! Requirements as files have them: single ones, and ready sets.
 
-use crate::file::check;
 use crate::file::dispersion::texts;
-use crate::file::document;
 use crate::file::files::Files;
-use crate::file::section::Section;
-use crate::file::spec::{NOT_IN, ONLY_IN, SET_FILE, names_in_words};
+use crate::file::spec::requirement as keys;
+use crate::file::spec::requirement::{SET_FILE, names_in_words};
+use crate::file::spec::scenario::{CONTEST, REQUIREMENT, TUNING};
+use crate::file::spec::tuning;
+use crate::keyed::check;
+use crate::keyed::document;
+use crate::keyed::{Key, KeyName, Section};
 use crate::measure::Measure;
 use crate::requirement::{
-    Air, AskedIn, Choices, Conditions, Confidence, Origin, Requirement, RequirementSet, SET_NAMES,
-    SetLine, set, set_text,
+    Air, AskedIn, Choices, Conditions, Origin, Requirement, RequirementSet, SET_NAMES, SetLine,
+    set, set_text,
 };
 use fspid_diagnostics::{Problems, Report};
 
@@ -22,15 +25,15 @@ pub(crate) fn requirements(
 ) -> Vec<Requirement> {
     let mut requirements = Vec::new();
     for section in sections {
-        let controller = section.text("controller");
+        let controller = section.get(keys::CONTROLLER);
         if let Some(name) = controller
             && !names.contains(&name)
         {
-            let (place, path) = (section.at("controller"), section.path("controller"));
+            let (place, path) = (section.at(keys::CONTROLLER), section.path(keys::CONTROLLER));
             report.value(place, &path, "no controller has this name", names.join(", "));
             continue;
         }
-        let found = match section.text("set") {
+        let found = match section.get(keys::SET) {
             Some(name) => of_set(report, files, section, name),
             None => single(report, section).into_iter().collect(),
         };
@@ -48,23 +51,24 @@ pub(crate) fn requirements(
 
 /// Where it is asked; what is wrong with it is told by [`check_cases`].
 fn asked_in(section: &Section) -> AskedIn {
-    let names = |key| section.item(key).and_then(texts).unwrap_or_default();
-    AskedIn { only: names(ONLY_IN), not: names(NOT_IN) }
+    let names = |key| section.get(key).and_then(texts).unwrap_or_default();
+    AskedIn { only: names(keys::ONLY_IN), not: names(keys::NOT_IN) }
 }
 
 /// Refuses names of cases that there are not, and lists of anything else; warns of what the scenario as it is
 /// written is not asked.
 pub(crate) fn check_cases(report: &mut Report, scenario: &Section) {
-    let cases = ["tuning", "contest"].into_iter().filter_map(|key| scenario.section(key));
-    let cases: Vec<&Section> = cases.flat_map(|part| part.sections("case")).collect();
+    let cases = [TUNING, CONTEST].into_iter().filter_map(|key| scenario.get(key));
+    let cases: Vec<&Section> = cases.flat_map(|part| part.sections(tuning::CASE)).collect();
     let known = |name: &str| {
-        let is_it =
-            |case: &&&Section| [case.text("name"), case.text("group")].contains(&Some(name));
+        let is_it = |case: &&&Section| {
+            [case.get(tuning::NAME), case.get(tuning::GROUP)].contains(&Some(name))
+        };
         cases.iter().any(|case| is_it(&case))
     };
-    for section in scenario.sections("requirement") {
-        for key in [ONLY_IN, NOT_IN] {
-            let Some(item) = section.item(key) else {
+    for section in scenario.sections(REQUIREMENT) {
+        for key in [keys::ONLY_IN, keys::NOT_IN] {
+            let Some(item) = section.get(key) else {
                 continue;
             };
             let path = section.path(key);
@@ -78,20 +82,21 @@ pub(crate) fn check_cases(report: &mut Report, scenario: &Section) {
                 }
             }
         }
-        if let Some(only) = section.item(ONLY_IN) {
+        if let Some(only) = section.get(keys::ONLY_IN) {
             let asked = asked_in(section);
             let is_asked = |case: &&Section| {
-                let text = |key| case.text(key).unwrap_or_default();
-                asked.case(text("name"), text("group"))
+                let text = |key| case.get(key).unwrap_or_default();
+                asked.case(text(tuning::NAME), text(tuning::GROUP))
             };
             if !asked.only.is_empty()
                 && asked.only.iter().all(|name| known(name))
                 && !cases.iter().any(is_asked)
             {
                 let message = "`not_in` takes every case away again: it would be asked nowhere";
-                report.missing(only.place, &section.path(ONLY_IN), message, names_in_words());
+                report.missing(only.place, &section.path(keys::ONLY_IN), message, names_in_words());
             }
-            let measure = section.text("measure").or(section.text("set")).unwrap_or_default();
+            let measure = section.get(keys::MEASURE).map(Measure::name);
+            let measure = measure.or(section.get(keys::SET)).unwrap_or_default();
             report.warn(format!("{}: {measure} {}", section.path, AskedIn::NOT_AS_WRITTEN));
         }
     }
@@ -100,13 +105,18 @@ pub(crate) fn check_cases(report: &mut Report, scenario: &Section) {
 /// Refuses an id that an earlier requirement was given.
 fn check_ids(report: &mut Report, sections: &[Section]) {
     for (index, section) in sections.iter().enumerate() {
-        let Some(id) = section.text("id") else {
+        let Some(id) = section.get(keys::ID) else {
             continue;
         };
         let earlier = sections.get(..index).unwrap_or_default();
-        if let Some(twin) = earlier.iter().find(|other| other.text("id") == Some(id)) {
+        if let Some(twin) = earlier.iter().find(|other| other.get(keys::ID) == Some(id)) {
             let message = format!("the id is taken by {}", twin.path);
-            report.value(section.at("id"), &section.path("id"), message, "an id of its own");
+            report.value(
+                section.at(keys::ID),
+                &section.path(keys::ID),
+                message,
+                "an id of its own",
+            );
         }
     }
 }
@@ -130,27 +140,31 @@ fn number_ids(requirements: &mut [Requirement]) {
 }
 
 fn single(report: &mut Report, section: &Section) -> Option<Requirement> {
-    let measure = section.text("measure").and_then(Measure::from_name)?;
-    let (least, most) = limits(report, section, measure);
-    let conditions = conditions(section);
+    let measure = section.get(keys::MEASURE)?;
+    let limits = limits(report, section, measure);
+    let conditions = Conditions { air: section.get(keys::AIR), ..conditions(section) };
     check_conditions(report, section, measure, &conditions);
-    let text = |key| section.text(key).map(str::to_owned);
-    Some(Requirement {
-        id: text("id").unwrap_or_else(|| measure.name().to_owned()),
-        controller: None,
-        measure,
-        least,
-        most,
-        conditions,
-        origin: Origin {
-            set: None,
-            clause: text("clause"),
-            source: text("source"),
-            confidence: section.text("confidence").and_then(Confidence::from_name),
-            note: text("note"),
-        },
-        cases: AskedIn::default(),
-    })
+    let text = |key| section.get::<str>(key).map(str::to_owned);
+    let id = text(keys::ID).unwrap_or_else(|| measure.name().to_owned());
+    let origin = Origin {
+        set: None,
+        clause: text(keys::CLAUSE),
+        source: text(keys::SOURCE),
+        confidence: section.get(keys::CONFIDENCE),
+        note: text(keys::NOTE),
+    };
+    Some(Requirement { origin, ..bare(id, measure, limits, conditions) })
+}
+
+/// A requirement of every controller in every case, of which nobody says where it is from.
+fn bare(
+    id: String,
+    measure: Measure,
+    (least, most): (Option<f64>, Option<f64>),
+    conditions: Conditions,
+) -> Requirement {
+    let (origin, cases) = (Origin::default(), AskedIn::default());
+    Requirement { id, controller: None, measure, least, most, conditions, origin, cases }
 }
 
 /// The measure of an objective; its limit says which side is bad, so that the worst case is the one that
@@ -160,19 +174,11 @@ pub(crate) fn objective_requirement(
     section: &Section,
     (index, is_minimised): (usize, bool),
 ) -> Option<Requirement> {
-    let measure = section.text("measure").and_then(Measure::from_name)?;
+    let measure = section.get(keys::MEASURE)?;
     let conditions = conditions(section);
     check_conditions(report, section, measure, &conditions);
-    Some(Requirement {
-        id: format!("objective[{index}]"),
-        controller: None,
-        measure,
-        least: (!is_minimised).then_some(0.0),
-        most: is_minimised.then_some(0.0),
-        conditions,
-        origin: Origin::default(),
-        cases: AskedIn::default(),
-    })
+    let limits = ((!is_minimised).then_some(0.0), is_minimised.then_some(0.0));
+    Some(bare(format!("objective[{index}]"), measure, limits, conditions))
 }
 
 /// A limit of the mean of a measure over many flights.
@@ -181,40 +187,49 @@ pub(crate) fn limit_requirement(
     section: &Section,
     index: usize,
 ) -> Option<Requirement> {
-    single(report, section)
-        .map(|requirement| Requirement { id: format!("limit[{index}]"), ..requirement })
+    let measure = section.get(keys::MEASURE)?;
+    let limits = limits(report, section, measure);
+    let conditions = conditions(section);
+    check_conditions(report, section, measure, &conditions);
+    Some(bare(format!("limit[{index}]"), measure, limits, conditions))
 }
 
 /// The limits; a measure that is 1 or 0 has its own.
 fn limits(report: &mut Report, section: &Section, measure: Measure) -> (Option<f64>, Option<f64>) {
-    let (least, most) = (section.number("least"), section.number("most"));
-    let written = section.given("least") || section.given("most");
+    let (least, most) = (section.get(keys::LEAST), section.get(keys::MOST));
+    let written = section.given(keys::LEAST) || section.given(keys::MOST);
     if measure.is_yes_or_no() {
         return if written { (least, most) } else { (Some(1.0), None) };
     }
     // A limit that is written wrongly is told already, and so is a table with an unknown key.
     if !written && section.sound {
         let message = "missing key; a requirement has a limit";
-        report.missing(section.place, &section.path("most"), message, "`least`, `most` or both");
+        report.missing(
+            section.place,
+            &section.path(keys::MOST),
+            message,
+            "`least`, `most` or both",
+        );
     }
     if let (Some(least), Some(most)) = (least, most)
         && most < least
     {
-        let (place, path) = (section.at("most"), section.path("most"));
+        let (place, path) = (section.at(keys::MOST), section.path(keys::MOST));
         report.value(place, &path, "below `least`", format!("{least:?} or above"));
     }
     (least, most)
 }
 
+/// What counts, in whatever air.
 fn conditions(section: &Section) -> Conditions {
     Conditions {
-        step_deg: section.number("step_deg"),
-        within_deg: section.number("within_deg"),
-        from_s: section.number("from_s"),
-        to_s: section.number("to_s"),
-        from_hz: section.number("from_hz"),
-        to_hz: section.number("to_hz"),
-        air: section.text("air").and_then(Air::from_name),
+        step_deg: section.get(keys::STEP_DEG),
+        within_deg: section.get(keys::WITHIN_DEG),
+        from_s: section.get(keys::FROM_S),
+        to_s: section.get(keys::TO_S),
+        from_hz: section.get(keys::FROM_HZ),
+        to_hz: section.get(keys::TO_HZ),
+        air: None,
     }
 }
 
@@ -224,9 +239,10 @@ fn check_conditions(
     measure: Measure,
     conditions: &Conditions,
 ) {
-    let keys = ["step_deg", "within_deg", "from_s", "to_s", "from_hz", "to_hz", "air"];
-    for key in keys.into_iter().filter(|key| section.given(key) && !measure.takes(key)) {
-        let owners = Measure::ALL.into_iter().filter(|measure| measure.takes(key));
+    let are_asked = keys::CONDITIONS.iter().map(|key| key.name()).chain([keys::AIR.name]);
+    let is_given = |key: &KeyName| section.entries.iter().any(|it| it.name == *key && it.given);
+    for key in are_asked.filter(|key| is_given(key) && !measure.takes(key.as_str())) {
+        let owners = Measure::ALL.into_iter().filter(|measure| measure.takes(key.as_str()));
         let owners: Vec<&str> = owners.map(Measure::name).collect();
         let message = format!("says nothing about `{}`", measure.name());
         let allowed = format!("with {}", owners.join(", "));
@@ -235,22 +251,27 @@ fn check_conditions(
     if measure == Measure::RecoveryTime && conditions.within_deg.is_none() {
         let message = "missing key; it goes with `recovery_time_s`";
         let allowed = "a finite number above 0, in deg";
-        report.missing(section.place, &section.path("within_deg"), message, allowed);
+        report.missing(section.place, &section.path(keys::WITHIN_DEG), message, allowed);
     }
     if conditions.from_s.is_some() && conditions.step_deg.is_some() {
         let message = "not together with `step_deg`, from which the time counts";
-        report.value(section.at("from_s"), &section.path("from_s"), message, "one of the two");
+        report.value(
+            section.at(keys::FROM_S),
+            &section.path(keys::FROM_S),
+            message,
+            "one of the two",
+        );
     }
-    check_order(report, section, ["from_s", "to_s"]);
-    check_order(report, section, ["from_hz", "to_hz"]);
+    check_order(report, section, [keys::FROM_S, keys::TO_S]);
+    check_order(report, section, [keys::FROM_HZ, keys::TO_HZ]);
 }
 
 /// Refuses an end that is not after its beginning.
-fn check_order(report: &mut Report, section: &Section, [from, to]: [&str; 2]) {
-    if let (Some(first), Some(last)) = (section.number(from), section.number(to))
+fn check_order(report: &mut Report, section: &Section, [from, to]: [Key<f64>; 2]) {
+    if let (Some(first), Some(last)) = (section.get(from), section.get(to))
         && !(last > first)
     {
-        let message = format!("not above `{from}`");
+        let message = format!("not above `{}`", from.name);
         let (place, path) = (section.at(to), section.path(to));
         report.value(place, &path, message, format!("above {first:?}"));
     }
@@ -272,21 +293,27 @@ fn of_set(
 }
 
 fn choices(section: &Section) -> Choices {
-    let text = |key: &str, default: &str| section.text(key).unwrap_or(default).to_owned();
+    let text = |key, default: &str| section.get(key).unwrap_or(default).to_owned();
     Choices {
-        level: section.integer("level").unwrap_or(Choices::DEFAULT_LEVEL),
-        category: text("category", Choices::DEFAULT_CATEGORY),
-        speed: text("speed", Choices::DEFAULT_SPEED),
-        air: section.text("air").and_then(Air::from_name).unwrap_or(Air::Smooth),
-        first_aeroelastic_mode_hz: section.number("first_aeroelastic_mode_hz"),
+        level: section.get(keys::LEVEL).unwrap_or(Choices::DEFAULT_LEVEL),
+        category: text(keys::CATEGORY, Choices::DEFAULT_CATEGORY),
+        speed: text(keys::SPEED, Choices::DEFAULT_SPEED),
+        air: section.get(keys::AIR).unwrap_or(Air::Smooth),
+        first_aeroelastic_mode_hz: section.get(keys::FIRST_AEROELASTIC_MODE_HZ),
     }
 }
 
 /// Refuses a choice that the set does not leave.
 fn check_choices(report: &mut Report, section: &Section, chosen: &RequirementSet) {
-    let keys = ["level", "category", "speed", "air", "first_aeroelastic_mode_hz"];
-    for key in keys.into_iter().filter(|key| section.given(key) && !chosen.takes(key)) {
-        let takes = |name: &&&str| set(name).is_some_and(|set| set.takes(key));
+    let keys = [
+        keys::LEVEL.name,
+        keys::CATEGORY.name,
+        keys::SPEED.name,
+        keys::AIR.name,
+        keys::FIRST_AEROELASTIC_MODE_HZ.name,
+    ];
+    for key in keys.into_iter().filter(|it| section.given(*it) && !chosen.takes(it.as_str())) {
+        let takes = |name: &&&str| set(name).is_some_and(|set| set.takes(key.as_str()));
         let owners: Vec<String> =
             SET_NAMES.iter().filter(takes).map(|name| format!("\"{name}\"")).collect();
         let message = format!("the set \"{}\" leaves no such choice", chosen.name);
@@ -304,49 +331,49 @@ pub(crate) fn requirement_set(text: &str, name: &str) -> Result<RequirementSet, 
     let section = document::read(&mut report, None, text)
         .and_then(|item| check::table(&mut report, &SET_FILE, &item, ""));
     if let Some(section) = &section {
-        section.sections("line").iter().for_each(|line| check_line(&mut report, line));
+        section.sections(keys::LINE).iter().for_each(|line| check_line(&mut report, line));
     }
     report.finish(name)?;
     section.as_ref().and_then(set_of).ok_or_else(|| Problems::new(name, Vec::new(), 0))
 }
 
 fn check_line(report: &mut Report, line: &Section) {
-    if let Some(measure) = line.text("measure").and_then(Measure::from_name) {
+    if let Some(measure) = line.get(keys::MEASURE) {
         limits(report, line, measure);
         check_conditions(report, line, measure, &conditions(line));
     }
 }
 
 fn set_of(section: &Section) -> Option<RequirementSet> {
-    let text = |key| section.text(key).unwrap_or_default().to_owned();
-    let lines = section.sections("line").iter().map(line).collect::<Option<Vec<_>>>()?;
+    let text = |key| section.get::<str>(key).unwrap_or_default().to_owned();
+    let lines = section.sections(keys::LINE).iter().map(line).collect::<Option<Vec<_>>>()?;
     Some(RequirementSet {
-        name: text("name"),
-        title: text("title"),
-        source: text("source"),
-        notes: text("notes"),
+        name: text(keys::SET_NAME),
+        title: text(keys::TITLE),
+        source: text(keys::SET_SOURCE),
+        notes: text(keys::NOTES),
         lines,
     })
 }
 
 fn line(section: &Section) -> Option<SetLine> {
-    let measure = Measure::from_name(section.text("measure")?)?;
-    let least = section.number("least").or_else(|| measure.is_yes_or_no().then_some(1.0));
-    let text = |key| section.text(key).map(str::to_owned);
+    let measure = section.get(keys::LINE_MEASURE)?;
+    let least = section.get(keys::LEAST).or_else(|| measure.is_yes_or_no().then_some(1.0));
+    let text = |key| section.get::<str>(key).map(str::to_owned);
     Some(SetLine {
-        id: text("id")?,
+        id: text(keys::LINE_ID)?,
         measure,
         least,
-        most: section.number("most"),
-        conditions: conditions(section),
-        clause: text("clause")?,
-        source: text("source")?,
-        confidence: Confidence::from_name(section.text("confidence")?)?,
-        note: text("note"),
-        level: section.integer("level"),
-        category: text("category"),
-        speed: text("speed"),
-        below_aeroelastic_mode: section.boolean("below_aeroelastic_mode").unwrap_or(false),
-        above_aeroelastic_mode: section.boolean("above_aeroelastic_mode").unwrap_or(false),
+        most: section.get(keys::MOST),
+        conditions: Conditions { air: section.get(keys::LINE_AIR), ..conditions(section) },
+        clause: text(keys::LINE_CLAUSE)?,
+        source: text(keys::LINE_SOURCE)?,
+        confidence: section.get(keys::LINE_CONFIDENCE)?,
+        note: text(keys::NOTE),
+        level: section.get(keys::LINE_LEVEL),
+        category: text(keys::LINE_CATEGORY),
+        speed: text(keys::LINE_SPEED),
+        below_aeroelastic_mode: section.get(keys::BELOW_AEROELASTIC_MODE).unwrap_or(false),
+        above_aeroelastic_mode: section.get(keys::ABOVE_AEROELASTIC_MODE).unwrap_or(false),
     })
 }

@@ -5,12 +5,13 @@
 use fspid_core::{Gains, PidConfig};
 use fspid_sim::ElevatorSign;
 
-use crate::file::document::{Item, Member, Value};
 use crate::file::extra::Extra;
 use crate::file::files::Files;
 use crate::file::overrides::{self, Change};
-use crate::file::preset::rule_table_names;
-use crate::file::spec::{Kind, SCENARIO, Table};
+use crate::file::spec::SCENARIO;
+use crate::file::spec::scenario::CONTROLLER;
+use crate::keyed::document::{Item, Member, Value};
+use crate::keyed::{Kind, Table};
 use crate::requirement::Requirement;
 use fspid_diagnostics::{Report, Span};
 
@@ -162,7 +163,8 @@ fn keep_controller(members: &mut Vec<Member>, replay: &Replay<'_>) -> Option<usi
 
 /// A self-tuning controller with its gains held: a PID of the same configuration.
 fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, config: &PidConfig<f64>) {
-    let of_pid: Vec<&str> = controller_table().keys_of("pid").map(|key| key.name).collect();
+    let of_pid: Vec<&str> =
+        controller_table().keys_of("pid").map(|key| key.name().as_str()).collect();
     keys.retain(|member| of_pid.contains(&member.name.as_str()));
     put(keys, "kind", text_value("pid"));
     // The filter may have been given with gains in ISA form.
@@ -173,8 +175,8 @@ fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, config: &PidConfig<f64>) {
 }
 
 fn controller_table() -> &'static Table {
-    let mut tables = SCENARIO.keys().filter_map(|key| match key.kind {
-        Kind::Tables { table, .. } if key.name == "controller" => Some(table),
+    let mut tables = SCENARIO.keys().filter_map(|key| match key.kind() {
+        Kind::Tables { table, .. } if key.name() == CONTROLLER.name => Some(*table),
         _ => None,
     });
     // The specification has a list of controllers; without one nothing would be kept.
@@ -214,12 +216,12 @@ fn requirement(replay: &Replay<'_>) -> Item {
 fn move_paths(spec: &'static Table, members: &mut [Member], moved: &dyn Fn(&str) -> String) {
     let kind = kind_of(members).to_owned();
     for member in members {
-        let Some(key) = spec.keys_of(&kind).find(|key| key.name == member.name) else {
+        let Some(key) = spec.keys_of(&kind).find(|key| key.name().as_str() == member.name) else {
             continue;
         };
-        match (&key.kind, &mut member.item.value) {
+        match (key.kind(), &mut member.item.value) {
             (Kind::Path, Value::Text(path)) => *path = moved(path),
-            (Kind::Rules(_), Value::Text(path)) if !rule_table_names().contains(&path.as_str()) => {
+            (Kind::Rules { names, .. }, Value::Text(path)) if !names().contains(&path.as_str()) => {
                 *path = moved(path);
             }
             (Kind::Table(table), Value::Table(members)) => move_paths(table, members, moved),
@@ -247,7 +249,10 @@ fn kind_of(members: &[Member]) -> &str {
 fn in_order(spec: &'static Table, members: &[Member]) -> Vec<Member> {
     let place = |name: &str| match name {
         "kind" => Some(0),
-        name => spec.keys_of(kind_of(members)).position(|key| key.name == name).map(|at| at + 1),
+        name => spec
+            .keys_of(kind_of(members))
+            .position(|key| key.name().as_str() == name)
+            .map(|at| at + 1),
     };
     let mut ordered = members.to_vec();
     ordered.sort_by_key(|member| place(&member.name).unwrap_or(usize::MAX));
@@ -265,7 +270,8 @@ fn write_document(out: &mut String, members: &[Member]) {
         write_line(out, member);
     }
     for member in members.iter().filter(is_table) {
-        let spec = SCENARIO.keys().find(|key| key.name == member.name).map(|key| &key.kind);
+        let spec =
+            SCENARIO.keys().find(|key| key.name().as_str() == member.name).map(|key| key.kind());
         match (&member.item.value, spec) {
             (Value::Table(table), Some(Kind::Table(spec))) => {
                 out.push_str(&format!("\n[{}]\n", key(&member.name)));

@@ -2,11 +2,10 @@
 
 use fspid_fuzzy::{Grid, LABEL_COUNT, Label};
 
-use crate::file::check::default_value;
 use crate::file::files::Files;
 use crate::file::rewrite;
-use crate::file::section::{Checked, Entry, Section};
-use crate::file::spec::{Key, Kind, Presence, SCENARIO, Table};
+use crate::file::spec::SCENARIO;
+use crate::keyed::{Checked, Entry, KeyRow, Kind, Section, Table, join};
 
 /// Most numbers of a list that are all written.
 const MOST_NUMBERS: usize = 12;
@@ -55,18 +54,18 @@ impl Walk<'_> {
             self.push(join(path, "kind"), text(section.kind), "", true);
         }
         for key in spec.keys_of(section.kind) {
-            let inner = join(path, key.name);
-            match section.entry(key.name) {
-                Some(entry) => self.entry(key, entry, inner, &section.path(key.name)),
-                None => self.absent(key, inner, &section.path(key.name)),
+            let (name, inner) = (key.name(), join(path, key.name().as_str()));
+            match section.entry(name) {
+                Some(entry) => self.entry(key, entry, inner, &section.path(name)),
+                None => self.absent(key, inner, &section.path(name)),
             }
         }
     }
 
     /// A key that holds a value; `place` is its path with every table told by its number.
-    fn entry(&mut self, key: &'static Key, entry: &Entry, path: String, place: &str) {
-        match (&entry.value, &key.kind) {
-            (Checked::Section(section), Kind::Table(spec) | Kind::Rules(spec)) => {
+    fn entry(&mut self, key: KeyRow, entry: &Entry, path: String, place: &str) {
+        match (&entry.value, key.kind()) {
+            (Checked::Section(section), Kind::Table(spec) | Kind::Rules { grids: spec, .. }) => {
                 self.inside(path, |walk, path| walk.keys(spec, section, path));
             }
             (Checked::Sections(sections), Kind::Tables { table, .. }) => {
@@ -86,18 +85,17 @@ impl Walk<'_> {
 
     /// A key that the file leaves out: its default may be what another file makes it, and the keys of its table may
     /// have some.
-    fn absent(&mut self, key: &'static Key, path: String, place: &str) {
+    fn absent(&mut self, key: KeyRow, path: String, place: &str) {
         if let Some(word) = self.files.filled(place) {
-            return self.push(path, text(word), key.kind.unit(), false);
+            return self.push(path, text(word), key.kind().unit(), false);
         }
-        match (&key.presence, &key.kind) {
-            (Presence::Default(default), kind) => {
-                self.push(path, written(&default_value(kind, *default)), kind.unit(), false);
-            }
+        match (key.default(), key.kind()) {
+            (Some(default), kind) => self.push(path, written(&default), kind.unit(), false),
             (_, Kind::Table(spec)) if spec.may_be_empty() => {
                 self.inside(path, |walk, path| {
                     for key in spec.keys() {
-                        walk.absent(key, join(path, key.name), &join(place, key.name));
+                        let name = key.name().as_str();
+                        walk.absent(key, join(path, name), &join(place, name));
                     }
                 });
             }
@@ -123,13 +121,9 @@ impl Walk<'_> {
     }
 }
 
-pub(super) fn join(path: &str, name: &str) -> String {
-    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
-}
-
 /// The step to a table of a list: its name where a path can hold it, its number elsewhere.
 pub(super) fn step(section: &Section, index: usize) -> String {
-    named_step(section.text("name").unwrap_or_default(), index)
+    named_step(section.own_name(), index)
 }
 
 /// The step to the entry of a list that has this name, or none.

@@ -10,7 +10,8 @@ use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};
 use crate::file::files::{Files, STANDARD_INPUT};
-use crate::file::section::Section;
+use crate::file::spec::tables as keys;
+use crate::keyed::{Key, Section};
 use fspid_diagnostics::{Report, Span};
 
 /// What each file of tables may be.
@@ -33,12 +34,12 @@ pub(super) fn tables(
     (section, place): (&Section, &Path),
     cg_mac: Option<f64>,
 ) -> Option<ForceData> {
-    let part = section.section("tables")?;
+    let part = section.get(keys::TABLES)?;
     engine_fits(report, section, part)?;
     let [aerodynamics, inertia] =
-        ["aerodynamics", "inertia"].map(|key| model(report, files, (part, key), place));
-    let propulsion = match part.given("propulsion") {
-        true => Some(model(report, files, (part, "propulsion"), place)),
+        [keys::AERODYNAMICS, keys::INERTIA].map(|key| model(report, files, (part, key), place));
+    let propulsion = match part.given(keys::PROPULSION) {
+        true => Some(model(report, files, (part, keys::PROPULSION), place)),
         false => None,
     };
     let body = inertia.and_then(|inertia| body(report, section, (&inertia, cg_mac)));
@@ -53,24 +54,27 @@ pub(super) fn tables(
     Some(ForceData {
         mass: body?.mass,
         geometry: forces.geometry(),
-        gravity_m_s2: quantity(section.section("body")?, "gravity")?,
-        air: section.section("air").and_then(air),
+        gravity_m_s2: quantity(section.get(keys::BODY)?, keys::GRAVITY)?,
+        air: section.get(keys::AIR).and_then(air),
         forces: Arc::new(forces),
     })
 }
 
 fn air(section: &Section) -> Option<Air> {
-    Some(Air::with_density(quantity(section, "density")?, quantity(section, "speed_of_sound")?))
+    Some(Air::with_density(
+        quantity(section, keys::DENSITY)?,
+        quantity(section, keys::SPEED_OF_SOUND)?,
+    ))
 }
 
 /// The model in the file that a key names, if its check cases pass.
 fn model(
     report: &mut Report,
     files: &mut Files<'_>,
-    (part, key): (&Section, &str),
+    (part, key): (&Section, Key<str>),
     place: &Path,
 ) -> Option<Model> {
-    let path = place.join(part.text(key)?);
+    let path = place.join(part.get(key)?);
     let name = path.display().to_string();
     let text = files.read(&name).map_err(|reason| {
         report.value(part.at(key), &part.path(key), format!("cannot be read: {reason}"), ALLOWED);
@@ -88,7 +92,7 @@ fn model(
 }
 
 /// The model if it gives what its own check cases say.
-fn checked(report: &mut Report, (part, key): (&Section, &str), model: Model) -> Option<Model> {
+fn checked(report: &mut Report, (part, key): (&Section, Key<str>), model: Model) -> Option<Model> {
     let checks = model.check();
     let failed = checks.shots.iter().find(|shot| !shot.passed());
     let Some(shot) = failed else { return Some(model) };
@@ -114,12 +118,12 @@ fn body(
     (inertia, cg_mac): (&Model, Option<f64>),
 ) -> Option<Body> {
     let loaded_pct = cg_mac.map(|share| 100.0 * share);
-    let place_pct = loaded_pct.or(section.section("body")?.number("centre_of_mass_pct"));
-    let engine_kg_m2_s = match section.section("engine") {
-        Some(engine) => quantity(engine, "angular_momentum")?,
+    let place_pct = loaded_pct.or(section.get(keys::BODY)?.get(keys::CENTRE_OF_MASS_PCT));
+    let engine_kg_m2_s = match section.get(keys::ENGINE) {
+        Some(engine) => quantity(engine, keys::ANGULAR_MOMENTUM)?,
         None => 0.0,
     };
-    fitting(report, (section, "inertia"), Body::placed(inertia, place_pct, engine_kg_m2_s))
+    fitting(report, (section, keys::INERTIA), Body::placed(inertia, place_pct, engine_kg_m2_s))
 }
 
 /// Aerodynamics alone first, so that a problem is told of the file that has it.
@@ -131,24 +135,29 @@ fn forces(
 ) -> Option<TableForces> {
     let setting = Setting {
         centre_of_mass_m,
-        gearing: section.section("engine").map_or(Some(Gearing::default()), gearing)?,
-        travel: surfaces(section.section("travel")?)?,
+        gearing: section.get(keys::ENGINE).map_or(Some(Gearing::default()), gearing)?,
+        travel: surfaces(section.get(keys::TRAVEL)?)?,
     };
     let alone = TableForces::new(aerodynamics.clone(), None, setting);
-    let alone = fitting(report, (section, "aerodynamics"), alone)?;
+    let alone = fitting(report, (section, keys::AERODYNAMICS), alone)?;
     let Some(propulsion) = propulsion else {
         return Some(alone);
     };
     let both = TableForces::new(aerodynamics, Some(propulsion), setting);
-    fitting(report, (section, "propulsion"), both)
+    fitting(report, (section, keys::PROPULSION), both)
 }
 
 /// Propulsion and what its tables do not say come together, or neither does.
 fn engine_fits(report: &mut Report, section: &Section, part: &Section) -> Option<()> {
-    match (part.given("propulsion"), section.section("engine")) {
+    match (part.given(keys::PROPULSION), section.get(keys::ENGINE)) {
         (true, None) => {
             let message = "the propulsion needs an [engine], which says what its tables do not";
-            report.value(part.at("propulsion"), &part.path("propulsion"), message, "[engine]");
+            report.value(
+                part.at(keys::PROPULSION),
+                &part.path(keys::PROPULSION),
+                message,
+                "[engine]",
+            );
             None
         }
         (false, Some(engine)) => {
@@ -161,16 +170,16 @@ fn engine_fits(report: &mut Report, section: &Section, part: &Section) -> Option
 }
 
 fn gearing(engine: &Section) -> Option<Gearing> {
-    engine.word("gearing")
+    engine.get(keys::GEARING)
 }
 
 /// A part of the aircraft, or a problem at the file that does not make it.
 fn fitting<T>(
     report: &mut Report,
-    (section, key): (&Section, &str),
+    (section, key): (&Section, Key<str>),
     part: Result<T, FlightError>,
 ) -> Option<T> {
-    let tables = section.section("tables")?;
+    let tables = section.get(keys::TABLES)?;
     let told = |error: FlightError| {
         let allowed = "tables with the names and units of AIAA S-119";
         report.value(tables.at(key), &tables.path(key), error.to_string(), allowed);

@@ -8,7 +8,7 @@ use fspid_sim::Controller;
 use super::load::{LoadError, Loaded, built};
 use super::toml_file;
 use crate::file;
-use crate::file::document::{Item, Value, read as read_document};
+use crate::keyed::document::{Item, Value, read as read_document};
 use crate::supervisor::Refused;
 use fspid_diagnostics::Report;
 

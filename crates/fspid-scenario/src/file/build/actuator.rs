@@ -4,18 +4,19 @@ use fspid_sim::actuator::{Actuator, Lag, Preset};
 use fspid_sim::{Servo, SimError};
 
 use super::{judged, rad};
-use crate::file::section::Section;
+use crate::file::spec::actuator as keys;
+use crate::keyed::{Key, KeyName, Section};
 use fspid_diagnostics::Report;
 
 /// Keys that a plain servo does not have.
-const MORE: [&str; 7] = [
-    "preset",
-    "natural_frequency_rad_s",
-    "damping",
-    "travel_deg",
-    "deadband_deg",
-    "backlash_deg",
-    "bias_deg",
+const MORE: [KeyName; 7] = [
+    keys::PRESET.name,
+    keys::NATURAL_FREQUENCY_RAD_S.name,
+    keys::DAMPING.name,
+    keys::TRAVEL_DEG.name,
+    keys::DEADBAND_DEG.name,
+    keys::BACKLASH_DEG.name,
+    keys::BIAS_DEG.name,
 ];
 
 /// What moves the elevator.
@@ -34,29 +35,24 @@ impl Drive {
 
 /// The servo of the paper for its four keys, so that its bits stay; an actuator for more.
 pub(super) fn drive(report: &mut Report, section: &Section) -> Option<Drive> {
-    if !MORE.iter().any(|key| section.given(key)) {
+    let Some(given) = MORE.into_iter().find(|key| section.given(*key)) else {
         return Some(Drive { servo: servo(report, section)?, actuator: None });
-    }
+    };
     let lag = lag(report, section)?;
-    let actuator = Some(judged(report, (section, given(section)), actuator(section, lag))?);
+    let actuator = Some(judged(report, (section, given), actuator(section, lag))?);
     Some(Drive { servo: Servo::ideal(), actuator })
 }
 
-/// The first key that only actuators have.
-fn given(section: &Section) -> &'static str {
-    MORE.into_iter().find(|key| section.given(key)).unwrap_or("preset")
-}
-
 fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
-    let delay = usize::try_from(section.integer("delay_samples")?).unwrap_or(usize::MAX);
-    let lag = Servo::first_order(section.number("time_constant_s")?);
-    let lag = judged(report, (section, "time_constant_s"), lag)?;
-    let time_constant_s = section.number("time_constant_s")?;
+    let delay = usize::try_from(section.get(keys::DELAY_SAMPLES)?).unwrap_or(usize::MAX);
+    let lag = Servo::first_order(section.get(keys::TIME_CONSTANT_S)?);
+    let lag = judged(report, (section, keys::TIME_CONSTANT_S), lag)?;
+    let time_constant_s = section.get(keys::TIME_CONSTANT_S)?;
     if time_constant_s > 0.0 && !(1.0 / time_constant_s).is_finite() {
-        let path = section.path("time_constant_s");
+        let path = section.path(keys::TIME_CONSTANT_S);
         let allowed = "0 for none, or 1e-300 s or more";
         report.value(
-            section.at("time_constant_s"),
+            section.at(keys::TIME_CONSTANT_S),
             &path,
             "so short that its rate is infinite",
             allowed,
@@ -64,22 +60,22 @@ fn servo(report: &mut Report, section: &Section) -> Option<Servo> {
         return None;
     }
     let servo =
-        lag.with_delay(delay).and_then(|servo| match section.number("position_limit_deg") {
+        lag.with_delay(delay).and_then(|servo| match section.get(keys::POSITION_LIMIT_DEG) {
             Some(limit_deg) => servo.with_position_limit(rad(limit_deg)),
             None => Ok(servo),
         });
-    let servo = servo.and_then(|servo| match section.number("rate_limit_deg_s") {
+    let servo = servo.and_then(|servo| match section.get(keys::RATE_LIMIT_DEG_S) {
         Some(limit_deg_s) => servo.with_rate_limit(rad(limit_deg_s)),
         None => Ok::<_, SimError>(servo),
     });
-    judged(report, (section, "delay_samples"), servo)
+    judged(report, (section, keys::DELAY_SAMPLES), servo)
 }
 
 /// The lag that is given; `Some(None)` for none.
 #[allow(clippy::option_option, reason = "no lag is one thing, a wrong one another")]
 fn lag(report: &mut Report, section: &Section) -> Option<Option<Lag>> {
-    let time_constant_s = section.number("time_constant_s").filter(|value| *value > 0.0);
-    let second = (section.number("natural_frequency_rad_s"), section.number("damping"));
+    let time_constant_s = section.get(keys::TIME_CONSTANT_S).filter(|value| *value > 0.0);
+    let second = (section.get(keys::NATURAL_FREQUENCY_RAD_S), section.get(keys::DAMPING));
     let lag = match (time_constant_s, second) {
         (None, (None, None)) => return Some(None),
         (Some(time_constant_s), (None, None)) => Lag::first_order(time_constant_s),
@@ -89,11 +85,12 @@ fn lag(report: &mut Report, section: &Section) -> Option<Option<Lag>> {
         (Some(_), _) => return two_lags(report, section),
         (None, (frequency_rad_s, _)) => return half_a_lag(report, section, frequency_rad_s),
     };
-    judged(report, (section, "time_constant_s"), lag).map(Some)
+    judged(report, (section, keys::TIME_CONSTANT_S), lag).map(Some)
 }
 
 fn two_lags<T>(report: &mut Report, section: &Section) -> Option<T> {
-    let key = if section.given("damping") { "damping" } else { "natural_frequency_rad_s" };
+    let [second, damping] = [keys::NATURAL_FREQUENCY_RAD_S, keys::DAMPING];
+    let key = if section.given(damping) { damping } else { second };
     let allowed = "a lag of first order or one of second order";
     report.value(
         section.at(key),
@@ -106,10 +103,10 @@ fn two_lags<T>(report: &mut Report, section: &Section) -> Option<T> {
 
 fn half_a_lag<T>(report: &mut Report, section: &Section, frequency: Option<f64>) -> Option<T> {
     let (key, other) = match frequency {
-        Some(_) => ("damping", "natural_frequency_rad_s"),
-        None => ("natural_frequency_rad_s", "damping"),
+        Some(_) => (keys::DAMPING, keys::NATURAL_FREQUENCY_RAD_S),
+        None => (keys::NATURAL_FREQUENCY_RAD_S, keys::DAMPING),
     };
-    let message = format!("missing key; it goes with `{other}`");
+    let message = format!("missing key; it goes with `{}`", other.name);
     report.missing(section.place, &section.path(key), message, "a finite number above 0");
     None
 }
@@ -118,7 +115,7 @@ fn half_a_lag<T>(report: &mut Report, section: &Section, frequency: Option<f64>)
 type Change = fn(Actuator, f64) -> Result<Actuator, SimError>;
 
 fn actuator(section: &Section, lag: Option<Lag>) -> Result<Actuator, SimError> {
-    let preset = section.text("preset").and_then(Preset::from_name);
+    let preset = section.get(keys::PRESET).and_then(Preset::from_name);
     let mut actuator = match preset {
         Some(preset) => preset.actuator()?,
         None => Actuator::new(Lag::NONE),
@@ -126,21 +123,21 @@ fn actuator(section: &Section, lag: Option<Lag>) -> Result<Actuator, SimError> {
     if let Some(lag) = lag {
         actuator = actuator.with_lag(lag);
     }
-    if let Some((least, most)) = section.interval("travel_deg") {
+    if let Some((least, most)) = section.get(keys::TRAVEL_DEG) {
         actuator = actuator.with_travel(rad(least), rad(most))?;
     }
-    let numbers: [(&str, Change); 5] = [
-        ("position_limit_deg", |it, limit| it.with_command_limits(-limit, limit)),
-        ("rate_limit_deg_s", Actuator::with_rate_limit),
-        ("deadband_deg", Actuator::with_deadband),
-        ("backlash_deg", Actuator::with_play),
-        ("bias_deg", Actuator::with_bias),
+    let numbers: [(Key<f64>, Change); 5] = [
+        (keys::POSITION_LIMIT_DEG, |it, limit| it.with_command_limits(-limit, limit)),
+        (keys::RATE_LIMIT_DEG_S, Actuator::with_rate_limit),
+        (keys::DEADBAND_DEG, Actuator::with_deadband),
+        (keys::BACKLASH_DEG, Actuator::with_play),
+        (keys::BIAS_DEG, Actuator::with_bias),
     ];
     for (key, with) in numbers {
-        if let Some(value) = section.number(key) {
+        if let Some(value) = section.get(key) {
             actuator = with(actuator, rad(value))?;
         }
     }
-    let delay = section.integer("delay_samples").unwrap_or(0);
+    let delay = section.get(keys::DELAY_SAMPLES).unwrap_or(0);
     actuator.with_delay(usize::try_from(delay).unwrap_or(usize::MAX))
 }

@@ -10,8 +10,11 @@ use super::flight::{Flown, Way};
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
 use crate::file::files::Files;
-use crate::file::section::Section;
+use crate::file::spec::air as keys;
 use crate::file::spec::air::{GustKind, WindKind};
+use crate::file::spec::scenario::{GUST, TURBULENCE, WIND};
+use crate::keyed::Section;
+use crate::keyed::word::Word as _;
 use fspid_diagnostics::Report;
 
 /// The air that the file lets move, `None` for calm air around a linear plant.
@@ -23,8 +26,8 @@ pub(super) fn weather(
     files: &mut Files<'_>,
     (section, flown): (&Section, &Flown),
 ) -> Option<Weather> {
-    let parts = ["wind", "turbulence"].map(|name| section.section(name));
-    let parts = parts.into_iter().flatten().chain(section.sections("gust"));
+    let parts = [WIND, TURBULENCE].map(|key| section.get(key));
+    let parts = parts.into_iter().flatten().chain(section.sections(GUST));
     let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());
     let Some(way) = flown.way.filter(|way| !silent && !way.assumed) else {
         parts.for_each(|part| refuse(report, part, (flown.way.is_some(), silent)));
@@ -34,7 +37,7 @@ pub(super) fn weather(
     let weather = Weather {
         course: way.course,
         winds: winds(section, way),
-        turbulence: turbulence(report, files, (section.section("turbulence"), way)),
+        turbulence: turbulence(report, files, (section.get(TURBULENCE), way)),
     };
     let linear = matches!(flown.plant, Plant::Linear(_));
     (!(calm && linear)).then_some(weather)
@@ -61,23 +64,23 @@ fn refuse(report: &mut Report, part: &Section, (is_aircraft, silent): (bool, boo
 
 fn winds(section: &Section, way: Way) -> Vec<Wind> {
     let sound = |part: &&Section| part.sound;
-    let wind = section.section("wind").filter(sound).and_then(wind);
-    let gusts = section.sections("gust").iter().filter(sound);
+    let wind = section.get(WIND).filter(sound).and_then(wind);
+    let gusts = section.sections(GUST).iter().filter(sound);
     wind.into_iter().chain(gusts.filter_map(|part| gust(part, way))).collect()
 }
 
 fn wind(part: &Section) -> Option<Wind> {
     Some(match part.variant()? {
         WindKind::LogShear => Wind::LogShear(LogShear {
-            w20_m_s: quantity(part, "w20")?,
-            from_rad: rad(part.number("from_deg")?),
-            roughness_m: part.number("roughness_m")?,
+            w20_m_s: quantity(part, keys::W20)?,
+            from_rad: rad(part.get(keys::FROM)?),
+            roughness_m: part.get(keys::ROUGHNESS_M)?,
         }),
         WindKind::Microburst => Wind::Microburst(Microburst {
-            outflow_m_s: part.number("outflow_m_s")?,
-            radius_m: part.number("radius_m")?,
-            peak_height_m: part.number("peak_height_m")?,
-            axis_m: [part.number("north_m")?, part.number("east_m")?],
+            outflow_m_s: part.get(keys::OUTFLOW_M_S)?,
+            radius_m: part.get(keys::RADIUS_M)?,
+            peak_height_m: part.get(keys::PEAK_HEIGHT_M)?,
+            axis_m: [part.get(keys::NORTH_M)?, part.get(keys::EAST_M)?],
         }),
         WindKind::Steady => Wind::Steady(steady(part)?),
     })
@@ -85,23 +88,23 @@ fn wind(part: &Section) -> Option<Wind> {
 
 /// The air moves away from where the wind comes from.
 fn steady(part: &Section) -> Option<Steady> {
-    let speed_m_s = quantity(part, "speed")?;
-    let (east, north) = libm::sincos(rad(part.number("from_deg")?));
-    let earth_m_s = [-speed_m_s * north, -speed_m_s * east, -part.number("up_m_s")?];
+    let speed_m_s = quantity(part, keys::SPEED)?;
+    let (east, north) = libm::sincos(rad(part.get(keys::FROM)?));
+    let earth_m_s = [-speed_m_s * north, -speed_m_s * east, -part.get(keys::UP_M_S)?];
     Some(Steady { earth_m_s })
 }
 
 fn gust(part: &Section, way: Way) -> Option<Wind> {
     let amplitude_m_s =
-        [part.number("forward_m_s")?, part.number("right_m_s")?, -part.number("up_m_s")?];
-    let start_m = part.number("at_s")? * way.course.airspeed_m_s;
+        [part.get(keys::FORWARD_M_S)?, part.get(keys::RIGHT_M_S)?, -part.get(keys::GUST_UP_M_S)?];
+    let start_m = part.get(keys::AT_S)? * way.course.airspeed_m_s;
     Some(match part.variant()? {
         GustKind::FullCycle => {
-            let gradient_m = part.number("gradient_m")?;
+            let gradient_m = part.get(keys::GRADIENT_M)?;
             Wind::FullCycle(FullCycle { amplitude_m_s, gradient_m, start_m })
         }
         GustKind::RampHold => {
-            let length_m = part.number("length_m")?;
+            let length_m = part.get(keys::LENGTH_M)?;
             Wind::RampHold(RampHold { amplitude_m_s, length_m, start_m })
         }
     })
@@ -113,29 +116,28 @@ fn turbulence(
     (part, way): (Option<&Section>, Way),
 ) -> Option<Turbulence> {
     let part = part.filter(|part| part.sound)?;
-    let aloft: Severity = part.word("intensity")?;
-    let intensity = match part.number("w20_m_s") {
+    let aloft: Severity = part.get(keys::INTENSITY)?;
+    let intensity = match part.get(keys::TURBULENCE_W20_M_S) {
         Some(w20_m_s) => Intensity::new(w20_m_s, aloft),
         None => Ok(aloft.into()),
     };
     Some(Turbulence {
-        specification: part.word("model")?,
-        intensity: judged(report, (part, "w20_m_s"), intensity)?,
+        specification: part.get(keys::MODEL)?,
+        intensity: judged(report, (part, keys::TURBULENCE_W20_M_S), intensity)?,
         height_m: way.course.height_m,
         airspeed_m_s: way.course.airspeed_m_s,
         wing_span_m: span_m(report, part, way)?,
-        seed: u64::try_from(part.integer("seed")?).ok()?,
+        seed: u64::try_from(part.get(keys::SEED)?).ok()?,
         follows: follows(files, part, way),
     })
 }
 
 /// Whose height and airspeed: where the file does not say, those of a flight that does not stay at its height.
 fn follows(files: &mut Files<'_>, part: &Section, way: Way) -> Follows {
-    part.word("follows").unwrap_or_else(|| {
+    part.get(keys::FOLLOWS).unwrap_or_else(|| {
         let level = way.course.climb_rad == 0.0;
-        let (follows, word) =
-            if level { (Follows::Start, "start") } else { (Follows::Flight, "flight") };
-        files.fill(part.path("follows"), word);
+        let follows = if level { Follows::Start } else { Follows::Flight };
+        files.fill(part.path(keys::FOLLOWS), follows.word());
         follows
     })
 }

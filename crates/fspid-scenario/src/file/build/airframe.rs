@@ -5,7 +5,9 @@ use fspid_sim::Scenario;
 
 use super::flight::Flown;
 use crate::file::files::Files;
-use crate::file::section::Section;
+use crate::file::spec::data::{CONDITION, SPEED_M_S};
+use crate::file::spec::scenario as keys;
+use crate::keyed::Section;
 
 /// Airspeed and gravity of a plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,14 +41,14 @@ pub(super) fn airframes(
             airspeed_m_s: (!way.assumed).then_some(way.course.airspeed_m_s),
             gravity_m_s2: way.gravity_m_s2,
         }),
-        None => section.section("plant").map(of_file),
+        None => section.get(keys::PLANT).map(of_file),
     };
-    first.into_iter().chain(section.sections("plant_change").iter().map(of_file)).collect()
+    first.into_iter().chain(section.sections(keys::PLANT_CHANGE).iter().map(of_file)).collect()
 }
 
 /// The speed in the condition of the plant file that a table names.
 fn speed_of_file(files: &Files<'_>, part: &Section) -> Option<f64> {
-    let named = ["preset", "file"].into_iter().find(|key| part.given(key))?;
+    let named = [keys::PRESET, keys::FILE].into_iter().find(|key| part.given(*key))?;
     let (_, file) = files.referred(&part.path(named))?;
-    file.section("condition")?.number("speed_m_s")
+    file.get(CONDITION)?.get(SPEED_M_S)
 }

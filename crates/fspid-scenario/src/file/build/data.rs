@@ -7,9 +7,11 @@ use fspid_sim::{ElevatorSign, LinearPlant, SimError};
 use super::elevator_sign;
 use crate::file::files::Files;
 use crate::file::preset::{plant_text, rule_table_text};
-use crate::file::section::Section;
-use crate::file::spec::{PLANT_FILE, RULE_FILE, Table};
-use crate::file::{check, document};
+use crate::file::spec::controller::TABLE;
+use crate::file::spec::data::{DELTA_KD, DELTA_KI, DELTA_KP};
+use crate::file::spec::scenario as keys;
+use crate::file::spec::{PLANT_FILE, RULE_FILE};
+use crate::keyed::{Key, Rules, Section, Table, check, document};
 use fspid_diagnostics::{Report, Span};
 
 /// The plant of a table with `preset`, `file` or coefficients.
@@ -18,19 +20,19 @@ pub(super) fn plant(
     files: &mut Files<'_>,
     section: &Section,
 ) -> Option<LinearPlant> {
-    if let Some(name) = section.text("preset") {
+    if let Some(name) = section.get(keys::PRESET) {
         let part = carried(
             report,
             files,
             &PLANT_FILE,
-            (name, plant_text(name)?, &section.path("preset")),
+            (name, plant_text(name)?, &section.path(keys::PRESET)),
         )?;
-        return of_file(report, files, section.path("preset"), part);
+        return of_file(report, files, section.path(keys::PRESET), part);
     }
-    if let Some(file) = section.text("file") {
-        let at = (section.at("file"), section.path("file"));
+    if let Some(file) = section.get(keys::FILE) {
+        let at = (section.at(keys::FILE), section.path(keys::FILE));
         let part = referred(report, files, &PLANT_FILE, (file, at))?;
-        return of_file(report, files, section.path("file"), part);
+        return of_file(report, files, section.path(keys::FILE), part);
     }
     coefficients(report, section, elevator_sign(section)?)
 }
@@ -53,8 +55,8 @@ pub(crate) fn coefficients(
     section: &Section,
     sign: ElevatorSign,
 ) -> Option<LinearPlant> {
-    let numerator = section.numbers("numerator")?;
-    let denominator = section.numbers("denominator")?;
+    let numerator = section.numbers(keys::NUMERATOR)?;
+    let denominator = section.numbers(keys::DENOMINATOR)?;
     match LinearPlant::new(&numerator, &denominator, sign) {
         Ok(plant) => Some(plant),
         Err(error) => {
@@ -74,31 +76,31 @@ pub(crate) fn coefficients(
 
 /// The coefficient whose size is farthest from that of the others: where numbers overflow, it is the one.
 fn farthest_coefficient(section: &Section) -> Option<(Span, String)> {
-    let named = |key: &'static str| {
-        let numbers = section.placed_numbers(key).unwrap_or_default().iter().enumerate();
+    let named = |key: Key<[f64]>| {
+        let numbers = section.get(key).unwrap_or_default().iter().enumerate();
         numbers.map(move |(index, (number, place))| (*number, *place, key, index))
     };
-    let mut all: Vec<_> = named("numerator").chain(named("denominator")).collect();
+    let mut all: Vec<_> = named(keys::NUMERATOR).chain(named(keys::DENOMINATOR)).collect();
     all.retain(|(number, ..)| *number != 0.0);
     let size = |number: f64| libm::log10(number.abs());
     all.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     let usual = size(all.get(all.len() / 2)?.0);
     let distance = |number: f64| (size(number) - usual).abs();
     let farthest = all.iter().max_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
-    let (_, place, key, index) = farthest;
-    Some((*place, format!("{}[{index}]", section.path(key))))
+    let (_, place, key, index) = *farthest;
+    Some((place, format!("{}[{index}]", section.path(key))))
 }
 
 /// The list of coefficients that an error is about.
-fn key_at_fault(error: &SimError) -> &'static str {
+fn key_at_fault(error: &SimError) -> Key<[f64]> {
     match error {
         SimError::Linear(
             LtiError::Empty { what }
             | LtiError::ZeroPolynomial { what }
             | LtiError::LeadingZero { what, .. }
             | LtiError::DegreeTooHigh { what, .. },
-        ) if *what == "denominator" => "denominator",
-        _ => "numerator",
+        ) if *what == keys::DENOMINATOR.name.as_str() => keys::DENOMINATOR,
+        _ => keys::NUMERATOR,
     }
 }
 
@@ -137,15 +139,15 @@ pub(super) fn rules(
     files: &mut Files<'_>,
     supervisor: &Section,
 ) -> Option<RuleTable> {
-    if let Some(grids) = supervisor.section("table") {
-        return rule_table(grids);
-    }
-    let name = supervisor.text("table")?;
+    let name = match supervisor.get(TABLE)? {
+        Rules::Grids(grids) => return rule_table(grids),
+        Rules::Named(name) => name,
+    };
     if let Some(text) = rule_table_text(name) {
-        let path = supervisor.path("table");
+        let path = supervisor.path(TABLE);
         return rule_table(&carried(report, files, &RULE_FILE, (name, text, &path))?);
     }
-    let at = (supervisor.at("table"), supervisor.path("table"));
+    let at = (supervisor.at(TABLE), supervisor.path(TABLE));
     rule_table(&referred(report, files, &RULE_FILE, (name, at))?)
 }
 
@@ -165,11 +167,7 @@ pub(crate) fn rules_named(
 }
 
 fn rule_table(section: &Section) -> Option<RuleTable> {
-    Some(RuleTable::new([
-        section.grid("delta_kp")?,
-        section.grid("delta_ki")?,
-        section.grid("delta_kd")?,
-    ]))
+    Some(RuleTable::new([section.get(DELTA_KP)?, section.get(DELTA_KI)?, section.get(DELTA_KD)?]))
 }
 
 /// A file that the program carries, named by the key at a path.

@@ -4,8 +4,10 @@ use fspid_core::Gains;
 use fspid_sim::Controller;
 
 use super::schedule::{self, Pressure};
-use crate::file::section::Section;
+use crate::file::spec::controller as keys;
 use crate::file::spec::controller::ControllerKind;
+use crate::file::spec::schedule::SCHEDULE;
+use crate::keyed::Section;
 use fspid_diagnostics::Report;
 
 /// The gains that a controller flies with, where they are not those of its file.
@@ -64,7 +66,7 @@ pub(super) fn derived(
 ) -> Option<DerivedGains> {
     let source = source(section, pressure)?;
     Some(DerivedGains {
-        controller: section.text("name")?.to_owned(),
+        controller: section.get(keys::NAME)?.to_owned(),
         gains: controller.nominal(),
         rate_gain_s: controller.config().rate_gain_s,
         source,
@@ -75,7 +77,7 @@ fn source(section: &Section, pressure: Pressure) -> Option<GainSource> {
     if section.variant() == Some(ControllerKind::Lqi) {
         return Some(GainSource::Regulator);
     }
-    section.section("schedule")?;
+    section.get(SCHEDULE)?;
     // It was sound when the controller was built.
     let factor = schedule::factor(&mut Report::default(), section, pressure)?;
     match pressure {

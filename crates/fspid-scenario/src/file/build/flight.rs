@@ -11,10 +11,12 @@ use super::{data, judged, linear_aircraft, loading, rad};
 use crate::aircraft::{AircraftFailure, Units};
 use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
 use crate::file::files::Files;
-use crate::file::section::Section;
 use crate::file::spec::AIRCRAFT_FILE;
+use crate::file::spec::flight as keys;
 use crate::file::spec::flight::{AtmosphereWord, ModelWord};
+use crate::file::spec::scenario::{AIRCRAFT, PLANT};
 use crate::flyer::flyer;
+use crate::keyed::{Key, Section};
 use fspid_diagnostics::Report;
 
 /// A plant and what the air around it depends on.
@@ -43,20 +45,20 @@ pub(super) fn flown(
     files: &mut Files<'_>,
     section: &Section,
 ) -> Option<Flown> {
-    let sound = |name: &str| section.section(name).filter(|part| part.sound);
-    if let Some(part) = sound("aircraft") {
+    let sound = |key| section.get(key).filter(|part: &&Section| part.sound);
+    if let Some(part) = sound(AIRCRAFT) {
         return aircraft(report, files, part);
     }
-    let plant = data::plant(report, files, sound("plant")?)?;
+    let plant = data::plant(report, files, sound(PLANT)?)?;
     Some(Flown { plant: plant.into(), way: None })
 }
 
 fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
-    let key = if part.given("file") { "file" } else { "name" };
+    let key = if part.given(keys::FILE) { keys::FILE } else { keys::NAME };
     let data = read(report, files, part)?;
-    let model = part.word("model").unwrap_or_else(|| default_model(&data));
-    if part.text("model").is_none() {
-        files.fill(part.path("model"), model.name());
+    let model = part.get(keys::MODEL).unwrap_or_else(|| default_model(&data));
+    if part.get(keys::MODEL).is_none() {
+        files.fill(part.path(keys::MODEL), model.name());
     }
     let data = loading::loaded(report, (part, key), data)?;
     let span_m = match &data.model {
@@ -68,7 +70,7 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
     fits(report, part, &data)?;
     let target = target(part)?;
     check_ground(report, part, target);
-    let own_air = part.word::<AtmosphereWord>("atmosphere")? == AtmosphereWord::Reference;
+    let own_air = part.get(keys::ATMOSPHERE)? == AtmosphereWord::Reference;
     let aircraft = flyer(&data, laws(part)?, own_air);
     let aircraft = judged(report, (part, key), aircraft)?;
     glides(report, part, &aircraft)?;
@@ -103,20 +105,20 @@ fn default_model(data: &AircraftData) -> ModelWord {
 }
 
 fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<AircraftData> {
-    let (key, section, place) = match part.text("name") {
+    let (key, section, place) = match part.get(keys::NAME) {
         Some(name) => {
-            let path = part.path("name");
+            let path = part.path(keys::NAME);
             let named = (name, aircraft_text(name)?, path.as_str());
-            ("name", data::carried(report, files, &AIRCRAFT_FILE, named)?, None)
+            (keys::NAME, data::carried(report, files, &AIRCRAFT_FILE, named)?, None)
         }
         None => {
-            let (file, at) = (part.text("file")?, (part.at("file"), part.path("file")));
+            let (file, at) = (part.get(keys::FILE)?, (part.at(keys::FILE), part.path(keys::FILE)));
             let section = data::referred(report, files, &AIRCRAFT_FILE, (file, at))?;
-            ("file", section, Path::new(file).parent())
+            (keys::FILE, section, Path::new(file).parent())
         }
     };
     let place = place.unwrap_or(Path::new(""));
-    let given = Given::of(files.written(&part.path(key)), part.number("cg_mac"));
+    let given = Given::of(files.written(&part.path(key)), part.get(keys::CG_MAC));
     let aircraft = aircraft_data(report, files, (&section, place), given);
     files.keep(part.path(key), &AIRCRAFT_FILE, section);
     aircraft
@@ -124,17 +126,17 @@ fn read(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Ai
 
 pub(super) fn target(part: &Section) -> Option<TrimTarget> {
     Some(TrimTarget {
-        airspeed_m_s: quantity(part, "airspeed")?,
-        altitude_m: quantity(part, "altitude")?,
-        flight_path_rad: rad(part.number("climb_angle_deg").unwrap_or(0.0)),
+        airspeed_m_s: quantity(part, keys::AIRSPEED)?,
+        altitude_m: quantity(part, keys::ALTITUDE)?,
+        flight_path_rad: rad(part.get(keys::CLIMB_ANGLE_DEG).unwrap_or(0.0)),
     })
 }
 
 pub(super) fn check_ground(report: &mut Report, part: &Section, target: TrimTarget) {
-    let ground_m = part.number("ground_m").filter(|_| part.given("ground_m"));
+    let ground_m = part.get(keys::GROUND_M).filter(|_| part.given(keys::GROUND_M));
     if ground_m.is_some_and(|ground_m| ground_m > target.altitude_m) {
         let allowed = format!("up to the altitude of the aircraft, {:?} m", target.altitude_m);
-        let (place, path) = (part.at("ground_m"), part.path("ground_m"));
+        let (place, path) = (part.at(keys::GROUND_M), part.path(keys::GROUND_M));
         report.value(place, &path, "the ground is above the aircraft", allowed);
     }
 }
@@ -145,10 +147,10 @@ fn above_ground(
     part: &Section,
     plant: AircraftPlant,
 ) -> Option<AircraftPlant> {
-    let (ground_m, altitude_m) = (part.number("ground_m")?, plant.trim().target.altitude_m);
+    let (ground_m, altitude_m) = (part.get(keys::GROUND_M)?, plant.trim().target.altitude_m);
     let above = plant.above_ground(ground_m);
     // A ground above the aircraft that the file gives is told by itself.
-    let told = part.given("ground_m") && ground_m > altitude_m;
+    let told = part.given(keys::GROUND_M) && ground_m > altitude_m;
     if above.is_err() && !told {
         let key = altitude_key(part);
         let allowed = format!("above the ground, {ground_m:?} m; or a lower `ground_m`");
@@ -157,12 +159,21 @@ fn above_ground(
     above.ok()
 }
 
-fn altitude_key(part: &Section) -> &'static str {
-    if part.given("altitude_ft") { "altitude_ft" } else { "altitude_m" }
+pub(super) fn altitude_key(part: &Section) -> Key<f64> {
+    given(part, keys::ALTITUDE)
+}
+
+pub(super) fn airspeed_key(part: &Section) -> Key<f64> {
+    given(part, keys::AIRSPEED)
+}
+
+/// The one of some keys that is given, the first if none is.
+fn given<const N: usize>(part: &Section, keys: [Key<f64>; N]) -> Key<f64> {
+    keys.into_iter().find(|key| part.given(*key)).unwrap_or(keys[0])
 }
 
 fn laws(part: &Section) -> Option<Laws> {
-    Some(Laws { drag: part.word("drag")?, thrust: part.word("thrust")? })
+    Some(Laws { drag: part.get(keys::DRAG)?, thrust: part.get(keys::THRUST)? })
 }
 
 /// Refuses what only derivatives can do, where there are tables.
@@ -181,38 +192,38 @@ fn fits(report: &mut Report, part: &Section, data: &AircraftData) -> Option<()> 
 
 /// Refuses a path for an aircraft that glides on its own.
 fn glides(report: &mut Report, part: &Section, aircraft: &Aircraft<Forces>) -> Option<()> {
-    if aircraft.model().has_engine() || !part.given("climb_angle_deg") {
+    if aircraft.model().has_engine() || !part.given(keys::CLIMB_ANGLE_DEG) {
         return Some(());
     }
     let message = "the aircraft has no engine; at its speed its path is that of its glide";
-    let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+    let (at, path) = (part.at(keys::CLIMB_ANGLE_DEG), part.path(keys::CLIMB_ANGLE_DEG));
     report.value(at, &path, message, "nothing; leave it out");
     None
 }
 
 /// Refuses the laws that are for derivatives.
 pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
-    for key in ["drag", "thrust"].into_iter().filter(|key| part.given(key)) {
+    for key in [keys::DRAG.name, keys::THRUST.name].into_iter().filter(|key| part.given(*key)) {
         report.value(part.at(key), &part.path(key), message, "nothing; leave it out");
     }
 }
 
 /// Refuses the air of a source that has none.
 pub(super) fn refuse_own_air(report: &mut Report, part: &Section, message: &str) {
-    if part.word("atmosphere") == Some(AtmosphereWord::Reference) {
-        let at = (part.at("atmosphere"), part.path("atmosphere"));
+    if part.get(keys::ATMOSPHERE) == Some(AtmosphereWord::Reference) {
+        let at = (part.at(keys::ATMOSPHERE), part.path(keys::ATMOSPHERE));
         report.value(at.0, &at.1, message, "\"standard\"");
     }
 }
 
 /// Keys that say together, beside those of the loading, which flight is to be held.
-const OF_TRIM: [&str; 6] = [
-    "airspeed_m_s",
-    "airspeed_kt",
-    "airspeed_ft_s",
-    "altitude_m",
-    "altitude_ft",
-    "climb_angle_deg",
+const OF_TRIM: [Key<f64>; 6] = [
+    keys::AIRSPEED[0],
+    keys::AIRSPEED[1],
+    keys::AIRSPEED[2],
+    keys::ALTITUDE[0],
+    keys::ALTITUDE[1],
+    keys::CLIMB_ANGLE_DEG,
 ];
 
 /// The aircraft at its trim, or a problem: at what lies out of its own range, else at the table as a whole.
@@ -232,8 +243,10 @@ fn trimmed(
                 report.value(part.at(key), &part.path(key), message, allowed);
             }
             None => {
-                let given = OF_TRIM.iter().chain(&loading::KEYS).filter(|key| part.given(key));
-                let given = given.map(|key| format!("{key} = {}", report.text(part.at(key))));
+                let of_trim = OF_TRIM.iter().map(|key| key.name);
+                let names = of_trim.chain(keys::LOADING.iter().map(|key| key.name()));
+                let given = names.filter(|name| part.given(*name));
+                let given = given.map(|name| format!("{name} = {}", report.text(part.at(name))));
                 let given = given.collect::<Vec<_>>().join(", ");
                 let allowed = format!("a flight that can be held; it follows from {given}");
                 report.missing(part.place, &part.path, message, allowed);
@@ -244,7 +257,7 @@ fn trimmed(
 }
 
 /// The key of the speed or the altitude where that itself is not one that the aircraft is known for.
-fn out_of_range(part: &Section, failure: &TrimFailure) -> Option<&'static str> {
+fn out_of_range(part: &Section, failure: &TrimFailure) -> Option<Key<f64>> {
     failure.limits.iter().find_map(|limit| match limit.quantity {
         Quantity::Airspeed | Quantity::Mach => Some(airspeed_key(part)),
         Quantity::Altitude => Some(altitude_key(part)),
@@ -258,17 +271,12 @@ fn in_a_line(text: &str) -> String {
     lines.join("; ")
 }
 
-pub(super) fn airspeed_key(part: &Section) -> &'static str {
-    let keys = ["airspeed_m_s", "airspeed_kt", "airspeed_ft_s"];
-    keys.into_iter().find(|key| part.given(key)).unwrap_or("airspeed_m_s")
-}
-
 fn course(part: &Section, target: TrimTarget) -> Option<Course> {
     Some(Course {
         airspeed_m_s: target.airspeed_m_s,
-        height_m: target.altitude_m - part.number("ground_m")?,
+        height_m: target.altitude_m - part.get(keys::GROUND_M)?,
         climb_rad: target.flight_path_rad,
-        heading_rad: rad(part.number("heading_deg")?),
+        heading_rad: rad(part.get(keys::HEADING_DEG)?),
         start_m: [0.0; 2],
     })
 }

@@ -6,9 +6,11 @@ use fspid_sim::{ElevatorSign, LinearPlant};
 
 use super::flight::{self, Flown, Way};
 use super::judged;
-use crate::file::section::Section;
+use crate::file::aircraft::unit_size;
+use crate::file::spec::flight as keys;
 use crate::file::spec::flight::ModelWord;
-use crate::units::{FOOT_M, KNOT_M_S};
+use crate::keyed::{Key, Section};
+use crate::units::FOOT_M;
 use fspid_diagnostics::Report;
 
 /// How far an airspeed may be from that of the model, as a share of it: the dynamic pressure changes by 1 %, less than
@@ -20,7 +22,7 @@ const ALTITUDE_M: f64 = 200.0 * FOOT_M;
 /// The linear model at its condition, or at that of the scenario where its file has none.
 pub(super) fn flown(
     report: &mut Report,
-    (part, key): (&Section, &str),
+    (part, key): (&Section, Key<str>),
     model: &LinearData,
 ) -> Option<Flown> {
     fits(report, part)?;
@@ -39,14 +41,19 @@ pub(super) fn flown(
 /// Refuses what a linear model cannot do.
 fn fits(report: &mut Report, part: &Section) -> Option<()> {
     let before = report.count();
-    if part.word("model") == Some(ModelWord::Nonlinear) {
+    if part.get(keys::MODEL) == Some(ModelWord::Nonlinear) {
         let message =
             "only a linear model of the aircraft is known; it has no forces to fly nonlinear";
-        report.value(part.at("model"), &part.path("model"), message, "\"linear\", or leave it out");
+        report.value(
+            part.at(keys::MODEL),
+            &part.path(keys::MODEL),
+            message,
+            "\"linear\", or leave it out",
+        );
     }
-    if part.number("climb_angle_deg").is_some_and(|angle_deg| angle_deg != 0.0) {
+    if part.get(keys::CLIMB_ANGLE_DEG).is_some_and(|angle_deg| angle_deg != 0.0) {
         let message = "only a linear model of the aircraft is known, which holds in level flight";
-        let (at, path) = (part.at("climb_angle_deg"), part.path("climb_angle_deg"));
+        let (at, path) = (part.at(keys::CLIMB_ANGLE_DEG), part.path(keys::CLIMB_ANGLE_DEG));
         report.value(at, &path, message, "0, or leave it out");
     }
     flight::refuse_laws(
@@ -77,7 +84,7 @@ fn holds(
         report.value(part.at(key), &part.path(key), message, allowed);
     }
     if !((target.altitude_m - condition.altitude_m).abs() <= ALTITUDE_M) {
-        let key = if part.given("altitude_ft") { "altitude_ft" } else { "altitude_m" };
+        let key = flight::altitude_key(part);
         let allowed = format!("{}, or within 200 ft of it", in_unit(key, condition.altitude_m));
         report.value(part.at(key), &part.path(key), message, allowed);
     }
@@ -85,31 +92,29 @@ fn holds(
 }
 
 /// A value in the unit of a key, to the four decimals that say more than any source.
-fn in_unit(key: &str, value_si: f64) -> String {
-    let (size, unit) = match key {
-        "airspeed_kt" => (KNOT_M_S, "kt"),
-        "airspeed_ft_s" => (FOOT_M, "ft/s"),
-        "altitude_ft" => (FOOT_M, "ft"),
-        "altitude_m" => (1.0, "m"),
-        _ => (1.0, "m/s"),
-    };
+fn in_unit(key: Key<f64>, value_si: f64) -> String {
+    let (size, unit) = (unit_size(key.unit()), key.unit());
     let value = format!("{:.4}", value_si / size);
     let value = value.trim_end_matches('0').trim_end_matches('.');
     format!("{value} {unit}")
 }
 
-fn assume(report: &mut Report, (part, key): (&Section, &str), target: TrimTarget) {
+fn assume(report: &mut Report, (part, key): (&Section, Key<str>), target: TrimTarget) {
     let TrimTarget { airspeed_m_s, altitude_m, .. } = target;
     report.warn(format!(
         "{}: {:?} is a linear model without a flight condition; {airspeed_m_s:.1} m/s and {altitude_m:.0} m are an \
          assumption, from which the dynamic pressure follows and nothing else; it flies in calm air alone",
         part.path(key),
-        part.text(key).unwrap_or_default(),
+        part.get(key).unwrap_or_default(),
     ));
 }
 
 /// From elevator, and from gusts where the data tell how they act, to pitch.
-fn plant(report: &mut Report, place: (&Section, &str), model: &LinearData) -> Option<LinearPlant> {
+fn plant(
+    report: &mut Report,
+    place: (&Section, Key<str>),
+    model: &LinearData,
+) -> Option<LinearPlant> {
     let transfer = judged(report, place, model.theta_over_elevator())?;
     let gusts = judged(report, place, model.theta_over_gusts())?;
     let sign = match model.elevator {

@@ -4,22 +4,30 @@ use fspid_aircraft::AircraftError;
 use fspid_aircraft::data::{AircraftData, Loading, Moment};
 
 use crate::file::aircraft::quantity;
-use crate::file::section::Section;
+use crate::file::spec::flight as keys;
+use crate::keyed::{Key, KeyName, Section};
 use fspid_diagnostics::Report;
 
-/// Ends of the keys of a moment of inertia, of which one may be given.
-const MOMENT_ENDS: [&str; 3] = ["kg_m2", "slug_ft2", "gyration_m"];
+/// A moment of inertia, or the radius of gyration in its place: one of them may be given.
+struct MomentKeys {
+    inertia: [Key<f64>; 2],
+    gyration: Option<Key<f64>>,
+}
+
+const MOMENTS: [MomentKeys; 4] =
+    [ROLL, PITCH, YAW, MomentKeys { inertia: keys::IXZ, gyration: None }];
+const ROLL: MomentKeys = MomentKeys { inertia: keys::IX, gyration: Some(keys::IX_GYRATION_M) };
+const PITCH: MomentKeys = MomentKeys { inertia: keys::IY, gyration: Some(keys::IY_GYRATION_M) };
+const YAW: MomentKeys = MomentKeys { inertia: keys::IZ, gyration: Some(keys::IZ_GYRATION_M) };
 
 /// The aircraft with the loading that the scenario asks for.
 pub(super) fn loaded(
     report: &mut Report,
-    (part, key): (&Section, &str),
+    (part, key): (&Section, Key<str>),
     data: AircraftData,
 ) -> Option<AircraftData> {
     let before = report.count();
-    for axis in ["ix", "iy", "iz", "ixz"] {
-        at_most_one(report, part, axis);
-    }
+    MOMENTS.iter().for_each(|moment| at_most_one(report, part, moment));
     if report.count() > before {
         return None;
     }
@@ -36,17 +44,17 @@ pub(super) fn loaded(
 }
 
 fn loading(part: &Section) -> Loading {
-    let moment = |axis: &str| {
-        let radius = part.number(&format!("{axis}_gyration_m")).map(Moment::Gyration);
-        radius.or_else(|| quantity(part, axis).map(Moment::Inertia))
+    let moment = |MomentKeys { inertia, gyration }: MomentKeys| {
+        let radius = gyration.and_then(|key| part.get(key)).map(Moment::Gyration);
+        radius.or_else(|| quantity(part, inertia).map(Moment::Inertia))
     };
     Loading {
-        mass_kg: part.number("mass_kg"),
-        cg_mac: part.number("cg_mac"),
-        roll: moment("ix"),
-        pitch: moment("iy"),
-        yaw: moment("iz"),
-        ixz_kg_m2: quantity(part, "ixz"),
+        mass_kg: part.get(keys::MASS_KG),
+        cg_mac: part.get(keys::CG_MAC),
+        roll: moment(ROLL),
+        pitch: moment(PITCH),
+        yaw: moment(YAW),
+        ixz_kg_m2: quantity(part, keys::IXZ),
     }
 }
 
@@ -56,40 +64,24 @@ fn merged(data: &AircraftData, loading: Loading) -> Loading {
     Loading { mass_kg: loading.mass_kg.or(changed), ..loading }
 }
 
-fn at_most_one(report: &mut Report, part: &Section, axis: &str) {
-    let names = MOMENT_ENDS.map(|end| format!("{axis}_{end}"));
-    let mut given = names.iter().filter(|name| part.given(name));
+fn at_most_one(report: &mut Report, part: &Section, moment: &MomentKeys) {
+    let all = moment.inertia.into_iter().chain(moment.gyration);
+    let mut given = all.filter(|key| part.given(*key));
     if let (Some(first), Some(second)) = (given.next(), given.next()) {
-        let message = format!("not together with `{first}`");
+        let message = format!("not together with `{}`", first.name);
         report.value(part.at(second), &part.path(second), message, "one of them");
     }
 }
 
 /// The key that an error is about, and what is allowed there.
-fn fault<'a>(part: &Section, key: &'a str, error: &AircraftError) -> (&'a str, &'static str) {
-    let first = |names: &[&'static str]| names.iter().copied().find(|name| part.given(name));
+fn fault(part: &Section, key: Key<str>, error: &AircraftError) -> (KeyName, &'static str) {
+    let mut names = keys::LOADING.iter().map(|key| key.name());
+    let first = names.find(|name| part.given(*name)).unwrap_or(key.name);
     match error {
-        AircraftError::NoReferenceCg => ("cg_mac", "nothing; leave it out"),
+        AircraftError::NoReferenceCg => (keys::CG_MAC.name, "nothing; leave it out"),
         AircraftError::FixedLoading { .. } => {
-            (first(&KEYS).unwrap_or(key), "nothing; leave mass, cg_mac and inertia out")
+            (first, "nothing; leave mass, cg_mac and inertia out")
         }
-        _ => (first(&KEYS).unwrap_or(key), "a mass and moments of inertia that a body can have"),
+        _ => (first, "a mass and moments of inertia that a body can have"),
     }
 }
-
-/// Every key of a loading.
-pub(super) const KEYS: [&str; 13] = [
-    "mass_kg",
-    "cg_mac",
-    "ix_kg_m2",
-    "ix_slug_ft2",
-    "ix_gyration_m",
-    "iy_kg_m2",
-    "iy_slug_ft2",
-    "iy_gyration_m",
-    "iz_kg_m2",
-    "iz_slug_ft2",
-    "iz_gyration_m",
-    "ixz_kg_m2",
-    "ixz_slug_ft2",
-];

@@ -5,7 +5,8 @@ use fspid_lti::{DampedIntegrator, IntegralRegulator, IntegralWeights, integral_r
 use fspid_sim::Controller;
 
 use super::controller::{ends, placed};
-use crate::file::section::Section;
+use crate::file::spec::lqi as keys;
+use crate::keyed::Section;
 use fspid_diagnostics::Report;
 
 /// The controller of a sound section.
@@ -21,7 +22,7 @@ pub(super) fn controller(report: &mut Report, section: &Section, dt_s: f64) -> O
     let config = PidConfig {
         rate_gain_s: found.rate_s,
         setpoint_weights: SetpointWeights {
-            proportional: section.number("setpoint_weight")?,
+            proportional: section.get(keys::SETPOINT_WEIGHT)?,
             ..config.setpoint_weights
         },
         ..config
@@ -30,24 +31,24 @@ pub(super) fn controller(report: &mut Report, section: &Section, dt_s: f64) -> O
 }
 
 fn regulator(report: &mut Report, section: &Section) -> Option<IntegralRegulator> {
-    let (design, weights) = (section.section("design")?, section.section("weights")?);
+    let (design, weights) = (section.get(keys::DESIGN)?, section.get(keys::WEIGHTS)?);
     let model = DampedIntegrator {
-        damping_per_s: design.number("pitch_damping_per_s")?,
-        power_per_s2: design.number("elevator_power_per_s2")?,
+        damping_per_s: design.get(keys::PITCH_DAMPING_PER_S)?,
+        power_per_s2: design.get(keys::ELEVATOR_POWER_PER_S2)?,
     };
     let found = integral_regulator(
         model,
         IntegralWeights {
-            integral_per_s2: weights.number("integral")?,
-            position: weights.number("pitch")?,
-            rate_s2: weights.number("rate")?,
+            integral_per_s2: weights.get(keys::INTEGRAL)?,
+            position: weights.get(keys::PITCH)?,
+            rate_s2: weights.get(keys::RATE)?,
         },
     );
     match found {
         Ok(found) => Some(found),
         Err(error) => {
             let allowed = "a model and weights nearer to 1";
-            report.missing(section.at("design"), &design.path, error.to_string(), allowed);
+            report.missing(section.at(keys::DESIGN), &design.path, error.to_string(), allowed);
             None
         }
     }

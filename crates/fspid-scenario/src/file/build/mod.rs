@@ -33,8 +33,10 @@ use crate::file::dispersion::dispersions;
 use crate::file::files::Files;
 use crate::file::overrides;
 use crate::file::requirement::requirements;
-use crate::file::section::Section;
+use crate::file::spec::controller::NAME;
+use crate::file::spec::scenario as keys;
 use crate::file::tuning::{contest, tuning};
+use crate::keyed::{KeyName, Section};
 use crate::requirement::Requirement;
 use crate::tuning::{Contest, Tuning};
 use crate::units::radians as rad;
@@ -59,21 +61,21 @@ pub(crate) fn scenario(
     files: &mut Files<'_>,
     section: &Section,
 ) -> Option<Built> {
-    if let Some(item) = section.item(overrides::KEY) {
+    if let Some(item) = section.get(keys::SET) {
         overrides::check_listed(report, item);
     }
-    let timing = sound(section.section("loop")).and_then(|part| timing::timing(report, part));
+    let timing = sound(section.get(keys::LOOP)).and_then(|part| timing::timing(report, part));
     let flown = flight::flown(report, files, section);
     let drive = drive(report, section);
     let servo = drive.map(|drive| drive.servo);
     check_linear(report, section, (flown.as_ref(), timing, servo));
     let setpoint =
-        sound(section.section("setpoint")).and_then(|part| signal::setpoint(report, part));
+        sound(section.get(keys::SETPOINT)).and_then(|part| signal::setpoint(report, part));
     let disturbances = disturbances(report, section);
     let plant_changes = timing::plant_changes(
         report,
         files,
-        section.sections("plant_change"),
+        section.sections(keys::PLANT_CHANGE),
         (flown.as_ref().map(|flown| &flown.plant), timing, servo),
     );
     let surroundings = surroundings(report, files, (section, flown.as_ref(), drive));
@@ -83,14 +85,14 @@ pub(crate) fn scenario(
         timing::check_memory(report, section, timing);
     }
     let names = names(section);
-    let asked = section.sections("requirement");
+    let asked = section.sections(keys::REQUIREMENT);
     let requirements = requirements(report, files, asked, &names);
-    let dispersions = dispersions(report, section.sections("dispersion"));
-    let tuning = section.section("tuning").and_then(|part| tuning(report, part, &names));
-    let contest = section.section("contest").and_then(|part| contest(report, part, &names));
+    let dispersions = dispersions(report, section.sections(keys::DISPERSION));
+    let tuning = section.get(keys::TUNING).and_then(|part| tuning(report, part, &names));
+    let contest = section.get(keys::CONTEST).and_then(|part| contest(report, part, &names));
     let airframes = airframe::airframes(files, section, flown.as_ref());
     let scenario = Scenario {
-        name: section.text("name")?.to_owned(),
+        name: section.get(keys::NAME)?.to_owned(),
         plant: flown?.plant,
         plant_changes,
         servo: servo?,
@@ -130,14 +132,14 @@ fn check_linear(
 
 /// What moves the elevator, and how.
 fn drive(report: &mut Report, section: &Section) -> Option<Drive> {
-    match section.section("actuator") {
+    match section.get(keys::ACTUATOR) {
         None => Some(Drive::ideal()),
         part => sound(part).and_then(|part| actuator::drive(report, part)),
     }
 }
 
 fn disturbances(report: &mut Report, section: &Section) -> Vec<Disturbance> {
-    let parts = section.sections("disturbance").iter().filter(|part| part.sound);
+    let parts = section.sections(keys::DISTURBANCE).iter().filter(|part| part.sound);
     parts.filter_map(|part| signal::disturbance(report, part)).collect()
 }
 
@@ -148,7 +150,7 @@ fn surroundings(
     (section, flown, drive): (&Section, Option<&Flown>, Option<Drive>),
 ) -> Option<Surroundings> {
     let weather = flown.map(|flown| air::weather(report, files, (section, flown)));
-    let sensors = match section.section("sensor") {
+    let sensors = match section.get(keys::SENSOR) {
         None => Some((None, None)),
         part => sound(part).and_then(|part| sensor::sensors(report, part)),
     };
@@ -164,19 +166,19 @@ fn sound(part: Option<&Section>) -> Option<&Section> {
 
 /// Which way the elevator is counted.
 pub(crate) fn elevator_sign(section: &Section) -> Option<ElevatorSign> {
-    section.word("elevator_sign")
+    section.get(keys::ELEVATOR_SIGN)
 }
 
 /// The value, or a problem at `key` in the model's own words.
 fn judged<T, E: std::fmt::Display>(
     report: &mut Report,
-    (section, key): (&Section, &str),
+    (section, key): (&Section, impl Into<KeyName>),
     result: Result<T, E>,
 ) -> Option<T> {
     match result {
         Ok(value) => Some(value),
         Err(error) => {
-            let text = error.to_string();
+            let (text, key) = (error.to_string(), key.into());
             let (message, allowed) = in_two(&text);
             report.missing(section.at(key), &section.path(key), message, allowed);
             None
@@ -196,8 +198,8 @@ fn in_two(text: &str) -> (&str, &str) {
 
 /// Names of all controllers, sound or not.
 fn names(section: &Section) -> Vec<&str> {
-    let controllers = section.sections("controller").iter();
-    controllers.filter_map(|part| part.text("name")).collect()
+    let controllers = section.sections(keys::CONTROLLER).iter();
+    controllers.filter_map(|part| part.get(NAME)).collect()
 }
 
 fn controllers(
@@ -206,22 +208,20 @@ fn controllers(
     section: &Section,
     (timing, pressure): (Option<Timing>, Pressure),
 ) -> (Vec<NamedController>, Vec<DerivedGains>) {
-    let parts = section.sections("controller");
+    let parts = section.sections(keys::CONTROLLER);
     for (index, part) in parts.iter().enumerate() {
         let earlier = parts.get(..index).unwrap_or_default();
-        let name = part.text("name");
-        if let Some(twin) =
-            earlier.iter().find(|other| name.is_some() && other.text("name") == name)
-        {
+        let name = part.get(NAME);
+        if let Some(twin) = earlier.iter().find(|other| name.is_some() && other.get(NAME) == name) {
             let message = format!("the name is taken by {}", twin.path);
-            report.value(part.at("name"), &part.path("name"), message, "a name of its own");
+            report.value(part.at(NAME), &part.path(NAME), message, "a name of its own");
         }
     }
     // A period stands in where the loop is wrong, so that the controllers are judged all the same.
     let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
     let (mut controllers, mut derived_gains) = (Vec::new(), Vec::new());
     for part in parts.iter().filter(|part| part.sound) {
-        let name = part.text("name").unwrap_or_default().to_owned();
+        let name = part.get(NAME).unwrap_or_default().to_owned();
         let controller = controller::controller(report, files, part, (dt_s, pressure));
         if let Some(controller) = controller {
             derived_gains.extend(derived::derived(part, &controller, pressure));

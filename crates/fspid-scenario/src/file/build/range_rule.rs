@@ -2,8 +2,10 @@
 
 use fspid_sim::Scenario;
 
-use crate::file::section::Section;
+use crate::file::spec::flight as keys;
 use crate::file::spec::flight::ValidityWord;
+use crate::file::spec::scenario::AIRCRAFT;
+use crate::keyed::Section;
 
 /// What is said of an aircraft that a linear model flies.
 const LINEAR_AIRCRAFT: &str = "flown by a linear model, which has no height and no range: neither the ground nor the limits of the aircraft's data are asked";
@@ -23,10 +25,10 @@ pub enum RangeRule {
 
 impl RangeRule {
     pub(super) fn of(section: &Section, scenario: &Scenario) -> Self {
-        let Some(part) = section.section("aircraft") else {
+        let Some(part) = section.get(AIRCRAFT) else {
             return Self::NoRange;
         };
-        match (scenario.plant.aircraft(), part.word("validity")) {
+        match (scenario.plant.aircraft(), part.get(keys::VALIDITY)) {
             (None, _) => Self::Linear,
             (Some(_), Some(ValidityWord::Warn)) => Self::Warns,
             (Some(_), Some(ValidityWord::Fail) | None) => Self::Fails,

@@ -4,7 +4,9 @@ use fspid_core::{Gains, PidConfig};
 
 use super::flight::Flown;
 use super::judged;
-use crate::file::section::Section;
+use crate::file::spec::scenario::PLANT;
+use crate::file::spec::schedule as keys;
+use crate::keyed::Section;
 use fspid_diagnostics::Report;
 
 /// What is known of the dynamic pressure of a flight.
@@ -25,7 +27,7 @@ impl Pressure {
             Some(flown) => {
                 flown.way.map_or(Self::None, |way| Self::OfTrim(way.dynamic_pressure_pa))
             }
-            None if section.section("plant").is_some() => Self::None,
+            None if section.get(PLANT).is_some() => Self::None,
             None => Self::Unknown,
         }
     }
@@ -38,40 +40,40 @@ impl Pressure {
 /// The moment of an elevator deflection is $\bar q S \bar c C_{m_{\delta_e}} \delta_e$, so that $n = -1$ keeps the
 /// moment that an error commands as long as the derivative does not change with speed.
 pub(super) fn factor(report: &mut Report, section: &Section, pressure: Pressure) -> Option<f64> {
-    let Some(part) = section.section("schedule") else {
+    let Some(part) = section.get(keys::SCHEDULE) else {
         return Some(1.0);
     };
     let (least, most) = limits(report, part)?;
     let pressure_pa = match pressure {
         Pressure::OfTrim(pressure_pa) => pressure_pa,
         // Whatever it is: what else is wrong with the controller is still found.
-        Pressure::Unknown => part.number("dynamic_pressure_pa")?,
+        Pressure::Unknown => part.get(keys::DYNAMIC_PRESSURE_PA)?,
         Pressure::None => {
             let message = "a `plant` has no dynamic pressure to schedule by";
             let allowed = "an `aircraft` in place of the plant, or no schedule";
-            report.missing(section.at("schedule"), &part.path, message, allowed);
+            report.missing(section.at(keys::SCHEDULE), &part.path, message, allowed);
             return None;
         }
     };
-    let ratio = pressure_pa / part.number("dynamic_pressure_pa")?;
-    let factor = libm::pow(ratio, part.number("exponent")?).max(least).min(most);
+    let ratio = pressure_pa / part.get(keys::DYNAMIC_PRESSURE_PA)?;
+    let factor = libm::pow(ratio, part.get(keys::EXPONENT)?).max(least).min(most);
     // Written so that NaN fails.
     if !(factor > 0.0 && factor.is_finite()) {
         let message = format!("the gains would be multiplied by {factor:?}");
         let allowed = "a finite factor above 0, or `least_factor` and `most_factor`";
-        report.value(part.at("exponent"), &part.path("exponent"), message, allowed);
+        report.value(part.at(keys::EXPONENT), &part.path(keys::EXPONENT), message, allowed);
         return None;
     }
     Some(factor)
 }
 
 fn limits(report: &mut Report, part: &Section) -> Option<(f64, f64)> {
-    let least = part.number("least_factor").unwrap_or(0.0);
-    let most = part.number("most_factor").unwrap_or(f64::INFINITY);
+    let least = part.get(keys::LEAST_FACTOR).unwrap_or(0.0);
+    let most = part.get(keys::MOST_FACTOR).unwrap_or(f64::INFINITY);
     if least <= most {
         return Some((least, most));
     }
-    let (place, path) = (part.at("most_factor"), part.path("most_factor"));
+    let (place, path) = (part.at(keys::MOST_FACTOR), part.path(keys::MOST_FACTOR));
     report.value(place, &path, "below `least_factor`", format!("{least:?} or above"));
     None
 }
@@ -85,6 +87,6 @@ pub(super) fn scaled(
 ) -> Option<(Gains<f64>, PidConfig<f64>)> {
     let Gains { kp, ki, kd } = gains;
     let scaled = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor }.checked();
-    let gains = judged(report, (section, "schedule"), scaled)?;
+    let gains = judged(report, (section, keys::SCHEDULE), scaled)?;
     Some((gains, PidConfig { rate_gain_s: config.rate_gain_s * factor, ..config }))
 }

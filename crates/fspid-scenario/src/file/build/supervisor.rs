@@ -1,11 +1,13 @@
 //! The supervisor: rules that conclude labels, or numbers.
 
-use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Output, Supervisor};
+use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Supervisor};
 
 use super::{data, judged};
 use crate::file::files::Files;
-use crate::file::section::Section;
+use crate::file::spec::controller as keys;
+use crate::file::spec::data::{NUMBER_DELTA_KD, NUMBER_DELTA_KI, NUMBER_DELTA_KP};
 use crate::fuzzy_system::{Format, LoadError, Options, numbers_of, read};
+use crate::keyed::Section;
 use fspid_diagnostics::Report;
 
 /// How far the range of a system may be from that of the supervisor, as a part of it: a range that was
@@ -18,35 +20,35 @@ pub(super) fn supervisor(
     files: &mut Files<'_>,
     part: &Section,
 ) -> Option<Supervisor<f64>> {
-    let policy = part.word("out_of_range")?;
-    let range = part.number("range")?;
-    if !part.given("table") {
+    let policy = part.get(keys::OUT_OF_RANGE)?;
+    let range = part.get(keys::RANGE)?;
+    if !part.given(keys::TABLE) {
         let before = report.count();
         refuse_defuzzifier(report, part);
         let table = numbers(report, files, part, range)?;
         let supervisor = Supervisor::of_numbers(&table, range, policy);
-        let supervisor = judged(report, (part, "range"), supervisor);
+        let supervisor = judged(report, (part, keys::RANGE), supervisor);
         return supervisor.filter(|_| report.count() == before);
     }
-    if !part.given("defuzzifier") {
-        files.fill(part.path("defuzzifier"), "exact");
+    if !part.given(keys::DEFUZZIFIER) {
+        files.fill(part.path(keys::DEFUZZIFIER), "exact");
     }
-    let defuzzifier = part.defuzzifier("defuzzifier").unwrap_or(Defuzzifier::Exact);
+    let defuzzifier = part.get(keys::DEFUZZIFIER).unwrap_or(Defuzzifier::Exact);
     let table = data::rules(report, files, part)?;
     let supervisor = Supervisor::new(&table, range, defuzzifier, policy);
     let key = match supervisor {
-        Err(FuzzyError::SampleCount { .. }) => "defuzzifier",
-        _ => "range",
+        Err(FuzzyError::SampleCount { .. }) => keys::DEFUZZIFIER.name,
+        _ => keys::RANGE.name,
     };
     judged(report, (part, key), supervisor)
 }
 
 /// Numbers are weighted; nothing is left to choose.
 fn refuse_defuzzifier(report: &mut Report, part: &Section) {
-    if part.given("defuzzifier") {
+    if part.given(keys::DEFUZZIFIER) {
         let message = "rules that conclude numbers are not defuzzified";
-        let path = part.path("defuzzifier");
-        report.value(part.at("defuzzifier"), &path, message, "only with `table`");
+        let path = part.path(keys::DEFUZZIFIER);
+        report.value(part.at(keys::DEFUZZIFIER), &path, message, "only with `table`");
     }
 }
 
@@ -57,7 +59,7 @@ fn numbers(
     part: &Section,
     range: f64,
 ) -> Option<NumberTable<f64>> {
-    match part.section("numbers") {
+    match part.get(keys::NUMBERS) {
         Some(grids) => of_grids(report, grids, range),
         None => of_system(report, files, part, range),
     }
@@ -66,15 +68,16 @@ fn numbers(
 fn of_grids(report: &mut Report, section: &Section, range: f64) -> Option<NumberTable<f64>> {
     let mut grids = [[[0.0; LABEL_COUNT]; LABEL_COUNT]; 3];
     let mut is_sound = true;
-    for (output, grid) in Output::ALL.into_iter().zip(&mut grids) {
-        let cells = section.number_grid(output.name())?;
+    let keys = [NUMBER_DELTA_KP, NUMBER_DELTA_KI, NUMBER_DELTA_KD];
+    for (key, grid) in keys.into_iter().zip(&mut grids) {
+        let cells = section.get(key)?;
         for (index, (cell, (number, place))) in
             grid.as_flattened_mut().iter_mut().zip(cells).enumerate()
         {
             *cell = *number;
             if !(number.abs() <= range) {
                 let (row, column) = (index / LABEL_COUNT, index % LABEL_COUNT);
-                let path = format!("{}[{row}][{column}]", section.path(output.name()));
+                let path = format!("{}[{row}][{column}]", section.path(key));
                 report.value(*place, &path, "beyond the supervisor's range", within(range));
                 is_sound = false;
             }
@@ -95,8 +98,8 @@ fn of_system(
     range: f64,
 ) -> Option<NumberTable<f64>> {
     const ALLOWED: &str = "a readable .toml, .fis, .t2fis, .fcl, .fll or .xml file, its path relative to the scenario's folder";
-    let name = part.text("system")?;
-    let (place, path) = (part.at("system"), part.path("system"));
+    let name = part.get(keys::SYSTEM)?;
+    let (place, path) = (part.at(keys::SYSTEM), part.path(keys::SYSTEM));
     let text = match (Format::of(name.as_ref()), files.read(name)) {
         (None, _) => {
             report.value(place, &path, "no file of a known format", ALLOWED);

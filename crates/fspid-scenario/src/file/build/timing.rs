@@ -4,31 +4,34 @@ use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, Servo, SimError, Surr
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
-use crate::file::section::Section;
+use crate::file::spec::flight;
+use crate::file::spec::scenario as keys;
+use crate::file::spec::signal::FREQUENCY_HZ;
+use crate::keyed::{KeyName, Section};
 use fspid_diagnostics::Report;
 
 /// Most samples that ramps of the plant may take, each with a discretisation of its own.
 const MOST_RAMP_SAMPLES: f64 = 100_000.0;
 
 pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
-    let dt_s = section.number("sample_period_s")?;
-    let duration_s = section.number("duration_s")?;
+    let dt_s = section.get(keys::SAMPLE_PERIOD_S)?;
+    let duration_s = section.get(keys::DURATION_S)?;
     match Timing::new(dt_s, duration_s) {
         Err(SimError::TooManySamples { found, most }) => {
             let message = format!("{found:.1e} samples of {dt_s:?} s are too many");
             let allowed =
                 format!("up to {most} samples: a shorter flight or a longer sample period");
-            let (place, path) = (section.at("duration_s"), section.path("duration_s"));
+            let (place, path) = (section.at(keys::DURATION_S), section.path(keys::DURATION_S));
             report.value(place, &path, message, allowed);
             None
         }
         Err(SimError::Number { .. }) if duration_s < dt_s => {
-            let (place, path) = (section.at("duration_s"), section.path("duration_s"));
+            let (place, path) = (section.at(keys::DURATION_S), section.path(keys::DURATION_S));
             let allowed = format!("at least one sample period of {dt_s:?} s");
             report.value(place, &path, "shorter than a sample", allowed);
             None
         }
-        other => judged(report, (section, "duration_s"), other),
+        other => judged(report, (section, keys::DURATION_S), other),
     }
 }
 
@@ -37,14 +40,14 @@ const MOST_ROWS: usize = 2 * fspid_sim::MAX_ROWS;
 
 /// Refuses a comparison whose traces would not fit into memory.
 pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timing) {
-    let controllers = section.sections("controller").len();
+    let controllers = section.sections(keys::CONTROLLER).len();
     if timing.rows() * controllers <= MOST_ROWS {
         return;
     }
-    if let Some(part) = section.section("loop") {
+    if let Some(part) = section.get(keys::LOOP) {
         let message = format!("{controllers} traces of {} samples are too many", timing.rows());
         let allowed = format!("up to {MOST_ROWS} samples in all traces together");
-        report.value(part.at("duration_s"), &part.path("duration_s"), message, allowed);
+        report.value(part.at(keys::DURATION_S), &part.path(keys::DURATION_S), message, allowed);
     }
 }
 
@@ -73,17 +76,18 @@ pub(super) fn check_plant(
     plant: &LinearPlant,
     loop_: (Timing, Servo),
 ) {
-    let parts = ["plant", "aircraft"].map(|name| section.section(name));
-    if let Some(part) = parts.into_iter().flatten().next() {
-        let key = key_of(part);
+    if let Some(part) = section.get(keys::PLANT) {
+        judged(report, (part, key_of(part)), can_be_sampled(plant, loop_));
+    } else if let Some(part) = section.get(keys::AIRCRAFT) {
+        let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };
         judged(report, (part, key), can_be_sampled(plant, loop_));
     }
 }
 
 /// The key that gave a plant.
-fn key_of(part: &Section) -> &'static str {
-    let keys = ["preset", "file", "name", "denominator"];
-    keys.into_iter().find(|key| part.given(key)).unwrap_or("denominator")
+fn key_of(part: &Section) -> KeyName {
+    let named = [keys::PRESET, keys::FILE].into_iter().find(|key| part.given(*key));
+    named.map_or(keys::DENOMINATOR.name, |key| key.name)
 }
 
 /// The changes of the plant, in order of time; what is wrong with one is reported.
@@ -101,13 +105,18 @@ pub(super) fn plant_changes(
     let mut changes = Vec::new();
     let mut before_s = f64::NEG_INFINITY;
     for part in parts.iter().filter(|part| part.sound) {
-        let Some(at_s) = part.number("at_s") else {
+        let Some(at_s) = part.get(keys::AT_S) else {
             continue;
         };
         // Written so that NaN fails.
         if !(at_s > before_s) {
             let allowed = format!("after the change before it, at {before_s:?} s");
-            report.value(part.at("at_s"), &part.path("at_s"), "not in order of time", allowed);
+            report.value(
+                part.at(keys::AT_S),
+                &part.path(keys::AT_S),
+                "not in order of time",
+                allowed,
+            );
         }
         before_s = at_s;
         let sign = plant.map(LinearPlant::elevator_sign);
@@ -132,8 +141,8 @@ pub(super) fn plant_changes(
             judged(report, (part, key_of(part)), sampled);
             check_ramp(report, part, timing);
         }
-        let change = PlantChange::new(at_s, part.number("ramp_s").unwrap_or(0.0), target);
-        changes.extend(judged(report, (part, "at_s"), change));
+        let change = PlantChange::new(at_s, part.get(keys::RAMP_S).unwrap_or(0.0), target);
+        changes.extend(judged(report, (part, keys::AT_S), change));
     }
     changes
 }
@@ -149,7 +158,7 @@ fn changed(
     part: &Section,
     sign: Option<fspid_sim::ElevatorSign>,
 ) -> Option<LinearPlant> {
-    if part.given("numerator") {
+    if part.given(keys::NUMERATOR) {
         // Where the plant itself is wrong its sign is unknown; the coefficients are judged anyhow.
         let sign = elevator_sign(part).or(sign);
         let sign = sign.unwrap_or(fspid_sim::ElevatorSign::NoseDownPositive);
@@ -159,41 +168,47 @@ fn changed(
 }
 
 fn check_ramp(report: &mut Report, part: &Section, timing: Timing) {
-    let ramp_s = part.number("ramp_s").unwrap_or(0.0);
-    let start_s = part.number("at_s").unwrap_or(0.0).min(timing.end_s());
+    let ramp_s = part.get(keys::RAMP_S).unwrap_or(0.0);
+    let start_s = part.get(keys::AT_S).unwrap_or(0.0).min(timing.end_s());
     let samples = ramp_s.min(timing.end_s() - start_s) / timing.dt_s();
     // Written so that NaN fails.
     if !(samples <= MOST_RAMP_SAMPLES) {
         let allowed = format!("up to {MOST_RAMP_SAMPLES} samples in a ramp");
-        report.value(part.at("ramp_s"), &part.path("ramp_s"), "too long a ramp", allowed);
+        report.value(part.at(keys::RAMP_S), &part.path(keys::RAMP_S), "too long a ramp", allowed);
     }
 }
 
 /// What can only be judged of the flight as a whole, and what is probably not meant.
 pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Scenario) {
     let end_s = scenario.timing.end_s();
-    let parts =
-        ["disturbance", "gust", "plant_change"].into_iter().flat_map(|key| section.sections(key));
-    for part in section.section("setpoint").into_iter().chain(parts) {
-        let at_s = part.number("at_s").unwrap_or(0.0);
+    let late = |report: &mut Report, part: &Section| {
+        let at_s = part.get(keys::AT_S).unwrap_or(0.0);
         if at_s > end_s {
-            let path = part.path("at_s");
+            let path = part.path(keys::AT_S);
             report.warn(format!("{path} is {at_s:?} s, after the flight's end at {end_s:?} s"));
         }
+    };
+    let disturbances = section.sections(keys::DISTURBANCE);
+    for part in section.get(keys::SETPOINT).into_iter().chain(disturbances) {
+        late(report, part);
         let nyquist_hz = 0.5 / scenario.timing.dt_s();
-        let frequency_hz = part.number("frequency_hz").unwrap_or(0.0);
+        let frequency_hz = part.get(FREQUENCY_HZ).unwrap_or(0.0);
         if frequency_hz > nyquist_hz {
-            let path = part.path("frequency_hz");
+            let path = part.path(FREQUENCY_HZ);
             report.warn(format!(
                 "{path} is {frequency_hz:?} Hz, but samples show at most {nyquist_hz:?} Hz"
             ));
         }
     }
-    let mut ramps =
-        section.sections("plant_change").iter().filter(|part| part.number("ramp_s") > Some(0.0));
+    let others = [keys::GUST, keys::PLANT_CHANGE].into_iter();
+    others.flat_map(|key| section.sections(key)).for_each(|part| late(report, part));
+    let mut ramps = section
+        .sections(keys::PLANT_CHANGE)
+        .iter()
+        .filter(|part| part.get(keys::RAMP_S) > Some(0.0));
     if let Some(ramp) = ramps.next_back()
         && report.count() == 0
     {
-        judged(report, (ramp, "ramp_s"), scenario.prepare());
+        judged(report, (ramp, keys::RAMP_S), scenario.prepare());
     }
 }

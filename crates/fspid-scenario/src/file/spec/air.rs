@@ -1,12 +1,11 @@
 //! Winds, gusts and turbulence.
 
-use fspid_sim::air::{Follows, Severity, Specification};
-
-use super::word::{Word, words, words_of};
-use super::{
-    Choice, Default, Key, Kind, Range, Table, Variant, Way, defaulted, finite, not_negative,
-    optional, plain, positive, required,
+use crate::keyed::word::{words, words_of};
+use crate::keyed::{
+    Key, KeyRow, Range, Table, Variant, defaulted, finite, not_negative, number, one_of, optional,
+    plain, positive, required, whole, word,
 };
+use fspid_sim::air::{Follows, Severity, Specification};
 
 words! {
     /// Winds.
@@ -22,43 +21,65 @@ words_of!(Specification { MilF8785c = "mil-f-8785c", MilHdbk1797 = "mil-hdbk-179
 words_of!(Severity { Light = "light", Moderate = "moderate", Severe = "severe" });
 words_of!(Follows { Start = "start", Flight = "flight" });
 
-pub(super) static TURBULENCE: Table = plain(
-    "Turbulence of the form of Dryden.",
-    &[&[
-        defaulted(
-            "model",
-            Kind::Word(Specification::WORDS),
-            Default::Word("mil-f-8785c"),
-            "Document that scale lengths are stated by.",
-        ),
-        required(
-            "intensity",
-            Kind::Word(Severity::WORDS),
-            "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
-        ),
-        optional(
-            "follows",
-            Kind::Word(Follows::WORDS),
-            "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
-        ),
-        optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's."),
-        defaulted(
-            "seed",
-            Kind::Integer { least: 0, most: i64::MAX },
-            Default::Integer(1),
-            "The same seed gives the same turbulence at any sample period: it is drawn each 10 ms and held.",
-        ),
-    ]],
+pub(crate) const MODEL: Key<Specification> = defaulted(
+    "model",
+    word(),
+    Specification::MilF8785c,
+    "Document that scale lengths are stated by.",
+);
+pub(crate) const INTENSITY: Key<Severity> = required(
+    "intensity",
+    word(),
+    "Severity: by the chart aloft, by its wind at 20 ft near the ground.",
+);
+pub(crate) const FOLLOWS: Key<Follows> = optional(
+    "follows",
+    word(),
+    "Height and airspeed of its lengths and intensities: those of the start, or each 10 ms those of the flight; if left out \"start\", for an aircraft that climbs or descends \"flight\".",
+);
+pub(crate) const TURBULENCE_W20_M_S: Key<f64> =
+    optional("w20_m_s", not_negative("m/s"), "Wind at 20 ft in place of the severity's.");
+pub(crate) const SEED: Key<i64> = defaulted(
+    "seed",
+    whole(0, i64::MAX),
+    1,
+    "The same seed gives the same turbulence at any sample period: it is drawn each 10 ms and held.",
 );
 
-const FROM: Key = defaulted(
+pub(super) static TURBULENCE_TABLE: Table = plain(
+    "Turbulence of the form of Dryden.",
+    &[&[&MODEL, &INTENSITY, &FOLLOWS, &TURBULENCE_W20_M_S, &SEED]],
+);
+
+pub(crate) const FROM: Key<f64> = defaulted(
     "from_deg",
-    Kind::Number { unit: "deg", range: Range::Between(-360.0, 360.0) },
-    Default::Number(0.0),
+    number("deg", Range::Between(-360.0, 360.0)),
+    0.0,
     "Direction that the wind comes from, clockwise from north.",
 );
 
-pub(super) static WIND: Table = Table {
+pub(crate) const SPEED: [Key<f64>; 2] = [
+    optional("speed_m_s", not_negative("m/s"), "Horizontal speed."),
+    optional("speed_kt", not_negative("kt"), "Horizontal speed."),
+];
+pub(crate) const UP_M_S: Key<f64> = defaulted("up_m_s", finite("m/s"), 0.0, "Upward speed.");
+pub(crate) const W20: [Key<f64>; 2] = [
+    optional("w20_m_s", positive("m/s"), "Speed 20 ft above the ground."),
+    optional("w20_kt", positive("kt"), "Speed 20 ft above the ground."),
+];
+pub(crate) const ROUGHNESS_M: Key<f64> =
+    defaulted("roughness_m", positive("m"), 0.045_72, "Roughness length; 0.15 ft for approaches.");
+pub(crate) const OUTFLOW_M_S: Key<f64> =
+    required("outflow_m_s", positive("m/s"), "Largest outflow.");
+pub(crate) const RADIUS_M: Key<f64> =
+    required("radius_m", positive("m"), "Radius of the downdraught.");
+pub(crate) const PEAK_HEIGHT_M: Key<f64> =
+    required("peak_height_m", positive("m"), "Height of the largest outflow.");
+pub(crate) const NORTH_M: Key<f64> = required("north_m", finite("m"), "Axis, north of the start.");
+pub(crate) const EAST_M: Key<f64> =
+    defaulted("east_m", finite("m"), 0.0, "Axis, east of the start.");
+
+pub(super) static WIND_TABLE: Table = Table {
     doc: "The wind; an aircraft starts trimmed in the wind of its start.",
     groups: &[],
     choices: &[],
@@ -67,13 +88,8 @@ pub(super) static WIND: Table = Table {
             name: WindKind::Steady.name(),
             table: Table {
                 doc: "The same everywhere.",
-                groups: &[&[
-                    optional("speed_m_s", not_negative("m/s"), "Horizontal speed."),
-                    optional("speed_kt", not_negative("kt"), "Horizontal speed."),
-                    FROM,
-                    defaulted("up_m_s", finite("m/s"), Default::Number(0.0), "Upward speed."),
-                ]],
-                choices: &[one_of!("speed_m_s", "speed_kt")],
+                groups: &[&[&SPEED[0], &SPEED[1], &FROM, &UP_M_S]],
+                choices: &[one_of!(SPEED[0], SPEED[1])],
                 variants: &[],
             },
         },
@@ -81,18 +97,8 @@ pub(super) static WIND: Table = Table {
             name: WindKind::LogShear.name(),
             table: Table {
                 doc: "Growing with the logarithm of the height up to 1000 ft.",
-                groups: &[&[
-                    optional("w20_m_s", positive("m/s"), "Speed 20 ft above the ground."),
-                    optional("w20_kt", positive("kt"), "Speed 20 ft above the ground."),
-                    FROM,
-                    defaulted(
-                        "roughness_m",
-                        positive("m"),
-                        Default::Number(0.045_72),
-                        "Roughness length; 0.15 ft for approaches.",
-                    ),
-                ]],
-                choices: &[one_of!("w20_m_s", "w20_kt")],
+                groups: &[&[&W20[0], &W20[1], &FROM, &ROUGHNESS_M]],
+                choices: &[one_of!(W20[0], W20[1])],
                 variants: &[],
             },
         },
@@ -100,36 +106,32 @@ pub(super) static WIND: Table = Table {
             name: WindKind::Microburst.name(),
             table: plain(
                 "Air that falls and spreads over the ground.",
-                &[&[
-                    required("outflow_m_s", positive("m/s"), "Largest outflow."),
-                    required("radius_m", positive("m"), "Radius of the downdraught."),
-                    required("peak_height_m", positive("m"), "Height of the largest outflow."),
-                    required("north_m", finite("m"), "Axis, north of the start."),
-                    defaulted(
-                        "east_m",
-                        finite("m"),
-                        Default::Number(0.0),
-                        "Axis, east of the start.",
-                    ),
-                ]],
+                &[&[&OUTFLOW_M_S, &RADIUS_M, &PEAK_HEIGHT_M, &NORTH_M, &EAST_M]],
             ),
         },
     ],
 };
 
-const AMPLITUDE: &[Key] = &[
-    defaulted("forward_m_s", finite("m/s"), Default::Number(0.0), "Speed of the air forward."),
-    defaulted("right_m_s", finite("m/s"), Default::Number(0.0), "Speed of the air to the right."),
-    defaulted("up_m_s", finite("m/s"), Default::Number(0.0), "Speed of the air upward."),
-    defaulted(
-        "at_s",
-        not_negative("s"),
-        Default::Number(0.0),
-        "When an aircraft that keeps its speed flies into it.",
-    ),
-];
+pub(crate) const FORWARD_M_S: Key<f64> =
+    defaulted("forward_m_s", finite("m/s"), 0.0, "Speed of the air forward.");
+pub(crate) const RIGHT_M_S: Key<f64> =
+    defaulted("right_m_s", finite("m/s"), 0.0, "Speed of the air to the right.");
+pub(crate) const GUST_UP_M_S: Key<f64> =
+    defaulted("up_m_s", finite("m/s"), 0.0, "Speed of the air upward.");
+pub(crate) const AT_S: Key<f64> = defaulted(
+    "at_s",
+    not_negative("s"),
+    0.0,
+    "When an aircraft that keeps its speed flies into it.",
+);
 
-pub(super) static GUST: Table = Table {
+const AMPLITUDE: &[KeyRow] = &[&FORWARD_M_S, &RIGHT_M_S, &GUST_UP_M_S, &AT_S];
+
+pub(crate) const LENGTH_M: Key<f64> = required("length_m", positive("m"), "Length of the rise.");
+pub(crate) const GRADIENT_M: Key<f64> =
+    required("gradient_m", positive("m"), "Gradient distance: half the length.");
+
+pub(super) static GUST_TABLE: Table = Table {
     doc: "A gust along the axes of the aircraft.",
     groups: &[AMPLITUDE],
     choices: &[],
@@ -138,14 +140,14 @@ pub(super) static GUST: Table = Table {
             name: GustKind::RampHold.name(),
             table: plain(
                 "Rises as half a cosine over a length and stays (MIL-F-8785C).",
-                &[&[required("length_m", positive("m"), "Length of the rise.")]],
+                &[&[&LENGTH_M]],
             ),
         },
         Variant {
             name: GustKind::FullCycle.name(),
             table: plain(
                 "One minus cosine: rises over the gradient distance and falls again (CS 25.341).",
-                &[&[required("gradient_m", positive("m"), "Gradient distance: half the length.")]],
+                &[&[&GRADIENT_M]],
             ),
         },
     ],

@@ -1,13 +1,14 @@
 //! Aircraft files: stability derivatives, a linear model or tables, in the units of their source.
 
+use crate::keyed::word::words;
+use crate::keyed::{
+    Key, KeyRow, KindOf, Range, Section, Table, Variant, finite, interval, number, numbers, one_of,
+    optional, plain, positive, required, table, tables, text, word,
+};
 use fspid_sim::ElevatorSign;
 
-use super::flight::{ALTITUDE, ALTITUDE_FT, CG_MAC};
-use super::tables::TABLES;
-use super::word::{Word, words};
-use super::{
-    Choice, Key, Kind, Range, Table, Variant, Way, finite, optional, plain, positive, required,
-};
+use super::flight::{ALTITUDES, ALTITUDES_FT, CHORD_SHARE};
+use super::tables::OF_TABLES;
 
 words! {
     /// What an aircraft is known by.
@@ -27,23 +28,23 @@ words! {
     }
 }
 
-const COEFFICIENT: Kind = finite("");
-const DEG: Kind = Kind::Number { unit: "deg", range: Range::Between(-90.0, 90.0) };
-const DEG_RANGE: Kind = Kind::Interval { unit: "deg", range: Range::Between(-180.0, 180.0) };
+const COEFFICIENT: KindOf<f64> = finite("");
+const DEG: KindOf<f64> = number("deg", Range::Between(-90.0, 90.0));
+const DEG_RANGE: KindOf<(f64, f64)> = interval("deg", Range::Between(-180.0, 180.0));
 
-const fn interval(unit: &'static str) -> Kind {
-    Kind::Interval { unit, range: Range::Finite }
+const fn span(unit: &'static str) -> KindOf<(f64, f64)> {
+    interval(unit, Range::Finite)
 }
+
+pub(crate) const NAME: Key<str> = required("name", text(), "Name.");
+pub(crate) const TITLE: Key<str> = optional("title", text(), "What it is, in a line.");
+pub(crate) const SOURCE: Key<str> = required("source", text(), "Where the numbers come from.");
+pub(crate) const NOTES: Key<str> = optional("notes", text(), "What else should be known.");
 
 /// An aircraft in a file of its own.
 pub(crate) static AIRCRAFT_FILE: Table = Table {
     doc: "An aircraft.",
-    groups: &[&[
-        required("name", Kind::Text, "Name."),
-        optional("title", Kind::Text, "What it is, in a line."),
-        required("source", Kind::Text, "Where the numbers come from."),
-        optional("notes", Kind::Text, "What else should be known."),
-    ]],
+    groups: &[&[&NAME, &TITLE, &SOURCE, &NOTES]],
     choices: &[],
     variants: &[
         Variant {
@@ -53,232 +54,283 @@ pub(crate) static AIRCRAFT_FILE: Table = Table {
         Variant { name: AircraftKind::Linear.name(), table: plain("A linear model.", &[LINEAR]) },
         Variant {
             name: AircraftKind::Tables.name(),
-            table: plain("Tables in files of their own.", &[TABLES]),
+            table: plain("Tables in files of their own.", &[OF_TABLES]),
         },
     ],
 };
 
-const DERIVATIVES: &[Key] = &[
-    required("reference", Kind::Table(&REFERENCE), "Flight condition of the derivatives."),
-    required("geometry", Kind::Table(&GEOMETRY), "Lengths of the wing."),
-    required("mass", Kind::Table(&MASS), "Weight and moments of inertia."),
-    required("longitudinal", Kind::Table(&LONGITUDINAL), "Lift, drag, pitching moment."),
-    optional("lateral", Kind::Table(&LATERAL), "Side force, roll, yaw; without it there are none."),
-    required("validity", Kind::Table(&VALIDITY), "Where the derivatives are trusted."),
-    required("travel", Kind::Table(&TRAVEL), "How far the controls go."),
-];
+pub(crate) const REFERENCE: Key<Section> =
+    required("reference", table(&REFERENCE_TABLE), "Flight condition of the derivatives.");
+pub(crate) const GEOMETRY: Key<Section> =
+    required("geometry", table(&GEOMETRY_TABLE), "Lengths of the wing.");
+pub(crate) const MASS: Key<Section> =
+    required("mass", table(&MASS_TABLE), "Weight and moments of inertia.");
+pub(crate) const LONGITUDINAL: Key<Section> =
+    required("longitudinal", table(&LONGITUDINAL_TABLE), "Lift, drag, pitching moment.");
+pub(crate) const LATERAL: Key<Section> =
+    optional("lateral", table(&LATERAL_TABLE), "Side force, roll, yaw; without it there are none.");
+pub(crate) const VALIDITY: Key<Section> =
+    required("validity", table(&VALIDITY_TABLE), "Where the derivatives are trusted.");
+pub(crate) const TRAVEL: Key<Section> =
+    required("travel", table(&TRAVEL_TABLE), "How far the controls go.");
 
-const LINEAR: &[Key] = &[
-    optional(
-        "elevator_sign",
-        Kind::Word(ElevatorSign::WORDS),
-        "What a positive elevator does; \"nose-down-positive\" if left out.",
-    ),
-    optional(
-        "condition",
-        Kind::Table(&CONDITION),
-        "Where the model holds; without it a scenario's airspeed and altitude are assumptions, and the air is calm.",
-    ),
-    optional("geometry", Kind::Table(&SPAN), "The wing, on which turbulence depends."),
-    required(
-        "equations",
-        Kind::Tables { table: &EQUATION, least: 1, most: 4 },
-        "One equation a state; all list the states in this order.",
-    ),
-];
+const DERIVATIVES: &[KeyRow] =
+    &[&REFERENCE, &GEOMETRY, &MASS, &LONGITUDINAL, &LATERAL, &VALIDITY, &TRAVEL];
 
-static CONDITION: Table = Table {
+pub(crate) const ELEVATOR_SIGN: Key<ElevatorSign> = optional(
+    "elevator_sign",
+    word(),
+    "What a positive elevator does; \"nose-down-positive\" if left out.",
+);
+pub(crate) const CONDITION: Key<Section> = optional(
+    "condition",
+    table(&CONDITION_TABLE),
+    "Where the model holds; without it a scenario's airspeed and altitude are assumptions, and the air is calm.",
+);
+pub(crate) const LINEAR_GEOMETRY: Key<Section> =
+    optional("geometry", table(&SPAN_TABLE), "The wing, on which turbulence depends.");
+pub(crate) const EQUATIONS: Key<[Section]> = required(
+    "equations",
+    tables(&EQUATION_TABLE, 1, 4),
+    "One equation a state; all list the states in this order.",
+);
+
+const LINEAR: &[KeyRow] = &[&ELEVATOR_SIGN, &CONDITION, &LINEAR_GEOMETRY, &EQUATIONS];
+
+pub(crate) const CONDITION_AIRSPEED: [Key<f64>; 2] = [
+    optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
+    optional("airspeed_m_s", positive("m/s"), "True airspeed."),
+];
+pub(crate) const CONDITION_ALTITUDE: [Key<f64>; 2] = [
+    optional("altitude_ft", number("ft", ALTITUDES_FT), "Geopotential altitude."),
+    optional("altitude_m", number("m", ALTITUDES), "Geopotential altitude."),
+];
+pub(crate) const CONDITION_MACH: Key<f64> = optional("mach", positive(""), "Mach number.");
+
+static CONDITION_TABLE: Table = Table {
     doc: "The level flight around which a linear model holds.",
-    groups: &[&[
-        optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
-        optional("airspeed_m_s", positive("m/s"), "True airspeed."),
-        optional(
-            "altitude_ft",
-            Kind::Number { unit: "ft", range: ALTITUDE_FT },
-            "Geopotential altitude.",
-        ),
-        optional(
-            "altitude_m",
-            Kind::Number { unit: "m", range: ALTITUDE },
-            "Geopotential altitude.",
-        ),
-        optional("mach", positive(""), "Mach number."),
-    ]],
-    choices: &[one_of!("airspeed_ft_s", "airspeed_m_s"), one_of!("altitude_ft", "altitude_m")],
+    groups: &[
+        &[&CONDITION_AIRSPEED[0], &CONDITION_AIRSPEED[1], &CONDITION_ALTITUDE[0]],
+        &[&CONDITION_ALTITUDE[1], &CONDITION_MACH],
+    ],
+    choices: &[
+        one_of!(CONDITION_AIRSPEED[0], CONDITION_AIRSPEED[1]),
+        one_of!(CONDITION_ALTITUDE[0], CONDITION_ALTITUDE[1]),
+    ],
     variants: &[],
 };
 
-static SPAN: Table = Table {
+pub(crate) const SPAN: [Key<f64>; 2] =
+    [optional("span_ft", positive("ft"), "Span."), optional("span_m", positive("m"), "Span.")];
+
+static SPAN_TABLE: Table = Table {
     doc: "The wing of a linear model.",
-    groups: &[&[
-        optional("span_ft", positive("ft"), "Span."),
-        optional("span_m", positive("m"), "Span."),
-    ]],
-    choices: &[one_of!("span_ft", "span_m")],
+    groups: &[&[&SPAN[0], &SPAN[1]]],
+    choices: &[one_of!(SPAN[0], SPAN[1])],
     variants: &[],
 };
 
-static REFERENCE: Table = Table {
+pub(crate) const REFERENCE_AIRSPEED: [Key<f64>; 2] = [
+    optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
+    optional("airspeed_m_s", positive("m/s"), "True airspeed."),
+];
+pub(crate) const REFERENCE_ALTITUDE: [Key<f64>; 2] = [
+    optional("altitude_ft", finite("ft"), "Geopotential altitude."),
+    optional("altitude_m", finite("m"), "Geopotential altitude."),
+];
+pub(crate) const REFERENCE_MACH: Key<f64> = required("mach", positive(""), "Mach number.");
+pub(crate) const DENSITY: [Key<f64>; 2] = [
+    optional("density_slug_ft3", positive("slug/ft3"), "Density of the air."),
+    optional("density_kg_m3", positive("kg/m3"), "Density of the air."),
+];
+pub(crate) const DYNAMIC_PRESSURE: [Key<f64>; 2] = [
+    optional(
+        "dynamic_pressure_psf",
+        positive("psf"),
+        "As the source prints it; otherwise that of density and airspeed.",
+    ),
+    optional("dynamic_pressure_pa", positive("Pa"), "As dynamic_pressure_psf."),
+];
+pub(crate) const GRAVITY: [Key<f64>; 2] = [
+    optional("gravity_ft_s2", positive("ft/s2"), "With which masses are made of weights."),
+    optional("gravity_m_s2", positive("m/s2"), "With which masses are made of weights."),
+];
+pub(crate) const REFERENCE_ALPHA_DEG: Key<f64> =
+    required("alpha_deg", DEG, "Angle of attack of the fuselage.");
+pub(crate) const CG_MAC: Key<f64> = optional(
+    "cg_mac",
+    CHORD_SHARE,
+    "Centre of gravity of the derivatives behind the leading edge of the mean chord, as a share of it; without it a scenario cannot move it.",
+);
+
+static REFERENCE_TABLE: Table = Table {
     doc: "Flight condition of the derivatives.",
-    groups: &[&[
-        optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
-        optional("airspeed_m_s", positive("m/s"), "True airspeed."),
-        optional("altitude_ft", finite("ft"), "Geopotential altitude."),
-        optional("altitude_m", finite("m"), "Geopotential altitude."),
-        required("mach", positive(""), "Mach number."),
-        optional("density_slug_ft3", positive("slug/ft3"), "Density of the air."),
-        optional("density_kg_m3", positive("kg/m3"), "Density of the air."),
-        optional(
-            "dynamic_pressure_psf",
-            positive("psf"),
-            "As the source prints it; otherwise that of density and airspeed.",
-        ),
-        optional("dynamic_pressure_pa", positive("Pa"), "As dynamic_pressure_psf."),
-        optional("gravity_ft_s2", positive("ft/s2"), "With which masses are made of weights."),
-        optional("gravity_m_s2", positive("m/s2"), "With which masses are made of weights."),
-        required("alpha_deg", DEG, "Angle of attack of the fuselage."),
-        optional(
-            "cg_mac",
-            CG_MAC,
-            "Centre of gravity of the derivatives behind the leading edge of the mean chord, as a share of it; without it a scenario cannot move it.",
-        ),
-    ]],
+    groups: &[
+        &[&REFERENCE_AIRSPEED[0], &REFERENCE_AIRSPEED[1], &REFERENCE_ALTITUDE[0]],
+        &[&REFERENCE_ALTITUDE[1], &REFERENCE_MACH, &DENSITY[0], &DENSITY[1]],
+        &[&DYNAMIC_PRESSURE[0], &DYNAMIC_PRESSURE[1], &GRAVITY[0], &GRAVITY[1]],
+        &[&REFERENCE_ALPHA_DEG, &CG_MAC],
+    ],
     choices: &[
-        one_of!("airspeed_ft_s", "airspeed_m_s"),
-        one_of!("altitude_ft", "altitude_m"),
-        one_of!("density_slug_ft3", "density_kg_m3"),
-        one_of!("gravity_ft_s2", "gravity_m_s2"),
+        one_of!(REFERENCE_AIRSPEED[0], REFERENCE_AIRSPEED[1]),
+        one_of!(REFERENCE_ALTITUDE[0], REFERENCE_ALTITUDE[1]),
+        one_of!(DENSITY[0], DENSITY[1]),
+        one_of!(GRAVITY[0], GRAVITY[1]),
     ],
     variants: &[],
 };
 
-static GEOMETRY: Table = Table {
-    doc: "Lengths of the wing.",
-    groups: &[&[
-        optional("area_ft2", positive("ft2"), "Area."),
-        optional("area_m2", positive("m2"), "Area."),
-        optional("span_ft", positive("ft"), "Span."),
-        optional("span_m", positive("m"), "Span."),
-        optional("chord_ft", positive("ft"), "Mean chord."),
-        optional("chord_m", positive("m"), "Mean chord."),
-    ]],
-    choices: &[
-        one_of!("area_ft2", "area_m2"),
-        one_of!("span_ft", "span_m"),
-        one_of!("chord_ft", "chord_m"),
-    ],
-    variants: &[],
-};
-
-static MASS: Table = Table {
-    doc: "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
-    groups: &[&[
-        optional("weight_lbf", positive("lbf"), "Weight."),
-        optional("weight_n", positive("N"), "Weight."),
-        optional("ix_slug_ft2", positive("slug ft2"), "About the forward axis."),
-        optional("ix_kg_m2", positive("kg m2"), "About the forward axis."),
-        optional("iy_slug_ft2", positive("slug ft2"), "About the right axis."),
-        optional("iy_kg_m2", positive("kg m2"), "About the right axis."),
-        optional("iz_slug_ft2", positive("slug ft2"), "About the downward axis."),
-        optional("iz_kg_m2", positive("kg m2"), "About the downward axis."),
-        optional("ixz_slug_ft2", finite("slug ft2"), "Product of inertia."),
-        optional("ixz_kg_m2", finite("kg m2"), "Product of inertia."),
-    ]],
-    choices: &[
-        one_of!("weight_lbf", "weight_n"),
-        one_of!("ix_slug_ft2", "ix_kg_m2"),
-        one_of!("iy_slug_ft2", "iy_kg_m2"),
-        one_of!("iz_slug_ft2", "iz_kg_m2"),
-        one_of!("ixz_slug_ft2", "ixz_kg_m2"),
-    ],
-    variants: &[],
-};
-
-static LONGITUDINAL: Table = plain(
-    "Longitudinal coefficients.",
-    &[&[
-        required("lift", Kind::Table(&LONGITUDINAL_ROW), "CL, up across the flow."),
-        required("drag", Kind::Table(&LONGITUDINAL_ROW), "CD, back along the flow."),
-        required("pitch", Kind::Table(&LONGITUDINAL_ROW), "Cm, nose up."),
-        optional("thrust_speed", COEFFICIENT, "CTxu; 0 if left out."),
-    ]],
-);
-
-static LONGITUDINAL_ROW: Table = plain(
-    "A coefficient; what is left out is 0.",
-    &[&[
-        optional("reference", COEFFICIENT, "At the flight condition."),
-        optional("alpha", COEFFICIENT, "By angle of attack."),
-        optional("alpha_rate", COEFFICIENT, "By its rate, times half a chord over airspeed."),
-        optional("pitch_rate", COEFFICIENT, "By pitch rate, times half a chord over airspeed."),
-        optional("speed", COEFFICIENT, "By relative change of speed."),
-        optional("elevator", COEFFICIENT, "By elevator, trailing edge down positive."),
-    ]],
-);
-
-static LATERAL: Table = plain(
-    "Lateral coefficients.",
-    &[&[
-        required("side", Kind::Table(&LATERAL_ROW), "CY, to the right."),
-        required("roll", Kind::Table(&LATERAL_ROW), "Cl, right wing down."),
-        required("yaw", Kind::Table(&LATERAL_ROW), "Cn, nose right."),
-    ]],
-);
-
-static LATERAL_ROW: Table = plain(
-    "A coefficient; what is left out is 0.",
-    &[&[
-        optional("beta", COEFFICIENT, "By sideslip."),
-        optional("roll_rate", COEFFICIENT, "By roll rate, times half a span over airspeed."),
-        optional("yaw_rate", COEFFICIENT, "By yaw rate, times half a span over airspeed."),
-        optional("aileron", COEFFICIENT, "By aileron."),
-        optional("rudder", COEFFICIENT, "By rudder."),
-    ]],
-);
-
-static VALIDITY: Table = Table {
-    doc: "Where the derivatives are trusted.",
-    groups: &[&[
-        optional("airspeed_ft_s", interval("ft/s"), "True airspeed."),
-        optional("airspeed_m_s", interval("m/s"), "True airspeed."),
-        required("mach", interval(""), "Mach number."),
-        required("alpha_deg", DEG_RANGE, "Angle of attack from the reference."),
-        required("beta_deg", DEG_RANGE, "Sideslip."),
-        optional("altitude_ft", interval("ft"), "Geopotential altitude."),
-        optional("altitude_m", interval("m"), "Geopotential altitude."),
-    ]],
-    choices: &[one_of!("airspeed_ft_s", "airspeed_m_s"), one_of!("altitude_ft", "altitude_m")],
-    variants: &[],
-};
-
-pub(super) const SURFACE_KEYS: &[Key] = &[
-    required("elevator_deg", DEG_RANGE, "Elevator, trailing edge down positive."),
-    required("aileron_deg", DEG_RANGE, "Aileron."),
-    required("rudder_deg", DEG_RANGE, "Rudder."),
+pub(crate) const AREA: [Key<f64>; 2] =
+    [optional("area_ft2", positive("ft2"), "Area."), optional("area_m2", positive("m2"), "Area.")];
+pub(crate) const CHORD: [Key<f64>; 2] = [
+    optional("chord_ft", positive("ft"), "Mean chord."),
+    optional("chord_m", positive("m"), "Mean chord."),
 ];
 
-static TRAVEL: Table = plain(
-    "How far the controls go.",
-    &[
-        SURFACE_KEYS,
-        &[required("throttle", interval(""), "Thrust in multiples of that of the reference.")],
+static GEOMETRY_TABLE: Table = Table {
+    doc: "Lengths of the wing.",
+    groups: &[&[&AREA[0], &AREA[1], &SPAN[0], &SPAN[1], &CHORD[0], &CHORD[1]]],
+    choices: &[one_of!(AREA[0], AREA[1]), one_of!(SPAN[0], SPAN[1]), one_of!(CHORD[0], CHORD[1])],
+    variants: &[],
+};
+
+pub(crate) const WEIGHT: [Key<f64>; 2] = [
+    optional("weight_lbf", positive("lbf"), "Weight."),
+    optional("weight_n", positive("N"), "Weight."),
+];
+pub(crate) const IX: [Key<f64>; 2] = [
+    optional("ix_slug_ft2", positive("slug ft2"), "About the forward axis."),
+    optional("ix_kg_m2", positive("kg m2"), "About the forward axis."),
+];
+pub(crate) const IY: [Key<f64>; 2] = [
+    optional("iy_slug_ft2", positive("slug ft2"), "About the right axis."),
+    optional("iy_kg_m2", positive("kg m2"), "About the right axis."),
+];
+pub(crate) const IZ: [Key<f64>; 2] = [
+    optional("iz_slug_ft2", positive("slug ft2"), "About the downward axis."),
+    optional("iz_kg_m2", positive("kg m2"), "About the downward axis."),
+];
+pub(crate) const IXZ: [Key<f64>; 2] = [
+    optional("ixz_slug_ft2", finite("slug ft2"), "Product of inertia."),
+    optional("ixz_kg_m2", finite("kg m2"), "Product of inertia."),
+];
+
+static MASS_TABLE: Table = Table {
+    doc: "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
+    groups: &[
+        &[&WEIGHT[0], &WEIGHT[1], &IX[0], &IX[1], &IY[0], &IY[1], &IZ[0], &IZ[1]],
+        &[&IXZ[0], &IXZ[1]],
     ],
+    choices: &[
+        one_of!(WEIGHT[0], WEIGHT[1]),
+        one_of!(IX[0], IX[1]),
+        one_of!(IY[0], IY[1]),
+        one_of!(IZ[0], IZ[1]),
+        one_of!(IXZ[0], IXZ[1]),
+    ],
+    variants: &[],
+};
+
+pub(crate) const LIFT: Key<Section> =
+    required("lift", table(&LONGITUDINAL_ROW_TABLE), "CL, up across the flow.");
+pub(crate) const DRAG: Key<Section> =
+    required("drag", table(&LONGITUDINAL_ROW_TABLE), "CD, back along the flow.");
+pub(crate) const PITCH: Key<Section> =
+    required("pitch", table(&LONGITUDINAL_ROW_TABLE), "Cm, nose up.");
+pub(crate) const THRUST_SPEED: Key<f64> =
+    optional("thrust_speed", COEFFICIENT, "CTxu; 0 if left out.");
+
+static LONGITUDINAL_TABLE: Table =
+    plain("Longitudinal coefficients.", &[&[&LIFT, &DRAG, &PITCH, &THRUST_SPEED]]);
+
+pub(crate) const COEFFICIENT_REFERENCE: Key<f64> =
+    optional("reference", COEFFICIENT, "At the flight condition.");
+pub(crate) const ALPHA: Key<f64> = optional("alpha", COEFFICIENT, "By angle of attack.");
+pub(crate) const ALPHA_RATE: Key<f64> =
+    optional("alpha_rate", COEFFICIENT, "By its rate, times half a chord over airspeed.");
+pub(crate) const PITCH_RATE: Key<f64> =
+    optional("pitch_rate", COEFFICIENT, "By pitch rate, times half a chord over airspeed.");
+pub(crate) const SPEED: Key<f64> = optional("speed", COEFFICIENT, "By relative change of speed.");
+pub(crate) const ELEVATOR: Key<f64> =
+    optional("elevator", COEFFICIENT, "By elevator, trailing edge down positive.");
+
+static LONGITUDINAL_ROW_TABLE: Table = plain(
+    "A coefficient; what is left out is 0.",
+    &[&[&COEFFICIENT_REFERENCE, &ALPHA, &ALPHA_RATE, &PITCH_RATE, &SPEED, &ELEVATOR]],
 );
 
-static EQUATION: Table = plain(
-    "Rate of change of a state.",
-    &[&[
-        required("state", Kind::Word(StateWord::WORDS), "Which."),
-        required(
-            "by_states",
-            Kind::Numbers { unit: "", range: Range::Finite, least: 1, most: 4 },
-            "By each of the states, in the order of the equations.",
-        ),
-        required("by_elevator", finite(""), "By the elevator in rad."),
-        optional(
-            "by_pitch_gust",
-            finite(""),
-            "By the pitch rate of the air in rad/s: 0 if left out, as it is for theta_rad; known if any equation has it.",
-        ),
-    ]],
+pub(crate) const SIDE: Key<Section> =
+    required("side", table(&LATERAL_ROW_TABLE), "CY, to the right.");
+pub(crate) const ROLL: Key<Section> =
+    required("roll", table(&LATERAL_ROW_TABLE), "Cl, right wing down.");
+pub(crate) const YAW: Key<Section> = required("yaw", table(&LATERAL_ROW_TABLE), "Cn, nose right.");
+
+static LATERAL_TABLE: Table = plain("Lateral coefficients.", &[&[&SIDE, &ROLL, &YAW]]);
+
+pub(crate) const BETA: Key<f64> = optional("beta", COEFFICIENT, "By sideslip.");
+pub(crate) const ROLL_RATE: Key<f64> =
+    optional("roll_rate", COEFFICIENT, "By roll rate, times half a span over airspeed.");
+pub(crate) const YAW_RATE: Key<f64> =
+    optional("yaw_rate", COEFFICIENT, "By yaw rate, times half a span over airspeed.");
+pub(crate) const AILERON: Key<f64> = optional("aileron", COEFFICIENT, "By aileron.");
+pub(crate) const RUDDER: Key<f64> = optional("rudder", COEFFICIENT, "By rudder.");
+
+static LATERAL_ROW_TABLE: Table = plain(
+    "A coefficient; what is left out is 0.",
+    &[&[&BETA, &ROLL_RATE, &YAW_RATE, &AILERON, &RUDDER]],
 );
+
+pub(crate) const VALIDITY_AIRSPEED: [Key<(f64, f64)>; 2] = [
+    optional("airspeed_ft_s", span("ft/s"), "True airspeed."),
+    optional("airspeed_m_s", span("m/s"), "True airspeed."),
+];
+pub(crate) const VALIDITY_MACH: Key<(f64, f64)> = required("mach", span(""), "Mach number.");
+pub(crate) const VALIDITY_ALPHA_DEG: Key<(f64, f64)> =
+    required("alpha_deg", DEG_RANGE, "Angle of attack from the reference.");
+pub(crate) const BETA_DEG: Key<(f64, f64)> = required("beta_deg", DEG_RANGE, "Sideslip.");
+pub(crate) const VALIDITY_ALTITUDE: [Key<(f64, f64)>; 2] = [
+    optional("altitude_ft", span("ft"), "Geopotential altitude."),
+    optional("altitude_m", span("m"), "Geopotential altitude."),
+];
+
+static VALIDITY_TABLE: Table = Table {
+    doc: "Where the derivatives are trusted.",
+    groups: &[
+        &[&VALIDITY_AIRSPEED[0], &VALIDITY_AIRSPEED[1], &VALIDITY_MACH],
+        &[&VALIDITY_ALPHA_DEG, &BETA_DEG, &VALIDITY_ALTITUDE[0], &VALIDITY_ALTITUDE[1]],
+    ],
+    choices: &[
+        one_of!(VALIDITY_AIRSPEED[0], VALIDITY_AIRSPEED[1]),
+        one_of!(VALIDITY_ALTITUDE[0], VALIDITY_ALTITUDE[1]),
+    ],
+    variants: &[],
+};
+
+pub(crate) const ELEVATOR_DEG: Key<(f64, f64)> =
+    required("elevator_deg", DEG_RANGE, "Elevator, trailing edge down positive.");
+pub(crate) const AILERON_DEG: Key<(f64, f64)> = required("aileron_deg", DEG_RANGE, "Aileron.");
+pub(crate) const RUDDER_DEG: Key<(f64, f64)> = required("rudder_deg", DEG_RANGE, "Rudder.");
+
+pub(super) const SURFACE_KEYS: &[KeyRow] = &[&ELEVATOR_DEG, &AILERON_DEG, &RUDDER_DEG];
+
+pub(crate) const THROTTLE: Key<(f64, f64)> =
+    required("throttle", span(""), "Thrust in multiples of that of the reference.");
+
+static TRAVEL_TABLE: Table = plain("How far the controls go.", &[SURFACE_KEYS, &[&THROTTLE]]);
+
+pub(crate) const STATE: Key<StateWord> = required("state", word(), "Which.");
+pub(crate) const BY_STATES: Key<[f64]> = required(
+    "by_states",
+    numbers("", Range::Finite, (1, 4)),
+    "By each of the states, in the order of the equations.",
+);
+pub(crate) const BY_ELEVATOR: Key<f64> =
+    required("by_elevator", finite(""), "By the elevator in rad.");
+pub(crate) const BY_PITCH_GUST: Key<f64> = optional(
+    "by_pitch_gust",
+    finite(""),
+    "By the pitch rate of the air in rad/s: 0 if left out, as it is for theta_rad; known if any equation has it.",
+);
+
+static EQUATION_TABLE: Table =
+    plain("Rate of change of a state.", &[&[&STATE, &BY_STATES, &BY_ELEVATOR, &BY_PITCH_GUST]]);

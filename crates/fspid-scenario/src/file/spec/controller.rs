@@ -1,16 +1,20 @@
 //! The controllers.
 
-use super::data::{GRIDS, NUMBER_GRIDS};
+use super::data::{GRIDS_TABLE, NUMBER_GRIDS_TABLE};
+use super::{ANGLE_LIMIT_DEG, angle};
+use crate::file::preset::rule_table_names;
+use crate::keyed::word::{words, words_of};
+use crate::keyed::{
+    Choice, Key, KeyRow, Range, Rules, Section, Table, Variant, Way, defaulted, defuzzifier,
+    file_path, finite, interval, not_negative, number, one_of, optional, plain, positive, required,
+    rules, table, text, word,
+};
 use fspid_core::{Change, ErrorSign, IntegralForm};
+use fspid_fuzzy::Defuzzifier;
 use fspid_fuzzy::OutOfRange;
 
 use super::lqi::LQI;
 use super::schedule::SCHEDULE;
-use super::word::{Word, words, words_of};
-use super::{
-    ANGLE_LIMIT_DEG, Choice, Default, Key, Kind, Range, Table, Variant, Way, angle, defaulted,
-    finite, not_negative, optional, plain, positive, required,
-};
 
 words! {
     /// What controls.
@@ -54,37 +58,39 @@ words_of!(ErrorSign {
 });
 words_of!(Change { Rate = "rate", Delta = "delta" });
 
-pub(super) static CONTROLLER: Table = Table {
+pub(crate) const NAME: Key<str> =
+    required("name", text(), "Name in traces and reports; each only once.");
+pub(crate) const P_KP: Key<f64> = required("kp", finite(""), "Command per error.");
+pub(crate) const KP: Key<f64> = optional("kp", finite(""), "Proportional gain, command per error.");
+pub(crate) const KI: Key<f64> = optional("ki", finite("1/s"), "Integral gain; 0 if left out.");
+pub(crate) const KD: Key<f64> = optional("kd", finite("s"), "Derivative gain; 0 if left out.");
+pub(crate) const ISA: Key<Section> = optional("isa", table(&ISA_TABLE), "The gains in ISA form.");
+pub(crate) const NOMINAL: Key<Section> =
+    optional("nominal", table(&PARALLEL_TABLE), "The gains that the supervisor adds to.");
+pub(crate) const NOMINAL_ISA: Key<Section> =
+    optional("nominal_isa", table(&ISA_TABLE), "The same in ISA form.");
+
+pub(super) static CONTROLLER_TABLE: Table = Table {
     doc: "A controller; a positive command turns the nose up.",
-    groups: &[&[required("name", Kind::Text, "Name in traces and reports; each only once.")]],
+    groups: &[&[&NAME]],
     choices: &[],
     variants: &[
         Variant {
             name: ControllerKind::P.name(),
             table: plain(
                 "Proportional, with an optional inner loop of pitch rate.",
-                &[&[required("kp", finite(""), "Command per error."), RATE_GAIN, SCHEDULE]],
+                &[&[&P_KP, &RATE_GAIN, &SCHEDULE]],
             ),
         },
         Variant {
             name: ControllerKind::Pid.name(),
             table: Table {
                 doc: "PID with fixed gains, in parallel or ISA form.",
-                groups: &[
-                    &[
-                        optional("kp", finite(""), "Proportional gain, command per error."),
-                        optional("ki", finite("1/s"), "Integral gain; 0 if left out."),
-                        optional("kd", finite("s"), "Derivative gain; 0 if left out."),
-                        optional("isa", Kind::Table(&ISA), "The gains in ISA form."),
-                        SCHEDULE,
-                    ],
-                    TERMS,
-                    ENDS,
-                ],
+                groups: &[&[&KP, &KI, &KD, &ISA, &SCHEDULE], TERMS, ENDS],
                 choices: &[Choice {
                     ways: &[
-                        Way { required: &["kp"], optional: &["ki", "kd"] },
-                        Way { required: &["isa"], optional: &[] },
+                        Way { required: &[KP.name], optional: &[KI.name, KD.name] },
+                        Way { required: &[ISA.name], optional: &[] },
                     ],
                 }],
                 variants: &[],
@@ -94,23 +100,11 @@ pub(super) static CONTROLLER: Table = Table {
             name: ControllerKind::Fspid.name(),
             table: Table {
                 doc: "PID whose gains a fuzzy supervisor tunes while flying.",
-                groups: &[
-                    &[
-                        optional(
-                            "nominal",
-                            Kind::Table(&PARALLEL),
-                            "The gains that the supervisor adds to.",
-                        ),
-                        optional("nominal_isa", Kind::Table(&ISA), "The same in ISA form."),
-                    ],
-                    TUNER,
-                    TERMS,
-                    ENDS,
-                ],
+                groups: &[&[&NOMINAL, &NOMINAL_ISA], TUNER, TERMS, ENDS],
                 choices: &[Choice {
                     ways: &[
-                        Way { required: &["nominal"], optional: &[] },
-                        Way { required: &["nominal_isa"], optional: &[] },
+                        Way { required: &[NOMINAL.name], optional: &[] },
+                        Way { required: &[NOMINAL_ISA.name], optional: &[] },
                     ],
                 }],
                 variants: &[],
@@ -126,102 +120,101 @@ pub(super) static CONTROLLER: Table = Table {
     ],
 };
 
-const RATE_GAIN: Key = defaulted(
+pub(crate) const RATE_GAIN: Key<f64> = defaulted(
     "rate_gain",
     finite("s"),
-    Default::Number(0.0),
+    0.0,
     "Gain of the inner loop: command per pitch rate, taken off.",
 );
 
-static PARALLEL: Table = plain(
-    "Gains in parallel form.",
-    &[&[
-        required("kp", finite(""), "Proportional gain, command per error."),
-        defaulted("ki", finite("1/s"), Default::Number(0.0), "Integral gain."),
-        defaulted("kd", finite("s"), Default::Number(0.0), "Derivative gain."),
-    ]],
+pub(crate) const NOMINAL_KP: Key<f64> =
+    required("kp", finite(""), "Proportional gain, command per error.");
+pub(crate) const NOMINAL_KI: Key<f64> = defaulted("ki", finite("1/s"), 0.0, "Integral gain.");
+pub(crate) const NOMINAL_KD: Key<f64> = defaulted("kd", finite("s"), 0.0, "Derivative gain.");
+
+static PARALLEL_TABLE: Table =
+    plain("Gains in parallel form.", &[&[&NOMINAL_KP, &NOMINAL_KI, &NOMINAL_KD]]);
+
+pub(crate) const GAIN: Key<f64> = required("gain", finite(""), "K, command per error.");
+pub(crate) const TI_S: Key<f64> =
+    optional("ti_s", positive("s"), "Integral time; no integral if left out.");
+pub(crate) const TD_S: Key<f64> = defaulted("td_s", not_negative("s"), 0.0, "Derivative time.");
+pub(crate) const N: Key<f64> = optional(
+    "n",
+    positive(""),
+    "The derivative is filtered with time constant td_s / n; not at all if left out.",
 );
 
-static ISA: Table = plain(
+static ISA_TABLE: Table = plain(
     "Gains in ISA form: gain · (e + ∫e dt / ti_s + td_s · de/dt).",
-    &[&[
-        required("gain", finite(""), "K, command per error."),
-        optional("ti_s", positive("s"), "Integral time; no integral if left out."),
-        defaulted("td_s", not_negative("s"), Default::Number(0.0), "Derivative time."),
-        optional(
-            "n",
-            positive(""),
-            "The derivative is filtered with time constant td_s / n; not at all if left out.",
-        ),
-    ]],
+    &[&[&GAIN, &TI_S, &TD_S, &N]],
+);
+
+pub(crate) const SETPOINT_WEIGHTS: Key<Section> = optional(
+    "setpoint_weights",
+    table(&WEIGHTS_TABLE),
+    "How much of the set-point each term sees.",
+);
+pub(crate) const DERIVATIVE_ON: Key<DerivativeOn> = defaulted(
+    "derivative_on",
+    word(),
+    DerivativeOn::Error,
+    "`measurement` is a derivative weight of 0.",
+);
+pub(crate) const DERIVATIVE_FILTER_S: Key<f64> = optional(
+    "derivative_filter_s",
+    not_negative("s"),
+    "Time constant of the derivative's filter; 0 for none, which is also the default.",
+);
+pub(crate) const INTEGRAL: Key<IntegralForm> = defaulted(
+    "integral",
+    word(),
+    IntegralForm::Bumpless,
+    "Sum of ki·e, or ki times the sum of e as the paper has it.",
 );
 
 /// How the terms of a PID controller are formed.
-const TERMS: &[Key] = &[
-    RATE_GAIN,
-    optional(
-        "setpoint_weights",
-        Kind::Table(&WEIGHTS),
-        "How much of the set-point each term sees.",
-    ),
-    defaulted(
-        "derivative_on",
-        Kind::Word(DerivativeOn::WORDS),
-        Default::Word("error"),
-        "`measurement` is a derivative weight of 0.",
-    ),
-    optional(
-        "derivative_filter_s",
-        not_negative("s"),
-        "Time constant of the derivative's filter; 0 for none, which is also the default.",
-    ),
-    defaulted(
-        "integral",
-        Kind::Word(IntegralForm::WORDS),
-        Default::Word("bumpless"),
-        "Sum of ki·e, or ki times the sum of e as the paper has it.",
-    ),
-];
+const TERMS: &[KeyRow] =
+    &[&RATE_GAIN, &SETPOINT_WEIGHTS, &DERIVATIVE_ON, &DERIVATIVE_FILTER_S, &INTEGRAL];
 
-/// Where a controller with an integral ends: its limits, and which samples it believes.
-const ENDS: &[Key] = &[
-    optional(
-        "anti_windup",
-        Kind::Table(&ANTI_WINDUP),
-        "What the integral does at a limit; nothing if left out.",
-    ),
-    optional(
-        "output_limits_deg",
-        Kind::Interval { unit: "deg", range: Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG) },
-        "Lowest and highest command.",
-    ),
-    optional("slew_limit_deg_s", positive("deg/s"), "Largest rate of the command."),
-    defaulted(
-        "sample_guard_deg",
-        Kind::Number { unit: "deg", range: Range::PositiveUpTo(1e300) },
-        Default::Number(1e9),
-        "A larger sample is not believed: the command is held.",
-    ),
-];
-
-static WEIGHTS: Table = plain(
-    "Set-point weights.",
-    &[&[
-        defaulted(
-            "proportional",
-            finite(""),
-            Default::Number(1.0),
-            "Weight in the proportional term.",
-        ),
-        optional(
-            "derivative",
-            finite(""),
-            "Weight in the derivative term; if left out 1, or 0 where derivative_on is `measurement`.",
-        ),
-    ]],
+pub(crate) const ANTI_WINDUP: Key<Section> = optional(
+    "anti_windup",
+    table(&ANTI_WINDUP_TABLE),
+    "What the integral does at a limit; nothing if left out.",
+);
+pub(crate) const OUTPUT_LIMITS_DEG: Key<(f64, f64)> = optional(
+    "output_limits_deg",
+    interval("deg", Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG)),
+    "Lowest and highest command.",
+);
+pub(crate) const SLEW_LIMIT_DEG_S: Key<f64> =
+    optional("slew_limit_deg_s", positive("deg/s"), "Largest rate of the command.");
+pub(crate) const SAMPLE_GUARD_DEG: Key<f64> = defaulted(
+    "sample_guard_deg",
+    number("deg", Range::PositiveUpTo(1e300)),
+    1e9,
+    "A larger sample is not believed: the command is held.",
 );
 
-static ANTI_WINDUP: Table = Table {
+/// Where a controller with an integral ends: its limits, and which samples it believes.
+const ENDS: &[KeyRow] = &[&ANTI_WINDUP, &OUTPUT_LIMITS_DEG, &SLEW_LIMIT_DEG_S, &SAMPLE_GUARD_DEG];
+
+pub(crate) const PROPORTIONAL: Key<f64> =
+    defaulted("proportional", finite(""), 1.0, "Weight in the proportional term.");
+pub(crate) const DERIVATIVE: Key<f64> = optional(
+    "derivative",
+    finite(""),
+    "Weight in the derivative term; if left out 1, or 0 where derivative_on is `measurement`.",
+);
+
+static WEIGHTS_TABLE: Table = plain("Set-point weights.", &[&[&PROPORTIONAL, &DERIVATIVE]]);
+
+pub(crate) const LOWER_DEG: Key<f64> = required("lower_deg", angle(), "Lowest part.");
+pub(crate) const UPPER_DEG: Key<f64> =
+    required("upper_deg", angle(), "Highest part; above the lowest.");
+pub(crate) const TRACKING_S: Key<f64> = required("tracking_s", positive("s"), "Tracking time.");
+
+static ANTI_WINDUP_TABLE: Table = Table {
     doc: "Anti-windup.",
     groups: &[],
     choices: &[],
@@ -231,10 +224,7 @@ static ANTI_WINDUP: Table = Table {
             name: AntiWindupKind::Clamping.name(),
             table: plain(
                 "The integral's part of the command is kept within limits.",
-                &[&[
-                    required("lower_deg", angle(), "Lowest part."),
-                    required("upper_deg", angle(), "Highest part; above the lowest."),
-                ]],
+                &[&[&LOWER_DEG, &UPPER_DEG]],
             ),
         },
         Variant {
@@ -246,196 +236,212 @@ static ANTI_WINDUP: Table = Table {
         },
         Variant {
             name: AntiWindupKind::BackCalculation.name(),
-            table: plain(
-                "The integral follows the limited command.",
-                &[&[required("tracking_s", positive("s"), "Tracking time.")]],
-            ),
+            table: plain("The integral follows the limited command.", &[&[&TRACKING_S]]),
         },
     ],
 };
 
-/// What a self-tuning controller has beyond a PID.
-const TUNER: &[Key] = &[
-    required("supervisor", Kind::Table(&SUPERVISOR), "The fuzzy rules and their scales."),
-    defaulted(
-        "law",
-        Kind::Word(LawWord::WORDS),
-        Default::Word("memoryless"),
-        "Gains are nominal plus increment, or add the increment up over time.",
-    ),
-    optional(
-        "leakage_per_s",
-        not_negative("1/s"),
-        "Pulls the gains of the accumulating law back to nominal; 0 if left out.",
-    ),
-    optional(
-        "gain_coupling",
-        Kind::Table(&GAIN_COUPLING),
-        "What moves with the gains; nothing if left out.",
-    ),
-    optional(
-        "gain_limits",
-        Kind::Table(&GAIN_LIMITS),
-        "Bounds of the total gains; none if left out.",
-    ),
-    optional(
-        "dead_zone",
-        Kind::Table(&DEAD_ZONE),
-        "Where the supervisor stays silent; nowhere if left out.",
-    ),
-];
+pub(crate) const SUPERVISOR: Key<Section> =
+    required("supervisor", table(&SUPERVISOR_TABLE), "The fuzzy rules and their scales.");
+pub(crate) const LAW: Key<LawWord> = defaulted(
+    "law",
+    word(),
+    LawWord::Memoryless,
+    "Gains are nominal plus increment, or add the increment up over time.",
+);
+pub(crate) const LEAKAGE_PER_S: Key<f64> = optional(
+    "leakage_per_s",
+    not_negative("1/s"),
+    "Pulls the gains of the accumulating law back to nominal; 0 if left out.",
+);
+pub(crate) const GAIN_COUPLING: Key<Section> = optional(
+    "gain_coupling",
+    table(&GAIN_COUPLING_TABLE),
+    "What moves with the gains; nothing if left out.",
+);
+pub(crate) const GAIN_LIMITS: Key<Section> = optional(
+    "gain_limits",
+    table(&GAIN_LIMITS_TABLE),
+    "Bounds of the total gains; none if left out.",
+);
+pub(crate) const DEAD_ZONE: Key<Section> = optional(
+    "dead_zone",
+    table(&DEAD_ZONE_TABLE),
+    "Where the supervisor stays silent; nowhere if left out.",
+);
 
-static SUPERVISOR: Table = Table {
+/// What a self-tuning controller has beyond a PID.
+const TUNER: &[KeyRow] =
+    &[&SUPERVISOR, &LAW, &LEAKAGE_PER_S, &GAIN_COUPLING, &GAIN_LIMITS, &DEAD_ZONE];
+
+static SUPERVISOR_TABLE: Table = Table {
     doc: "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
     groups: &[SUPERVISOR_KEYS],
-    choices: &[one_of!("table", "numbers", "system")],
+    choices: &[one_of!(TABLE, NUMBERS, SYSTEM)],
     variants: &[],
 };
 
-const SUPERVISOR_KEYS: &[Key] = &[
-    optional(
-        "table",
-        Kind::Rules(&GRIDS),
-        "The rules: a name, a file, or the three grids themselves.",
-    ),
-    optional(
-        "numbers",
-        Kind::Table(&NUMBER_GRIDS),
-        "Rules that conclude numbers (Takagi and Sugeno): the answer is interpolated between them.",
-    ),
-    optional(
-        "system",
-        Kind::Path,
-        "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
-    ),
-    required(
-        "range",
-        Kind::Number { unit: "", range: Range::Between(1e-100, 1e100) },
-        "Half range of inputs and outputs.",
-    ),
-    optional(
-        "defuzzifier",
-        Kind::Defuzzifier,
-        "How the answer becomes a number; with `table` only, where it is \"exact\" if left out.",
-    ),
-    defaulted(
-        "out_of_range",
-        Kind::Word(OutOfRange::WORDS),
-        Default::Word("clamp"),
-        "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
-    ),
-    defaulted(
-        "error_sign",
-        Kind::Word(ErrorSign::WORDS),
-        Default::Word("setpoint-minus-measurement"),
-        "Sign of the supervisor's error and of its change.",
-    ),
-    defaulted(
-        "error_scale",
-        finite("1/deg"),
-        Default::Number(1.0),
-        "The supervisor sees this times the error in degrees.",
-    ),
-    optional(
-        "error_set_centres",
-        Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-        "Centres of the small and the medium sets of the error, as parts of the range; a third and two thirds if left out.",
-    ),
-    defaulted(
-        "second_input",
-        Kind::Word(SecondInputWord::WORDS),
-        Default::Word("error-and-change"),
-        "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
-    ),
-    optional("model", Kind::Table(&MODEL), "The reference model of `error-and-model-error`."),
-    defaulted(
-        "change",
-        Kind::Word(Change::WORDS),
-        Default::Word("rate"),
-        "Change of error per second or per sample.",
-    ),
-    defaulted(
-        "change_scale",
-        finite(""),
-        Default::Number(1.0),
-        "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
-    ),
-    optional(
-        "change_set_centres",
-        Kind::Interval { unit: "", range: Range::Between(0.0, 1.0) },
-        "As `error_set_centres`, of what is seen beside the error.",
-    ),
-    optional(
-        "output_scale",
-        Kind::Table(&OUTPUT_SCALE),
-        "Factors of the increments; 1 if left out.",
-    ),
+pub(crate) const TABLE: Key<Rules<'static>> = optional(
+    "table",
+    rules(rule_table_names, &GRIDS_TABLE),
+    "The rules: a name, a file, or the three grids themselves.",
+);
+pub(crate) const NUMBERS: Key<Section> = optional(
+    "numbers",
+    table(&NUMBER_GRIDS_TABLE),
+    "Rules that conclude numbers (Takagi and Sugeno): the answer is interpolated between them.",
+);
+pub(crate) const SYSTEM: Key<str> = optional(
+    "system",
+    file_path(),
+    "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
+);
+pub(crate) const RANGE: Key<f64> = required(
+    "range",
+    number("", Range::Between(1e-100, 1e100)),
+    "Half range of inputs and outputs.",
+);
+pub(crate) const DEFUZZIFIER: Key<Defuzzifier> = optional(
+    "defuzzifier",
+    defuzzifier(),
+    "How the answer becomes a number; with `table` only, where it is \"exact\" if left out.",
+);
+pub(crate) const OUT_OF_RANGE: Key<OutOfRange> = defaulted(
+    "out_of_range",
+    word(),
+    OutOfRange::Clamp,
+    "What happens to an input beyond the range: moved to its end, evaluated as it is, or refused (the gains hold).",
+);
+pub(crate) const ERROR_SIGN: Key<ErrorSign> = defaulted(
+    "error_sign",
+    word(),
+    ErrorSign::SetpointMinusMeasurement,
+    "Sign of the supervisor's error and of its change.",
+);
+pub(crate) const ERROR_SCALE: Key<f64> = defaulted(
+    "error_scale",
+    finite("1/deg"),
+    1.0,
+    "The supervisor sees this times the error in degrees.",
+);
+pub(crate) const ERROR_SET_CENTRES: Key<(f64, f64)> = optional(
+    "error_set_centres",
+    interval("", Range::Between(0.0, 1.0)),
+    "Centres of the small and the medium sets of the error, as parts of the range; a third and two thirds if left out.",
+);
+pub(crate) const SECOND_INPUT: Key<SecondInputWord> = defaulted(
+    "second_input",
+    word(),
+    SecondInputWord::Change,
+    "Beside the error: its change, the measured pitch rate with its sign turned, or how far the pitch is behind a reference model.",
+);
+pub(crate) const MODEL: Key<Section> =
+    optional("model", table(&MODEL_TABLE), "The reference model of `error-and-model-error`.");
+pub(crate) const CHANGE: Key<Change> =
+    defaulted("change", word(), Change::Rate, "Change of error per second or per sample.");
+pub(crate) const CHANGE_SCALE: Key<f64> = defaulted(
+    "change_scale",
+    finite(""),
+    1.0,
+    "The supervisor sees this times the change in degrees per second or per sample, the pitch rate in degrees per second, or the model's error in degrees.",
+);
+pub(crate) const CHANGE_SET_CENTRES: Key<(f64, f64)> = optional(
+    "change_set_centres",
+    interval("", Range::Between(0.0, 1.0)),
+    "As `error_set_centres`, of what is seen beside the error.",
+);
+pub(crate) const OUTPUT_SCALE: Key<Section> = optional(
+    "output_scale",
+    table(&OUTPUT_SCALE_TABLE),
+    "Factors of the increments; 1 if left out.",
+);
+
+const SUPERVISOR_KEYS: &[KeyRow] = &[
+    &TABLE,
+    &NUMBERS,
+    &SYSTEM,
+    &RANGE,
+    &DEFUZZIFIER,
+    &OUT_OF_RANGE,
+    &ERROR_SIGN,
+    &ERROR_SCALE,
+    &ERROR_SET_CENTRES,
+    &SECOND_INPUT,
+    &MODEL,
+    &CHANGE,
+    &CHANGE_SCALE,
+    &CHANGE_SET_CENTRES,
+    &OUTPUT_SCALE,
 ];
 
-static MODEL: Table = plain(
+pub(crate) const BANDWIDTH_RAD_S: Key<f64> = required(
+    "bandwidth_rad_s",
+    positive("rad/s"),
+    "Its natural frequency; at most half per sample.",
+);
+pub(crate) const DAMPING: Key<f64> =
+    defaulted("damping", number("", Range::PositiveUpTo(1.5)), 1.0, "Its damping.");
+
+static MODEL_TABLE: Table = plain(
     "A reference model of second order: how the pitch should follow the set-point.",
-    &[&[
-        required(
-            "bandwidth_rad_s",
-            positive("rad/s"),
-            "Its natural frequency; at most half per sample.",
-        ),
-        defaulted(
-            "damping",
-            Kind::Number { unit: "", range: Range::PositiveUpTo(1.5) },
-            Default::Number(1.0),
-            "Its damping.",
-        ),
-    ]],
+    &[&[&BANDWIDTH_RAD_S, &DAMPING]],
 );
 
-static GAIN_COUPLING: Table = plain(
+pub(crate) const SETPOINT_WEIGHT_PER_KP: Key<f64> = defaulted(
+    "setpoint_weight_per_kp",
+    finite(""),
+    0.0,
+    "Of the set-point weight in the proportional term, by the proportional gain.",
+);
+pub(crate) const RATE_GAIN_PER_KD: Key<f64> = defaulted(
+    "rate_gain_per_kd",
+    finite(""),
+    0.0,
+    "Of the gain of the inner loop, by the derivative gain.",
+);
+
+static GAIN_COUPLING_TABLE: Table = plain(
     "What moves with the gains, by how much per unit of their distance from nominal.",
-    &[&[
-        defaulted(
-            "setpoint_weight_per_kp",
-            finite(""),
-            Default::Number(0.0),
-            "Of the set-point weight in the proportional term, by the proportional gain.",
-        ),
-        defaulted(
-            "rate_gain_per_kd",
-            finite(""),
-            Default::Number(0.0),
-            "Of the gain of the inner loop, by the derivative gain.",
-        ),
-    ]],
+    &[&[&SETPOINT_WEIGHT_PER_KP, &RATE_GAIN_PER_KD]],
 );
 
-static OUTPUT_SCALE: Table = plain(
-    "Factors of the increments.",
-    &[&[
-        defaulted("kp", finite(""), Default::Number(1.0), "Factor of the proportional gain's."),
-        defaulted("ki", finite(""), Default::Number(1.0), "Factor of the integral gain's."),
-        defaulted("kd", finite(""), Default::Number(1.0), "Factor of the derivative gain's."),
-    ]],
-);
+pub(crate) const OUTPUT_SCALE_KP: Key<f64> =
+    defaulted("kp", finite(""), 1.0, "Factor of the proportional gain's.");
+pub(crate) const OUTPUT_SCALE_KI: Key<f64> =
+    defaulted("ki", finite(""), 1.0, "Factor of the integral gain's.");
+pub(crate) const OUTPUT_SCALE_KD: Key<f64> =
+    defaulted("kd", finite(""), 1.0, "Factor of the derivative gain's.");
 
-static GAIN_LIMITS: Table = plain(
+static OUTPUT_SCALE_TABLE: Table =
+    plain("Factors of the increments.", &[&[&OUTPUT_SCALE_KP, &OUTPUT_SCALE_KI, &OUTPUT_SCALE_KD]]);
+
+pub(crate) const KP_ENDS: [Key<f64>; 2] = [
+    optional("kp_min", finite(""), "Lowest proportional gain."),
+    optional("kp_max", finite(""), "Highest proportional gain."),
+];
+pub(crate) const KI_ENDS: [Key<f64>; 2] = [
+    optional("ki_min", finite("1/s"), "Lowest integral gain."),
+    optional("ki_max", finite("1/s"), "Highest integral gain."),
+];
+pub(crate) const KD_ENDS: [Key<f64>; 2] = [
+    optional("kd_min", finite("s"), "Lowest derivative gain."),
+    optional("kd_max", finite("s"), "Highest derivative gain."),
+];
+
+static GAIN_LIMITS_TABLE: Table = plain(
     "Lowest and highest total gains; an end that is left out is open.",
-    &[&[
-        optional("kp_min", finite(""), "Lowest proportional gain."),
-        optional("kp_max", finite(""), "Highest proportional gain."),
-        optional("ki_min", finite("1/s"), "Lowest integral gain."),
-        optional("ki_max", finite("1/s"), "Highest integral gain."),
-        optional("kd_min", finite("s"), "Lowest derivative gain."),
-        optional("kd_max", finite("s"), "Highest derivative gain."),
-    ]],
+    &[&[&KP_ENDS[0], &KP_ENDS[1], &KI_ENDS[0], &KI_ENDS[1], &KD_ENDS[0], &KD_ENDS[1]]],
 );
 
-static DEAD_ZONE: Table = plain(
+pub(crate) const ERROR_DEG: Key<f64> =
+    required("error_deg", not_negative("deg"), "Error up to which it holds.");
+pub(crate) const CHANGE_DEG_S: Key<f64> = required(
+    "change_deg_s",
+    not_negative("deg/s"),
+    "Change up to which it holds; degrees per sample where change is `delta`, degrees where a model's error is seen.",
+);
+
+static DEAD_ZONE_TABLE: Table = plain(
     "Errors and changes so small that the increments are 0; both must be inside.",
-    &[&[
-        required("error_deg", not_negative("deg"), "Error up to which it holds."),
-        required(
-            "change_deg_s",
-            not_negative("deg/s"),
-            "Change up to which it holds; degrees per sample where change is `delta`, degrees where a model's error is seen.",
-        ),
-    ]],
+    &[&[&ERROR_DEG, &CHANGE_DEG_S]],
 );

@@ -1,79 +1,81 @@
 //! Plant files and rule tables.
 
+use crate::keyed::{
+    Key, KeyRow, Range, Section, Table, finite, grid, number, number_grid, optional, plain,
+    positive, required, table, text, word,
+};
+use fspid_fuzzy::{Grid, NumberGrid};
 use fspid_sim::ElevatorSign;
 
 use super::scenario::COEFFICIENTS;
-use super::word::Word;
-use super::{Key, Kind, Range, Table, finite, optional, plain, positive, required};
+
+pub(crate) const NAME: Key<str> = required("name", text(), "Name.");
+pub(crate) const TITLE: Key<str> = optional("title", text(), "What it is, in a line.");
+pub(crate) const NUMERATOR: Key<[f64]> = required(
+    "numerator",
+    COEFFICIENTS,
+    "Coefficients of pitch angle over elevator, highest power of s first.",
+);
+pub(crate) const DENOMINATOR: Key<[f64]> =
+    required("denominator", COEFFICIENTS, "As numerator; longer than it.");
+pub(crate) const ELEVATOR_SIGN: Key<ElevatorSign> =
+    required("elevator_sign", word(), "What a positive elevator does.");
+pub(crate) const CONDITION: Key<Section> =
+    optional("condition", table(&CONDITION_TABLE), "Flight condition.");
+pub(crate) const PLANT_SOURCE: Key<str> =
+    optional("source", text(), "Where the numbers come from.");
+pub(crate) const NOTES: Key<str> = optional("notes", text(), "What else should be known.");
 
 /// A plant in a file of its own.
 pub(crate) static PLANT_FILE: Table = plain(
     "A linear aircraft.",
-    &[&[
-        required("name", Kind::Text, "Name."),
-        optional("title", Kind::Text, "What it is, in a line."),
-        required(
-            "numerator",
-            COEFFICIENTS,
-            "Coefficients of pitch angle over elevator, highest power of s first.",
-        ),
-        required("denominator", COEFFICIENTS, "As numerator; longer than it."),
-        required(
-            "elevator_sign",
-            Kind::Word(ElevatorSign::WORDS),
-            "What a positive elevator does.",
-        ),
-        optional("condition", Kind::Table(&CONDITION), "Flight condition."),
-        optional("source", Kind::Text, "Where the numbers come from."),
-        optional("notes", Kind::Text, "What else should be known."),
-    ]],
+    &[
+        &[&NAME, &TITLE, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &CONDITION],
+        &[&PLANT_SOURCE, &NOTES],
+    ],
 );
 
-static CONDITION: Table = plain(
+pub(crate) const AIRCRAFT: Key<str> = optional("aircraft", text(), "The aircraft.");
+pub(crate) const SPEED_M_S: Key<f64> = optional("speed_m_s", positive("m/s"), "True airspeed.");
+pub(crate) const ALTITUDE_M: Key<f64> = optional("altitude_m", finite("m"), "Altitude.");
+pub(crate) const MACH: Key<f64> =
+    optional("mach", number("", Range::PositiveUpTo(25.0)), "Mach number.");
+pub(crate) const MASS_KG: Key<f64> = optional("mass_kg", positive("kg"), "Mass.");
+
+static CONDITION_TABLE: Table = plain(
     "Flight condition; what is not known is left out.",
-    &[&[
-        optional("aircraft", Kind::Text, "The aircraft."),
-        optional("speed_m_s", positive("m/s"), "True airspeed."),
-        optional("altitude_m", finite("m"), "Altitude."),
-        optional(
-            "mach",
-            Kind::Number { unit: "", range: Range::PositiveUpTo(25.0) },
-            "Mach number.",
-        ),
-        optional("mass_kg", positive("kg"), "Mass."),
-    ]],
+    &[&[&AIRCRAFT, &SPEED_M_S, &ALTITUDE_M, &MACH, &MASS_KG]],
 );
 
-const GRID_KEYS: &[Key] = &[
-    required("delta_kp", Kind::Grid, "Increment of the proportional gain."),
-    required("delta_ki", Kind::Grid, "Increment of the integral gain."),
-    required("delta_kd", Kind::Grid, "Increment of the derivative gain."),
-];
+pub(crate) const DELTA_KP: Key<Grid> =
+    required("delta_kp", grid(), "Increment of the proportional gain.");
+pub(crate) const DELTA_KI: Key<Grid> =
+    required("delta_ki", grid(), "Increment of the integral gain.");
+pub(crate) const DELTA_KD: Key<Grid> =
+    required("delta_kd", grid(), "Increment of the derivative gain.");
+
+const GRID_KEYS: &[KeyRow] = &[&DELTA_KP, &DELTA_KI, &DELTA_KD];
 
 /// The three grids alone.
-pub(super) static GRIDS: Table = plain(
+pub(super) static GRIDS_TABLE: Table = plain(
     "Three grids of seven lines of seven labels; rows are the error from NB to PB, columns its change.",
     &[GRID_KEYS],
 );
 
+pub(crate) const NUMBER_DELTA_KP: Key<NumberGrid<f64>> =
+    required("delta_kp", number_grid(), "Increment of the proportional gain.");
+pub(crate) const NUMBER_DELTA_KI: Key<NumberGrid<f64>> =
+    required("delta_ki", number_grid(), "Increment of the integral gain.");
+pub(crate) const NUMBER_DELTA_KD: Key<NumberGrid<f64>> =
+    required("delta_kd", number_grid(), "Increment of the derivative gain.");
+
 /// Three grids of numbers in place of labels.
-pub(super) static NUMBER_GRIDS: Table = plain(
+pub(super) static NUMBER_GRIDS_TABLE: Table = plain(
     "Three grids of seven lists of seven numbers, each within the range; rows are the error from NB to PB, columns its change.",
-    &[&[
-        required("delta_kp", Kind::NumberGrid, "Increment of the proportional gain."),
-        required("delta_ki", Kind::NumberGrid, "Increment of the integral gain."),
-        required("delta_kd", Kind::NumberGrid, "Increment of the derivative gain."),
-    ]],
+    &[&[&NUMBER_DELTA_KP, &NUMBER_DELTA_KI, &NUMBER_DELTA_KD]],
 );
 
+pub(crate) const RULE_SOURCE: Key<str> = optional("source", text(), "Where the rules come from.");
+
 /// A rule table in a file of its own.
-pub(crate) static RULE_FILE: Table = plain(
-    "A rule table.",
-    &[
-        &[
-            required("name", Kind::Text, "Name."),
-            optional("source", Kind::Text, "Where the rules come from."),
-        ],
-        GRID_KEYS,
-    ],
-);
+pub(crate) static RULE_FILE: Table = plain("A rule table.", &[&[&NAME, &RULE_SOURCE], GRID_KEYS]);

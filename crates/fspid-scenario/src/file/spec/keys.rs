@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{Kind, SCENARIO, Table};
+use super::SCENARIO;
+use crate::keyed::{Kind, Table};
 
 /// Every key that a scenario may have, such as `controller.supervisor.range`; tables of a kind have `kind` as well.
 #[must_use]
@@ -13,13 +14,12 @@ pub fn scenario_keys() -> BTreeSet<String> {
 }
 
 fn walk(table: &'static Table, before: &str, found: &mut BTreeSet<String>) {
-    let variants = table.variants.iter().flat_map(|variant| variant.table.keys());
-    for key in table.keys().chain(variants) {
-        let path = format!("{before}{}", key.name);
+    for key in table.all_keys() {
+        let path = format!("{before}{}", key.name());
         let inner = format!("{path}.");
-        match &key.kind {
+        match key.kind() {
             Kind::Table(table) | Kind::Tables { table, .. } => walk(table, &inner, found),
-            Kind::Rules(table) => {
+            Kind::Rules { grids: table, .. } => {
                 found.insert(path);
                 walk(table, &inner, found);
             }

@@ -1,107 +1,135 @@
 //! What responses must meet: requirements in a scenario, in a file of their own, and in ready sets.
 
-use super::{
-    Choice, Key, Kind, Range, Table, Way, not_negative, optional, plain, positive, required,
+use crate::keyed::document::Item;
+use crate::keyed::word::Word;
+use crate::keyed::{
+    Choice, Key, KeyName, KeyRow, Range, Section, Table, Way, boolean, carried, name_in,
+    not_negative, number, optional, own, plain, positive, required, tables, text, whole, word,
 };
 use crate::measure::Measure;
 use crate::requirement::{Air, Confidence, set_names};
+
+impl Word for Measure {
+    const WORDS: &'static [&'static str] = &Self::NAMES;
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn word(self) -> &'static str {
+        self.name()
+    }
+}
+
+impl Word for Air {
+    const WORDS: &'static [&'static str] = &Self::NAMES;
+    const ALL: &'static [Self] = &[Self::Smooth, Self::Turbulent];
+
+    fn word(self) -> &'static str {
+        self.name()
+    }
+}
+
+impl Word for Confidence {
+    const WORDS: &'static [&'static str] = &Self::NAMES;
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn word(self) -> &'static str {
+        self.name()
+    }
+}
 
 /// Words for the speed that a set is asked at.
 pub(crate) const SPEEDS: [&str; 4] = ["normal", "below", "limit", "beyond"];
 /// Words for the category of flight.
 pub(crate) const CATEGORIES: [&str; 3] = ["A", "B", "C"];
 
-pub(super) const MEASURE: Kind = Kind::Word(&Measure::NAMES);
 const MEASURE_DOC: &str = "What is measured; `fspid verify --help` lists all. The worst step, plant or frozen gain counts.";
-const LEVEL: Kind = Kind::Integer { least: 1, most: 3 };
+
+pub(crate) const LEAST: Key<f64> = optional(
+    "least",
+    not_negative(""),
+    "Smallest value that is met, in the unit of the measure; the limit itself is met.",
+);
+pub(crate) const MOST: Key<f64> =
+    optional("most", not_negative(""), "Largest value that is met, in the unit of the measure.");
 
 /// Limits.
-pub(super) const LIMITS: &[Key] = &[
-    optional(
-        "least",
-        not_negative(""),
-        "Smallest value that is met, in the unit of the measure; the limit itself is met.",
-    ),
-    optional("most", not_negative(""), "Largest value that is met, in the unit of the measure."),
-];
+pub(super) const LIMITS: &[KeyRow] = &[&LEAST, &MOST];
+
+pub(crate) const STEP_DEG: Key<f64> = optional(
+    "step_deg",
+    positive("deg"),
+    "Only steps of the command of this size count; without one the requirement is not met.",
+);
+pub(crate) const WITHIN_DEG: Key<f64> =
+    optional("within_deg", positive("deg"), "Band about the set-point, for recovery_time_s.");
+pub(crate) const FROM_S: Key<f64> =
+    optional("from_s", not_negative("s"), "Start of the time that counts.");
+pub(crate) const TO_S: Key<f64> = optional("to_s", positive("s"), "End of the time that counts.");
+pub(crate) const FROM_HZ: Key<f64> =
+    optional("from_hz", not_negative("Hz"), "Lowest frequency that counts.");
+pub(crate) const TO_HZ: Key<f64> =
+    optional("to_hz", positive("Hz"), "Frequency from which on nothing counts.");
 
 /// What counts.
-pub(super) const CONDITIONS: &[Key] = &[
-    optional(
-        "step_deg",
-        positive("deg"),
-        "Only steps of the command of this size count; without one the requirement is not met.",
-    ),
-    optional("within_deg", positive("deg"), "Band about the set-point, for recovery_time_s."),
-    optional("from_s", not_negative("s"), "Start of the time that counts."),
-    optional("to_s", positive("s"), "End of the time that counts."),
-    optional("from_hz", not_negative("Hz"), "Lowest frequency that counts."),
-    optional("to_hz", positive("Hz"), "Frequency from which on nothing counts."),
-];
+pub(crate) const CONDITIONS: &[KeyRow] =
+    &[&STEP_DEG, &WITHIN_DEG, &FROM_S, &TO_S, &FROM_HZ, &TO_HZ];
 
-const AIR: Kind = Kind::Word(&Air::NAMES);
+pub(crate) const CLAUSE: Key<str> = optional("clause", text(), "Clause of its source.");
+pub(crate) const SOURCE: Key<str> = optional("source", text(), "Where it is from.");
+pub(crate) const CONFIDENCE: Key<Confidence> = optional("confidence", word(), CONFIDENCE_DOC);
+pub(crate) const NOTE: Key<str> = optional("note", text(), "What else should be known.");
 
 /// Where a requirement is from.
-const ORIGIN: &[Key] = &[
-    optional("clause", Kind::Text, "Clause of its source."),
-    optional("source", Kind::Text, "Where it is from."),
-    optional("confidence", Kind::Word(&Confidence::NAMES), CONFIDENCE_DOC),
-    optional("note", Kind::Text, "What else should be known."),
-];
+const ORIGIN: &[KeyRow] = &[&CLAUSE, &SOURCE, &CONFIDENCE, &NOTE];
 const CONFIDENCE_DOC: &str = "How sure its numbers are: read in the source, quoted by another document, transcribed by several, disputed among them, recalled and not read again, or the project's own.";
 
-const ASKED: &[Key] = &[
-    optional(
-        "id",
-        Kind::Text,
-        "What it is called in answers; the name of the measure if left out.",
-    ),
-    optional("measure", MEASURE, MEASURE_DOC),
-];
+pub(crate) const ID: Key<str> =
+    optional("id", text(), "What it is called in answers; the name of the measure if left out.");
+pub(crate) const MEASURE: Key<Measure> = optional("measure", word(), MEASURE_DOC);
 
-const OF_SET: &[Key] = &[
-    optional("set", Kind::Preset(set_names), "A ready set in place of a measure."),
-    optional("level", LEVEL, "Level of flying qualities, for mil-f-8785c; 1 if left out."),
-    optional(
-        "category",
-        Kind::Word(&CATEGORIES),
-        "Category of flight, for mil-f-8785c; \"B\" if left out.",
-    ),
-    optional(
-        "speed",
-        Kind::Word(&SPEEDS),
-        "Speed, for mil-f-9490d: normal operation (also if left out), below its lowest speed, at the limit speed, beyond it.",
-    ),
-    optional(
-        "first_aeroelastic_mode_hz",
-        Kind::Number { unit: "Hz", range: Range::Positive },
-        "First aeroelastic mode, for mil-f-9490d; the aircraft is rigid if left out.",
-    ),
-];
+const ASKED: &[KeyRow] = &[&ID, &MEASURE];
+
+pub(crate) const SET: Key<str> =
+    optional("set", carried(set_names), "A ready set in place of a measure.");
+pub(crate) const LEVEL: Key<i64> =
+    optional("level", whole(1, 3), "Level of flying qualities, for mil-f-8785c; 1 if left out.");
+pub(crate) const CATEGORY: Key<str> = optional(
+    "category",
+    name_in(&CATEGORIES),
+    "Category of flight, for mil-f-8785c; \"B\" if left out.",
+);
+pub(crate) const SPEED: Key<str> = optional(
+    "speed",
+    name_in(&SPEEDS),
+    "Speed, for mil-f-9490d: normal operation (also if left out), below its lowest speed, at the limit speed, beyond it.",
+);
+pub(crate) const FIRST_AEROELASTIC_MODE_HZ: Key<f64> = optional(
+    "first_aeroelastic_mode_hz",
+    number("Hz", Range::Positive),
+    "First aeroelastic mode, for mil-f-9490d; the aircraft is rigid if left out.",
+);
+
+const OF_SET: &[KeyRow] = &[&SET, &LEVEL, &CATEGORY, &SPEED, &FIRST_AEROELASTIC_MODE_HZ];
+
+pub(crate) const AIR: Key<Air> = optional(
+    "air",
+    word(),
+    "The air that it is asked in: for a measure any, for a set \"smooth\" if left out.",
+);
+pub(crate) const CONTROLLER: Key<str> =
+    optional("controller", text(), "Name of the controller; all of them if it is left out.");
+pub(crate) const ONLY_IN: Key<Item> = optional(
+    "only_in",
+    own(names_in_words, names_schema),
+    "Names of cases of [tuning] and [contest], or of their groups: it is asked in these alone, and not of the scenario as it is written.",
+);
+pub(crate) const NOT_IN: Key<Item> = optional(
+    "not_in",
+    own(names_in_words, names_schema),
+    "Names of cases or groups in which it is not asked.",
+);
 
 /// Asked of a controller, in one air.
-const WHERE: &[Key] = &[
-    optional(
-        "air",
-        AIR,
-        "The air that it is asked in: for a measure any, for a set \"smooth\" if left out.",
-    ),
-    optional("controller", Kind::Text, "Name of the controller; all of them if it is left out."),
-    optional(
-        ONLY_IN,
-        Kind::Own { allowed: names_in_words, schema: names_schema },
-        "Names of cases of [tuning] and [contest], or of their groups: it is asked in these alone, and not of the scenario as it is written.",
-    ),
-    optional(
-        NOT_IN,
-        Kind::Own { allowed: names_in_words, schema: names_schema },
-        "Names of cases or groups in which it is not asked.",
-    ),
-];
-
-/// Keys that say in which cases a requirement is asked.
-pub(crate) const ONLY_IN: &str = "only_in";
-pub(crate) const NOT_IN: &str = "not_in";
+const WHERE: &[KeyRow] = &[&AIR, &CONTROLLER, &ONLY_IN, &NOT_IN];
 
 pub(crate) fn names_in_words() -> String {
     "a list of names of [[tuning.case]] and [[contest.case]], or of their groups".to_owned()
@@ -112,51 +140,47 @@ fn names_schema() -> serde_json::Value {
 }
 
 /// Keys that go with `measure`.
-const WITH_MEASURE: &[&str] = &[
-    "id",
-    "least",
-    "most",
-    "step_deg",
-    "within_deg",
-    "from_s",
-    "to_s",
-    "from_hz",
-    "to_hz",
-    "clause",
-    "source",
-    "confidence",
-    "note",
+const WITH_MEASURE: &[KeyName] = &[
+    ID.name,
+    LEAST.name,
+    MOST.name,
+    STEP_DEG.name,
+    WITHIN_DEG.name,
+    FROM_S.name,
+    TO_S.name,
+    FROM_HZ.name,
+    TO_HZ.name,
+    CLAUSE.name,
+    SOURCE.name,
+    CONFIDENCE.name,
+    NOTE.name,
 ];
 
 /// Keys that go with `set`.
-const WITH_SET: &[&str] = &["level", "category", "speed", "first_aeroelastic_mode_hz"];
+const WITH_SET: &[KeyName] =
+    &[LEVEL.name, CATEGORY.name, SPEED.name, FIRST_AEROELASTIC_MODE_HZ.name];
 
 /// A requirement of a scenario.
-pub(super) static REQUIREMENT: Table = Table {
+pub(super) static REQUIREMENT_TABLE: Table = Table {
     doc: "Limits of a measure that every controller, or one, must meet; or a ready set of them.",
     groups: &[ASKED, LIMITS, CONDITIONS, ORIGIN, OF_SET, WHERE],
     choices: &[Choice {
         ways: &[
-            Way { required: &["measure"], optional: WITH_MEASURE },
-            Way { required: &["set"], optional: WITH_SET },
+            Way { required: &[MEASURE.name], optional: WITH_MEASURE },
+            Way { required: &[SET.name], optional: WITH_SET },
         ],
     }],
     variants: &[],
 };
 
+pub(crate) const SCHEMA: Key<i64> = optional("schema", whole(1, 1), "Version of this format.");
+pub(crate) const FILE_NAME: Key<str> = optional("name", text(), "What they are called.");
+pub(crate) const REQUIREMENT: Key<Item> =
+    required("requirement", own(entries_in_words, entries_schema), "The requirements.");
+
 /// A file of requirements outside of any scenario; its entries are checked with those of the scenario.
-pub(crate) static REQUIREMENT_FILE: Table = plain(
-    "Requirements that several scenarios share.",
-    &[&[
-        optional("schema", Kind::Integer { least: 1, most: 1 }, "Version of this format."),
-        optional("name", Kind::Text, "What they are called."),
-        required(
-            "requirement",
-            Kind::Own { allowed: entries_in_words, schema: entries_schema },
-            "The requirements.",
-        ),
-    ]],
-);
+pub(crate) static REQUIREMENT_FILE: Table =
+    plain("Requirements that several scenarios share.", &[&[&SCHEMA, &FILE_NAME, &REQUIREMENT]]);
 
 fn entries_in_words() -> String {
     "tables under [[requirement]] in double brackets".to_owned()
@@ -166,46 +190,46 @@ fn entries_schema() -> serde_json::Value {
     serde_json::json!({ "type": "array" })
 }
 
+pub(crate) const SET_NAME: Key<str> = required("name", text(), "Name in scenarios.");
+pub(crate) const TITLE: Key<str> = required("title", text(), "What it is, in a line.");
+pub(crate) const SET_SOURCE: Key<str> = required("source", text(), "Where it is from.");
+pub(crate) const NOTES: Key<str> =
+    optional("notes", text(), "What else should be known, and what is not in it.");
+pub(crate) const LINE: Key<[Section]> =
+    required("line", tables(&LINE_TABLE, 1, 1000), "Its lines.");
+
 /// A ready set.
-pub(crate) static SET_FILE: Table = plain(
-    "A set of requirements.",
-    &[&[
-        required("name", Kind::Text, "Name in scenarios."),
-        required("title", Kind::Text, "What it is, in a line."),
-        required("source", Kind::Text, "Where it is from."),
-        optional("notes", Kind::Text, "What else should be known, and what is not in it."),
-        required("line", Kind::Tables { table: &LINE, least: 1, most: 1000 }, "Its lines."),
-    ]],
+pub(crate) static SET_FILE: Table =
+    plain("A set of requirements.", &[&[&SET_NAME, &TITLE, &SET_SOURCE, &NOTES, &LINE]]);
+
+pub(crate) const LINE_ID: Key<str> = required("id", text(), "What it is called.");
+pub(crate) const LINE_MEASURE: Key<Measure> = required("measure", word(), MEASURE_DOC);
+pub(crate) const LINE_CLAUSE: Key<str> = required("clause", text(), "Clause of its source.");
+pub(crate) const LINE_SOURCE: Key<str> = required("source", text(), "Where it is from.");
+pub(crate) const LINE_CONFIDENCE: Key<Confidence> = required("confidence", word(), CONFIDENCE_DOC);
+pub(crate) const LINE_AIR: Key<Air> = optional("air", word(), "Only in this air.");
+pub(crate) const LINE_LEVEL: Key<i64> = optional("level", whole(1, 3), "Only at this level.");
+pub(crate) const LINE_CATEGORY: Key<str> =
+    optional("category", name_in(&CATEGORIES), "Only in this category.");
+pub(crate) const LINE_SPEED: Key<str> = optional("speed", name_in(&SPEEDS), "Only at this speed.");
+pub(crate) const BELOW_AEROELASTIC_MODE: Key<bool> = optional(
+    "below_aeroelastic_mode",
+    boolean(),
+    "Only frequencies below the first aeroelastic mode count.",
+);
+pub(crate) const ABOVE_AEROELASTIC_MODE: Key<bool> = optional(
+    "above_aeroelastic_mode",
+    boolean(),
+    "Only frequencies from the first aeroelastic mode on count.",
 );
 
-static LINE: Table = plain(
+static LINE_TABLE: Table = plain(
     "A requirement, and when it is asked.",
     &[
-        &[
-            required("id", Kind::Text, "What it is called."),
-            required("measure", MEASURE, MEASURE_DOC),
-            required("clause", Kind::Text, "Clause of its source."),
-            required("source", Kind::Text, "Where it is from."),
-            required("confidence", Kind::Word(&Confidence::NAMES), CONFIDENCE_DOC),
-            optional("note", Kind::Text, "What else should be known."),
-        ],
+        &[&LINE_ID, &LINE_MEASURE, &LINE_CLAUSE, &LINE_SOURCE, &LINE_CONFIDENCE, &NOTE],
         LIMITS,
         CONDITIONS,
-        &[
-            optional("air", AIR, "Only in this air."),
-            optional("level", LEVEL, "Only at this level."),
-            optional("category", Kind::Word(&CATEGORIES), "Only in this category."),
-            optional("speed", Kind::Word(&SPEEDS), "Only at this speed."),
-            optional(
-                "below_aeroelastic_mode",
-                Kind::Boolean,
-                "Only frequencies below the first aeroelastic mode count.",
-            ),
-            optional(
-                "above_aeroelastic_mode",
-                Kind::Boolean,
-                "Only frequencies from the first aeroelastic mode on count.",
-            ),
-        ],
+        &[&LINE_AIR, &LINE_LEVEL, &LINE_CATEGORY, &LINE_SPEED, &BELOW_AEROELASTIC_MODE],
+        &[&ABOVE_AEROELASTIC_MODE],
     ],
 );

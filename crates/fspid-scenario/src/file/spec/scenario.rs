@@ -1,97 +1,97 @@
 //! The scenario file: everything but controllers and signals.
 
+use crate::keyed::document::Item;
+use crate::keyed::word::words_of;
+use crate::keyed::{
+    Choice, Key, KindOf, Range, Section, Table, Way, carried, defaulted, file_path, not_negative,
+    numbers, one_of, optional, own, plain, positive, required, table, tables, text, whole, word,
+};
 use fspid_sim::ElevatorSign;
 
-use super::actuator::ACTUATOR;
-use super::air::{GUST, TURBULENCE, WIND};
-use super::controller::CONTROLLER;
-use super::dispersion::DISPERSION;
-use super::flight::AIRCRAFT;
-use super::requirement::REQUIREMENT;
-use super::sensor::SENSOR;
-use super::signal::{DISTURBANCE, SETPOINT};
-use super::tuning::{CONTEST, TUNING};
-use super::word::{Word, words_of};
-use super::{
-    Choice, Default, Key, Kind, Range, Table, Way, defaulted, not_negative, optional, plain,
-    positive, required,
-};
+use super::actuator::ACTUATOR_TABLE;
+use super::air::{GUST_TABLE, TURBULENCE_TABLE, WIND_TABLE};
+use super::controller::CONTROLLER_TABLE;
+use super::dispersion::DISPERSION_TABLE;
+use super::flight::AIRCRAFT_TABLE;
+use super::requirement::REQUIREMENT_TABLE;
+use super::sensor::SENSOR_TABLE;
+use super::signal::{DISTURBANCE_TABLE, SETPOINT_TABLE};
+use super::tuning::{CONTEST_TABLE, TUNING_TABLE};
 use crate::file::overrides;
 use crate::file::preset::plant_names;
+
+pub(crate) const SCHEMA: Key<i64> = required("schema", whole(1, 1), "Version of this format.");
+pub(crate) const NAME: Key<str> = required("name", text(), "Name in reports.");
+pub(crate) const PLANT: Key<Section> =
+    optional("plant", table(&PLANT_TABLE), "A linear aircraft, from elevator to pitch angle.");
+pub(crate) const AIRCRAFT: Key<Section> = optional(
+    "aircraft",
+    table(&AIRCRAFT_TABLE),
+    "In place of a plant: an aircraft from its data, at a speed and an altitude.",
+);
+pub(crate) const ACTUATOR: Key<Section> = optional(
+    "actuator",
+    table(&ACTUATOR_TABLE),
+    "The elevator servo; without this table it is ideal.",
+);
+pub(crate) const LOOP: Key<Section> = required("loop", table(&LOOP_TABLE), "Samples and duration.");
+pub(crate) const SETPOINT: Key<Section> =
+    required("setpoint", table(&SETPOINT_TABLE), "The commanded pitch angle.");
+pub(crate) const SENSOR: Key<Section> = optional(
+    "sensor",
+    table(&SENSOR_TABLE),
+    "What measures pitch and pitch rate; without this table both are seen as they are.",
+);
+pub(crate) const WIND: Key<Section> =
+    optional("wind", table(&WIND_TABLE), "The wind around an aircraft.");
+pub(crate) const GUST: Key<[Section]> = optional(
+    "gust",
+    tables(&GUST_TABLE, 0, 100),
+    "Gusts that an aircraft flies into; all are added.",
+);
+pub(crate) const TURBULENCE: Key<Section> =
+    optional("turbulence", table(&TURBULENCE_TABLE), "Random gusts around an aircraft.");
+pub(crate) const DISTURBANCE: Key<[Section]> =
+    optional("disturbance", tables(&DISTURBANCE_TABLE, 0, 100), "What disturbs; all are added.");
+pub(crate) const PLANT_CHANGE: Key<[Section]> = optional(
+    "plant_change",
+    tables(&PLANT_CHANGE_TABLE, 0, 100),
+    "Changes of the aircraft in flight, in order of time.",
+);
+pub(crate) const CONTROLLER: Key<[Section]> = required(
+    "controller",
+    tables(&CONTROLLER_TABLE, 1, 100),
+    "Who answers; each flies the whole scenario alone.",
+);
+pub(crate) const REQUIREMENT: Key<[Section]> =
+    optional("requirement", tables(&REQUIREMENT_TABLE, 0, 1000), "What the responses must meet.");
+pub(crate) const DISPERSION: Key<[Section]> = optional(
+    "dispersion",
+    tables(&DISPERSION_TABLE, 0, 1000),
+    "What differs from run to run of `fspid campaign`.",
+);
+pub(crate) const TUNING: Key<Section> = optional(
+    "tuning",
+    table(&TUNING_TABLE),
+    "How `fspid tune` chooses the numbers that are marked free.",
+);
+pub(crate) const CONTEST: Key<Section> =
+    optional("contest", table(&CONTEST_TABLE), "Where `fspid contest` compares tuned controllers.");
+pub(crate) const SET: Key<Item> = optional(
+    overrides::KEY,
+    own(overrides::listed_in_words, overrides::listed_schema),
+    "Changes as `--set` makes them, before anything is checked; also of what the files say that are named.",
+);
 
 /// The file as a whole.
 pub(crate) static SCENARIO: Table = Table {
     doc: "A flight to be simulated, once for each controller.",
-    groups: &[&[
-        required("schema", Kind::Integer { least: 1, most: 1 }, "Version of this format."),
-        required("name", Kind::Text, "Name in reports."),
-        optional("plant", Kind::Table(&PLANT), "A linear aircraft, from elevator to pitch angle."),
-        optional(
-            "aircraft",
-            Kind::Table(&AIRCRAFT),
-            "In place of a plant: an aircraft from its data, at a speed and an altitude.",
-        ),
-        optional(
-            "actuator",
-            Kind::Table(&ACTUATOR),
-            "The elevator servo; without this table it is ideal.",
-        ),
-        required("loop", Kind::Table(&LOOP), "Samples and duration."),
-        required("setpoint", Kind::Table(&SETPOINT), "The commanded pitch angle."),
-        optional(
-            "sensor",
-            Kind::Table(&SENSOR),
-            "What measures pitch and pitch rate; without this table both are seen as they are.",
-        ),
-        optional("wind", Kind::Table(&WIND), "The wind around an aircraft."),
-        optional(
-            "gust",
-            Kind::Tables { table: &GUST, least: 0, most: 100 },
-            "Gusts that an aircraft flies into; all are added.",
-        ),
-        optional("turbulence", Kind::Table(&TURBULENCE), "Random gusts around an aircraft."),
-        optional(
-            "disturbance",
-            Kind::Tables { table: &DISTURBANCE, least: 0, most: 100 },
-            "What disturbs; all are added.",
-        ),
-        optional(
-            "plant_change",
-            Kind::Tables { table: &PLANT_CHANGE, least: 0, most: 100 },
-            "Changes of the aircraft in flight, in order of time.",
-        ),
-        required(
-            "controller",
-            Kind::Tables { table: &CONTROLLER, least: 1, most: 100 },
-            "Who answers; each flies the whole scenario alone.",
-        ),
-        optional(
-            "requirement",
-            Kind::Tables { table: &REQUIREMENT, least: 0, most: 1000 },
-            "What the responses must meet.",
-        ),
-        optional(
-            "dispersion",
-            Kind::Tables { table: &DISPERSION, least: 0, most: 1000 },
-            "What differs from run to run of `fspid campaign`.",
-        ),
-        optional(
-            "tuning",
-            Kind::Table(&TUNING),
-            "How `fspid tune` chooses the numbers that are marked free.",
-        ),
-        optional(
-            "contest",
-            Kind::Table(&CONTEST),
-            "Where `fspid contest` compares tuned controllers.",
-        ),
-        optional(
-            overrides::KEY,
-            Kind::Own { allowed: overrides::listed_in_words, schema: overrides::listed_schema },
-            "Changes as `--set` makes them, before anything is checked; also of what the files say that are named.",
-        ),
-    ]],
-    choices: &[one_of!("plant", "aircraft")],
+    groups: &[
+        &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
+        &[&WIND, &GUST, &TURBULENCE, &DISTURBANCE, &PLANT_CHANGE, &CONTROLLER],
+        &[&REQUIREMENT, &DISPERSION, &TUNING, &CONTEST, &SET],
+    ],
+    choices: &[one_of!(PLANT, AIRCRAFT)],
     variants: &[],
 };
 
@@ -101,70 +101,62 @@ words_of!(ElevatorSign {
 });
 
 /// A list of coefficients.
-pub(super) const COEFFICIENTS: Kind =
-    Kind::Numbers { unit: "", range: Range::Finite, least: 1, most: 101 };
+pub(super) const COEFFICIENTS: KindOf<[f64]> = numbers("", Range::Finite, (1, 101));
 
-const PRESET: Key =
-    optional("preset", Kind::Preset(plant_names), "A plant that the program carries.");
-const FILE: Key = optional("file", Kind::Path, "A plant file, relative to this file.");
-const NUMERATOR: Key = optional(
+pub(crate) const PRESET: Key<str> =
+    optional("preset", carried(plant_names), "A plant that the program carries.");
+pub(crate) const FILE: Key<str> =
+    optional("file", file_path(), "A plant file, relative to this file.");
+pub(crate) const NUMERATOR: Key<[f64]> = optional(
     "numerator",
     COEFFICIENTS,
     "Coefficients of pitch angle over elevator, highest power of s first.",
 );
-const DENOMINATOR: Key = optional("denominator", COEFFICIENTS, "As numerator; longer than it.");
-const ELEVATOR_SIGN: Key = optional(
-    "elevator_sign",
-    Kind::Word(ElevatorSign::WORDS),
-    "What a positive elevator does in these coefficients.",
-);
+pub(crate) const DENOMINATOR: Key<[f64]> =
+    optional("denominator", COEFFICIENTS, "As numerator; longer than it.");
+pub(crate) const ELEVATOR_SIGN: Key<ElevatorSign> =
+    optional("elevator_sign", word(), "What a positive elevator does in these coefficients.");
 
-static PLANT: Table = Table {
+static PLANT_TABLE: Table = Table {
     doc: "A linear aircraft.",
-    groups: &[&[PRESET, NUMERATOR, DENOMINATOR, ELEVATOR_SIGN, FILE]],
+    groups: &[&[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
     choices: &[Choice {
         ways: &[
-            Way { required: &["preset"], optional: &[] },
-            Way { required: &["numerator", "denominator", "elevator_sign"], optional: &[] },
-            Way { required: &["file"], optional: &[] },
+            Way { required: &[PRESET.name], optional: &[] },
+            Way {
+                required: &[NUMERATOR.name, DENOMINATOR.name, ELEVATOR_SIGN.name],
+                optional: &[],
+            },
+            Way { required: &[FILE.name], optional: &[] },
         ],
     }],
     variants: &[],
 };
 
-static PLANT_CHANGE: Table = Table {
+pub(crate) const AT_S: Key<f64> = required("at_s", not_negative("s"), "Start of the change.");
+pub(crate) const RAMP_S: Key<f64> =
+    defaulted("ramp_s", not_negative("s"), 0.0, "Length of the change; 0 for at once.");
+
+static PLANT_CHANGE_TABLE: Table = Table {
     doc: "A change of the aircraft's coefficients in flight.",
-    groups: &[
-        &[
-            required("at_s", not_negative("s"), "Start of the change."),
-            defaulted(
-                "ramp_s",
-                not_negative("s"),
-                Default::Number(0.0),
-                "Length of the change; 0 for at once.",
-            ),
-        ],
-        &[PRESET, NUMERATOR, DENOMINATOR, ELEVATOR_SIGN, FILE],
-    ],
+    groups: &[&[&AT_S, &RAMP_S], &[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
     choices: &[Choice {
         ways: &[
-            Way { required: &["preset"], optional: &[] },
+            Way { required: &[PRESET.name], optional: &[] },
             // The sign is that of the plant unless it is given.
-            Way { required: &["numerator", "denominator"], optional: &["elevator_sign"] },
-            Way { required: &["file"], optional: &[] },
+            Way { required: &[NUMERATOR.name, DENOMINATOR.name], optional: &[ELEVATOR_SIGN.name] },
+            Way { required: &[FILE.name], optional: &[] },
         ],
     }],
     variants: &[],
 };
 
-static LOOP: Table = plain(
-    "When samples are taken.",
-    &[&[
-        required("sample_period_s", positive("s"), "Time from sample to sample."),
-        required(
-            "duration_s",
-            positive("s"),
-            "Length of the flight; round(duration_s / sample_period_s) + 1 samples.",
-        ),
-    ]],
+pub(crate) const SAMPLE_PERIOD_S: Key<f64> =
+    required("sample_period_s", positive("s"), "Time from sample to sample.");
+pub(crate) const DURATION_S: Key<f64> = required(
+    "duration_s",
+    positive("s"),
+    "Length of the flight; round(duration_s / sample_period_s) + 1 samples.",
 );
+
+static LOOP_TABLE: Table = plain("When samples are taken.", &[&[&SAMPLE_PERIOD_S, &DURATION_S]]);

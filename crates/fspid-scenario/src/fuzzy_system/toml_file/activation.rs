@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::fields::{Fields, word};
 use super::write::{number, quoted};
-use crate::file::document::{Item, Value as Written};
-use crate::file::spec::word::{Word, words};
+use crate::keyed::document::{Item, Value as Written};
+use crate::keyed::word::{Word, words};
 use fspid_diagnostics::Report;
 
 words! {

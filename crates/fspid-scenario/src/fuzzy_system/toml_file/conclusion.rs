@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::fields::{Fields, any_number, below, in_order};
 use super::formula::formula;
 use super::membership::{self, Names};
-use crate::file::document::{Item, Value as Written};
+use crate::keyed::document::{Item, Value as Written};
 use fspid_diagnostics::Report;
 
 /// The variables that a conclusion may name.

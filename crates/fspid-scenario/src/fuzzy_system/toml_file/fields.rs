@@ -1,6 +1,6 @@
 //! Tables whose keys depend on what is in them: checked key by key, with every problem reported.
 
-use crate::file::document::{Item, Member, Value};
+use crate::keyed::document::{Item, Member, Value};
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// The members of a table in the order in which they are written.

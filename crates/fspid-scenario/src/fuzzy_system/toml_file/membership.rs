@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::fields::{Fields, any_number, below, in_order, word};
 use super::formula::formula;
-use crate::file::document::{Item, Value as Written};
+use crate::keyed::document::{Item, Value as Written};
 use fspid_diagnostics::Report;
 
 /// Where the groups of a shape with any number of parameters stand.

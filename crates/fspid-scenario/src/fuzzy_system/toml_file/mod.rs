@@ -16,7 +16,7 @@ mod write;
 
 use serde_json::Value;
 
-use crate::file::schema::schema_of;
+use crate::keyed::schema::schema_of;
 
 pub use read::parse;
 pub use write::write;
@@ -34,6 +34,6 @@ pub(super) fn is_of_this_kind(text: &str) -> bool {
     let mut head = text.lines().map(str::trim).take_while(|line| !line.starts_with('['));
     head.any(|line| {
         let value = line.strip_prefix("kind").map(str::trim_start);
-        value.and_then(|rest| rest.strip_prefix('=')).is_some_and(|rest| rest.contains(spec::KIND))
+        value.and_then(|rest| rest.strip_prefix('=')).is_some_and(|rest| rest.contains(spec::WORD))
     })
 }

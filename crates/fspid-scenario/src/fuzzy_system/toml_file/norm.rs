@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::fields::{Fields, word};
 use super::formula::{formula, formula_schema};
 use super::write::quoted;
-use crate::file::document::{Item, Value as Written};
+use crate::keyed::document::{Item, Value as Written};
 use fspid_diagnostics::Report;
 
 /// The two grades of a norm's formula.

@@ -11,11 +11,12 @@ use fspid_fuzzy::system::{
 use super::conclusion::{self, Variables};
 use super::fields::any_number;
 use super::rules::Vocabulary;
-use super::spec::{FUZZY_SYSTEM, fallback_in_words, sampling_in_words};
+use super::spec::{self as keys, FUZZY_SYSTEM, fallback_in_words, sampling_in_words};
 use super::{activation, membership, norm, rules};
-use crate::file::document::{self, Value as Written};
-use crate::file::section::Section;
-use crate::file::{Problems, check};
+use crate::keyed::Section;
+use crate::keyed::check;
+use crate::keyed::document::{self, Value as Written};
+use fspid_diagnostics::Problems;
 use fspid_diagnostics::{Report, Span};
 
 /// Where the things of a file stand, by what [`System::new`] calls them.
@@ -57,39 +58,46 @@ fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Spa
 }
 
 fn parts(report: &mut Report, section: &Section, places: &mut Places) -> Option<Parts> {
-    let named = |kind| section.sections(kind).iter().map(|s| s.text("name").unwrap_or_default());
-    let names: Vec<&str> = named("input").collect();
-    let of_values: Vec<&str> = names.iter().copied().chain(named("output")).collect();
+    let named = |kind| section.sections(kind).iter().map(|s| s.get(keys::NAME).unwrap_or_default());
+    let names: Vec<&str> = named(keys::INPUT).collect();
+    let of_values: Vec<&str> = names.iter().copied().chain(named(keys::OUTPUT)).collect();
     let of_sets: Vec<&str> = std::iter::once("x").chain(of_values.iter().copied()).collect();
     let variables = Variables { inputs: &names, of_values: &of_values, of_sets: &of_sets };
     let mut found = (Vec::new(), Vec::new(), Vec::new());
-    for part in section.sections("input") {
+    for part in section.sections(keys::INPUT) {
         found.0.extend(input(report, part, &of_sets, places));
     }
-    for part in section.sections("output") {
+    for part in section.sections(keys::OUTPUT) {
         found.1.extend(output(report, part, variables, places));
     }
     let (inputs, outputs, mut blocks) = found;
-    let complete = inputs.len() == names.len() && outputs.len() == section.sections("output").len();
+    let complete =
+        inputs.len() == names.len() && outputs.len() == section.sections(keys::OUTPUT).len();
     // Rules about variables that could not be read would only echo their problems.
     if complete {
         let reader = RuleReader::new(&inputs, &outputs);
         let vocabulary = Vocabulary { inputs: &inputs, outputs: &outputs, reader: &reader };
-        let sections = section.sections("rules");
+        let sections = section.sections(keys::RULES);
         for (index, part) in sections.iter().enumerate() {
             blocks.extend(block(report, part, vocabulary, (index, sections.len()), places));
         }
     }
-    let text = |name: &str| section.text(name).unwrap_or_default().to_owned();
-    Some(Parts { name: text("name"), description: text("description"), inputs, outputs, blocks })
+    let text = |key| section.get::<str>(key).unwrap_or_default().to_owned();
+    Some(Parts {
+        name: text(keys::SYSTEM_NAME),
+        description: text(keys::DESCRIPTION),
+        inputs,
+        outputs,
+        blocks,
+    })
 }
 
 fn universe(section: &Section) -> Option<Universe> {
-    section.interval("range").map(|(lower, upper)| Universe { lower, upper })
+    section.get(keys::RANGE).map(|(lower, upper)| Universe { lower, upper })
 }
 
 fn description(section: &Section) -> String {
-    section.text("description").unwrap_or_default().to_owned()
+    section.get(keys::DESCRIPTION).unwrap_or_default().to_owned()
 }
 
 fn input(
@@ -98,19 +106,20 @@ fn input(
     of_sets: &[&str],
     places: &mut Places,
 ) -> Option<Input> {
-    let name = section.text("name")?.to_owned();
+    let name = section.get(keys::NAME)?.to_owned();
     let place = format!("input `{name}`");
-    places.insert(place.clone(), section.at("name"));
-    let path = section.path("terms");
-    let terms = membership::terms(report, section.item("terms"), &path, of_sets, |term, item| {
-        places.insert(format!("{place}, term `{term}`"), item.place);
-    });
+    places.insert(place.clone(), section.at(keys::NAME));
+    let path = section.path(keys::INPUT_TERMS);
+    let terms =
+        membership::terms(report, section.get(keys::INPUT_TERMS), &path, of_sets, |term, item| {
+            places.insert(format!("{place}, term `{term}`"), item.place);
+        });
     Some(Input {
         name,
         description: description(section),
-        enabled: section.boolean("enabled")?,
+        enabled: section.get(keys::ENABLED)?,
         universe: universe(section),
-        out_of_range: section.word("out_of_range")?,
+        out_of_range: section.get(keys::OUT_OF_RANGE)?,
         terms: terms?,
     })
 }
@@ -121,39 +130,45 @@ fn output(
     variables: Variables<'_>,
     places: &mut Places,
 ) -> Option<Output> {
-    let name = section.text("name")?.to_owned();
+    let name = section.get(keys::NAME)?.to_owned();
     let place = format!("output `{name}`");
-    places.insert(place.clone(), section.at("name"));
-    let path = section.path("terms");
-    let terms = conclusion::terms(report, section.item("terms"), &path, variables, |term, item| {
-        places.insert(format!("{place}, term `{term}`"), item.place);
-    });
+    places.insert(place.clone(), section.at(keys::NAME));
+    let path = section.path(keys::OUTPUT_TERMS);
+    let terms = conclusion::terms(
+        report,
+        section.get(keys::OUTPUT_TERMS),
+        &path,
+        variables,
+        |term, item| {
+            places.insert(format!("{place}, term `{term}`"), item.place);
+        },
+    );
     let aggregation =
-        norm::read_or(report, section.item("aggregation"), &section.path("aggregation"));
+        norm::read_or(report, section.get(keys::AGGREGATION), &section.path(keys::AGGREGATION));
     let defuzzifier = defuzzifier(report, section);
     let value = fallback(report, section);
     Some(Output {
         name,
         description: description(section),
-        enabled: section.boolean("enabled")?,
+        enabled: section.get(keys::ENABLED)?,
         universe: universe(section),
-        clamp: section.boolean("clamp")?,
+        clamp: section.get(keys::CLAMP)?,
         terms: terms?,
         aggregation: aggregation?,
         defuzzifier: defuzzifier?,
-        fallback: Fallback { previous: section.boolean("keep_previous")?, value: value? },
+        fallback: Fallback { previous: section.get(keys::KEEP_PREVIOUS)?, value: value? },
     })
 }
 
 fn defuzzifier(report: &mut Report, section: &Section) -> Option<Defuzzifier> {
-    let reading = section.word("set_reading")?;
-    let method = match Defuzzifier::from_name(section.text("defuzzifier")?)? {
+    let reading = section.get(keys::SET_READING)?;
+    let method = match Defuzzifier::from_name(section.get(keys::DEFUZZIFIER)?)? {
         Defuzzifier::WeightedAverage(_) => Defuzzifier::WeightedAverage(reading),
         Defuzzifier::WeightedSum(_) => Defuzzifier::WeightedSum(reading),
         integral => integral,
     };
-    let Some(item) = section.item("sampling") else { return Some(method) };
-    let path = section.path("sampling");
+    let Some(item) = section.get(keys::SAMPLING) else { return Some(method) };
+    let path = section.path(keys::SAMPLING);
     if method.sampling().is_none() {
         let message = format!("not together with {}, which has no integral", method.name());
         report.missing(item.place, &path, message, "no such key");
@@ -168,14 +183,14 @@ fn defuzzifier(report: &mut Report, section: &Section) -> Option<Defuzzifier> {
 }
 
 fn fallback(report: &mut Report, section: &Section) -> Option<FallbackValue> {
-    let Some(item) = section.item("fallback") else { return Some(FallbackValue::Nothing) };
+    let Some(item) = section.get(keys::FALLBACK) else { return Some(FallbackValue::Nothing) };
     let found = match &item.value {
         Written::Text(text) if text == "none" => Some(FallbackValue::Nothing),
         Written::Text(text) if text == "middle" => Some(FallbackValue::Middle),
         _ => any_number(item).filter(|number| number.is_finite()).map(FallbackValue::Number),
     };
     if found.is_none() {
-        report.value(item.place, &section.path("fallback"), "not allowed", fallback_in_words());
+        report.value(item.place, &section.path(keys::FALLBACK), "not allowed", fallback_in_words());
     }
     found
 }
@@ -187,14 +202,14 @@ fn block(
     (index, count): (usize, usize),
     places: &mut Places,
 ) -> Option<RuleBlock> {
-    let and = norm::read_and(report, section.item("and"), &section.path("and"));
-    let or = norm::read_or(report, section.item("or"), &section.path("or"));
-    let path = section.path("implication");
-    let implication = norm::read_and(report, section.item("implication"), &path);
-    let path = section.path("activation");
-    let activation = activation::read(report, section.item("activation"), &path);
+    let and = norm::read_and(report, section.get(keys::AND), &section.path(keys::AND));
+    let or = norm::read_or(report, section.get(keys::OR), &section.path(keys::OR));
+    let path = section.path(keys::IMPLICATION);
+    let implication = norm::read_and(report, section.get(keys::IMPLICATION), &path);
+    let path = section.path(keys::ACTIVATION);
+    let activation = activation::read(report, section.get(keys::ACTIVATION), &path);
     let rules = rules::read(report, section, vocabulary)?;
-    let name = section.text("name").unwrap_or_default().to_owned();
+    let name = section.get(keys::NAME).unwrap_or_default().to_owned();
     places.insert(format!("rule block {}", index + 1), section.place);
     for (number, (_, place)) in (1..).zip(&rules) {
         // In the words of `System::new`.
@@ -208,7 +223,7 @@ fn block(
     Some(RuleBlock {
         name,
         description: description(section),
-        enabled: section.boolean("enabled")?,
+        enabled: section.get(keys::ENABLED)?,
         and: and?,
         or: or?,
         implication: implication?,

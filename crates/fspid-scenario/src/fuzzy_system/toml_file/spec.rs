@@ -1,190 +1,185 @@
 //! The keys of a fuzzy system's file, from which the check, the schema and the defaults come.
 
+use crate::keyed::document::Item;
+use crate::keyed::word::words_of;
+use crate::keyed::{
+    Choice, Key, Range, Section, Table, Way, boolean, defaulted, free_text, interval, name_in,
+    optional, own, plain, required, table, tables, text, whole, word,
+};
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{Defuzzifier, Sampling, SetReading};
 use serde_json::{Value, json};
 
 use super::{activation, conclusion, membership, norm, rules};
-use crate::file::spec::word::{Word, words_of};
-use crate::file::spec::{
-    Choice, Default, Key, Kind, Range, Table, Way, defaulted, optional, plain, required,
-};
 
 /// The word that tells a fuzzy system from a scenario.
-pub(super) const KIND: &str = "fuzzy-system";
+pub(super) const WORD: &str = "fuzzy-system";
+
+pub(crate) const SCHEMA: Key<i64> = required("schema", whole(1, 1), "Version of this format.");
+pub(crate) const KIND: Key<str> = required("kind", name_in(&[WORD]), "What the file describes.");
+pub(crate) const SYSTEM_NAME: Key<str> =
+    optional("name", free_text(), "Name in answers and reports.");
+pub(crate) const INPUT: Key<[Section]> = required(
+    "input",
+    tables(&INPUT_TABLE, 1, 1000),
+    "What goes in, in the order in which values are given.",
+);
+pub(crate) const OUTPUT: Key<[Section]> = required(
+    "output",
+    tables(&OUTPUT_TABLE, 1, 1000),
+    "What comes out, in the order of the answers.",
+);
+pub(crate) const RULES: Key<[Section]> = optional(
+    "rules",
+    tables(&RULES_TABLE, 0, 1000),
+    "Blocks of rules that share their norms, worked through in order.",
+);
 
 /// The file as a whole.
 pub(crate) static FUZZY_SYSTEM: Table = plain(
     "A fuzzy system: what goes in, what comes out, and the rules between them.",
-    &[&[
-        required("schema", Kind::Integer { least: 1, most: 1 }, "Version of this format."),
-        required("kind", Kind::Word(&[KIND]), "What the file describes."),
-        optional("name", Kind::FreeText, "Name in answers and reports."),
-        DESCRIPTION,
-        required(
-            "input",
-            Kind::Tables { table: &INPUT, least: 1, most: 1000 },
-            "What goes in, in the order in which values are given.",
-        ),
-        required(
-            "output",
-            Kind::Tables { table: &OUTPUT, least: 1, most: 1000 },
-            "What comes out, in the order of the answers.",
-        ),
-        optional(
-            "rules",
-            Kind::Tables { table: &RULES, least: 0, most: 1000 },
-            "Blocks of rules that share their norms, worked through in order.",
-        ),
-    ]],
+    &[&[&SCHEMA, &KIND, &SYSTEM_NAME, &DESCRIPTION, &INPUT, &OUTPUT, &RULES]],
 );
 
-const DESCRIPTION: Key =
-    optional("description", Kind::FreeText, "What it is or stands for, in a sentence.");
-const NAME: Key = required("name", Kind::Text, "Name in rules and answers; each only once.");
-const RANGE: Key = optional(
+pub(crate) const DESCRIPTION: Key<str> =
+    optional("description", free_text(), "What it is or stands for, in a sentence.");
+pub(crate) const NAME: Key<str> =
+    required("name", text(), "Name in rules and answers; each only once.");
+pub(crate) const RANGE: Key<(f64, f64)> = optional(
     "range",
-    Kind::Interval { unit: "", range: Range::Finite },
+    interval("", Range::Finite),
     "Where the variable lives: lowest and highest value.",
 );
-const ENABLED: Key = defaulted(
+pub(crate) const ENABLED: Key<bool> = defaulted(
     "enabled",
-    Kind::Boolean,
-    Default::Boolean(true),
+    boolean(),
+    true,
     "Whether it takes part; what is switched off stays in the file.",
 );
 
-static INPUT: Table = plain(
-    "An input.",
-    &[&[
-        NAME,
-        DESCRIPTION,
-        ENABLED,
-        RANGE,
-        defaulted(
-            "out_of_range",
-            Kind::Word(OutOfRange::WORDS),
-            Default::Word("evaluate"),
-            "A value outside the range is moved to its end, taken as it is, or refused.",
-        ),
-        optional(
-            "terms",
-            Kind::Own { allowed: membership::terms_in_words, schema: membership::terms_schema },
-            "Fuzzy sets by name, in order.",
-        ),
-    ]],
+pub(crate) const OUT_OF_RANGE: Key<OutOfRange> = defaulted(
+    "out_of_range",
+    word(),
+    OutOfRange::Evaluate,
+    "A value outside the range is moved to its end, taken as it is, or refused.",
 );
+pub(crate) const INPUT_TERMS: Key<Item> = optional(
+    "terms",
+    own(membership::terms_in_words, membership::terms_schema),
+    "Fuzzy sets by name, in order.",
+);
+
+static INPUT_TABLE: Table =
+    plain("An input.", &[&[&NAME, &DESCRIPTION, &ENABLED, &RANGE, &OUT_OF_RANGE, &INPUT_TERMS]]);
 
 words_of!(SetReading { Tsukamoto = "tsukamoto", InverseTsukamoto = "inverse-tsukamoto" });
 
-static OUTPUT: Table = plain(
-    "An output.",
-    &[&[
-        NAME,
-        DESCRIPTION,
-        ENABLED,
-        RANGE,
-        defaulted(
-            "clamp",
-            Kind::Boolean,
-            Default::Boolean(false),
-            "Whether an answer outside the range is moved to its end.",
-        ),
-        defaulted(
-            "defuzzifier",
-            Kind::Word(&Defuzzifier::NAMES),
-            Default::Word("centroid"),
-            "How the joined conclusions become a number.",
-        ),
-        optional(
-            "sampling",
-            Kind::Own { allowed: sampling_in_words, schema: sampling_schema },
-            "How integrals are computed; exact if left out.",
-        ),
-        defaulted(
-            "set_reading",
-            Kind::Word(SetReading::WORDS),
-            Default::Word("tsukamoto"),
-            "Which number a weighted defuzzifier takes for a fuzzy set.",
-        ),
-        optional(
-            "aggregation",
-            Kind::Own { allowed: norm::or_in_words, schema: norm::or_schema },
-            "How the conclusions of several rules are joined; maximum if left out.",
-        ),
-        defaulted(
-            "keep_previous",
-            Kind::Boolean,
-            Default::Boolean(false),
-            "Whether the previous answer stands where no rule fires.",
-        ),
-        optional(
-            "fallback",
-            Kind::Own { allowed: fallback_in_words, schema: fallback_schema },
-            "The answer where no rule fires; none if left out.",
-        ),
-        optional(
-            "terms",
-            Kind::Own { allowed: conclusion::terms_in_words, schema: conclusion::terms_schema },
-            "What rules may conclude, by name, in order.",
-        ),
-    ]],
+pub(crate) const CLAMP: Key<bool> = defaulted(
+    "clamp",
+    boolean(),
+    false,
+    "Whether an answer outside the range is moved to its end.",
+);
+pub(crate) const DEFUZZIFIER: Key<str> = defaulted(
+    "defuzzifier",
+    name_in(&Defuzzifier::NAMES),
+    "centroid",
+    "How the joined conclusions become a number.",
+);
+pub(crate) const SAMPLING: Key<Item> = optional(
+    "sampling",
+    own(sampling_in_words, sampling_schema),
+    "How integrals are computed; exact if left out.",
+);
+pub(crate) const SET_READING: Key<SetReading> = defaulted(
+    "set_reading",
+    word(),
+    SetReading::Tsukamoto,
+    "Which number a weighted defuzzifier takes for a fuzzy set.",
+);
+pub(crate) const AGGREGATION: Key<Item> = optional(
+    "aggregation",
+    own(norm::or_in_words, norm::or_schema),
+    "How the conclusions of several rules are joined; maximum if left out.",
+);
+pub(crate) const KEEP_PREVIOUS: Key<bool> = defaulted(
+    "keep_previous",
+    boolean(),
+    false,
+    "Whether the previous answer stands where no rule fires.",
+);
+pub(crate) const FALLBACK: Key<Item> = optional(
+    "fallback",
+    own(fallback_in_words, fallback_schema),
+    "The answer where no rule fires; none if left out.",
+);
+pub(crate) const OUTPUT_TERMS: Key<Item> = optional(
+    "terms",
+    own(conclusion::terms_in_words, conclusion::terms_schema),
+    "What rules may conclude, by name, in order.",
 );
 
-static RULES: Table = Table {
+static OUTPUT_TABLE: Table = plain(
+    "An output.",
+    &[
+        &[&NAME, &DESCRIPTION, &ENABLED, &RANGE, &CLAMP, &DEFUZZIFIER, &SAMPLING],
+        &[&SET_READING, &AGGREGATION, &KEEP_PREVIOUS, &FALLBACK, &OUTPUT_TERMS],
+    ],
+);
+
+pub(crate) const BLOCK_NAME: Key<str> = optional("name", free_text(), "Name of the block.");
+pub(crate) const AND: Key<Item> = optional(
+    "and",
+    own(norm::and_in_words, norm::and_schema),
+    "What `and` means between statements; minimum if left out.",
+);
+pub(crate) const OR: Key<Item> = optional(
+    "or",
+    own(norm::or_in_words, norm::or_schema),
+    "What `or` means between statements; maximum if left out.",
+);
+pub(crate) const IMPLICATION: Key<Item> = optional(
+    "implication",
+    own(norm::and_in_words, norm::and_schema),
+    "How a rule's strength shapes its conclusion; minimum if left out.",
+);
+pub(crate) const ACTIVATION: Key<Item> = optional(
+    "activation",
+    own(activation::in_words, activation::schema),
+    "Which rules act; all of them if left out.",
+);
+pub(crate) const LINES: Key<Item> =
+    optional("lines", own(rules::in_words, rules::schema), "The rules in words, one a line.");
+pub(crate) const TABLE: Key<Section> =
+    optional("table", table(&GRIDS), "The rules of two inputs as grids of terms.");
+
+static RULES_TABLE: Table = Table {
     doc: "A block of rules.",
-    groups: &[&[
-        optional("name", Kind::FreeText, "Name of the block."),
-        DESCRIPTION,
-        ENABLED,
-        optional(
-            "and",
-            Kind::Own { allowed: norm::and_in_words, schema: norm::and_schema },
-            "What `and` means between statements; minimum if left out.",
-        ),
-        optional(
-            "or",
-            Kind::Own { allowed: norm::or_in_words, schema: norm::or_schema },
-            "What `or` means between statements; maximum if left out.",
-        ),
-        optional(
-            "implication",
-            Kind::Own { allowed: norm::and_in_words, schema: norm::and_schema },
-            "How a rule's strength shapes its conclusion; minimum if left out.",
-        ),
-        optional(
-            "activation",
-            Kind::Own { allowed: activation::in_words, schema: activation::schema },
-            "Which rules act; all of them if left out.",
-        ),
-        optional(
-            "lines",
-            Kind::Own { allowed: rules::in_words, schema: rules::schema },
-            "The rules in words, one a line.",
-        ),
-        optional("table", Kind::Table(&TABLE), "The rules of two inputs as grids of terms."),
-    ]],
+    groups: &[
+        &[&BLOCK_NAME, &DESCRIPTION, &ENABLED, &AND, &OR, &IMPLICATION, &ACTIVATION],
+        &[&LINES, &TABLE],
+    ],
     choices: &[Choice {
         ways: &[
-            Way { required: &["lines"], optional: &[] },
-            Way { required: &["table"], optional: &[] },
+            Way { required: &[LINES.name], optional: &[] },
+            Way { required: &[TABLE.name], optional: &[] },
         ],
     }],
     variants: &[],
 };
 
-static TABLE: Table = plain(
-    "Rules for every pair of terms of two inputs.",
-    &[&[
-        required("rows", Kind::Text, "The input whose terms are the rows, from top to bottom."),
-        required("columns", Kind::Text, "The input whose terms are the columns, left to right."),
-        required(
-            "cells",
-            Kind::Own { allowed: rules::cells_in_words, schema: rules::cells_schema },
-            "For each output a grid of its terms; `-` stands for no rule.",
-        ),
-    ]],
+pub(crate) const ROWS: Key<str> =
+    required("rows", text(), "The input whose terms are the rows, from top to bottom.");
+pub(crate) const COLUMNS: Key<str> =
+    required("columns", text(), "The input whose terms are the columns, left to right.");
+pub(crate) const CELLS: Key<Item> = required(
+    "cells",
+    own(rules::cells_in_words, rules::cells_schema),
+    "For each output a grid of its terms; `-` stands for no rule.",
 );
+
+static GRIDS: Table =
+    plain("Rules for every pair of terms of two inputs.", &[&[&ROWS, &COLUMNS, &CELLS]]);
 
 pub(super) fn sampling_in_words() -> String {
     Sampling::NAMES.to_owned()

@@ -5,18 +5,19 @@ use fspid_fuzzy::system::{
 };
 
 use super::super::fields::{Fields, below, in_order, word};
+use super::super::spec::{CELLS, COLUMNS, ROWS};
 use super::super::write::{key, quoted};
 use super::Vocabulary;
-use crate::file::document::{Item, Value as Written};
-use crate::file::section::Section;
+use crate::keyed::document::{Item, Value as Written};
+use crate::keyed::{Key, Section};
 use fspid_diagnostics::{Report, Span};
 
 /// The cell that stands for no rule.
 const NO_RULE: &str = "-";
 
 /// The position of a rule table's input.
-fn axis(report: &mut Report, table: &Section, key: &str, inputs: &[Input]) -> Option<usize> {
-    let name = table.text(key)?;
+fn axis(report: &mut Report, table: &Section, key: Key<str>, inputs: &[Input]) -> Option<usize> {
+    let name = table.get(key)?;
     let known: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
     let at = (table.at(key), table.path(key));
     word(report, (at.0, &at.1), name, ("input", &known))?;
@@ -28,18 +29,18 @@ pub(super) fn read(
     table: &Section,
     vocabulary: Vocabulary<'_>,
 ) -> Option<Vec<(Rule, Span)>> {
-    let rows = axis(report, table, "rows", vocabulary.inputs);
-    let columns = axis(report, table, "columns", vocabulary.inputs);
+    let rows = axis(report, table, ROWS, vocabulary.inputs);
+    let columns = axis(report, table, COLUMNS, vocabulary.inputs);
     let (rows, columns) = (rows?, columns?);
     if rows == columns {
         let message = "the same input as `rows`";
-        report.value(table.at("columns"), &table.path("columns"), message, "another input");
+        report.value(table.at(COLUMNS), &table.path(COLUMNS), message, "another input");
         return None;
     }
     let before = report.count();
     let size = [rows, columns].map(|n| vocabulary.inputs.get(n).map_or(0, |i| i.terms.len()));
-    let path = table.path("cells");
-    let fields = Fields::of(report, table.item("cells")?, &path, &in_words())?;
+    let path = table.path(CELLS);
+    let fields = Fields::of(report, table.get(CELLS)?, &path, &in_words())?;
     let (members, report) = (fields.members, fields.report);
     let mut grids = Vec::new();
     for member in in_order(members) {

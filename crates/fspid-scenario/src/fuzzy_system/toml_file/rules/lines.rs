@@ -7,7 +7,7 @@ use super::super::fields::Fields;
 use super::super::formula::within;
 use super::super::write::quoted;
 use super::{Vocabulary, grid, tree};
-use crate::file::document::{Item, Value as Written};
+use crate::keyed::document::{Item, Value as Written};
 use fspid_diagnostics::{Report, Span};
 
 /// The rules of a text or list, with their places.

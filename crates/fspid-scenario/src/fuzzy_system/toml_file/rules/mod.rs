@@ -8,7 +8,8 @@ use fspid_formats::rule_text::RuleReader;
 use fspid_fuzzy::system::{Input, Output, Parts, Rule, RuleBlock};
 use serde_json::{Value, json};
 
-use crate::file::section::Section;
+use super::spec::{LINES, TABLE};
+use crate::keyed::Section;
 use fspid_diagnostics::{Report, Span};
 
 pub(super) use grid::in_words as cells_in_words;
@@ -27,10 +28,10 @@ pub(super) fn read(
     block: &Section,
     vocabulary: Vocabulary<'_>,
 ) -> Option<Vec<(Rule, Span)>> {
-    if let Some(table) = block.section("table") {
+    if let Some(table) = block.get(TABLE) {
         return grid::read(report, table, vocabulary);
     }
-    lines::read(report, block.item("lines")?, &block.path("lines"), vocabulary)
+    lines::read(report, block.get(LINES)?, &block.path(LINES), vocabulary)
 }
 
 /// The rules of a block as they are written: as grids where they fill a table, else line by line.

@@ -8,7 +8,7 @@ use fspid_fuzzy::system::{Antecedent, Consequent, Parts, Rule, Statement, Variab
 use super::super::fields::{Fields, any_number, below, word};
 use super::super::write::{number, quoted};
 use super::Vocabulary;
-use crate::file::document::{Item, Value as Written};
+use crate::keyed::document::{Item, Value as Written};
 use fspid_diagnostics::Report;
 
 /// Deepest nesting that is read; the system's own limit is lower.

@@ -3,8 +3,8 @@
 use fspid_fuzzy::LABEL_COUNT;
 
 use super::value::{number, wrong_type};
-use crate::file::document::{Item, Value};
-use crate::file::spec::{Kind, Range};
+use crate::keyed::document::{Item, Value};
+use crate::keyed::{Kind, Range};
 use fspid_diagnostics::{Report, Span};
 
 pub(crate) const ALLOWED: &str =

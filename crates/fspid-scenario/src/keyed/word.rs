@@ -4,14 +4,19 @@
 //! wildcard: a word that is added or renamed does not compile until every reader says what it means.
 
 /// A type of which each value is a word of a file.
-pub(crate) trait Word: Copy + 'static {
+pub(crate) trait Word: Copy + Sync + 'static {
     /// The words, in the order in which they are told.
     const WORDS: &'static [&'static str];
     /// The values, in the same order.
     const ALL: &'static [Self];
 
     /// The value that a word stands for.
-    fn from_word(word: &str) -> Option<Self>;
+    fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|value| value.word() == word)
+    }
+
+    /// The word for the value.
+    fn word(self) -> &'static str;
 }
 
 /// A choice of words as an enum of its own.
@@ -30,28 +35,19 @@ macro_rules! words {
             }
         }
 
-        $crate::file::spec::word::words_of!($name { $($variant = $word),+ });
+        $crate::keyed::word::words_of!($name { $($variant = $word),+ });
     };
 }
 
 /// Words for the values of an enum that there is already; a value without a word does not compile.
 macro_rules! words_of {
     ($name:ty { $($variant:ident = $word:literal),+ $(,)? }) => {
-        impl $crate::file::spec::word::Word for $name {
-            const WORDS: &'static [&'static str] = {
-                const fn complete(value: $name) {
-                    match value { $(<$name>::$variant => ()),+ }
-                }
-                $(complete(<$name>::$variant);)+
-                &[$($word),+]
-            };
+        impl $crate::keyed::word::Word for $name {
+            const WORDS: &'static [&'static str] = &[$($word),+];
             const ALL: &'static [Self] = &[$(<$name>::$variant),+];
 
-            fn from_word(word: &str) -> Option<Self> {
-                match word {
-                    $($word => Some(<$name>::$variant),)+
-                    _ => None,
-                }
+            fn word(self) -> &'static str {
+                match self { $(<$name>::$variant => $word),+ }
             }
         }
     };

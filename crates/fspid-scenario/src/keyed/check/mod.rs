@@ -5,11 +5,10 @@ mod grid;
 pub(crate) mod number_grid;
 mod value;
 
-pub(super) use value::allowed;
+pub(crate) use value::allowed;
 
-use crate::file::document::{Item, Member, Value};
-use crate::file::section::{Checked, Entry, Section};
-use crate::file::spec::{Default, Key, Presence, Table, Variant};
+use crate::keyed::document::{Item, Member, Value};
+use crate::keyed::{Checked, Entry, KeyRow, Section, Table, Variant, join};
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// Checks a table. What comes back holds the sound values and says whether all were.
@@ -32,6 +31,7 @@ pub(crate) fn table(
         section: Section {
             path: path.to_owned(),
             place: item.place,
+            spec,
             kind: "",
             entries: Vec::new(),
             sound: false,
@@ -51,12 +51,12 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn check(&mut self, spec: &'static Table) {
-        let mut keys: Vec<&'static Key> = spec.keys().collect();
+        let mut keys: Vec<KeyRow> = spec.keys().collect();
         let mut choices: Vec<_> = spec.choices.iter().collect();
         if !spec.variants.is_empty() {
             let Some(variant) = self.variant(spec) else {
                 // Which other keys belong here is unknown.
-                keys.iter().for_each(|key| self.key(key, &[]));
+                keys.iter().for_each(|key| self.key(*key, &[]));
                 return;
             };
             self.section.kind = variant.name;
@@ -65,7 +65,7 @@ impl<'a> Checker<'a> {
         }
         let meant = self.unknown_keys(spec, &keys);
         for key in &keys {
-            self.key(key, &meant);
+            self.key(*key, &meant);
         }
         for choice in choices {
             let (report, section) = (&mut *self.report, &self.section);
@@ -80,7 +80,7 @@ impl<'a> Checker<'a> {
     /// The variant that `kind` names.
     fn variant(&mut self, spec: &'static Table) -> Option<&'static Variant> {
         let known: Vec<&str> = spec.variants.iter().map(|v| v.name).collect();
-        let path = self.section.path("kind");
+        let path = join(&self.section.path, "kind");
         let Some(item) = self.member("kind").map(|member| &member.item) else {
             let place = self.section.place;
             let allowed = quoted(&known);
@@ -92,8 +92,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports the keys that are not known; returns those that were probably meant.
-    fn unknown_keys(&mut self, spec: &'static Table, keys: &[&'static Key]) -> Vec<&'static str> {
-        let mut known: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
+    fn unknown_keys(&mut self, spec: &'static Table, keys: &[KeyRow]) -> Vec<&'static str> {
+        let mut known: Vec<&'static str> = keys.iter().map(|key| key.name().as_str()).collect();
         if !spec.variants.is_empty() {
             known.insert(0, "kind");
         }
@@ -117,43 +117,38 @@ impl<'a> Checker<'a> {
             } else {
                 "unknown key".to_owned()
             };
-            let path = self.section.path(&excerpt(name));
+            let path = join(&self.section.path, &excerpt(name));
             self.report.missing(member.place, &path, message, known.join(", "));
         }
         all_meant
     }
 
     /// Checks a key; one that is there under a mistyped name is not missed as well.
-    fn key(&mut self, key: &'static Key, mistyped: &[&str]) {
-        let path = self.section.path(key.name);
-        let Some(member) = self.member(key.name) else {
-            if !mistyped.contains(&key.name) {
+    fn key(&mut self, key: KeyRow, mistyped: &[&str]) {
+        let (name, path) = (key.name().as_str(), self.section.path(key.name()));
+        let Some(member) = self.member(name) else {
+            if !mistyped.contains(&name) {
                 self.absent(key, &path);
             }
             return;
         };
-        if let Some(value) = value::check(self.report, &key.kind, &member.item, &path) {
+        if let Some(value) = value::check(self.report, key.kind(), &member.item, &path) {
             let place = value_place(member);
             self.put(key, place, value, true);
         }
     }
 
-    fn absent(&mut self, key: &'static Key, path: &str) {
-        match &key.presence {
-            Presence::Optional => {}
-            Presence::Required => {
-                let allowed = value::allowed(&key.kind);
-                self.report.missing(self.section.place, path, "missing key", allowed);
-            }
-            Presence::Default(default) => {
-                let value = default_value(&key.kind, *default);
-                self.put(key, self.section.place, value, false);
-            }
+    fn absent(&mut self, key: KeyRow, path: &str) {
+        if let Some(value) = key.default() {
+            self.put(key, self.section.place, value, false);
+        } else if key.is_required() {
+            let allowed = value::allowed(key.kind());
+            self.report.missing(self.section.place, path, "missing key", allowed);
         }
     }
 
-    fn put(&mut self, key: &'static Key, place: Span, value: Checked, given: bool) {
-        let name = key.name;
+    fn put(&mut self, key: KeyRow, place: Span, value: Checked, given: bool) {
+        let name = key.name();
         self.section.entries.push(Entry { name, place, value, given });
     }
 }
@@ -164,21 +159,9 @@ fn value_place(member: &Member) -> Span {
     if place.end > place.start { place } else { member.place }
 }
 
-/// The default of a key of this kind.
-pub(crate) fn default_value(kind: &crate::file::spec::Kind, default: Default) -> Checked {
-    use crate::file::spec::Kind;
-    match (kind, default) {
-        (Kind::Defuzzifier, _) => Checked::Defuzzifier(fspid_fuzzy::Defuzzifier::default()),
-        (_, Default::Number(number)) => Checked::Number(number),
-        (_, Default::Integer(integer)) => Checked::Integer(integer),
-        (_, Default::Boolean(boolean)) => Checked::Boolean(boolean),
-        (_, Default::Word(word)) => Checked::Text(word.to_owned()),
-    }
-}
-
 /// The kinds of the table that have a key of this name.
 fn owners(spec: &'static Table, name: &str) -> Vec<&'static str> {
-    let has = |variant: &&Variant| variant.table.keys().any(|key| key.name == name);
+    let has = |variant: &&Variant| variant.table.keys().any(|key| key.name().as_str() == name);
     spec.variants.iter().filter(has).map(|v| v.name).collect()
 }
 
@@ -188,7 +171,7 @@ pub(super) fn in_words(spec: &Table) -> String {
         let kinds: Vec<&str> = spec.variants.iter().map(|v| v.name).collect();
         return format!("a table whose `kind` is one of {}", quoted(&kinds));
     }
-    let names: Vec<&str> = spec.keys().map(|key| key.name).collect();
+    let names: Vec<&str> = spec.keys().map(|key| key.name().as_str()).collect();
     format!("a table of {}", names.join(", "))
 }
 
@@ -201,7 +184,7 @@ fn quoted_or(words: &[&str]) -> String {
 }
 
 /// Words in quotes, joined by commas.
-pub(in crate::file) fn quoted(words: &[&str]) -> String {
+pub(crate) fn quoted(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     quoted.join(", ")
 }

@@ -1,37 +1,36 @@
 //! Keys that exclude each other.
 
 use super::value;
-use crate::file::document::Member;
-use crate::file::section::Section;
-use crate::file::spec::{Choice, Key, Way};
+use crate::keyed::document::Member;
+use crate::keyed::{Choice, KeyName, KeyRow, Section, Way, join};
 use fspid_diagnostics::Report;
 
 /// Exactly one of the ways must be used, and completely.
 pub(super) fn check(
     report: &mut Report,
-    (section, known): (&Section, &[&'static Key]),
+    (section, known): (&Section, &[KeyRow]),
     members: &[Member],
     choice: &Choice,
 ) {
-    let present = |name: &str| members.iter().find(|member| member.name == name);
+    let present = |name: &KeyName| members.iter().find(|member| member.name == name.as_str());
     let keys = |way: &'static Way| way.required.iter().chain(way.optional);
     let used: Vec<(&'static Way, &Member)> = choice
         .ways
         .iter()
-        .filter_map(|way| keys(way).find_map(|name| present(name)).map(|m| (way, m)))
+        .filter_map(|way| keys(way).find_map(present).map(|m| (way, m)))
         .collect();
     match used.as_slice() {
         [] => report.missing(section.place, &section.path, "a key is missing", words(choice)),
         [(way, _)] => {
             let given = keys(way).find(|name| present(name).is_some());
             for name in way.required.iter().filter(|name| present(name).is_none()) {
-                let partner = given.copied().unwrap_or_default();
+                let partner = given.map_or("", |name| name.as_str());
                 let message = format!("missing key; it goes with `{partner}`");
-                let key = known.iter().find(|key| key.name == *name);
-                let allowed = key.map(|key| value::allowed(&key.kind));
+                let key = known.iter().find(|key| key.name() == *name);
+                let allowed = key.map(|key| value::allowed(key.kind()));
                 report.missing(
                     section.place,
-                    &section.path(name),
+                    &section.path(*name),
                     message,
                     allowed.unwrap_or_default(),
                 );
@@ -39,7 +38,7 @@ pub(super) fn check(
         }
         [(_, first), others @ ..] => {
             for (_, member) in others {
-                let path = section.path(&member.name);
+                let path = join(&section.path, &member.name);
                 let message = format!("not together with `{}`", first.name);
                 report.missing(member.place, &path, message, words(choice));
             }

@@ -2,11 +2,9 @@
 
 use fspid_fuzzy::Defuzzifier;
 
-use crate::file::check::{grid, in_words, number_grid, quoted, table};
-use crate::file::document::{Item, Value};
-use crate::file::preset::rule_table_names;
-use crate::file::section::Checked;
-use crate::file::spec::{Kind, Range, Table};
+use crate::keyed::check::{grid, in_words, number_grid, quoted, table};
+use crate::keyed::document::{Item, Value};
+use crate::keyed::{Checked, Kind, Range, Table};
 use fspid_diagnostics::{Report, Span, nearest};
 
 /// The value if it is of its kind; otherwise its problems are reported.
@@ -41,7 +39,7 @@ pub(super) fn check(
         },
         Kind::Word(words) => word(report, item, path, words, "word").map(Checked::Text),
         Kind::Preset(list) => word(report, item, path, &list(), "preset").map(Checked::Text),
-        Kind::Rules(grids) => rules(report, item, path, grids),
+        Kind::Rules { names, grids } => rules(report, item, path, (*names, grids)),
         Kind::Grid => grid::check(report, item, path).map(Checked::Grid),
         Kind::NumberGrid => number_grid::check(report, item, path).map(Checked::NumberGrid),
         Kind::Defuzzifier => defuzzifier(report, item, path).map(Checked::Defuzzifier),
@@ -58,7 +56,7 @@ pub(super) fn check(
 }
 
 /// What a key may hold, in words.
-pub(in crate::file) fn allowed(kind: &Kind) -> String {
+pub(crate) fn allowed(kind: &Kind) -> String {
     match kind {
         Kind::Number { unit, range } => range.words(unit),
         Kind::Integer { least, most } if least == most => format!("{least}"),
@@ -68,9 +66,9 @@ pub(in crate::file) fn allowed(kind: &Kind) -> String {
         Kind::Path => "the path of a file in quotes".to_owned(),
         Kind::Word(words) => quoted(words),
         Kind::Preset(list) => quoted(&list()),
-        Kind::Rules(_) => format!(
+        Kind::Rules { names, .. } => format!(
             "{}, the path of a .toml file, or a table with delta_kp, delta_ki and delta_kd",
-            quoted(&rule_table_names())
+            quoted(&names())
         ),
         Kind::Grid => "seven lines of seven labels out of NB NM NS ZO PS PM PB".to_owned(),
         Kind::NumberGrid => number_grid::ALLOWED.to_owned(),
@@ -239,13 +237,19 @@ fn tables(
     Some(Checked::Sections(sections.collect()))
 }
 
-fn rules(report: &mut Report, item: &Item, path: &str, grids: &'static Table) -> Option<Checked> {
+fn rules(
+    report: &mut Report,
+    item: &Item,
+    path: &str,
+    (names, grids): (fn() -> Vec<&'static str>, &'static Table),
+) -> Option<Checked> {
+    let kind = Kind::Rules { names, grids };
     let text = match &item.value {
         Value::Table(_) => return table(report, grids, item, path).map(Checked::Section),
         Value::Text(text) => text,
-        _ => return wrong_type(report, item, path, &Kind::Rules(grids)),
+        _ => return wrong_type(report, item, path, &kind),
     };
-    let known = rule_table_names();
+    let known = names();
     let is_file =
         std::path::Path::new(text).extension().is_some_and(|extension| extension == "toml");
     if known.contains(&text.as_str()) || is_file {
@@ -253,7 +257,7 @@ fn rules(report: &mut Report, item: &Item, path: &str, grids: &'static Table) ->
     }
     let meant = nearest(text, &known).map(|meant| format!("; did you mean \"{meant}\"?"));
     let message = format!("unknown rule table{}", meant.unwrap_or_default());
-    report.value(item.place, path, message, allowed(&Kind::Rules(grids)));
+    report.value(item.place, path, message, allowed(&kind));
     None
 }
 

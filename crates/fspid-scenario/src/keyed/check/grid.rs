@@ -3,8 +3,8 @@
 use fspid_fuzzy::{Grid, GridError, LABEL_COUNT, Label};
 
 use super::value::wrong_type;
-use crate::file::document::{Item, Value};
-use crate::file::spec::Kind;
+use crate::keyed::Kind;
+use crate::keyed::document::{Item, Value};
 use fspid_diagnostics::{Report, Span};
 
 pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Grid> {
