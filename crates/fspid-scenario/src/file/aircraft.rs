@@ -156,12 +156,7 @@ fn derivatives(report: &mut Report, section: &Section, given: Given) -> Option<D
         Ok(()) => Some(data),
         Err(error) => {
             let allowed = "moments of inertia that a body can have".to_owned();
-            report.value(
-                section.at(keys::MASS),
-                &section.path(keys::MASS),
-                error.to_string(),
-                allowed,
-            );
+            section.wrong(report, keys::MASS, error.to_string(), allowed);
             None
         }
     }

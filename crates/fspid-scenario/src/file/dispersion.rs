@@ -59,14 +59,13 @@ fn dispersion(report: &mut Report, section: &Section) -> Option<Dispersion> {
             };
             let text = error.to_string();
             let (message, allowed) = in_two(&text);
-            report.missing(section.at(key), &section.path(key), message, allowed);
+            section.problem(report, key, message, allowed);
             return None;
         }
     };
     let relative = section.get(keys::RELATIVE)?;
     if relative && (word == DistributionWord::Seed || choices.iter().any(|it| !is_number(it))) {
-        let (place, path) = (section.at(keys::RELATIVE), section.path(keys::RELATIVE));
-        report.value(place, &path, "only numbers can be factors", "false");
+        section.wrong(report, keys::RELATIVE, "only numbers can be factors", "false");
         return None;
     }
     let targets = targets(report, section, paths, is_correlated)?;
@@ -88,13 +87,13 @@ fn check_keys(report: &mut Report, section: &Section, distribution: Distribution
     let word = distribution.name();
     for key in needed.iter().copied().filter(|key| !section.given(*key)) {
         let message = format!("missing key; distribution \"{word}\" needs it");
-        report.missing(section.place, &section.path(key), message, "");
+        section.problem(report, key, message, "");
     }
     for key in OWN_KEYS.into_iter().filter(|key| section.given(*key)) {
         if !needed.contains(&key) && !allowed.contains(&key) {
             let message = format!("says nothing to distribution \"{word}\"");
             let may = needed.iter().chain(allowed).map(|key| key.as_str()).collect::<Vec<_>>();
-            report.value(section.at(key), &section.path(key), message, may.join(", "));
+            section.wrong(report, key, message, may.join(", "));
         }
     }
 }
@@ -105,7 +104,7 @@ fn check_lengths(report: &mut Report, section: &Section, paths: usize) {
         let found = section.numbers(key).map_or(paths, |numbers| numbers.len());
         if found != paths {
             let message = format!("{found} numbers for {paths} paths");
-            report.value(section.at(key), &section.path(key), message, "one for each path");
+            section.wrong(report, key, message, "one for each path");
         }
     }
 }
@@ -123,7 +122,7 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
         None => section.get(keys::PATHS).and_then(placed_texts),
     };
     let Some(texts) = texts.filter(|texts| !texts.is_empty()) else {
-        report.value(section.at(key), &section.path(key), "wrong type", paths_in_words());
+        section.wrong(report, key, "wrong type", paths_in_words());
         return None;
     };
     let mut paths = Vec::new();
@@ -131,13 +130,13 @@ fn paths(report: &mut Report, section: &Section) -> Option<Vec<SettingPath>> {
         let Some((path, renamed)) = SettingPath::renamed(&text) else {
             let allowed = "names joined by dots, such as controller[0].kp";
             let message = format!("the path `{text}` cannot be read");
-            report.missing(section.at(key), &section.path(key), message, allowed);
+            section.problem(report, key, message, allowed);
             return None;
         };
         if super::paths::NEVER_DRAWN.contains(&path.root()) {
             let message = format!("`{text}` cannot differ from run to run");
             let allowed = "a place of what flies or of what disturbs it";
-            report.missing(section.at(key), &section.path(key), message, allowed);
+            section.problem(report, key, message, allowed);
             return None;
         }
         if let Some(key) = renamed {
@@ -275,12 +274,7 @@ fn targets(
 ) -> Option<Vec<Target>> {
     if correlated && section.given(keys::NAME) {
         let message = "correlated numbers are called by their paths";
-        report.value(
-            section.at(keys::NAME),
-            &section.path(keys::NAME),
-            message,
-            "nothing; leave it out",
-        );
+        section.wrong(report, keys::NAME, message, "nothing; leave it out");
         return None;
     }
     if correlated {

@@ -29,8 +29,12 @@ pub(crate) fn requirements(
         if let Some(name) = controller
             && !names.contains(&name)
         {
-            let (place, path) = (section.at(keys::CONTROLLER), section.path(keys::CONTROLLER));
-            report.value(place, &path, "no controller has this name", names.join(", "));
+            section.wrong(
+                report,
+                keys::CONTROLLER,
+                "no controller has this name",
+                names.join(", "),
+            );
             continue;
         }
         let found = match section.get(keys::SET) {
@@ -111,12 +115,7 @@ fn check_ids(report: &mut Report, sections: &[Section]) {
         let earlier = sections.get(..index).unwrap_or_default();
         if let Some(twin) = earlier.iter().find(|other| other.get(keys::ID) == Some(id)) {
             let message = format!("the id is taken by {}", twin.path);
-            report.value(
-                section.at(keys::ID),
-                &section.path(keys::ID),
-                message,
-                "an id of its own",
-            );
+            section.wrong(report, keys::ID, message, "an id of its own");
         }
     }
 }
@@ -204,18 +203,12 @@ fn limits(report: &mut Report, section: &Section, measure: Measure) -> (Option<f
     // A limit that is written wrongly is told already, and so is a table with an unknown key.
     if !written && section.sound {
         let message = "missing key; a requirement has a limit";
-        report.missing(
-            section.place,
-            &section.path(keys::MOST),
-            message,
-            "`least`, `most` or both",
-        );
+        section.problem(report, keys::MOST, message, "`least`, `most` or both");
     }
     if let (Some(least), Some(most)) = (least, most)
         && most < least
     {
-        let (place, path) = (section.at(keys::MOST), section.path(keys::MOST));
-        report.value(place, &path, "below `least`", format!("{least:?} or above"));
+        section.wrong(report, keys::MOST, "below `least`", format!("{least:?} or above"));
     }
     (least, most)
 }
@@ -246,21 +239,16 @@ fn check_conditions(
         let owners: Vec<&str> = owners.map(Measure::name).collect();
         let message = format!("says nothing about `{}`", measure.name());
         let allowed = format!("with {}", owners.join(", "));
-        report.value(section.at(key), &section.path(key), message, allowed);
+        section.wrong(report, key, message, allowed);
     }
     if measure == Measure::RecoveryTime && conditions.within_deg.is_none() {
         let message = "missing key; it goes with `recovery_time_s`";
         let allowed = "a finite number above 0, in deg";
-        report.missing(section.place, &section.path(keys::WITHIN_DEG), message, allowed);
+        section.problem(report, keys::WITHIN_DEG, message, allowed);
     }
     if conditions.from_s.is_some() && conditions.step_deg.is_some() {
         let message = "not together with `step_deg`, from which the time counts";
-        report.value(
-            section.at(keys::FROM_S),
-            &section.path(keys::FROM_S),
-            message,
-            "one of the two",
-        );
+        section.wrong(report, keys::FROM_S, message, "one of the two");
     }
     check_order(report, section, [keys::FROM_S, keys::TO_S]);
     check_order(report, section, [keys::FROM_HZ, keys::TO_HZ]);
@@ -272,8 +260,7 @@ fn check_order(report: &mut Report, section: &Section, [from, to]: [Key<f64>; 2]
         && !(last > first)
     {
         let message = format!("not above `{}`", from.name);
-        let (place, path) = (section.at(to), section.path(to));
-        report.value(place, &path, message, format!("above {first:?}"));
+        section.wrong(report, to, message, format!("above {first:?}"));
     }
 }
 
@@ -318,7 +305,7 @@ fn check_choices(report: &mut Report, section: &Section, chosen: &RequirementSet
             SET_NAMES.iter().filter(takes).map(|name| format!("\"{name}\"")).collect();
         let message = format!("the set \"{}\" leaves no such choice", chosen.name);
         let allowed = format!("with {}", owners.join(" or "));
-        report.value(section.at(key), &section.path(key), message, allowed);
+        section.wrong(report, key, message, allowed);
     }
 }
 

@@ -77,7 +77,7 @@ fn model(
     let path = place.join(part.get(key)?);
     let name = path.display().to_string();
     let text = files.read(&name).map_err(|reason| {
-        report.value(part.at(key), &part.path(key), format!("cannot be read: {reason}"), ALLOWED);
+        part.wrong(report, key, format!("cannot be read: {reason}"), ALLOWED);
     });
     let text = text.ok()?;
     files.digest(&text);
@@ -97,7 +97,7 @@ fn checked(report: &mut Report, (part, key): (&Section, Key<str>), model: Model)
     let failed = checks.shots.iter().find(|shot| !shot.passed());
     let Some(shot) = failed else { return Some(model) };
     let message = format!("its check case `{}` fails", shot.name);
-    report.value(part.at(key), &part.path(key), message, "a file whose check cases pass");
+    part.wrong(report, key, message, "a file whose check cases pass");
     None
 }
 
@@ -152,12 +152,7 @@ fn engine_fits(report: &mut Report, section: &Section, part: &Section) -> Option
     match (part.given(keys::PROPULSION), section.get(keys::ENGINE)) {
         (true, None) => {
             let message = "the propulsion needs an [engine], which says what its tables do not";
-            report.value(
-                part.at(keys::PROPULSION),
-                &part.path(keys::PROPULSION),
-                message,
-                "[engine]",
-            );
+            part.wrong(report, keys::PROPULSION, message, "[engine]");
             None
         }
         (false, Some(engine)) => {
@@ -182,7 +177,7 @@ fn fitting<T>(
     let tables = section.get(keys::TABLES)?;
     let told = |error: FlightError| {
         let allowed = "tables with the names and units of AIAA S-119";
-        report.value(tables.at(key), &tables.path(key), error.to_string(), allowed);
+        tables.wrong(report, key, error.to_string(), allowed);
     };
     part.map_err(told).ok()
 }

@@ -28,12 +28,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
     let optimiser = section.get(keys::OPTIMISER)?.to_owned();
     if optimiser == FRONT && objectives.len() < 2 && sections.len() < 2 {
         let message = "a front needs two objectives";
-        report.value(
-            section.at(keys::OPTIMISER),
-            &section.path(keys::OPTIMISER),
-            message,
-            "two [[tuning.objective]] or more",
-        );
+        section.wrong(report, keys::OPTIMISER, message, "two [[tuning.objective]] or more");
     }
     let over = match section.get(keys::OVER)? {
         OverWord::Mean => Over::Mean,
@@ -42,12 +37,7 @@ pub(crate) fn tuning(report: &mut Report, section: &Section, names: &[&str]) -> 
     };
     if section.given(keys::SHARE) && !matches!(over, Over::Tail { .. }) {
         let message = "says nothing where `over` is not \"tail\"";
-        report.value(
-            section.at(keys::SHARE),
-            &section.path(keys::SHARE),
-            message,
-            "over = \"tail\"",
-        );
+        section.wrong(report, keys::SHARE, message, "over = \"tail\"");
     }
     Some(Tuning {
         optimiser,
@@ -82,7 +72,7 @@ fn check_controller(report: &mut Report, section: &Section, key: Key<str>, names
         && !names.contains(&name)
     {
         let message = "no controller has this name";
-        report.value(section.at(key), &section.path(key), message, names.join(", "));
+        section.wrong(report, key, message, names.join(", "));
     }
 }
 
@@ -90,12 +80,7 @@ fn objective(report: &mut Report, section: &Section, index: usize) -> Option<Obj
     let weight = section.get(keys::OBJECTIVE_WEIGHT)?;
     if weight == 0.0 {
         let message = "an objective that costs nothing";
-        report.value(
-            section.at(keys::OBJECTIVE_WEIGHT),
-            &section.path(keys::OBJECTIVE_WEIGHT),
-            message,
-            "a finite number other than 0",
-        );
+        section.wrong(report, keys::OBJECTIVE_WEIGHT, message, "a finite number other than 0");
         return None;
     }
     let requirement = objective_requirement(report, section, (index, weight > 0.0))?;
@@ -108,12 +93,7 @@ fn limits(report: &mut Report, section: &Section) -> Vec<Requirement> {
         if part.get(keys::LIMIT_MEASURE).is_some_and(Measure::is_yes_or_no) {
             let message = "has no mean that could be limited: it is yes or no";
             let allowed = "a measure with a unit or a number; as a [[requirement]] it is asked of each flight";
-            report.value(
-                part.at(keys::LIMIT_MEASURE),
-                &part.path(keys::LIMIT_MEASURE),
-                message,
-                allowed,
-            );
+            part.wrong(report, keys::LIMIT_MEASURE, message, allowed);
         }
     }
     let sound = section.sections(keys::LIMIT).iter().filter(|part| part.sound).enumerate();
@@ -135,12 +115,7 @@ fn cases(
         let name = section.get(keys::NAME);
         if let Some(twin) = earlier.iter().find(|it| name.is_some() && it.get(keys::NAME) == name) {
             let message = format!("the name is taken by {}", twin.path);
-            report.value(
-                section.at(keys::NAME),
-                &section.path(keys::NAME),
-                message,
-                "a name of its own",
-            );
+            section.wrong(report, keys::NAME, message, "a name of its own");
         }
     }
     sections
@@ -176,12 +151,7 @@ fn check_mirrors(report: &mut Report, sections: &[Section]) {
         if !others.any(|name| name == mirrored) {
             let message = "no other case has this name";
             let allowed = "the name of another [[contest.case]]";
-            report.value(
-                section.at(keys::MIRROR_OF),
-                &section.path(keys::MIRROR_OF),
-                message,
-                allowed,
-            );
+            section.wrong(report, keys::MIRROR_OF, message, allowed);
         }
     }
 }

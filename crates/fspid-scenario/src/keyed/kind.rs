@@ -171,24 +171,16 @@ pub(crate) const fn whole(least: i64, most: i64) -> KindOf<i64> {
 }
 
 /// True or false.
-pub(crate) const fn boolean() -> KindOf<bool> {
-    KindOf::new(Kind::Boolean)
-}
+pub(crate) const BOOLEAN: KindOf<bool> = KindOf::new(Kind::Boolean);
 
 /// Any text that is not empty.
-pub(crate) const fn text() -> KindOf<str> {
-    KindOf::new(Kind::Text)
-}
+pub(crate) const TEXT: KindOf<str> = KindOf::new(Kind::Text);
 
 /// Any text, also none at all.
-pub(crate) const fn free_text() -> KindOf<str> {
-    KindOf::new(Kind::FreeText)
-}
+pub(crate) const FREE_TEXT: KindOf<str> = KindOf::new(Kind::FreeText);
 
 /// The path of a file.
-pub(crate) const fn file_path() -> KindOf<str> {
-    KindOf::new(Kind::Path)
-}
+pub(crate) const FILE_PATH: KindOf<str> = KindOf::new(Kind::Path);
 
 /// The name of something that the program carries.
 pub(crate) const fn carried(names: fn() -> Vec<&'static str>) -> KindOf<str> {
@@ -214,19 +206,13 @@ pub(crate) const fn rules(
 }
 
 /// A rule grid: seven lines of seven labels.
-pub(crate) const fn grid() -> KindOf<Grid> {
-    KindOf::new(Kind::Grid)
-}
+pub(crate) const GRID: KindOf<Grid> = KindOf::new(Kind::Grid);
 
 /// A grid of numbers: seven lists of seven.
-pub(crate) const fn number_grid() -> KindOf<NumberGrid<f64>> {
-    KindOf::new(Kind::NumberGrid)
-}
+pub(crate) const NUMBER_GRID: KindOf<NumberGrid<f64>> = KindOf::new(Kind::NumberGrid);
 
 /// A defuzzifier by name.
-pub(crate) const fn defuzzifier() -> KindOf<Defuzzifier> {
-    KindOf::new(Kind::Defuzzifier)
-}
+pub(crate) const DEFUZZIFIER_NAME: KindOf<Defuzzifier> = KindOf::new(Kind::Defuzzifier);
 
 /// Something that its reader checks: what it may be in words, and its JSON Schema.
 pub(crate) const fn own(allowed: fn() -> String, schema: fn() -> Value) -> KindOf<Item> {

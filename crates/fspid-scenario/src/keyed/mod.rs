@@ -19,9 +19,9 @@ pub(crate) mod word;
 pub(crate) use held::Rules;
 pub(crate) use key::{Key, KeyName, KeyRow, defaulted, optional, required};
 pub(crate) use kind::{
-    Kind, KindOf, Range, boolean, carried, defuzzifier, file_path, finite, free_text, grid,
-    interval, name_in, not_negative, number, number_grid, numbers, own, positive, rules, table,
-    tables, text, whole, word,
+    BOOLEAN, DEFUZZIFIER_NAME, FILE_PATH, FREE_TEXT, GRID, Kind, KindOf, NUMBER_GRID, Range, TEXT,
+    carried, finite, interval, name_in, not_negative, number, numbers, own, positive, rules, table,
+    tables, whole, word,
 };
 pub(crate) use section::{Checked, Entry, Section, join};
-pub(crate) use table::{Choice, Table, Variant, Way, one_of, plain};
+pub(crate) use table::{Choice, Table, Variant, Way, choosing, of_kinds, one_of, plain, variant};

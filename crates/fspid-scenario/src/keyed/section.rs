@@ -1,6 +1,6 @@
 //! A table of the text after the check: every value of the right kind, defaults filled in.
 
-use fspid_diagnostics::Span;
+use fspid_diagnostics::{Report, Span};
 use fspid_fuzzy::{Defuzzifier, Grid};
 
 use super::document::Item;
@@ -83,6 +83,30 @@ impl Section {
     /// The path of a key.
     pub(crate) fn path(&self, name: impl Into<KeyName>) -> String {
         join(&self.path, name.into().as_str())
+    }
+
+    /// Reports what is wrong with the value of a key, which is told as well.
+    pub(crate) fn wrong(
+        &self,
+        report: &mut Report,
+        key: impl Into<KeyName>,
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        let key = key.into();
+        report.value(self.at(key), &self.path(key), message, allowed);
+    }
+
+    /// Reports what is wrong at a key, whose value would not explain it.
+    pub(crate) fn problem(
+        &self,
+        report: &mut Report,
+        key: impl Into<KeyName>,
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        let key = key.into();
+        report.missing(self.at(key), &self.path(key), message, allowed);
     }
 
     /// The table's kind, as what it stands for.

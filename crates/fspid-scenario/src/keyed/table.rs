@@ -40,7 +40,30 @@ impl Table {
 
 /// A table without choices and kinds.
 pub(crate) const fn plain(doc: &'static str, groups: &'static [&'static [KeyRow]]) -> Table {
-    Table { doc, groups, choices: &[], variants: &[] }
+    choosing(doc, groups, &[])
+}
+
+/// A table without kinds.
+pub(crate) const fn choosing(
+    doc: &'static str,
+    groups: &'static [&'static [KeyRow]],
+    choices: &'static [Choice],
+) -> Table {
+    Table { doc, groups, choices, variants: &[] }
+}
+
+/// A table whose `kind` says what else is in it.
+pub(crate) const fn of_kinds(
+    doc: &'static str,
+    groups: &'static [&'static [KeyRow]],
+    variants: &'static [Variant],
+) -> Table {
+    Table { doc, groups, choices: &[], variants }
+}
+
+/// What a word behind `kind` adds.
+pub(crate) const fn variant(name: &'static str, table: Table) -> Variant {
+    Variant { name, table }
 }
 
 /// One kind of a table that is chosen by `kind`.

@@ -23,7 +23,7 @@ pub(super) fn model(report: &mut Report, section: &Section) -> Option<LinearData
         if values.len() != sizes.len() {
             let message = format!("{} numbers for {} states", values.len(), sizes.len());
             let allowed = "one number a state".to_owned();
-            report.value(row.at(keys::BY_STATES), &row.path(keys::BY_STATES), message, allowed);
+            row.wrong(report, keys::BY_STATES, message, allowed);
             return None;
         }
         let scaled = values.iter().zip(&sizes).map(|(value, state)| value * rate / state);
@@ -57,12 +57,7 @@ fn check_states(report: &mut Report, equations: &[Section]) -> Option<()> {
                 true => format!("the state is that of {}", twin.path),
                 false => format!("w and alpha are one state, which is that of {}", twin.path),
             };
-            report.value(
-                row.at(keys::STATE),
-                &row.path(keys::STATE),
-                message,
-                "one equation a state",
-            );
+            row.wrong(report, keys::STATE, message, "one equation a state");
         }
     }
     (report.count() == before).then_some(())
@@ -86,13 +81,13 @@ fn check_pitch(report: &mut Report, equations: &[Section], states: &[LinearState
         if row.get(keys::BY_PITCH_GUST).is_some_and(|by_gust| by_gust != 0.0) {
             let message = "the air turns the aircraft by its moment, and does not change the pitch angle at once";
             let key = keys::BY_PITCH_GUST;
-            report.value(row.at(key), &row.path(key), message, "0, or leave it out");
+            row.wrong(report, key, message, "0, or leave it out");
         }
         let moves = |(value, state): (&f64, &LinearState)| *value != 0.0 && is_by_air(*state);
         if row.numbers(keys::BY_STATES)?.iter().zip(states).any(moves) {
             let message = "a gust would change the pitch angle at once, without a moment";
             let allowed = "0 by u, w and alpha, or no by_pitch_gust in any equation";
-            report.value(row.at(keys::BY_STATES), &row.path(keys::BY_STATES), message, allowed);
+            row.wrong(report, keys::BY_STATES, message, allowed);
         }
     }
     (report.count() == before).then_some(())

@@ -92,12 +92,7 @@ fn two_lags<T>(report: &mut Report, section: &Section) -> Option<T> {
     let [second, damping] = [keys::NATURAL_FREQUENCY_RAD_S, keys::DAMPING];
     let key = if section.given(damping) { damping } else { second };
     let allowed = "a lag of first order or one of second order";
-    report.value(
-        section.at(key),
-        &section.path(key),
-        "not together with `time_constant_s`",
-        allowed,
-    );
+    section.wrong(report, key, "not together with `time_constant_s`", allowed);
     None
 }
 
@@ -107,7 +102,7 @@ fn half_a_lag<T>(report: &mut Report, section: &Section, frequency: Option<f64>)
         None => (keys::NATURAL_FREQUENCY_RAD_S, keys::DAMPING),
     };
     let message = format!("missing key; it goes with `{}`", other.name);
-    report.missing(section.place, &section.path(key), message, "a finite number above 0");
+    section.problem(report, key, message, "a finite number above 0");
     None
 }
 

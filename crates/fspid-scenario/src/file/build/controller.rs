@@ -89,7 +89,7 @@ fn from_isa(report: &mut Report, isa: &Section) -> (Option<Gains<f64>>, Option<f
     let filter_s = isa.get(keys::N).map(|n| td_s / n);
     if filter_s.is_some_and(|filter_s| !filter_s.is_finite()) {
         let allowed = "an n for which td_s / n is a finite number";
-        report.value(isa.at(keys::N), &isa.path(keys::N), "out of range", allowed);
+        isa.wrong(report, keys::N, "out of range", allowed);
     }
     (gains, filter_s)
 }
@@ -137,7 +137,7 @@ fn filter(report: &mut Report, section: &Section, isa_filter_s: Option<f64>) -> 
     if given.is_some() && isa_filter_s.is_some() {
         let (key, allowed) = (keys::DERIVATIVE_FILTER_S, "one of the two");
         let message = "not together with `n`, which sets the filter as well";
-        report.value(section.at(key), &section.path(key), message, allowed);
+        section.wrong(report, key, message, allowed);
         return None;
     }
     Some(given.or(isa_filter_s).unwrap_or(0.0))
@@ -160,9 +160,8 @@ fn weights(report: &mut Report, section: &Section) -> Option<SetpointWeights<f64
         } else {
             "the derivative acts on the error, yet the set-point has no derivative weight"
         };
-        let (place, path) = (section.at(keys::DERIVATIVE_ON), section.path(keys::DERIVATIVE_ON));
         let allowed = "one of `derivative_on` and `setpoint_weights.derivative`, or both alike";
-        report.value(place, &path, message, allowed);
+        section.wrong(report, keys::DERIVATIVE_ON, message, allowed);
         return None;
     }
     Some(SetpointWeights {
@@ -188,8 +187,12 @@ fn anti_windup(report: &mut Report, section: &Section, limited: bool) -> Option<
         AntiWindupKind::Clamping => {
             let (lower, upper) = (part.get(keys::LOWER_DEG)?, part.get(keys::UPPER_DEG)?);
             if lower >= upper {
-                let (place, path) = (part.at(keys::UPPER_DEG), part.path(keys::UPPER_DEG));
-                report.value(place, &path, "not above `lower_deg`", format!("above {lower:?} deg"));
+                part.wrong(
+                    report,
+                    keys::UPPER_DEG,
+                    "not above `lower_deg`",
+                    format!("above {lower:?} deg"),
+                );
                 return None;
             }
             let limits = Limits::new("anti-windup limits", rad(lower), rad(upper));
@@ -251,7 +254,7 @@ fn input_scale(report: &mut Report, part: &Section) -> Option<InputScale<f64>> {
         if scale.is_finite() {
             return Some(scale);
         }
-        report.value(part.at(key), &part.path(key), "too large", "a smaller factor");
+        part.wrong(report, key, "too large", "a smaller factor");
         None
     };
     let (error, change) = (per_rad(keys::ERROR_SCALE), per_rad(keys::CHANGE_SCALE));
@@ -265,7 +268,7 @@ fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>>
     if second_input != SecondInputWord::Change && part.get(keys::CHANGE) == Some(Change::Delta) {
         let message = format!("the supervisor sees no change, but \"{}\"", second_input.name());
         let allowed = "only with second_input = \"error-and-change\"";
-        report.value(part.at(keys::CHANGE), &part.path(keys::CHANGE), message, allowed);
+        part.wrong(report, keys::CHANGE, message, allowed);
         return None;
     }
     match (second_input, model) {
@@ -277,12 +280,7 @@ fn second_input(report: &mut Report, part: &Section) -> Option<SecondInput<f64>>
         }
         (SecondInputWord::ModelError, None) => {
             let (message, allowed) = ("it has no reference model", "together with `model`");
-            report.missing(
-                part.at(keys::SECOND_INPUT),
-                &part.path(keys::SECOND_INPUT),
-                message,
-                allowed,
-            );
+            part.problem(report, keys::SECOND_INPUT, message, allowed);
             None
         }
         (SecondInputWord::Rate | SecondInputWord::Change, Some(model)) => {
@@ -363,7 +361,7 @@ fn gain_limits(report: &mut Report, part: &Section) -> Option<GainLimits<f64>> {
         }
         let message = format!("not above `{}`", least.name);
         let allowed = format!("above {lower:?}");
-        report.value(part.at(most), &part.path(most), message, allowed);
+        part.wrong(report, most, message, allowed);
         None
     };
     let (kp, ki, kd) = (limits(keys::KP_ENDS), limits(keys::KI_ENDS), limits(keys::KD_ENDS));

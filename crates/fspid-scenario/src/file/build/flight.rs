@@ -136,8 +136,7 @@ pub(super) fn check_ground(report: &mut Report, part: &Section, target: TrimTarg
     let ground_m = part.get(keys::GROUND_M).filter(|_| part.given(keys::GROUND_M));
     if ground_m.is_some_and(|ground_m| ground_m > target.altitude_m) {
         let allowed = format!("up to the altitude of the aircraft, {:?} m", target.altitude_m);
-        let (place, path) = (part.at(keys::GROUND_M), part.path(keys::GROUND_M));
-        report.value(place, &path, "the ground is above the aircraft", allowed);
+        part.wrong(report, keys::GROUND_M, "the ground is above the aircraft", allowed);
     }
 }
 
@@ -154,7 +153,7 @@ fn above_ground(
     if above.is_err() && !told {
         let key = altitude_key(part);
         let allowed = format!("above the ground, {ground_m:?} m; or a lower `ground_m`");
-        report.value(part.at(key), &part.path(key), "the flight begins at the ground", allowed);
+        part.wrong(report, key, "the flight begins at the ground", allowed);
     }
     above.ok()
 }
@@ -196,15 +195,14 @@ fn glides(report: &mut Report, part: &Section, aircraft: &Aircraft<Forces>) -> O
         return Some(());
     }
     let message = "the aircraft has no engine; at its speed its path is that of its glide";
-    let (at, path) = (part.at(keys::CLIMB_ANGLE_DEG), part.path(keys::CLIMB_ANGLE_DEG));
-    report.value(at, &path, message, "nothing; leave it out");
+    part.wrong(report, keys::CLIMB_ANGLE_DEG, message, "nothing; leave it out");
     None
 }
 
 /// Refuses the laws that are for derivatives.
 pub(super) fn refuse_laws(report: &mut Report, part: &Section, message: &str) {
     for key in [keys::DRAG.name, keys::THRUST.name].into_iter().filter(|key| part.given(*key)) {
-        report.value(part.at(key), &part.path(key), message, "nothing; leave it out");
+        part.wrong(report, key, message, "nothing; leave it out");
     }
 }
 
@@ -240,7 +238,7 @@ fn trimmed(
         match out_of_range(part, failure) {
             Some(key) => {
                 let allowed = "a speed and an altitude at which the aircraft can be trimmed";
-                report.value(part.at(key), &part.path(key), message, allowed);
+                part.wrong(report, key, message, allowed);
             }
             None => {
                 let of_trim = OF_TRIM.iter().map(|key| key.name);

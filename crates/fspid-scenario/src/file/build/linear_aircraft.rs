@@ -44,17 +44,11 @@ fn fits(report: &mut Report, part: &Section) -> Option<()> {
     if part.get(keys::MODEL) == Some(ModelWord::Nonlinear) {
         let message =
             "only a linear model of the aircraft is known; it has no forces to fly nonlinear";
-        report.value(
-            part.at(keys::MODEL),
-            &part.path(keys::MODEL),
-            message,
-            "\"linear\", or leave it out",
-        );
+        part.wrong(report, keys::MODEL, message, "\"linear\", or leave it out");
     }
     if part.get(keys::CLIMB_ANGLE_DEG).is_some_and(|angle_deg| angle_deg != 0.0) {
         let message = "only a linear model of the aircraft is known, which holds in level flight";
-        let (at, path) = (part.at(keys::CLIMB_ANGLE_DEG), part.path(keys::CLIMB_ANGLE_DEG));
-        report.value(at, &path, message, "0, or leave it out");
+        part.wrong(report, keys::CLIMB_ANGLE_DEG, message, "0, or leave it out");
     }
     flight::refuse_laws(
         report,
@@ -81,12 +75,12 @@ fn holds(
     if !(off_m_s <= AIRSPEED_SHARE * condition.airspeed_m_s) {
         let key = flight::airspeed_key(part);
         let allowed = format!("{}, or within 0.5 % of it", in_unit(key, condition.airspeed_m_s));
-        report.value(part.at(key), &part.path(key), message, allowed);
+        part.wrong(report, key, message, allowed);
     }
     if !((target.altitude_m - condition.altitude_m).abs() <= ALTITUDE_M) {
         let key = flight::altitude_key(part);
         let allowed = format!("{}, or within 200 ft of it", in_unit(key, condition.altitude_m));
-        report.value(part.at(key), &part.path(key), message, allowed);
+        part.wrong(report, key, message, allowed);
     }
     (report.count() == before).then_some(())
 }

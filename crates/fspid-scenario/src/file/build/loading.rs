@@ -37,7 +37,7 @@ pub(super) fn loaded(
         Ok(data) => Some(data),
         Err(error) => {
             let (at, allowed) = fault(part, key, &error);
-            report.value(part.at(at), &part.path(at), error.to_string(), allowed);
+            part.wrong(report, at, error.to_string(), allowed);
             None
         }
     }
@@ -69,7 +69,7 @@ fn at_most_one(report: &mut Report, part: &Section, moment: &MomentKeys) {
     let mut given = all.filter(|key| part.given(*key));
     if let (Some(first), Some(second)) = (given.next(), given.next()) {
         let message = format!("not together with `{}`", first.name);
-        report.value(part.at(second), &part.path(second), message, "one of them");
+        part.wrong(report, second, message, "one of them");
     }
 }
 

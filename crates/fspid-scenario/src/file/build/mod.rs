@@ -180,7 +180,7 @@ fn judged<T, E: std::fmt::Display>(
         Err(error) => {
             let (text, key) = (error.to_string(), key.into());
             let (message, allowed) = in_two(&text);
-            report.missing(section.at(key), &section.path(key), message, allowed);
+            section.problem(report, key, message, allowed);
             None
         }
     }
@@ -214,7 +214,7 @@ fn controllers(
         let name = part.get(NAME);
         if let Some(twin) = earlier.iter().find(|other| name.is_some() && other.get(NAME) == name) {
             let message = format!("the name is taken by {}", twin.path);
-            report.value(part.at(NAME), &part.path(NAME), message, "a name of its own");
+            part.wrong(report, NAME, message, "a name of its own");
         }
     }
     // A period stands in where the loop is wrong, so that the controllers are judged all the same.

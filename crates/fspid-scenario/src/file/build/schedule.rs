@@ -61,7 +61,7 @@ pub(super) fn factor(report: &mut Report, section: &Section, pressure: Pressure)
     if !(factor > 0.0 && factor.is_finite()) {
         let message = format!("the gains would be multiplied by {factor:?}");
         let allowed = "a finite factor above 0, or `least_factor` and `most_factor`";
-        report.value(part.at(keys::EXPONENT), &part.path(keys::EXPONENT), message, allowed);
+        part.wrong(report, keys::EXPONENT, message, allowed);
         return None;
     }
     Some(factor)
@@ -73,8 +73,7 @@ fn limits(report: &mut Report, part: &Section) -> Option<(f64, f64)> {
     if least <= most {
         return Some((least, most));
     }
-    let (place, path) = (part.at(keys::MOST_FACTOR), part.path(keys::MOST_FACTOR));
-    report.value(place, &path, "below `least_factor`", format!("{least:?} or above"));
+    part.wrong(report, keys::MOST_FACTOR, "below `least_factor`", format!("{least:?} or above"));
     None
 }
 

@@ -99,14 +99,13 @@ fn of_system(
 ) -> Option<NumberTable<f64>> {
     const ALLOWED: &str = "a readable .toml, .fis, .t2fis, .fcl, .fll or .xml file, its path relative to the scenario's folder";
     let name = part.get(keys::SYSTEM)?;
-    let (place, path) = (part.at(keys::SYSTEM), part.path(keys::SYSTEM));
     let text = match (Format::of(name.as_ref()), files.read(name)) {
         (None, _) => {
-            report.value(place, &path, "no file of a known format", ALLOWED);
+            part.wrong(report, keys::SYSTEM, "no file of a known format", ALLOWED);
             return None;
         }
         (_, Err(reason)) => {
-            report.value(place, &path, format!("cannot be read: {reason}"), ALLOWED);
+            part.wrong(report, keys::SYSTEM, format!("cannot be read: {reason}"), ALLOWED);
             return None;
         }
         (Some(_), Ok(text)) => text,
@@ -118,12 +117,12 @@ fn of_system(
             for found in &problems.list {
                 let (line, column) = found.line_and_column();
                 let message = format!("{name}:{line}:{column}: {}", found.message);
-                report.missing(place, &path, message, found.allowed.clone());
+                part.problem(report, keys::SYSTEM, message, found.allowed.clone());
             }
             return None;
         }
         Err(error) => {
-            report.missing(place, &path, error.to_string(), "a fuzzy system");
+            part.problem(report, keys::SYSTEM, error.to_string(), "a fuzzy system");
             return None;
         }
     };
@@ -142,7 +141,7 @@ fn of_system(
     let last = told.len().saturating_sub(1);
     for (index, difference) in told.into_iter().enumerate() {
         let allowed = if index == last { allowed.as_str() } else { "" };
-        report.value(place, &path, difference, allowed);
+        part.wrong(report, keys::SYSTEM, difference, allowed);
     }
     None
 }

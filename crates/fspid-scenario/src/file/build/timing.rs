@@ -21,14 +21,12 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
             let message = format!("{found:.1e} samples of {dt_s:?} s are too many");
             let allowed =
                 format!("up to {most} samples: a shorter flight or a longer sample period");
-            let (place, path) = (section.at(keys::DURATION_S), section.path(keys::DURATION_S));
-            report.value(place, &path, message, allowed);
+            section.wrong(report, keys::DURATION_S, message, allowed);
             None
         }
         Err(SimError::Number { .. }) if duration_s < dt_s => {
-            let (place, path) = (section.at(keys::DURATION_S), section.path(keys::DURATION_S));
             let allowed = format!("at least one sample period of {dt_s:?} s");
-            report.value(place, &path, "shorter than a sample", allowed);
+            section.wrong(report, keys::DURATION_S, "shorter than a sample", allowed);
             None
         }
         other => judged(report, (section, keys::DURATION_S), other),
@@ -47,7 +45,7 @@ pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timin
     if let Some(part) = section.get(keys::LOOP) {
         let message = format!("{controllers} traces of {} samples are too many", timing.rows());
         let allowed = format!("up to {MOST_ROWS} samples in all traces together");
-        report.value(part.at(keys::DURATION_S), &part.path(keys::DURATION_S), message, allowed);
+        part.wrong(report, keys::DURATION_S, message, allowed);
     }
 }
 
@@ -111,12 +109,7 @@ pub(super) fn plant_changes(
         // Written so that NaN fails.
         if !(at_s > before_s) {
             let allowed = format!("after the change before it, at {before_s:?} s");
-            report.value(
-                part.at(keys::AT_S),
-                &part.path(keys::AT_S),
-                "not in order of time",
-                allowed,
-            );
+            part.wrong(report, keys::AT_S, "not in order of time", allowed);
         }
         before_s = at_s;
         let sign = plant.map(LinearPlant::elevator_sign);
@@ -133,7 +126,7 @@ pub(super) fn plant_changes(
                 target.order()
             );
             let allowed = "a denominator of the same length";
-            report.missing(part.at(key), &part.path(key), message, allowed);
+            part.problem(report, key, message, allowed);
             continue;
         }
         if let (Some(timing), Some(servo)) = (timing, servo) {
@@ -174,7 +167,7 @@ fn check_ramp(report: &mut Report, part: &Section, timing: Timing) {
     // Written so that NaN fails.
     if !(samples <= MOST_RAMP_SAMPLES) {
         let allowed = format!("up to {MOST_RAMP_SAMPLES} samples in a ramp");
-        report.value(part.at(keys::RAMP_S), &part.path(keys::RAMP_S), "too long a ramp", allowed);
+        part.wrong(report, keys::RAMP_S, "too long a ramp", allowed);
     }
 }
 

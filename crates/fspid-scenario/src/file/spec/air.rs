@@ -2,8 +2,8 @@
 
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Key, KeyRow, Range, Table, Variant, defaulted, finite, not_negative, number, one_of, optional,
-    plain, positive, required, whole, word,
+    Key, KeyRow, Range, Table, choosing, defaulted, finite, not_negative, number, of_kinds, one_of,
+    optional, plain, positive, required, variant, whole, word,
 };
 use fspid_sim::air::{Follows, Severity, Specification};
 
@@ -79,38 +79,35 @@ pub(crate) const NORTH_M: Key<f64> = required("north_m", finite("m"), "Axis, nor
 pub(crate) const EAST_M: Key<f64> =
     defaulted("east_m", finite("m"), 0.0, "Axis, east of the start.");
 
-pub(super) static WIND_TABLE: Table = Table {
-    doc: "The wind; an aircraft starts trimmed in the wind of its start.",
-    groups: &[],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: WindKind::Steady.name(),
-            table: Table {
-                doc: "The same everywhere.",
-                groups: &[&[&SPEED[0], &SPEED[1], &FROM, &UP_M_S]],
-                choices: &[one_of!(SPEED[0], SPEED[1])],
-                variants: &[],
-            },
-        },
-        Variant {
-            name: WindKind::LogShear.name(),
-            table: Table {
-                doc: "Growing with the logarithm of the height up to 1000 ft.",
-                groups: &[&[&W20[0], &W20[1], &FROM, &ROUGHNESS_M]],
-                choices: &[one_of!(W20[0], W20[1])],
-                variants: &[],
-            },
-        },
-        Variant {
-            name: WindKind::Microburst.name(),
-            table: plain(
+pub(super) static WIND_TABLE: Table = of_kinds(
+    "The wind; an aircraft starts trimmed in the wind of its start.",
+    &[],
+    &[
+        variant(
+            WindKind::Steady.name(),
+            choosing(
+                "The same everywhere.",
+                &[&[&SPEED[0], &SPEED[1], &FROM, &UP_M_S]],
+                &[one_of!(SPEED[0], SPEED[1])],
+            ),
+        ),
+        variant(
+            WindKind::LogShear.name(),
+            choosing(
+                "Growing with the logarithm of the height up to 1000 ft.",
+                &[&[&W20[0], &W20[1], &FROM, &ROUGHNESS_M]],
+                &[one_of!(W20[0], W20[1])],
+            ),
+        ),
+        variant(
+            WindKind::Microburst.name(),
+            plain(
                 "Air that falls and spreads over the ground.",
                 &[&[&OUTFLOW_M_S, &RADIUS_M, &PEAK_HEIGHT_M, &NORTH_M, &EAST_M]],
             ),
-        },
+        ),
     ],
-};
+);
 
 pub(crate) const FORWARD_M_S: Key<f64> =
     defaulted("forward_m_s", finite("m/s"), 0.0, "Speed of the air forward.");
@@ -131,24 +128,20 @@ pub(crate) const LENGTH_M: Key<f64> = required("length_m", positive("m"), "Lengt
 pub(crate) const GRADIENT_M: Key<f64> =
     required("gradient_m", positive("m"), "Gradient distance: half the length.");
 
-pub(super) static GUST_TABLE: Table = Table {
-    doc: "A gust along the axes of the aircraft.",
-    groups: &[AMPLITUDE],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: GustKind::RampHold.name(),
-            table: plain(
-                "Rises as half a cosine over a length and stays (MIL-F-8785C).",
-                &[&[&LENGTH_M]],
-            ),
-        },
-        Variant {
-            name: GustKind::FullCycle.name(),
-            table: plain(
+pub(super) static GUST_TABLE: Table = of_kinds(
+    "A gust along the axes of the aircraft.",
+    &[AMPLITUDE],
+    &[
+        variant(
+            GustKind::RampHold.name(),
+            plain("Rises as half a cosine over a length and stays (MIL-F-8785C).", &[&[&LENGTH_M]]),
+        ),
+        variant(
+            GustKind::FullCycle.name(),
+            plain(
                 "One minus cosine: rises over the gradient distance and falls again (CS 25.341).",
                 &[&[&GRADIENT_M]],
             ),
-        },
+        ),
     ],
-};
+);

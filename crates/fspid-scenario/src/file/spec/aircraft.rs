@@ -2,8 +2,8 @@
 
 use crate::keyed::word::words;
 use crate::keyed::{
-    Key, KeyRow, KindOf, Range, Section, Table, Variant, finite, interval, number, numbers, one_of,
-    optional, plain, positive, required, table, tables, text, word,
+    Key, KeyRow, KindOf, Range, Section, TEXT, Table, choosing, finite, interval, number, numbers,
+    of_kinds, one_of, optional, plain, positive, required, table, tables, variant, word,
 };
 use fspid_sim::ElevatorSign;
 
@@ -36,28 +36,21 @@ const fn span(unit: &'static str) -> KindOf<(f64, f64)> {
     interval(unit, Range::Finite)
 }
 
-pub(crate) const NAME: Key<str> = required("name", text(), "Name.");
-pub(crate) const TITLE: Key<str> = optional("title", text(), "What it is, in a line.");
-pub(crate) const SOURCE: Key<str> = required("source", text(), "Where the numbers come from.");
-pub(crate) const NOTES: Key<str> = optional("notes", text(), "What else should be known.");
+pub(crate) const NAME: Key<str> = required("name", TEXT, "Name.");
+pub(crate) const TITLE: Key<str> = optional("title", TEXT, "What it is, in a line.");
+pub(crate) const SOURCE: Key<str> = required("source", TEXT, "Where the numbers come from.");
+pub(crate) const NOTES: Key<str> = optional("notes", TEXT, "What else should be known.");
 
 /// An aircraft in a file of its own.
-pub(crate) static AIRCRAFT_FILE: Table = Table {
-    doc: "An aircraft.",
-    groups: &[&[&NAME, &TITLE, &SOURCE, &NOTES]],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: AircraftKind::Derivatives.name(),
-            table: plain("Stability derivatives.", &[DERIVATIVES]),
-        },
-        Variant { name: AircraftKind::Linear.name(), table: plain("A linear model.", &[LINEAR]) },
-        Variant {
-            name: AircraftKind::Tables.name(),
-            table: plain("Tables in files of their own.", &[OF_TABLES]),
-        },
+pub(crate) static AIRCRAFT_FILE: Table = of_kinds(
+    "An aircraft.",
+    &[&[&NAME, &TITLE, &SOURCE, &NOTES]],
+    &[
+        variant(AircraftKind::Derivatives.name(), plain("Stability derivatives.", &[DERIVATIVES])),
+        variant(AircraftKind::Linear.name(), plain("A linear model.", &[LINEAR])),
+        variant(AircraftKind::Tables.name(), plain("Tables in files of their own.", &[OF_TABLES])),
     ],
-};
+);
 
 pub(crate) const REFERENCE: Key<Section> =
     required("reference", table(&REFERENCE_TABLE), "Flight condition of the derivatives.");
@@ -107,28 +100,23 @@ pub(crate) const CONDITION_ALTITUDE: [Key<f64>; 2] = [
 ];
 pub(crate) const CONDITION_MACH: Key<f64> = optional("mach", positive(""), "Mach number.");
 
-static CONDITION_TABLE: Table = Table {
-    doc: "The level flight around which a linear model holds.",
-    groups: &[
+static CONDITION_TABLE: Table = choosing(
+    "The level flight around which a linear model holds.",
+    &[
         &[&CONDITION_AIRSPEED[0], &CONDITION_AIRSPEED[1], &CONDITION_ALTITUDE[0]],
         &[&CONDITION_ALTITUDE[1], &CONDITION_MACH],
     ],
-    choices: &[
+    &[
         one_of!(CONDITION_AIRSPEED[0], CONDITION_AIRSPEED[1]),
         one_of!(CONDITION_ALTITUDE[0], CONDITION_ALTITUDE[1]),
     ],
-    variants: &[],
-};
+);
 
 pub(crate) const SPAN: [Key<f64>; 2] =
     [optional("span_ft", positive("ft"), "Span."), optional("span_m", positive("m"), "Span.")];
 
-static SPAN_TABLE: Table = Table {
-    doc: "The wing of a linear model.",
-    groups: &[&[&SPAN[0], &SPAN[1]]],
-    choices: &[one_of!(SPAN[0], SPAN[1])],
-    variants: &[],
-};
+static SPAN_TABLE: Table =
+    choosing("The wing of a linear model.", &[&[&SPAN[0], &SPAN[1]]], &[one_of!(SPAN[0], SPAN[1])]);
 
 pub(crate) const REFERENCE_AIRSPEED: [Key<f64>; 2] = [
     optional("airspeed_ft_s", positive("ft/s"), "True airspeed."),
@@ -163,22 +151,21 @@ pub(crate) const CG_MAC: Key<f64> = optional(
     "Centre of gravity of the derivatives behind the leading edge of the mean chord, as a share of it; without it a scenario cannot move it.",
 );
 
-static REFERENCE_TABLE: Table = Table {
-    doc: "Flight condition of the derivatives.",
-    groups: &[
+static REFERENCE_TABLE: Table = choosing(
+    "Flight condition of the derivatives.",
+    &[
         &[&REFERENCE_AIRSPEED[0], &REFERENCE_AIRSPEED[1], &REFERENCE_ALTITUDE[0]],
         &[&REFERENCE_ALTITUDE[1], &REFERENCE_MACH, &DENSITY[0], &DENSITY[1]],
         &[&DYNAMIC_PRESSURE[0], &DYNAMIC_PRESSURE[1], &GRAVITY[0], &GRAVITY[1]],
         &[&REFERENCE_ALPHA_DEG, &CG_MAC],
     ],
-    choices: &[
+    &[
         one_of!(REFERENCE_AIRSPEED[0], REFERENCE_AIRSPEED[1]),
         one_of!(REFERENCE_ALTITUDE[0], REFERENCE_ALTITUDE[1]),
         one_of!(DENSITY[0], DENSITY[1]),
         one_of!(GRAVITY[0], GRAVITY[1]),
     ],
-    variants: &[],
-};
+);
 
 pub(crate) const AREA: [Key<f64>; 2] =
     [optional("area_ft2", positive("ft2"), "Area."), optional("area_m2", positive("m2"), "Area.")];
@@ -187,12 +174,11 @@ pub(crate) const CHORD: [Key<f64>; 2] = [
     optional("chord_m", positive("m"), "Mean chord."),
 ];
 
-static GEOMETRY_TABLE: Table = Table {
-    doc: "Lengths of the wing.",
-    groups: &[&[&AREA[0], &AREA[1], &SPAN[0], &SPAN[1], &CHORD[0], &CHORD[1]]],
-    choices: &[one_of!(AREA[0], AREA[1]), one_of!(SPAN[0], SPAN[1]), one_of!(CHORD[0], CHORD[1])],
-    variants: &[],
-};
+static GEOMETRY_TABLE: Table = choosing(
+    "Lengths of the wing.",
+    &[&[&AREA[0], &AREA[1], &SPAN[0], &SPAN[1], &CHORD[0], &CHORD[1]]],
+    &[one_of!(AREA[0], AREA[1]), one_of!(SPAN[0], SPAN[1]), one_of!(CHORD[0], CHORD[1])],
+);
 
 pub(crate) const WEIGHT: [Key<f64>; 2] = [
     optional("weight_lbf", positive("lbf"), "Weight."),
@@ -215,21 +201,20 @@ pub(crate) const IXZ: [Key<f64>; 2] = [
     optional("ixz_kg_m2", finite("kg m2"), "Product of inertia."),
 ];
 
-static MASS_TABLE: Table = Table {
-    doc: "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
-    groups: &[
+static MASS_TABLE: Table = choosing(
+    "Weight at the flight condition, which the lift there carries, and moments of inertia about the axes of the fuselage; a scenario loads the aircraft otherwise by its own keys.",
+    &[
         &[&WEIGHT[0], &WEIGHT[1], &IX[0], &IX[1], &IY[0], &IY[1], &IZ[0], &IZ[1]],
         &[&IXZ[0], &IXZ[1]],
     ],
-    choices: &[
+    &[
         one_of!(WEIGHT[0], WEIGHT[1]),
         one_of!(IX[0], IX[1]),
         one_of!(IY[0], IY[1]),
         one_of!(IZ[0], IZ[1]),
         one_of!(IXZ[0], IXZ[1]),
     ],
-    variants: &[],
-};
+);
 
 pub(crate) const LIFT: Key<Section> =
     required("lift", table(&LONGITUDINAL_ROW_TABLE), "CL, up across the flow.");
@@ -293,18 +278,17 @@ pub(crate) const VALIDITY_ALTITUDE: [Key<(f64, f64)>; 2] = [
     optional("altitude_m", span("m"), "Geopotential altitude."),
 ];
 
-static VALIDITY_TABLE: Table = Table {
-    doc: "Where the derivatives are trusted.",
-    groups: &[
+static VALIDITY_TABLE: Table = choosing(
+    "Where the derivatives are trusted.",
+    &[
         &[&VALIDITY_AIRSPEED[0], &VALIDITY_AIRSPEED[1], &VALIDITY_MACH],
         &[&VALIDITY_ALPHA_DEG, &BETA_DEG, &VALIDITY_ALTITUDE[0], &VALIDITY_ALTITUDE[1]],
     ],
-    choices: &[
+    &[
         one_of!(VALIDITY_AIRSPEED[0], VALIDITY_AIRSPEED[1]),
         one_of!(VALIDITY_ALTITUDE[0], VALIDITY_ALTITUDE[1]),
     ],
-    variants: &[],
-};
+);
 
 pub(crate) const ELEVATOR_DEG: Key<(f64, f64)> =
     required("elevator_deg", DEG_RANGE, "Elevator, trailing edge down positive.");

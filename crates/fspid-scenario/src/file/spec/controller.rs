@@ -5,9 +5,9 @@ use super::{ANGLE_LIMIT_DEG, angle};
 use crate::file::preset::rule_table_names;
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Choice, Key, KeyRow, Range, Rules, Section, Table, Variant, Way, defaulted, defuzzifier,
-    file_path, finite, interval, not_negative, number, one_of, optional, plain, positive, required,
-    rules, table, text, word,
+    Choice, DEFUZZIFIER_NAME, FILE_PATH, Key, KeyRow, Range, Rules, Section, TEXT, Table, Way,
+    choosing, defaulted, finite, interval, not_negative, number, of_kinds, one_of, optional, plain,
+    positive, required, rules, table, variant, word,
 };
 use fspid_core::{Change, ErrorSign, IntegralForm};
 use fspid_fuzzy::Defuzzifier;
@@ -59,7 +59,7 @@ words_of!(ErrorSign {
 words_of!(Change { Rate = "rate", Delta = "delta" });
 
 pub(crate) const NAME: Key<str> =
-    required("name", text(), "Name in traces and reports; each only once.");
+    required("name", TEXT, "Name in traces and reports; each only once.");
 pub(crate) const P_KP: Key<f64> = required("kp", finite(""), "Command per error.");
 pub(crate) const KP: Key<f64> = optional("kp", finite(""), "Proportional gain, command per error.");
 pub(crate) const KI: Key<f64> = optional("ki", finite("1/s"), "Integral gain; 0 if left out.");
@@ -70,55 +70,47 @@ pub(crate) const NOMINAL: Key<Section> =
 pub(crate) const NOMINAL_ISA: Key<Section> =
     optional("nominal_isa", table(&ISA_TABLE), "The same in ISA form.");
 
-pub(super) static CONTROLLER_TABLE: Table = Table {
-    doc: "A controller; a positive command turns the nose up.",
-    groups: &[&[&NAME]],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: ControllerKind::P.name(),
-            table: plain(
+pub(super) static CONTROLLER_TABLE: Table = of_kinds(
+    "A controller; a positive command turns the nose up.",
+    &[&[&NAME]],
+    &[
+        variant(
+            ControllerKind::P.name(),
+            plain(
                 "Proportional, with an optional inner loop of pitch rate.",
                 &[&[&P_KP, &RATE_GAIN, &SCHEDULE]],
             ),
-        },
-        Variant {
-            name: ControllerKind::Pid.name(),
-            table: Table {
-                doc: "PID with fixed gains, in parallel or ISA form.",
-                groups: &[&[&KP, &KI, &KD, &ISA, &SCHEDULE], TERMS, ENDS],
-                choices: &[Choice {
+        ),
+        variant(
+            ControllerKind::Pid.name(),
+            choosing(
+                "PID with fixed gains, in parallel or ISA form.",
+                &[&[&KP, &KI, &KD, &ISA, &SCHEDULE], TERMS, ENDS],
+                &[Choice {
                     ways: &[
                         Way { required: &[KP.name], optional: &[KI.name, KD.name] },
                         Way { required: &[ISA.name], optional: &[] },
                     ],
                 }],
-                variants: &[],
-            },
-        },
-        Variant {
-            name: ControllerKind::Fspid.name(),
-            table: Table {
-                doc: "PID whose gains a fuzzy supervisor tunes while flying.",
-                groups: &[&[&NOMINAL, &NOMINAL_ISA], TUNER, TERMS, ENDS],
-                choices: &[Choice {
-                    ways: &[
-                        Way { required: &[NOMINAL.name], optional: &[] },
-                        Way { required: &[NOMINAL_ISA.name], optional: &[] },
-                    ],
-                }],
-                variants: &[],
-            },
-        },
-        Variant {
-            name: ControllerKind::Lqi.name(),
-            table: plain(
+            ),
+        ),
+        variant(
+            ControllerKind::Fspid.name(),
+            choosing(
+                "PID whose gains a fuzzy supervisor tunes while flying.",
+                &[&[&NOMINAL, &NOMINAL_ISA], TUNER, TERMS, ENDS],
+                &[one_of!(NOMINAL, NOMINAL_ISA)],
+            ),
+        ),
+        variant(
+            ControllerKind::Lqi.name(),
+            plain(
                 "Linear-quadratic regulator with integral action, of a model of pitching.",
                 &[LQI, ENDS],
             ),
-        },
+        ),
     ],
-};
+);
 
 pub(crate) const RATE_GAIN: Key<f64> = defaulted(
     "rate_gain",
@@ -214,32 +206,31 @@ pub(crate) const UPPER_DEG: Key<f64> =
     required("upper_deg", angle(), "Highest part; above the lowest.");
 pub(crate) const TRACKING_S: Key<f64> = required("tracking_s", positive("s"), "Tracking time.");
 
-static ANTI_WINDUP_TABLE: Table = Table {
-    doc: "Anti-windup.",
-    groups: &[],
-    choices: &[],
-    variants: &[
-        Variant { name: AntiWindupKind::None.name(), table: plain("The integral runs on.", &[]) },
-        Variant {
-            name: AntiWindupKind::Clamping.name(),
-            table: plain(
+static ANTI_WINDUP_TABLE: Table = of_kinds(
+    "Anti-windup.",
+    &[],
+    &[
+        variant(AntiWindupKind::None.name(), plain("The integral runs on.", &[])),
+        variant(
+            AntiWindupKind::Clamping.name(),
+            plain(
                 "The integral's part of the command is kept within limits.",
                 &[&[&LOWER_DEG, &UPPER_DEG]],
             ),
-        },
-        Variant {
-            name: AntiWindupKind::Conditional.name(),
-            table: plain(
+        ),
+        variant(
+            AntiWindupKind::Conditional.name(),
+            plain(
                 "The integral stops while it would drive the command further past its limit.",
                 &[],
             ),
-        },
-        Variant {
-            name: AntiWindupKind::BackCalculation.name(),
-            table: plain("The integral follows the limited command.", &[&[&TRACKING_S]]),
-        },
+        ),
+        variant(
+            AntiWindupKind::BackCalculation.name(),
+            plain("The integral follows the limited command.", &[&[&TRACKING_S]]),
+        ),
     ],
-};
+);
 
 pub(crate) const SUPERVISOR: Key<Section> =
     required("supervisor", table(&SUPERVISOR_TABLE), "The fuzzy rules and their scales.");
@@ -274,12 +265,15 @@ pub(crate) const DEAD_ZONE: Key<Section> = optional(
 const TUNER: &[KeyRow] =
     &[&SUPERVISOR, &LAW, &LEAKAGE_PER_S, &GAIN_COUPLING, &GAIN_LIMITS, &DEAD_ZONE];
 
-static SUPERVISOR_TABLE: Table = Table {
-    doc: "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
-    groups: &[SUPERVISOR_KEYS],
-    choices: &[one_of!(TABLE, NUMBERS, SYSTEM)],
-    variants: &[],
-};
+static SUPERVISOR_TABLE: Table = choosing(
+    "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
+    &[
+        &[&TABLE, &NUMBERS, &SYSTEM, &RANGE, &DEFUZZIFIER, &OUT_OF_RANGE, &ERROR_SIGN],
+        &[&ERROR_SCALE, &ERROR_SET_CENTRES, &SECOND_INPUT, &MODEL, &CHANGE],
+        &[&CHANGE_SCALE, &CHANGE_SET_CENTRES, &OUTPUT_SCALE],
+    ],
+    &[one_of!(TABLE, NUMBERS, SYSTEM)],
+);
 
 pub(crate) const TABLE: Key<Rules<'static>> = optional(
     "table",
@@ -293,7 +287,7 @@ pub(crate) const NUMBERS: Key<Section> = optional(
 );
 pub(crate) const SYSTEM: Key<str> = optional(
     "system",
-    file_path(),
+    FILE_PATH,
     "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
 );
 pub(crate) const RANGE: Key<f64> = required(
@@ -303,7 +297,7 @@ pub(crate) const RANGE: Key<f64> = required(
 );
 pub(crate) const DEFUZZIFIER: Key<Defuzzifier> = optional(
     "defuzzifier",
-    defuzzifier(),
+    DEFUZZIFIER_NAME,
     "How the answer becomes a number; with `table` only, where it is \"exact\" if left out.",
 );
 pub(crate) const OUT_OF_RANGE: Key<OutOfRange> = defaulted(
@@ -355,24 +349,6 @@ pub(crate) const OUTPUT_SCALE: Key<Section> = optional(
     table(&OUTPUT_SCALE_TABLE),
     "Factors of the increments; 1 if left out.",
 );
-
-const SUPERVISOR_KEYS: &[KeyRow] = &[
-    &TABLE,
-    &NUMBERS,
-    &SYSTEM,
-    &RANGE,
-    &DEFUZZIFIER,
-    &OUT_OF_RANGE,
-    &ERROR_SIGN,
-    &ERROR_SCALE,
-    &ERROR_SET_CENTRES,
-    &SECOND_INPUT,
-    &MODEL,
-    &CHANGE,
-    &CHANGE_SCALE,
-    &CHANGE_SET_CENTRES,
-    &OUTPUT_SCALE,
-];
 
 pub(crate) const BANDWIDTH_RAD_S: Key<f64> = required(
     "bandwidth_rad_s",

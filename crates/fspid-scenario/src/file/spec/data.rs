@@ -1,16 +1,16 @@
 //! Plant files and rule tables.
 
 use crate::keyed::{
-    Key, KeyRow, Range, Section, Table, finite, grid, number, number_grid, optional, plain,
-    positive, required, table, text, word,
+    GRID, Key, KeyRow, NUMBER_GRID, Range, Section, TEXT, Table, finite, number, optional, plain,
+    positive, required, table, word,
 };
 use fspid_fuzzy::{Grid, NumberGrid};
 use fspid_sim::ElevatorSign;
 
 use super::scenario::COEFFICIENTS;
 
-pub(crate) const NAME: Key<str> = required("name", text(), "Name.");
-pub(crate) const TITLE: Key<str> = optional("title", text(), "What it is, in a line.");
+pub(crate) const NAME: Key<str> = required("name", TEXT, "Name.");
+pub(crate) const TITLE: Key<str> = optional("title", TEXT, "What it is, in a line.");
 pub(crate) const NUMERATOR: Key<[f64]> = required(
     "numerator",
     COEFFICIENTS,
@@ -22,9 +22,8 @@ pub(crate) const ELEVATOR_SIGN: Key<ElevatorSign> =
     required("elevator_sign", word(), "What a positive elevator does.");
 pub(crate) const CONDITION: Key<Section> =
     optional("condition", table(&CONDITION_TABLE), "Flight condition.");
-pub(crate) const PLANT_SOURCE: Key<str> =
-    optional("source", text(), "Where the numbers come from.");
-pub(crate) const NOTES: Key<str> = optional("notes", text(), "What else should be known.");
+pub(crate) const PLANT_SOURCE: Key<str> = optional("source", TEXT, "Where the numbers come from.");
+pub(crate) const NOTES: Key<str> = optional("notes", TEXT, "What else should be known.");
 
 /// A plant in a file of its own.
 pub(crate) static PLANT_FILE: Table = plain(
@@ -35,7 +34,7 @@ pub(crate) static PLANT_FILE: Table = plain(
     ],
 );
 
-pub(crate) const AIRCRAFT: Key<str> = optional("aircraft", text(), "The aircraft.");
+pub(crate) const AIRCRAFT: Key<str> = optional("aircraft", TEXT, "The aircraft.");
 pub(crate) const SPEED_M_S: Key<f64> = optional("speed_m_s", positive("m/s"), "True airspeed.");
 pub(crate) const ALTITUDE_M: Key<f64> = optional("altitude_m", finite("m"), "Altitude.");
 pub(crate) const MACH: Key<f64> =
@@ -48,11 +47,11 @@ static CONDITION_TABLE: Table = plain(
 );
 
 pub(crate) const DELTA_KP: Key<Grid> =
-    required("delta_kp", grid(), "Increment of the proportional gain.");
+    required("delta_kp", GRID, "Increment of the proportional gain.");
 pub(crate) const DELTA_KI: Key<Grid> =
-    required("delta_ki", grid(), "Increment of the integral gain.");
+    required("delta_ki", GRID, "Increment of the integral gain.");
 pub(crate) const DELTA_KD: Key<Grid> =
-    required("delta_kd", grid(), "Increment of the derivative gain.");
+    required("delta_kd", GRID, "Increment of the derivative gain.");
 
 const GRID_KEYS: &[KeyRow] = &[&DELTA_KP, &DELTA_KI, &DELTA_KD];
 
@@ -63,11 +62,11 @@ pub(super) static GRIDS_TABLE: Table = plain(
 );
 
 pub(crate) const NUMBER_DELTA_KP: Key<NumberGrid<f64>> =
-    required("delta_kp", number_grid(), "Increment of the proportional gain.");
+    required("delta_kp", NUMBER_GRID, "Increment of the proportional gain.");
 pub(crate) const NUMBER_DELTA_KI: Key<NumberGrid<f64>> =
-    required("delta_ki", number_grid(), "Increment of the integral gain.");
+    required("delta_ki", NUMBER_GRID, "Increment of the integral gain.");
 pub(crate) const NUMBER_DELTA_KD: Key<NumberGrid<f64>> =
-    required("delta_kd", number_grid(), "Increment of the derivative gain.");
+    required("delta_kd", NUMBER_GRID, "Increment of the derivative gain.");
 
 /// Three grids of numbers in place of labels.
 pub(super) static NUMBER_GRIDS_TABLE: Table = plain(
@@ -75,7 +74,7 @@ pub(super) static NUMBER_GRIDS_TABLE: Table = plain(
     &[&[&NUMBER_DELTA_KP, &NUMBER_DELTA_KI, &NUMBER_DELTA_KD]],
 );
 
-pub(crate) const RULE_SOURCE: Key<str> = optional("source", text(), "Where the rules come from.");
+pub(crate) const RULE_SOURCE: Key<str> = optional("source", TEXT, "Where the rules come from.");
 
 /// A rule table in a file of its own.
 pub(crate) static RULE_FILE: Table = plain("A rule table.", &[&[&NAME, &RULE_SOURCE], GRID_KEYS]);

@@ -3,8 +3,8 @@
 use crate::keyed::document::Item;
 use crate::keyed::word::words;
 use crate::keyed::{
-    Key, KeyName, KindOf, Range, Table, boolean, defaulted, number, numbers, optional, own, plain,
-    required, text, word,
+    BOOLEAN, Key, KeyName, KindOf, Range, TEXT, Table, defaulted, number, numbers, optional, own,
+    plain, required, word,
 };
 
 const ANY: KindOf<f64> = number("", Range::Finite);
@@ -15,7 +15,7 @@ const fn some(range: Range) -> KindOf<[f64]> {
 
 pub(crate) const PATH: Key<str> = optional(
     "path",
-    text(),
+    TEXT,
     "The place, as `--set` names it: controller.FSPID.nominal.kp, plant.preset.numerator[0].",
 );
 pub(crate) const PATHS: Key<Item> = optional(
@@ -25,7 +25,7 @@ pub(crate) const PATHS: Key<Item> = optional(
 );
 pub(crate) const NAME: Key<str> = optional(
     "name",
-    text(),
+    TEXT,
     "What it is called in results; the first path if left out. Not for correlated numbers.",
 );
 pub(crate) const DISTRIBUTION: Key<DistributionWord> = required(
@@ -35,7 +35,7 @@ pub(crate) const DISTRIBUTION: Key<DistributionWord> = required(
 );
 pub(crate) const RELATIVE: Key<bool> = defaulted(
     "relative",
-    boolean(),
+    BOOLEAN,
     false,
     "Draws are factors of the number that stands in the scenario.",
 );

@@ -3,8 +3,8 @@
 use super::angle;
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Key, KeyRow, KindOf, Range, Table, carried, defaulted, file_path, finite, number, one_of,
-    optional, positive, word,
+    FILE_PATH, Key, KeyRow, KindOf, Range, Table, carried, choosing, defaulted, finite, number,
+    one_of, optional, positive, word,
 };
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 
@@ -100,7 +100,7 @@ pub(crate) const LOADING: &[KeyRow] = &[
 pub(crate) const NAME: Key<str> =
     optional("name", carried(aircraft_names), "An aircraft that the program carries.");
 pub(crate) const FILE: Key<str> =
-    optional("file", file_path(), "An aircraft file, relative to this file.");
+    optional("file", FILE_PATH, "An aircraft file, relative to this file.");
 pub(crate) const AIRSPEED: [Key<f64>; 3] = [
     optional("airspeed_m_s", positive("m/s"), "True airspeed."),
     optional("airspeed_kt", positive("kt"), "True airspeed."),
@@ -153,18 +153,17 @@ pub(crate) const VALIDITY: Key<ValidityWord> = defaulted(
     "What a nonlinear flight comes to that leaves the range in which the aircraft's data are trusted: a failure, or a warning.",
 );
 
-pub(super) static AIRCRAFT_TABLE: Table = Table {
-    doc: "An aircraft from its data, in trimmed straight flight; pitch counts from the trim.",
-    groups: &[
+pub(super) static AIRCRAFT_TABLE: Table = choosing(
+    "An aircraft from its data, in trimmed straight flight; pitch counts from the trim.",
+    &[
         &[&NAME, &FILE, &AIRSPEED[0], &AIRSPEED[1], &AIRSPEED[2], &ALTITUDE[0]],
         &[&ALTITUDE[1], &MODEL, &DRAG, &THRUST, &ATMOSPHERE, &CLIMB_ANGLE_DEG],
         &[&HEADING_DEG, &GROUND_M, &VALIDITY],
         LOADING,
     ],
-    choices: &[
+    &[
         one_of!(NAME, FILE),
         one_of!(AIRSPEED[0], AIRSPEED[1], AIRSPEED[2]),
         one_of!(ALTITUDE[0], ALTITUDE[1]),
     ],
-    variants: &[],
-};
+);

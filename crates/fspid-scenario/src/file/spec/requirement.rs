@@ -3,8 +3,8 @@
 use crate::keyed::document::Item;
 use crate::keyed::word::Word;
 use crate::keyed::{
-    Choice, Key, KeyName, KeyRow, Range, Section, Table, Way, boolean, carried, name_in,
-    not_negative, number, optional, own, plain, positive, required, tables, text, whole, word,
+    BOOLEAN, Choice, Key, KeyName, KeyRow, Range, Section, TEXT, Table, Way, carried, choosing,
+    name_in, not_negative, number, optional, own, plain, positive, required, tables, whole, word,
 };
 use crate::measure::Measure;
 use crate::requirement::{Air, Confidence, set_names};
@@ -73,17 +73,17 @@ pub(crate) const TO_HZ: Key<f64> =
 pub(crate) const CONDITIONS: &[KeyRow] =
     &[&STEP_DEG, &WITHIN_DEG, &FROM_S, &TO_S, &FROM_HZ, &TO_HZ];
 
-pub(crate) const CLAUSE: Key<str> = optional("clause", text(), "Clause of its source.");
-pub(crate) const SOURCE: Key<str> = optional("source", text(), "Where it is from.");
+pub(crate) const CLAUSE: Key<str> = optional("clause", TEXT, "Clause of its source.");
+pub(crate) const SOURCE: Key<str> = optional("source", TEXT, "Where it is from.");
 pub(crate) const CONFIDENCE: Key<Confidence> = optional("confidence", word(), CONFIDENCE_DOC);
-pub(crate) const NOTE: Key<str> = optional("note", text(), "What else should be known.");
+pub(crate) const NOTE: Key<str> = optional("note", TEXT, "What else should be known.");
 
 /// Where a requirement is from.
 const ORIGIN: &[KeyRow] = &[&CLAUSE, &SOURCE, &CONFIDENCE, &NOTE];
 const CONFIDENCE_DOC: &str = "How sure its numbers are: read in the source, quoted by another document, transcribed by several, disputed among them, recalled and not read again, or the project's own.";
 
 pub(crate) const ID: Key<str> =
-    optional("id", text(), "What it is called in answers; the name of the measure if left out.");
+    optional("id", TEXT, "What it is called in answers; the name of the measure if left out.");
 pub(crate) const MEASURE: Key<Measure> = optional("measure", word(), MEASURE_DOC);
 
 const ASKED: &[KeyRow] = &[&ID, &MEASURE];
@@ -116,7 +116,7 @@ pub(crate) const AIR: Key<Air> = optional(
     "The air that it is asked in: for a measure any, for a set \"smooth\" if left out.",
 );
 pub(crate) const CONTROLLER: Key<str> =
-    optional("controller", text(), "Name of the controller; all of them if it is left out.");
+    optional("controller", TEXT, "Name of the controller; all of them if it is left out.");
 pub(crate) const ONLY_IN: Key<Item> = optional(
     "only_in",
     own(names_in_words, names_schema),
@@ -161,20 +161,19 @@ const WITH_SET: &[KeyName] =
     &[LEVEL.name, CATEGORY.name, SPEED.name, FIRST_AEROELASTIC_MODE_HZ.name];
 
 /// A requirement of a scenario.
-pub(super) static REQUIREMENT_TABLE: Table = Table {
-    doc: "Limits of a measure that every controller, or one, must meet; or a ready set of them.",
-    groups: &[ASKED, LIMITS, CONDITIONS, ORIGIN, OF_SET, WHERE],
-    choices: &[Choice {
+pub(super) static REQUIREMENT_TABLE: Table = choosing(
+    "Limits of a measure that every controller, or one, must meet; or a ready set of them.",
+    &[ASKED, LIMITS, CONDITIONS, ORIGIN, OF_SET, WHERE],
+    &[Choice {
         ways: &[
             Way { required: &[MEASURE.name], optional: WITH_MEASURE },
             Way { required: &[SET.name], optional: WITH_SET },
         ],
     }],
-    variants: &[],
-};
+);
 
 pub(crate) const SCHEMA: Key<i64> = optional("schema", whole(1, 1), "Version of this format.");
-pub(crate) const FILE_NAME: Key<str> = optional("name", text(), "What they are called.");
+pub(crate) const FILE_NAME: Key<str> = optional("name", TEXT, "What they are called.");
 pub(crate) const REQUIREMENT: Key<Item> =
     required("requirement", own(entries_in_words, entries_schema), "The requirements.");
 
@@ -190,11 +189,11 @@ fn entries_schema() -> serde_json::Value {
     serde_json::json!({ "type": "array" })
 }
 
-pub(crate) const SET_NAME: Key<str> = required("name", text(), "Name in scenarios.");
-pub(crate) const TITLE: Key<str> = required("title", text(), "What it is, in a line.");
-pub(crate) const SET_SOURCE: Key<str> = required("source", text(), "Where it is from.");
+pub(crate) const SET_NAME: Key<str> = required("name", TEXT, "Name in scenarios.");
+pub(crate) const TITLE: Key<str> = required("title", TEXT, "What it is, in a line.");
+pub(crate) const SET_SOURCE: Key<str> = required("source", TEXT, "Where it is from.");
 pub(crate) const NOTES: Key<str> =
-    optional("notes", text(), "What else should be known, and what is not in it.");
+    optional("notes", TEXT, "What else should be known, and what is not in it.");
 pub(crate) const LINE: Key<[Section]> =
     required("line", tables(&LINE_TABLE, 1, 1000), "Its lines.");
 
@@ -202,10 +201,10 @@ pub(crate) const LINE: Key<[Section]> =
 pub(crate) static SET_FILE: Table =
     plain("A set of requirements.", &[&[&SET_NAME, &TITLE, &SET_SOURCE, &NOTES, &LINE]]);
 
-pub(crate) const LINE_ID: Key<str> = required("id", text(), "What it is called.");
+pub(crate) const LINE_ID: Key<str> = required("id", TEXT, "What it is called.");
 pub(crate) const LINE_MEASURE: Key<Measure> = required("measure", word(), MEASURE_DOC);
-pub(crate) const LINE_CLAUSE: Key<str> = required("clause", text(), "Clause of its source.");
-pub(crate) const LINE_SOURCE: Key<str> = required("source", text(), "Where it is from.");
+pub(crate) const LINE_CLAUSE: Key<str> = required("clause", TEXT, "Clause of its source.");
+pub(crate) const LINE_SOURCE: Key<str> = required("source", TEXT, "Where it is from.");
 pub(crate) const LINE_CONFIDENCE: Key<Confidence> = required("confidence", word(), CONFIDENCE_DOC);
 pub(crate) const LINE_AIR: Key<Air> = optional("air", word(), "Only in this air.");
 pub(crate) const LINE_LEVEL: Key<i64> = optional("level", whole(1, 3), "Only at this level.");
@@ -214,12 +213,12 @@ pub(crate) const LINE_CATEGORY: Key<str> =
 pub(crate) const LINE_SPEED: Key<str> = optional("speed", name_in(&SPEEDS), "Only at this speed.");
 pub(crate) const BELOW_AEROELASTIC_MODE: Key<bool> = optional(
     "below_aeroelastic_mode",
-    boolean(),
+    BOOLEAN,
     "Only frequencies below the first aeroelastic mode count.",
 );
 pub(crate) const ABOVE_AEROELASTIC_MODE: Key<bool> = optional(
     "above_aeroelastic_mode",
-    boolean(),
+    BOOLEAN,
     "Only frequencies from the first aeroelastic mode on count.",
 );
 

@@ -3,8 +3,9 @@
 use crate::keyed::document::Item;
 use crate::keyed::word::words_of;
 use crate::keyed::{
-    Choice, Key, KindOf, Range, Section, Table, Way, carried, defaulted, file_path, not_negative,
-    numbers, one_of, optional, own, plain, positive, required, table, tables, text, whole, word,
+    Choice, FILE_PATH, Key, KindOf, Range, Section, TEXT, Table, Way, carried, choosing, defaulted,
+    not_negative, numbers, one_of, optional, own, plain, positive, required, table, tables, whole,
+    word,
 };
 use fspid_sim::ElevatorSign;
 
@@ -21,7 +22,7 @@ use crate::file::overrides;
 use crate::file::preset::plant_names;
 
 pub(crate) const SCHEMA: Key<i64> = required("schema", whole(1, 1), "Version of this format.");
-pub(crate) const NAME: Key<str> = required("name", text(), "Name in reports.");
+pub(crate) const NAME: Key<str> = required("name", TEXT, "Name in reports.");
 pub(crate) const PLANT: Key<Section> =
     optional("plant", table(&PLANT_TABLE), "A linear aircraft, from elevator to pitch angle.");
 pub(crate) const AIRCRAFT: Key<Section> = optional(
@@ -84,16 +85,15 @@ pub(crate) const SET: Key<Item> = optional(
 );
 
 /// The file as a whole.
-pub(crate) static SCENARIO: Table = Table {
-    doc: "A flight to be simulated, once for each controller.",
-    groups: &[
+pub(crate) static SCENARIO: Table = choosing(
+    "A flight to be simulated, once for each controller.",
+    &[
         &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
         &[&WIND, &GUST, &TURBULENCE, &DISTURBANCE, &PLANT_CHANGE, &CONTROLLER],
         &[&REQUIREMENT, &DISPERSION, &TUNING, &CONTEST, &SET],
     ],
-    choices: &[one_of!(PLANT, AIRCRAFT)],
-    variants: &[],
-};
+    &[one_of!(PLANT, AIRCRAFT)],
+);
 
 words_of!(ElevatorSign {
     NoseDownPositive = "nose-down-positive",
@@ -106,7 +106,7 @@ pub(super) const COEFFICIENTS: KindOf<[f64]> = numbers("", Range::Finite, (1, 10
 pub(crate) const PRESET: Key<str> =
     optional("preset", carried(plant_names), "A plant that the program carries.");
 pub(crate) const FILE: Key<str> =
-    optional("file", file_path(), "A plant file, relative to this file.");
+    optional("file", FILE_PATH, "A plant file, relative to this file.");
 pub(crate) const NUMERATOR: Key<[f64]> = optional(
     "numerator",
     COEFFICIENTS,
@@ -117,10 +117,10 @@ pub(crate) const DENOMINATOR: Key<[f64]> =
 pub(crate) const ELEVATOR_SIGN: Key<ElevatorSign> =
     optional("elevator_sign", word(), "What a positive elevator does in these coefficients.");
 
-static PLANT_TABLE: Table = Table {
-    doc: "A linear aircraft.",
-    groups: &[&[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
-    choices: &[Choice {
+static PLANT_TABLE: Table = choosing(
+    "A linear aircraft.",
+    &[&[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
+    &[Choice {
         ways: &[
             Way { required: &[PRESET.name], optional: &[] },
             Way {
@@ -130,17 +130,16 @@ static PLANT_TABLE: Table = Table {
             Way { required: &[FILE.name], optional: &[] },
         ],
     }],
-    variants: &[],
-};
+);
 
 pub(crate) const AT_S: Key<f64> = required("at_s", not_negative("s"), "Start of the change.");
 pub(crate) const RAMP_S: Key<f64> =
     defaulted("ramp_s", not_negative("s"), 0.0, "Length of the change; 0 for at once.");
 
-static PLANT_CHANGE_TABLE: Table = Table {
-    doc: "A change of the aircraft's coefficients in flight.",
-    groups: &[&[&AT_S, &RAMP_S], &[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
-    choices: &[Choice {
+static PLANT_CHANGE_TABLE: Table = choosing(
+    "A change of the aircraft's coefficients in flight.",
+    &[&[&AT_S, &RAMP_S], &[&PRESET, &NUMERATOR, &DENOMINATOR, &ELEVATOR_SIGN, &FILE]],
+    &[Choice {
         ways: &[
             Way { required: &[PRESET.name], optional: &[] },
             // The sign is that of the plant unless it is given.
@@ -148,8 +147,7 @@ static PLANT_CHANGE_TABLE: Table = Table {
             Way { required: &[FILE.name], optional: &[] },
         ],
     }],
-    variants: &[],
-};
+);
 
 pub(crate) const SAMPLE_PERIOD_S: Key<f64> =
     required("sample_period_s", positive("s"), "Time from sample to sample.");

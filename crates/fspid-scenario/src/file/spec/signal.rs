@@ -3,8 +3,8 @@
 use super::{ANGLE_LIMIT_DEG, angle};
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Key, KindOf, Range, Table, Variant, boolean, defaulted, not_negative, number, numbers, plain,
-    positive, required, whole, word,
+    BOOLEAN, Key, KindOf, Range, Table, Variant, defaulted, not_negative, number, numbers,
+    of_kinds, plain, positive, required, variant, whole, word,
 };
 use fspid_sim::signal::{Entry, Interpolation};
 
@@ -38,26 +38,26 @@ const MOST_ROWS: usize = 1_000_000;
 pub(crate) const RAMP_WIDTH_S: Key<f64> = required("width_s", positive("s"), "Length of the rise.");
 
 /// A ramp, of the command and of a disturbance alike.
-const RAMP: Variant = Variant {
-    name: SignalKind::Ramp.name(),
-    table: plain(
+const RAMP: Variant = variant(
+    SignalKind::Ramp.name(),
+    plain(
         "In a straight line from 0 to the amplitude, where it stays.",
         &[&[&AMPLITUDE, &AT, &RAMP_WIDTH_S]],
     ),
-};
+);
 
 pub(crate) const FREQUENCY_HZ: Key<f64> = required("frequency_hz", FREQUENCY, "Frequency.");
 
 /// A sine, of the command and of a disturbance alike.
-const SINE: Variant = Variant {
-    name: SignalKind::Sine.name(),
-    table: plain("A sine wave from the start on.", &[&[&AMPLITUDE, &AT, &FREQUENCY_HZ]]),
-};
+const SINE: Variant = variant(
+    SignalKind::Sine.name(),
+    plain("A sine wave from the start on.", &[&[&AMPLITUDE, &AT, &FREQUENCY_HZ]]),
+);
 
 pub(crate) const HALF_PERIOD_S: Key<f64> =
     required("half_period_s", positive("s"), "Length of each half.");
 pub(crate) const BIPOLAR: Key<bool> =
-    defaulted("bipolar", boolean(), false, "Swings to minus the amplitude and not to 0.");
+    defaulted("bipolar", BOOLEAN, false, "Swings to minus the amplitude and not to 0.");
 pub(crate) const DOUBLET_WIDTH_S: Key<f64> =
     required("width_s", positive("s"), "Length of each half.");
 pub(crate) const TIME_S: Key<[f64]> = required(
@@ -77,40 +77,39 @@ pub(crate) const INTERPOLATION: Key<Interpolation> = defaulted(
     "The last value holds, or a straight line to the next.",
 );
 
-pub(super) static SETPOINT_TABLE: Table = Table {
-    doc: "The commanded pitch angle over time.",
-    groups: &[],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: SignalKind::Step.name(),
-            table: plain("The amplitude from the start on.", &[&[&AMPLITUDE, &AT]]),
-        },
-        Variant {
-            name: SignalKind::Square.name(),
-            table: plain(
+pub(super) static SETPOINT_TABLE: Table = of_kinds(
+    "The commanded pitch angle over time.",
+    &[],
+    &[
+        variant(
+            SignalKind::Step.name(),
+            plain("The amplitude from the start on.", &[&[&AMPLITUDE, &AT]]),
+        ),
+        variant(
+            SignalKind::Square.name(),
+            plain(
                 "The amplitude for a half period, then minus the amplitude (bipolar) or 0 for one, and so on.",
                 &[&[&AMPLITUDE, &AT, &HALF_PERIOD_S, &BIPOLAR]],
             ),
-        },
-        Variant {
-            name: SignalKind::Doublet.name(),
-            table: plain(
+        ),
+        variant(
+            SignalKind::Doublet.name(),
+            plain(
                 "The amplitude, then minus the amplitude, then 0.",
                 &[&[&AMPLITUDE, &AT, &DOUBLET_WIDTH_S]],
             ),
-        },
+        ),
         RAMP,
         SINE,
-        Variant {
-            name: SignalKind::Table.name(),
-            table: plain(
+        variant(
+            SignalKind::Table.name(),
+            plain(
                 "Rows of time and value; 0 before the first, the last value after the last.",
                 &[&[&TIME_S, &VALUE_DEG, &INTERPOLATION]],
             ),
-        },
+        ),
     ],
-};
+);
 
 pub(crate) const ENTERS_AT: Key<Entry> = required(
     "enters_at",
@@ -129,27 +128,26 @@ pub(crate) const SEED: Key<i64> = required(
     "The same seed gives the same number at the same sample of the loop; another period is another noise.",
 );
 
-pub(super) static DISTURBANCE_TABLE: Table = Table {
-    doc: "A disturbance, held from sample to sample.",
-    groups: &[&[&ENTERS_AT]],
-    choices: &[],
-    variants: &[
-        Variant {
-            name: SignalKind::Step.name(),
-            table: plain("The amplitude from the start on.", &[&[&AMPLITUDE, &AT]]),
-        },
-        Variant {
-            name: SignalKind::Pulse.name(),
-            table: plain("The amplitude for a while.", &[&[&AMPLITUDE, &AT, &PULSE_WIDTH_S]]),
-        },
+pub(super) static DISTURBANCE_TABLE: Table = of_kinds(
+    "A disturbance, held from sample to sample.",
+    &[&[&ENTERS_AT]],
+    &[
+        variant(
+            SignalKind::Step.name(),
+            plain("The amplitude from the start on.", &[&[&AMPLITUDE, &AT]]),
+        ),
+        variant(
+            SignalKind::Pulse.name(),
+            plain("The amplitude for a while.", &[&[&AMPLITUDE, &AT, &PULSE_WIDTH_S]]),
+        ),
         RAMP,
         SINE,
-        Variant {
-            name: SignalKind::Noise.name(),
-            table: plain(
+        variant(
+            SignalKind::Noise.name(),
+            plain(
                 "White noise, a new normal number each sample.",
                 &[&[&STANDARD_DEVIATION_DEG, &AT, &SEED]],
             ),
-        },
+        ),
     ],
-};
+);

@@ -2,8 +2,8 @@
 
 use crate::keyed::word::words_of;
 use crate::keyed::{
-    Key, KeyRow, Section, Table, defaulted, file_path, finite, one_of, optional, plain, positive,
-    required, table, word,
+    FILE_PATH, Key, KeyRow, Section, Table, choosing, defaulted, finite, one_of, optional, plain,
+    positive, required, table, word,
 };
 use fspid_daveml::flight::Gearing;
 
@@ -27,14 +27,11 @@ pub(crate) const AIR: Key<Section> =
 pub(super) const OF_TABLES: &[KeyRow] = &[&TABLES, &BODY, &ENGINE, &TRAVEL, &AIR];
 
 pub(crate) const AERODYNAMICS: Key<str> =
-    required("aerodynamics", file_path(), "Coefficients, reference area, span and chord.");
+    required("aerodynamics", FILE_PATH, "Coefficients, reference area, span and chord.");
 pub(crate) const INERTIA: Key<str> =
-    required("inertia", file_path(), "Mass, moments of inertia, centre of mass.");
-pub(crate) const PROPULSION: Key<str> = optional(
-    "propulsion",
-    file_path(),
-    "Thrust; without it the aircraft has no engine, and glides.",
-);
+    required("inertia", FILE_PATH, "Mass, moments of inertia, centre of mass.");
+pub(crate) const PROPULSION: Key<str> =
+    optional("propulsion", FILE_PATH, "Thrust; without it the aircraft has no engine, and glides.");
 
 static TABLE_FILES_TABLE: Table = plain(
     "DAVE-ML files or those that `fspid aircraft import` wrote, relative to this file.",
@@ -51,12 +48,11 @@ pub(crate) const CENTRE_OF_MASS_PCT: Key<f64> = optional(
     "Span along the mean chord; where the tables have it if left out.",
 );
 
-static TABLE_BODY_TABLE: Table = Table {
-    doc: "What the tables of the body do not say.",
-    groups: &[&[&GRAVITY[0], &GRAVITY[1], &CENTRE_OF_MASS_PCT]],
-    choices: &[one_of!(GRAVITY[0], GRAVITY[1])],
-    variants: &[],
-};
+static TABLE_BODY_TABLE: Table = choosing(
+    "What the tables of the body do not say.",
+    &[&[&GRAVITY[0], &GRAVITY[1], &CENTRE_OF_MASS_PCT]],
+    &[one_of!(GRAVITY[0], GRAVITY[1])],
+);
 
 pub(crate) const DENSITY: [Key<f64>; 2] = [
     optional("density_slug_ft3", positive("slug/ft3"), "Density."),
@@ -67,12 +63,11 @@ pub(crate) const SPEED_OF_SOUND: [Key<f64>; 2] = [
     optional("speed_of_sound_m_s", positive("m/s"), "Speed of sound."),
 ];
 
-static TABLE_AIR_TABLE: Table = Table {
-    doc: "Air of the source, the same everywhere.",
-    groups: &[&[&DENSITY[0], &DENSITY[1], &SPEED_OF_SOUND[0], &SPEED_OF_SOUND[1]]],
-    choices: &[one_of!(DENSITY[0], DENSITY[1]), one_of!(SPEED_OF_SOUND[0], SPEED_OF_SOUND[1])],
-    variants: &[],
-};
+static TABLE_AIR_TABLE: Table = choosing(
+    "Air of the source, the same everywhere.",
+    &[&[&DENSITY[0], &DENSITY[1], &SPEED_OF_SOUND[0], &SPEED_OF_SOUND[1]]],
+    &[one_of!(DENSITY[0], DENSITY[1]), one_of!(SPEED_OF_SOUND[0], SPEED_OF_SOUND[1])],
+);
 
 pub(crate) const GEARING: Key<Gearing> = defaulted(
     "gearing",
@@ -85,12 +80,11 @@ pub(crate) const ANGULAR_MOMENTUM: [Key<f64>; 2] = [
     optional("angular_momentum_kg_m2_s", finite("kg m2/s"), "Of the rotor, forward."),
 ];
 
-static TABLE_ENGINE_TABLE: Table = Table {
-    doc: "What the tables of the engine do not say.",
-    groups: &[&[&GEARING, &ANGULAR_MOMENTUM[0], &ANGULAR_MOMENTUM[1]]],
-    choices: &[one_of!(ANGULAR_MOMENTUM[0], ANGULAR_MOMENTUM[1])],
-    variants: &[],
-};
+static TABLE_ENGINE_TABLE: Table = choosing(
+    "What the tables of the engine do not say.",
+    &[&[&GEARING, &ANGULAR_MOMENTUM[0], &ANGULAR_MOMENTUM[1]]],
+    &[one_of!(ANGULAR_MOMENTUM[0], ANGULAR_MOMENTUM[1])],
+);
 
 static SURFACES_TABLE: Table =
     plain("How far the surfaces go; the throttle goes from 0 to 1.", &[SURFACE_KEYS]);

@@ -5,8 +5,8 @@ use crate::file::overrides;
 use crate::keyed::document::Item;
 use crate::keyed::word::words;
 use crate::keyed::{
-    Key, KeyRow, Range, Section, Table, defaulted, name_in, number, optional, own, plain, required,
-    tables, text, whole, word,
+    Key, KeyRow, Range, Section, TEXT, Table, defaulted, name_in, number, optional, own, plain,
+    required, tables, whole, word,
 };
 use crate::measure::Measure;
 
@@ -51,7 +51,7 @@ pub(crate) const SEED: Key<i64> =
     defaulted("seed", whole(0, MOST_SEED), 1, "Seed of the search; `--seed` comes first.");
 pub(crate) const CONTROLLER: Key<str> = optional(
     "controller",
-    text(),
+    TEXT,
     "Whose marks are tuned; needed only where several controllers have some.",
 );
 pub(crate) const OVER: Key<OverWord> = defaulted(
@@ -100,15 +100,15 @@ static CASE_TABLE: Table = plain("The scenario with changes.", &[CASE_KEYS]);
 
 pub(crate) const MIRROR_OF: Key<str> = optional(
     "mirror_of",
-    text(),
+    TEXT,
     "Name of the case that this one is the mirror image of, such as the step downwards of a step upwards; the answer says how alike both are flown.",
 );
 
 static CONTEST_CASE_TABLE: Table = plain("The scenario with changes.", &[CASE_KEYS, &[&MIRROR_OF]]);
 
-pub(crate) const NAME: Key<str> = required("name", text(), "What it is called; each only once.");
+pub(crate) const NAME: Key<str> = required("name", TEXT, "What it is called; each only once.");
 pub(crate) const GROUP: Key<str> =
-    optional("group", text(), "What kind of case it is: plants, commands, gusts.");
+    optional("group", TEXT, "What kind of case it is: plants, commands, gusts.");
 pub(crate) const SET: Key<Item> = required(
     "set",
     own(overrides::listed_in_words, overrides::listed_schema),
@@ -157,7 +157,7 @@ pub(crate) const SEEDS: Key<i64> = defaulted(
 );
 pub(crate) const AGAINST: Key<str> = optional(
     "against",
-    text(),
+    TEXT,
     "The controller that the others are compared with; the first one if left out.",
 );
 pub(crate) const CONTEST_CASE: Key<[Section]> =

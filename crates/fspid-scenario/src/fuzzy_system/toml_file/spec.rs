@@ -3,8 +3,8 @@
 use crate::keyed::document::Item;
 use crate::keyed::word::words_of;
 use crate::keyed::{
-    Choice, Key, Range, Section, Table, Way, boolean, defaulted, free_text, interval, name_in,
-    optional, own, plain, required, table, tables, text, whole, word,
+    BOOLEAN, FREE_TEXT, Key, Range, Section, TEXT, Table, choosing, defaulted, interval, name_in,
+    one_of, optional, own, plain, required, table, tables, whole, word,
 };
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{Defuzzifier, Sampling, SetReading};
@@ -18,7 +18,7 @@ pub(super) const WORD: &str = "fuzzy-system";
 pub(crate) const SCHEMA: Key<i64> = required("schema", whole(1, 1), "Version of this format.");
 pub(crate) const KIND: Key<str> = required("kind", name_in(&[WORD]), "What the file describes.");
 pub(crate) const SYSTEM_NAME: Key<str> =
-    optional("name", free_text(), "Name in answers and reports.");
+    optional("name", FREE_TEXT, "Name in answers and reports.");
 pub(crate) const INPUT: Key<[Section]> = required(
     "input",
     tables(&INPUT_TABLE, 1, 1000),
@@ -42,9 +42,9 @@ pub(crate) static FUZZY_SYSTEM: Table = plain(
 );
 
 pub(crate) const DESCRIPTION: Key<str> =
-    optional("description", free_text(), "What it is or stands for, in a sentence.");
+    optional("description", FREE_TEXT, "What it is or stands for, in a sentence.");
 pub(crate) const NAME: Key<str> =
-    required("name", text(), "Name in rules and answers; each only once.");
+    required("name", TEXT, "Name in rules and answers; each only once.");
 pub(crate) const RANGE: Key<(f64, f64)> = optional(
     "range",
     interval("", Range::Finite),
@@ -52,7 +52,7 @@ pub(crate) const RANGE: Key<(f64, f64)> = optional(
 );
 pub(crate) const ENABLED: Key<bool> = defaulted(
     "enabled",
-    boolean(),
+    BOOLEAN,
     true,
     "Whether it takes part; what is switched off stays in the file.",
 );
@@ -74,12 +74,8 @@ static INPUT_TABLE: Table =
 
 words_of!(SetReading { Tsukamoto = "tsukamoto", InverseTsukamoto = "inverse-tsukamoto" });
 
-pub(crate) const CLAMP: Key<bool> = defaulted(
-    "clamp",
-    boolean(),
-    false,
-    "Whether an answer outside the range is moved to its end.",
-);
+pub(crate) const CLAMP: Key<bool> =
+    defaulted("clamp", BOOLEAN, false, "Whether an answer outside the range is moved to its end.");
 pub(crate) const DEFUZZIFIER: Key<str> = defaulted(
     "defuzzifier",
     name_in(&Defuzzifier::NAMES),
@@ -104,7 +100,7 @@ pub(crate) const AGGREGATION: Key<Item> = optional(
 );
 pub(crate) const KEEP_PREVIOUS: Key<bool> = defaulted(
     "keep_previous",
-    boolean(),
+    BOOLEAN,
     false,
     "Whether the previous answer stands where no rule fires.",
 );
@@ -127,7 +123,7 @@ static OUTPUT_TABLE: Table = plain(
     ],
 );
 
-pub(crate) const BLOCK_NAME: Key<str> = optional("name", free_text(), "Name of the block.");
+pub(crate) const BLOCK_NAME: Key<str> = optional("name", FREE_TEXT, "Name of the block.");
 pub(crate) const AND: Key<Item> = optional(
     "and",
     own(norm::and_in_words, norm::and_schema),
@@ -153,25 +149,19 @@ pub(crate) const LINES: Key<Item> =
 pub(crate) const TABLE: Key<Section> =
     optional("table", table(&GRIDS), "The rules of two inputs as grids of terms.");
 
-static RULES_TABLE: Table = Table {
-    doc: "A block of rules.",
-    groups: &[
+static RULES_TABLE: Table = choosing(
+    "A block of rules.",
+    &[
         &[&BLOCK_NAME, &DESCRIPTION, &ENABLED, &AND, &OR, &IMPLICATION, &ACTIVATION],
         &[&LINES, &TABLE],
     ],
-    choices: &[Choice {
-        ways: &[
-            Way { required: &[LINES.name], optional: &[] },
-            Way { required: &[TABLE.name], optional: &[] },
-        ],
-    }],
-    variants: &[],
-};
+    &[one_of!(LINES, TABLE)],
+);
 
 pub(crate) const ROWS: Key<str> =
-    required("rows", text(), "The input whose terms are the rows, from top to bottom.");
+    required("rows", TEXT, "The input whose terms are the rows, from top to bottom.");
 pub(crate) const COLUMNS: Key<str> =
-    required("columns", text(), "The input whose terms are the columns, left to right.");
+    required("columns", TEXT, "The input whose terms are the columns, left to right.");
 pub(crate) const CELLS: Key<Item> = required(
     "cells",
     own(rules::cells_in_words, rules::cells_schema),

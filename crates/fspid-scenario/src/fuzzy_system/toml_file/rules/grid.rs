@@ -34,7 +34,7 @@ pub(super) fn read(
     let (rows, columns) = (rows?, columns?);
     if rows == columns {
         let message = "the same input as `rows`";
-        report.value(table.at(COLUMNS), &table.path(COLUMNS), message, "another input");
+        table.wrong(report, COLUMNS, message, "another input");
         return None;
     }
     let before = report.count();
