@@ -1,7 +1,7 @@
 //! The paper's self-tuning pitch controller in a microcontroller: f32, no heap, no panic.
 #![no_std]
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_core::{AntiWindup, ConfigError, Fspid, Gains, InputScale, Limits};
+use fspid_core::{AntiWindup, ConfigError, ControllerSetting, Fspid, Gains, InputScale, Limits};
 use fspid_core::{PidConfig, Sample, SelfTuner, State, TunerSettings, paper};
 
 /// Built once, before the loop starts; the only part that may fail.
@@ -14,7 +14,7 @@ pub fn autopilot() -> Result<Fspid<f32>, ConfigError> {
         ..TunerSettings::literal()
     };
     let tuner = SelfTuner::new(Gains { kp: 2.0, ki: 0.5, kd: 1.0 }, supervisor, settings)?;
-    let limits = Some(Limits::new("command, rad", -0.35, 0.35)?);
+    let limits = Some(Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35)?);
     let every_10_ms = PidConfig::sampled_every(0.01);
     Fspid::new(tuner, PidConfig { limits, anti_windup: AntiWindup::Conditional, ..every_10_ms })
 }

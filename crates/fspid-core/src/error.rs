@@ -5,14 +5,16 @@ use core::fmt;
 use fspid_fuzzy::FuzzyError;
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
+
 /// Why a controller could not be built: which setting, what was found, what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ConfigError {
     /// A number that is not allowed.
     Number {
-        /// Name of the setting, with its unit.
-        what: &'static str,
+        /// Which setting.
+        what: ControllerSetting,
         /// What was given.
         found: f64,
         /// What is allowed.
@@ -20,8 +22,8 @@ pub enum ConfigError {
     },
     /// A lower limit that is not below its upper limit.
     EmptyRange {
-        /// Name of the setting.
-        what: &'static str,
+        /// Which setting.
+        what: ControllerSetting,
         /// Lower limit given.
         lower: f64,
         /// Upper limit given.
@@ -30,7 +32,7 @@ pub enum ConfigError {
     /// Nominal gains outside the gain limits.
     OutsideLimits {
         /// Which gain.
-        what: &'static str,
+        what: ControllerSetting,
         /// What was given.
         found: f64,
         /// Lowest allowed.
@@ -75,24 +77,24 @@ impl From<FuzzyError> for ConfigError {
 }
 
 /// `value` if it is finite, above zero and not denormal: a quotient by it must not overflow.
-pub(crate) fn positive<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+pub(crate) fn positive<R: Real>(what: ControllerSetting, value: R) -> Result<R, ConfigError> {
     at_least(R::MIN_POSITIVE, what, value, "a finite number above 0")
 }
 
 /// `value` if it is finite and not below zero.
-pub(crate) fn not_negative<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+pub(crate) fn not_negative<R: Real>(what: ControllerSetting, value: R) -> Result<R, ConfigError> {
     at_least(R::ZERO, what, value, "a finite number, 0 or above")
 }
 
 /// `value` if it is finite.
-pub(crate) fn finite<R: Real>(what: &'static str, value: R) -> Result<R, ConfigError> {
+pub(crate) fn finite<R: Real>(what: ControllerSetting, value: R) -> Result<R, ConfigError> {
     allowed_if(value.is_finite(), what, value, "a finite number")
 }
 
 /// `value` if it is finite and not below `least`.
 pub(crate) fn at_least<R: Real>(
     least: R,
-    what: &'static str,
+    what: ControllerSetting,
     value: R,
     allowed: &'static str,
 ) -> Result<R, ConfigError> {
@@ -103,7 +105,7 @@ pub(crate) fn at_least<R: Real>(
 /// `value` if it is `good`.
 pub(crate) fn allowed_if<R: Real>(
     good: bool,
-    what: &'static str,
+    what: ControllerSetting,
     value: R,
     allowed: &'static str,
 ) -> Result<R, ConfigError> {

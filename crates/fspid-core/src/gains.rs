@@ -3,6 +3,7 @@
 use fspid_fuzzy::Increments;
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::limits::Limits;
 
@@ -30,10 +31,11 @@ impl<R: Real> Gains<R> {
     /// [`ConfigError::Number`] for a gain or time that is not finite, a `ti_s` that is not positive
     /// and a negative `td_s`, or where a gain of the parallel form overflows.
     pub fn from_isa(gain: R, ti_s: R, td_s: R) -> Result<Self, ConfigError> {
-        let gain = finite("gain K", gain)?;
+        let gain = finite(ControllerSetting::Gain, gain)?;
         // Infinity passes, NaN does not.
-        let ti_s = allowed_if(ti_s > R::ZERO, "Ti, s", ti_s, "a number above 0")?;
-        let td_s = not_negative("Td, s", td_s)?;
+        let ti_s =
+            allowed_if(ti_s > R::ZERO, ControllerSetting::IntegralTime, ti_s, "a number above 0")?;
+        let td_s = not_negative(ControllerSetting::DerivativeTime, td_s)?;
         Self { kp: gain, ki: gain / ti_s, kd: gain * td_s }.checked()
     }
 
@@ -43,9 +45,9 @@ impl<R: Real> Gains<R> {
     /// [`ConfigError::Number`] naming the first gain that is not.
     pub fn checked(self) -> Result<Self, ConfigError> {
         Ok(Self {
-            kp: finite("kp", self.kp)?,
-            ki: finite("ki", self.ki)?,
-            kd: finite("kd", self.kd)?,
+            kp: finite(ControllerSetting::Kp, self.kp)?,
+            ki: finite(ControllerSetting::Ki, self.ki)?,
+            kd: finite(ControllerSetting::Kd, self.kd)?,
         })
     }
 
@@ -89,9 +91,9 @@ impl<R: Real> GainLimits<R> {
     /// Refuses nominal gains that would be cut at once.
     pub(crate) fn check(&self, nominal: Gains<R>) -> Result<(), ConfigError> {
         for (what, found, limits) in [
-            ("nominal kp", nominal.kp, self.kp),
-            ("nominal ki", nominal.ki, self.ki),
-            ("nominal kd", nominal.kd, self.kd),
+            (ControllerSetting::NominalKp, nominal.kp, self.kp),
+            (ControllerSetting::NominalKi, nominal.ki, self.ki),
+            (ControllerSetting::NominalKd, nominal.kd, self.kd),
         ] {
             if limits.clamp(found) != found {
                 return Err(ConfigError::OutsideLimits {

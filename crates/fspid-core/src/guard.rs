@@ -4,6 +4,7 @@ use core::fmt;
 
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, positive};
 use crate::state::Sample;
 
@@ -82,7 +83,7 @@ impl<R: Real> Guard<R> {
     /// # Errors
     /// [`ConfigError::Number`] unless the limit is finite and positive.
     pub fn new(limit_rad: R) -> Result<Self, ConfigError> {
-        Ok(Self { limit: positive("sample guard, rad", limit_rad)? })
+        Ok(Self { limit: positive(ControllerSetting::SampleGuard, limit_rad)? })
     }
 
     /// The largest sample that is believed, rad.

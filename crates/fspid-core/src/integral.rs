@@ -2,6 +2,7 @@
 
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, at_least};
 use crate::limits::Limits;
 
@@ -40,7 +41,7 @@ impl<R: Real> AntiWindup<R> {
     pub(crate) fn check(&self, dt_s: R) -> Result<(), ConfigError> {
         if let Self::BackCalculation { tracking_s } = *self {
             let allowed = "a finite number, at least the sample period";
-            at_least(dt_s, "anti-windup tracking time, s", tracking_s, allowed)?;
+            at_least(dt_s, ControllerSetting::TrackingTime, tracking_s, allowed)?;
         }
         Ok(())
     }

@@ -43,6 +43,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod controller_setting;
 pub mod equations;
 mod error;
 mod gains;
@@ -56,6 +57,7 @@ mod second_input;
 mod state;
 mod tuner;
 
+pub use controller_setting::ControllerSetting;
 pub use error::ConfigError;
 pub use gains::{GainLimits, Gains};
 pub use guard::{Faults, Guard};

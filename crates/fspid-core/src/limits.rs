@@ -2,6 +2,7 @@
 
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::error::ConfigError;
 
 /// A closed interval; its ends may be infinite.
@@ -16,7 +17,7 @@ impl<R: Real> Limits<R> {
     ///
     /// # Errors
     /// [`ConfigError::EmptyRange`] unless `lower < upper`.
-    pub fn new(what: &'static str, lower: R, upper: R) -> Result<Self, ConfigError> {
+    pub fn new(what: ControllerSetting, lower: R, upper: R) -> Result<Self, ConfigError> {
         if lower < upper {
             return Ok(Self { lower, upper });
         }

@@ -2,6 +2,7 @@
 
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::equations::{Free, Memory, PidEquations, Regulated};
 use crate::error::{ConfigError, allowed_if, finite, not_negative, positive};
 use crate::gains::Gains;
@@ -49,10 +50,10 @@ impl<R: Real> Derivative<R> {
     /// [`ConfigError::Number`] for a time that is negative or not finite and an `n` that is not
     /// positive, or so small that the quotient overflows.
     pub fn from_isa(td_s: R, n: R) -> Result<Self, ConfigError> {
-        let td_s = not_negative("Td, s", td_s)?;
+        let td_s = not_negative(ControllerSetting::DerivativeTime, td_s)?;
         let filter_s = td_s / n;
         let good = n > R::ZERO && filter_s.is_finite();
-        allowed_if(good, "N", n, "a number above 0")?;
+        allowed_if(good, ControllerSetting::FilterRatio, n, "a number above 0")?;
         Ok(Self { filter_s })
     }
 }
@@ -116,14 +117,14 @@ impl<R: Real> PidConfig<R> {
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {
-        positive("sample period, s", self.dt_s)?;
-        finite("rate_gain, s", self.rate_gain_s)?;
-        finite("set-point weight of the proportional term", self.setpoint_weights.proportional)?;
-        finite("set-point weight of the derivative term", self.setpoint_weights.derivative)?;
-        not_negative("derivative filter, s", self.derivative.filter_s)?;
+        positive(ControllerSetting::SamplePeriod, self.dt_s)?;
+        finite(ControllerSetting::RateGain, self.rate_gain_s)?;
+        finite(ControllerSetting::ProportionalWeight, self.setpoint_weights.proportional)?;
+        finite(ControllerSetting::DerivativeWeight, self.setpoint_weights.derivative)?;
+        not_negative(ControllerSetting::DerivativeFilter, self.derivative.filter_s)?;
         self.anti_windup.check(self.dt_s)?;
         if let Some(slew) = self.slew_rad_s {
-            positive("slew limit, rad/s", slew)?;
+            positive(ControllerSetting::SlewLimit, slew)?;
         }
         let unlimited = self.limits.is_none() && self.slew_rad_s.is_none();
         if self.anti_windup.acts_at_limits() && unlimited {

@@ -2,6 +2,7 @@
 
 use fspid_numeric::{Real, Scalar};
 
+use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, allowed_if, positive};
 
 /// A step of the reference model covers at most this part of $1 / \omega$: then its discrete poles
@@ -80,12 +81,12 @@ impl<R: Real> ModelState<R> {
 
 impl<R: Real> ReferenceModel<R> {
     pub(crate) fn check(&self, dt_s: R) -> Result<(), ConfigError> {
-        positive("bandwidth of the reference model, rad/s", self.bandwidth_rad_s)?;
-        positive("damping of the reference model", self.damping)?;
+        positive(ControllerSetting::ModelBandwidth, self.bandwidth_rad_s)?;
+        positive(ControllerSetting::ModelDamping, self.damping)?;
         let damped = self.damping <= R::from_f64(MOST_DAMPING);
-        allowed_if(damped, "damping of the reference model", self.damping, "at most 1.5")?;
+        allowed_if(damped, ControllerSetting::ModelDamping, self.damping, "at most 1.5")?;
         let slow = self.bandwidth_rad_s * dt_s <= R::from_f64(LONGEST_STEP);
-        let what = "bandwidth of the reference model, rad/s";
+        let what = ControllerSetting::ModelBandwidth;
         allowed_if(slow, what, self.bandwidth_rad_s, "at most half per sample period")?;
         Ok(())
     }
@@ -130,9 +131,9 @@ impl<R: Real> SetCentres<R> {
     /// # Errors
     /// [`ConfigError::Number`] unless $0 < small < medium < 1$.
     pub fn new(small: R, medium: R) -> Result<Self, ConfigError> {
-        let what = "centre of the small sets";
+        let what = ControllerSetting::SmallSets;
         let small = allowed_if(small > R::ZERO && small < R::ONE, what, small, "above 0, below 1")?;
-        let (what, good) = ("centre of the medium sets", medium > small && medium < R::ONE);
+        let (what, good) = (ControllerSetting::MediumSets, medium > small && medium < R::ONE);
         let medium = allowed_if(good, what, medium, "above that of the small sets, below 1")?;
         Ok(Self { small, medium })
     }

@@ -3,6 +3,7 @@
 use fspid_fuzzy::Supervisor;
 use fspid_numeric::Real;
 
+use crate::controller_setting::ControllerSetting;
 use crate::equations::{Memory, TunerEquations};
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
@@ -156,19 +157,19 @@ impl<R: Real> TunerSettings<R> {
     }
 
     fn check(&self) -> Result<(), ConfigError> {
-        finite("error_scale", self.input_scale.error_per_rad)?;
-        finite("change_scale", self.input_scale.change_per_rad)?;
-        finite("output_scale kp", self.output_scale.kp)?;
-        finite("output_scale ki", self.output_scale.ki)?;
-        finite("output_scale kd", self.output_scale.kd)?;
-        finite("set-point weight per kp", self.gain_coupling.setpoint_weight)?;
-        finite("rate_gain per kd", self.gain_coupling.rate_gain)?;
+        finite(ControllerSetting::ErrorScale, self.input_scale.error_per_rad)?;
+        finite(ControllerSetting::ChangeScale, self.input_scale.change_per_rad)?;
+        finite(ControllerSetting::OutputScaleKp, self.output_scale.kp)?;
+        finite(ControllerSetting::OutputScaleKi, self.output_scale.ki)?;
+        finite(ControllerSetting::OutputScaleKd, self.output_scale.kd)?;
+        finite(ControllerSetting::WeightPerKp, self.gain_coupling.setpoint_weight)?;
+        finite(ControllerSetting::RateGainPerKd, self.gain_coupling.rate_gain)?;
         if let Law::Accumulating { leakage_per_s } = self.law {
-            not_negative("leakage, 1/s", leakage_per_s)?;
+            not_negative(ControllerSetting::Leakage, leakage_per_s)?;
         }
         if let Some(zone) = self.dead_zone {
-            not_negative("dead zone of the error", zone.error_rad)?;
-            not_negative("dead zone of the change", zone.change_rad)?;
+            not_negative(ControllerSetting::ErrorDeadZone, zone.error_rad)?;
+            not_negative(ControllerSetting::ChangeDeadZone, zone.change_rad)?;
         }
         Ok(())
     }
@@ -250,7 +251,7 @@ impl<R: Real> SelfTuner<R> {
         if let Law::Accumulating { leakage_per_s } = self.settings.law {
             let good = leakage_per_s * dt_s <= R::ONE;
             let allowed = "at most one per sample period";
-            allowed_if(good, "leakage, 1/s", leakage_per_s, allowed)?;
+            allowed_if(good, ControllerSetting::Leakage, leakage_per_s, allowed)?;
         }
         Ok(())
     }

@@ -5,14 +5,16 @@
 use crate::common;
 
 use common::{NOMINAL, Random, T, error, integral_term, pid};
-use fspid_core::{AntiWindup, Gains, IntegralForm, Limits, PidConfig, State, Step};
+use fspid_core::{
+    AntiWindup, ControllerSetting, Gains, IntegralForm, Limits, PidConfig, State, Step,
+};
 use proptest::prelude::*;
 
 const FORMS: [IntegralForm; 2] = [IntegralForm::Bumpless, IntegralForm::Literal];
 const ONLY_KI: Gains<f64> = Gains { kp: 0.0, ki: 0.5, kd: 0.0 };
 
 fn limits(lower: f64, upper: f64) -> Limits<f64> {
-    Limits::new("limits", lower, upper).expect("lower is below upper")
+    Limits::new(ControllerSetting::OutputLimits, lower, upper).expect("lower is below upper")
 }
 
 /// Command limits of one rad to both sides.
@@ -164,7 +166,10 @@ fn conditional_integration_stops_at_the_limit_and_turns_back_at_once() {
 fn conditional_integration_stops_for_the_smallest_excess() {
     let config = PidConfig {
         anti_windup: AntiWindup::Conditional,
-        limits: Some(Limits::new("limits", -1.0, 1e-30).expect("lower is below upper")),
+        limits: Some(
+            Limits::new(ControllerSetting::OutputLimits, -1.0, 1e-30)
+                .expect("lower is below upper"),
+        ),
         ..PidConfig::sampled_every(0.01_f32)
     };
     let only_ki = Gains { ki: 1.0, ..Gains::ZERO };

@@ -9,8 +9,8 @@ use crate::common;
 use common::{NOMINAL, Random, T, error, fspid, gains, pid, sample, supervisor};
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    AntiWindup, Faults, Fspid, GainLimits, Gains, Guard, InputScale, IntegralForm, Law, Limits,
-    Pid, PidConfig, Sample, SelfTuner, State, Step, TunerSettings,
+    AntiWindup, ControllerSetting, Faults, Fspid, GainLimits, Gains, Guard, InputScale,
+    IntegralForm, Law, Limits, Pid, PidConfig, Sample, SelfTuner, State, Step, TunerSettings,
 };
 use fspid_numeric::Real;
 
@@ -22,7 +22,7 @@ fn full_config<R: Real>(integral: IntegralForm) -> PidConfig<R> {
     config.derivative.filter_s = number(0.05);
     config.integral = integral;
     config.anti_windup = AntiWindup::BackCalculation { tracking_s: number(1.0) };
-    config.limits = Limits::new("limits", number(-0.5), number(0.5)).ok();
+    config.limits = Limits::new(ControllerSetting::OutputLimits, number(-0.5), number(0.5)).ok();
     config.slew_rad_s = Some(number(20.0));
     config
 }
@@ -216,7 +216,8 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
 /// Gain limits used to turn an overflow of the gains into a number.
 #[test]
 fn gains_that_overflow_are_held_even_where_their_limits_would_hide_it() {
-    let wide = Limits::new("gain", -10.0, 10.0).expect("lower is below upper");
+    let wide =
+        Limits::new(ControllerSetting::GainLimits, -10.0, 10.0).expect("lower is below upper");
     let settings = TunerSettings {
         output_scale: Gains { kp: f64::MAX, ki: 0.0, kd: 0.0 },
         gain_limits: Some(GainLimits { kp: wide, ki: wide, kd: wide }),
@@ -274,7 +275,7 @@ fn a_supervisor_whose_rules_underflow_says_so_and_answers_as_clamped() {
 #[test]
 fn a_bad_first_sample_is_answered_within_the_limits() {
     let mut config = PidConfig::sampled_every(T);
-    config.limits = Limits::new("limits", 0.1, 0.2).ok();
+    config.limits = Limits::new(ControllerSetting::OutputLimits, 0.1, 0.2).ok();
     let held = pid(NOMINAL, config).step(&mut State::new(), error(f64::NAN));
     assert_eq!(held.command_rad, 0.1);
 }

@@ -5,8 +5,8 @@ use crate::common;
 use common::{NOMINAL, T, supervisor, tuner};
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    AntiWindup, ConfigError, DeadZone, Derivative, Fspid, GainLimits, Gains, Guard, Law, Limits,
-    Pid, PidConfig, SelfTuner, TunerSettings,
+    AntiWindup, ConfigError, ControllerSetting, DeadZone, Derivative, Fspid, GainLimits, Gains,
+    Guard, Law, Limits, Pid, PidConfig, SelfTuner, TunerSettings,
 };
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -14,7 +14,7 @@ const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 /// The name an error of a number gives, and the value it found.
 fn refused<T>(result: Result<T, ConfigError>) -> (&'static str, u64) {
     match result {
-        Err(ConfigError::Number { what, found, .. }) => (what, found.to_bits()),
+        Err(ConfigError::Number { what, found, .. }) => (what.name(), found.to_bits()),
         Err(other) => panic!("{other}"),
         Ok(_) => ("accepted", 0),
     }
@@ -89,7 +89,7 @@ fn every_bad_setting_of_the_configuration_is_refused_by_name_in_both_controllers
         ("slew limit, rad/s", |s, v| s.slew_rad_s = Some(v), not_positive, &[1e-6, 1.0]),
     ];
     let mut good = PidConfig::sampled_every(T);
-    good.limits = Limits::new("limits", -1.0, 1.0).ok();
+    good.limits = Limits::new(ControllerSetting::OutputLimits, -1.0, 1.0).ok();
     for (name, set, bad, fine) in rows {
         table(name, good, set, bad, fine, |config| Pid::new(NOMINAL, config));
         table(name, good, set, bad, fine, |config| {
@@ -169,24 +169,26 @@ fn an_empty_range_is_refused_by_name() {
     for (lower, upper) in
         [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN), (f64::INFINITY, f64::INFINITY)]
     {
-        let error = Limits::new("command limits, rad", lower, upper).expect_err("empty");
+        let error = Limits::new(ControllerSetting::OutputLimits, lower, upper).expect_err("empty");
         assert!(
-            matches!(error, ConfigError::EmptyRange { what: "command limits, rad", .. }),
+            matches!(error, ConfigError::EmptyRange { what: ControllerSetting::OutputLimits, .. }),
             "{error}"
         );
     }
-    assert!(Limits::new("limits", f64::NEG_INFINITY, f64::INFINITY).is_ok());
+    assert!(Limits::new(ControllerSetting::OutputLimits, f64::NEG_INFINITY, f64::INFINITY).is_ok());
 }
 
 #[test]
 fn nominal_gains_outside_their_limits_are_refused_by_name() {
-    let wide = Limits::new("gain", -10.0, 10.0).expect("lower is below upper");
-    let narrow = Limits::new("gain", 100.0, 101.0).expect("lower is below upper");
+    let wide =
+        Limits::new(ControllerSetting::GainLimits, -10.0, 10.0).expect("lower is below upper");
+    let narrow =
+        Limits::new(ControllerSetting::GainLimits, 100.0, 101.0).expect("lower is below upper");
     let all = GainLimits { kp: wide, ki: wide, kd: wide };
     for (name, limits) in [
-        ("nominal kp", GainLimits { kp: narrow, ..all }),
-        ("nominal ki", GainLimits { ki: narrow, ..all }),
-        ("nominal kd", GainLimits { kd: narrow, ..all }),
+        (ControllerSetting::NominalKp, GainLimits { kp: narrow, ..all }),
+        (ControllerSetting::NominalKi, GainLimits { ki: narrow, ..all }),
+        (ControllerSetting::NominalKd, GainLimits { kd: narrow, ..all }),
     ] {
         let settings = TunerSettings { gain_limits: Some(limits), ..TunerSettings::literal() };
         let error =
@@ -205,7 +207,7 @@ fn an_anti_windup_without_a_limit_to_act_at_is_refused() {
         config.slew_rad_s = Some(1.0);
         assert!(Pid::new(NOMINAL, config).is_ok());
         config.slew_rad_s = None;
-        config.limits = Limits::new("limits", -1.0, 1.0).ok();
+        config.limits = Limits::new(ControllerSetting::OutputLimits, -1.0, 1.0).ok();
         assert!(Pid::new(NOMINAL, config).is_ok());
     }
 }
@@ -215,7 +217,7 @@ fn a_refusal_reads_as_a_sentence() {
     let refusals = [
         Pid::new(Gains { kp: f64::NAN, ..NOMINAL }, PidConfig::sampled_every(T)).err(),
         Pid::new(NOMINAL, PidConfig::sampled_every(-0.5)).err(),
-        Limits::new("limits", 2.0, 1.0).err(),
+        Limits::new(ControllerSetting::OutputLimits, 2.0, 1.0).err(),
     ];
     let sentences = refusals.map(|error| error.expect("refused").to_string());
     assert_eq!(
@@ -223,7 +225,7 @@ fn a_refusal_reads_as_a_sentence() {
         [
             "kp is NaN; allowed is a finite number",
             "sample period, s is -0.5; allowed is a finite number above 0",
-            "limits are 2.0 to 1.0; the lower must be below the upper, and neither NaN",
+            "output limits are 2.0 to 1.0; the lower must be below the upper, and neither NaN",
         ]
     );
 }

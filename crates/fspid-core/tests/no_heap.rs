@@ -6,7 +6,7 @@
 use crate::common;
 
 use common::{NOMINAL, Random, T, fspid, pid};
-use fspid_core::{AntiWindup, Law, Limits, PidConfig, State, TunerSettings};
+use fspid_core::{AntiWindup, ControllerSetting, Law, Limits, PidConfig, State, TunerSettings};
 
 #[test]
 fn building_a_controller_and_stepping_it_allocates_nothing() {
@@ -14,7 +14,7 @@ fn building_a_controller_and_stepping_it_allocates_nothing() {
     let settings =
         TunerSettings { law: Law::Accumulating { leakage_per_s: 0.1 }, ..TunerSettings::literal() };
     let mut config = PidConfig::sampled_every(T);
-    config.limits = Limits::new("limits", -0.5, 0.5).ok();
+    config.limits = Limits::new(ControllerSetting::OutputLimits, -0.5, 0.5).ok();
     config.slew_rad_s = Some(1.0);
     config.anti_windup = AntiWindup::BackCalculation { tracking_s: 1.0 };
     let tuned = fspid(settings, config);

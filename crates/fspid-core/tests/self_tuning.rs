@@ -9,7 +9,9 @@
 use crate::common;
 
 use common::{NOMINAL, T, error, fspid, tuner};
-use fspid_core::{DeadZone, GainLimits, Gains, Law, Limits, PidConfig, State, TunerSettings};
+use fspid_core::{
+    ControllerSetting, DeadZone, GainLimits, Gains, Law, Limits, PidConfig, State, TunerSettings,
+};
 
 /// What the printed table adds at the origin over a range of 5 (handbook; 40-digit polygons).
 const AT_REST: Gains<f64> = Gains { kp: 0.216_500_696_638, ki: 0.0, kd: -1.666_610_153_842 };
@@ -120,7 +122,9 @@ fn the_dead_zone_silences_both_laws() {
 
 #[test]
 fn gain_limits_stop_the_drift_where_they_stand() {
-    let limits = |lower, upper| Limits::new("gain", lower, upper).expect("lower is below upper");
+    let limits = |lower, upper| {
+        Limits::new(ControllerSetting::GainLimits, lower, upper).expect("lower is below upper")
+    };
     let gain_limits =
         Some(GainLimits { kp: limits(1.9, 2.1), ki: limits(0.0, 1.0), kd: limits(0.75, 1.5) });
     let limited =

@@ -3,8 +3,8 @@
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid, PidConfig,
-    SelfTuner, TunerSettings,
+    ControllerSetting, ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm, Limits, Pid,
+    PidConfig, SelfTuner, TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
@@ -171,7 +171,7 @@ impl FlightModel {
         let config = PidConfig { integral: IntegralForm::Literal, ..config };
         let rule = (Defuzzifier::Exact, OutOfRange::Clamp);
         let supervisor = Supervisor::new(table, self.setting.range, rule.0, rule.1)?;
-        let floor = Limits::new("gain limits", 0.0, f64::INFINITY)?;
+        let floor = Limits::new(ControllerSetting::GainLimits, 0.0, f64::INFINITY)?;
         let [kp, ki, kd] = scales.output;
         let settings = TunerSettings {
             error_sign: self.setting.error_sign,

@@ -1,8 +1,8 @@
 //! From loops to proved, refuted, refused; and certificates that are tampered with.
 
 use fspid_core::{
-    Derivative, Fspid, GainCoupling, GainLimits, Gains, InputScale, InputSets, Law, Limits, Pid,
-    PidConfig, ReferenceModel, SecondInput, SelfTuner, SetCentres, TunerSettings,
+    ControllerSetting, Derivative, Fspid, GainCoupling, GainLimits, Gains, InputScale, InputSets,
+    Law, Limits, Pid, PidConfig, ReferenceModel, SecondInput, SelfTuner, SetCentres, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
@@ -133,7 +133,8 @@ fn with_an_integral_gain_of_zero_at_rest_nothing_is_proved() {
     else {
         panic!("tuned")
     };
-    let around = |least, most| Limits::new("gain limits", least, most).expect("allowed");
+    let around =
+        |least, most| Limits::new(ControllerSetting::GainLimits, least, most).expect("allowed");
     let limits = GainLimits { kp: around(0.5, 4.0), ki: around(0.0, 1.0), kd: around(0.0, 3.0) };
     let settings = TunerSettings { gain_limits: Some(limits), ..*fspid.tuner().settings() };
     let nominal = Gains { ki: 0.0, ..NOMINAL };

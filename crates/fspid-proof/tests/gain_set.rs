@@ -6,8 +6,8 @@ use crate::gain_set_common;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits, PidConfig, SelfTuner, State,
-    TunerSettings,
+    ControllerSetting, DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits,
+    PidConfig, SelfTuner, State, TunerSettings,
 };
 use fspid_numeric::scalar::Interval;
 use fspid_proof::gain_set::{GainCell, IncrementMap, NoBound, grid, producible};
@@ -186,7 +186,7 @@ fn an_accumulating_law_that_nothing_holds_back_is_refused_with_the_gain() {
     let free = TunerSettings { law: leaking(0.0), ..settings() };
     let refused = IncrementMap::of(&paper(free), 6);
     assert_eq!(refused, Err(NoBound::Accumulating { gain: "kp" }));
-    let endless = Limits::new("kd", 0.0, f64::INFINITY).expect("in order");
+    let endless = Limits::new(ControllerSetting::GainLimits, 0.0, f64::INFINITY).expect("in order");
     let open = TunerSettings { gain_limits: Some(GainLimits { kd: endless, ..limits() }), ..free };
     let refused = IncrementMap::of(&paper(open), 6).expect_err("kd has no upper limit");
     assert!(refused.to_string().contains("kd both gain limits"), "{refused}");

@@ -16,8 +16,8 @@ use std::time::Instant;
 
 use fspid_core::fuzzy::{Defuzzifier, Label, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Derivative, Fspid, Gains, InputScale, Limits, Pid, PidConfig, SelfTuner,
-    TunerSettings,
+    AntiWindup, ControllerSetting, Derivative, Fspid, Gains, InputScale, Limits, Pid, PidConfig,
+    SelfTuner, TunerSettings,
 };
 use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
@@ -152,7 +152,7 @@ fn scenario(seed: u64) -> Scenario {
         rate_gain_s: 0.2,
         derivative: Derivative { filter_s: 0.05 },
         anti_windup: AntiWindup::BackCalculation { tracking_s: 0.5 },
-        limits: Some(Limits::new("command", -0.4, 0.4).expect("in order")),
+        limits: Some(Limits::new(ControllerSetting::OutputLimits, -0.4, 0.4).expect("in order")),
         slew_rad_s: Some(20.0),
         ..config
     };

@@ -5,9 +5,9 @@
 
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
-    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
-    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
+    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -94,8 +94,9 @@ fn like<T: std::fmt::Debug + 'static>(
 
 /// Around 0, so that a controller at rest is not held by them.
 fn limits(size: f64) -> impl Strategy<Value = Limits<f64>> {
-    (0.1 * size..size, 0.1 * size..size)
-        .prop_map(|(below, above)| Limits::new("drawn", -below, above).expect("in order"))
+    (0.1 * size..size, 0.1 * size..size).prop_map(|(below, above)| {
+        Limits::new(ControllerSetting::OutputLimits, -below, above).expect("in order")
+    })
 }
 
 /// Everything of a controller but its gains.
@@ -152,7 +153,8 @@ fn input_sets() -> impl Strategy<Value = InputSets<f64>> {
 fn gain_limits(nominal: Gains<f64>) -> impl Strategy<Value = GainLimits<f64>> {
     let around = |gain: f64| {
         (0.01..0.2, 0.01..0.2).prop_map(move |(below, above)| {
-            Limits::new("gain", gain - below, gain + above).expect("in order")
+            Limits::new(ControllerSetting::GainLimits, gain - below, gain + above)
+                .expect("in order")
         })
     };
     (around(nominal.kp), around(nominal.ki), around(nominal.kd))

@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
-    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
-    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
+    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_sim::batch::{Entrant, InstructionSet, Refusal, fly_group_by, fly_many};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -106,7 +106,9 @@ fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
     if structure.literal {
         config.integral = IntegralForm::Literal;
     }
-    let limits = |size: f64| Limits::new("limits", -size, 0.8 * size).expect("allowed");
+    let limits = |size: f64| {
+        Limits::new(ControllerSetting::OutputLimits, -size, 0.8 * size).expect("allowed")
+    };
     config.anti_windup = match structure.anti_windup {
         0 => AntiWindup::None,
         1 => AntiWindup::Clamping(limits(random.between(0.01, 0.3))),
@@ -193,7 +195,9 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
             });
         }
         if random.one_in(2) {
-            let around = |gain: f64| Limits::new("gain", gain - 0.2, gain + 0.3).expect("allowed");
+            let around = |gain: f64| {
+                Limits::new(ControllerSetting::GainLimits, gain - 0.2, gain + 0.3).expect("allowed")
+            };
             settings.gain_limits = Some(GainLimits {
                 kp: around(gains.kp),
                 ki: around(gains.ki),

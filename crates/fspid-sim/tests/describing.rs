@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
-use fspid_core::{Gains, Limits, Pid, PidConfig};
+use fspid_core::{ControllerSetting, Gains, Limits, Pid, PidConfig};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::aircraft::Forces;
 use fspid_sim::describing::{
@@ -112,7 +112,9 @@ fn a_limit_of_the_position_has_the_textbook_describing_function() {
     let servo = servo().with_position_limit(limit_rad).expect("allowed");
     let by_servo = scenario(servo, 0.1, 1.0, proportional(1.0, plain()));
     let config = PidConfig {
-        limits: Some(Limits::new("u", -limit_rad, limit_rad).expect("allowed")),
+        limits: Some(
+            Limits::new(ControllerSetting::OutputLimits, -limit_rad, limit_rad).expect("allowed"),
+        ),
         ..plain()
     };
     let paths = [

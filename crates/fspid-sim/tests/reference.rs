@@ -7,8 +7,9 @@ use std::path::Path;
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, Derivative, ErrorSign, Fspid, GainLimits, Gains, InputScale, IntegralForm,
-    Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, Derivative, ErrorSign, Fspid, GainLimits, Gains,
+    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights,
+    TunerSettings,
 };
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
@@ -89,7 +90,7 @@ fn example() -> TunerSettings<f64> {
 }
 
 fn figure_8b() -> TunerSettings<f64> {
-    let floor = Limits::new("gain", 0.0, f64::INFINITY).expect("allowed");
+    let floor = Limits::new(ControllerSetting::GainLimits, 0.0, f64::INFINITY).expect("allowed");
     TunerSettings {
         error_sign: ErrorSign::MeasurementMinusSetpoint,
         input_scale: InputScale { error_per_rad: 37.52 / DEG, change_per_rad: 30.14 / DEG },
@@ -180,7 +181,7 @@ fn filtered(limit_deg: f64) -> Controller {
     let config = PidConfig {
         setpoint_weights: SetpointWeights { proportional: 0.7, derivative: 0.0 },
         derivative: Derivative { filter_s: 0.05 },
-        limits: Some(Limits::new("command", -limit, limit).expect("allowed")),
+        limits: Some(Limits::new(ControllerSetting::OutputLimits, -limit, limit).expect("allowed")),
         anti_windup: AntiWindup::BackCalculation { tracking_s: 0.5 },
         ..plain()
     };

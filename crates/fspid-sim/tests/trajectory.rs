@@ -10,9 +10,9 @@ use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SecondInput, SelfTuner, SetpointWeights,
-    TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainLimits,
+    Gains, Guard, InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SecondInput, SelfTuner,
+    SetpointWeights, TunerSettings,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::aircraft::Forces;
@@ -166,7 +166,7 @@ fn sensor(delay_s: f64, channel: u32) -> Option<Sensor> {
 }
 
 fn limits(size: f64) -> Option<Limits<f64>> {
-    Some(Limits::new("test", -size, size).expect("allowed"))
+    Some(Limits::new(ControllerSetting::OutputLimits, -size, size).expect("allowed"))
 }
 
 #[test]
@@ -192,7 +192,8 @@ fn every_form_of_controller_and_every_part_of_the_loop_is_linearised() {
 #[test]
 fn limits_of_the_tuner_are_linearised_as_they_act() {
     let mut case = base();
-    let within = |lower, upper| Limits::new("gain", lower, upper).expect("allowed");
+    let within =
+        |lower, upper| Limits::new(ControllerSetting::GainLimits, lower, upper).expect("allowed");
     let (kp, ki, kd) = (within(1.1, 1.3), within(0.25, 0.35), within(0.4, 0.6));
     case.settings.gain_limits = Some(GainLimits { kp, ki, kd });
     agrees(&case, 0.8);

@@ -1,9 +1,9 @@
 //! Scenarios with every option that a proof accepts, drawn from a number.
 
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights,
-    TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainLimits,
+    Gains, Guard, InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner,
+    SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_sim::actuator::{Actuator, Lag};
@@ -144,7 +144,8 @@ fn sensor(dice: &mut Dice) -> Option<Sensor> {
 
 fn config(dice: &mut Dice, dt_s: f64, size: f64) -> PidConfig<f64> {
     let angle = |dice: &mut Dice, upper: f64| dice.between(5.0, upper) * DEG;
-    let around_zero = |limit: f64| Limits::new("limits", -limit, limit).expect("allowed");
+    let around_zero =
+        |limit: f64| Limits::new(ControllerSetting::OutputLimits, -limit, limit).expect("allowed");
     let limits = if dice.happens(0.2) { Some(around_zero(angle(dice, 30.0))) } else { None };
     let slew_rad_s = if dice.happens(0.1) { Some(angle(dice, 200.0)) } else { None };
     let can_cut = limits.is_some() || slew_rad_s.is_some();
@@ -209,8 +210,12 @@ fn settings(dice: &mut Dice, nominal: Gains<f64>) -> TunerSettings<f64> {
     };
     let around = |dice: &mut Dice, gain: f64| {
         let share = dice.between(0.1, 0.6);
-        Limits::new("gain limits", gain * (1.0 - share), gain * (1.0 + share) + 1e-9)
-            .expect("allowed")
+        Limits::new(
+            ControllerSetting::GainLimits,
+            gain * (1.0 - share),
+            gain * (1.0 + share) + 1e-9,
+        )
+        .expect("allowed")
     };
     let gain_limits = if dice.happens(0.2) {
         Some(GainLimits {

@@ -1,7 +1,9 @@
 //! Tuners to ask about, and numbers to ask with.
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
-use fspid_core::{GainLimits, Gains, Law, Limits, Sample, SelfTuner, TunerSettings};
+use fspid_core::{
+    ControllerSetting, GainLimits, Gains, Law, Limits, Sample, SelfTuner, TunerSettings,
+};
 use fspid_proof::gain_set::GainCell;
 
 pub(crate) const PRINTED: &str = include_str!("../../../../data/rule-tables/printed.toml");
@@ -43,7 +45,8 @@ pub(crate) fn leaking(leakage_per_s: f64) -> Law<f64> {
 }
 
 pub(crate) fn limits() -> GainLimits<f64> {
-    let between = |lower, upper| Limits::new("a gain", lower, upper).expect("in order");
+    let between =
+        |lower, upper| Limits::new(ControllerSetting::GainLimits, lower, upper).expect("in order");
     GainLimits { kp: between(1.5, 2.6), ki: between(0.4, 10.0), kd: between(0.0, 1.2) }
 }
 

@@ -1,9 +1,9 @@
 //! Every key of the file arrives where it belongs: the scenario built by hand is the one read.
 
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling, GainLimits, Gains,
-    Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig, ReferenceModel,
-    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
+    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
@@ -33,7 +33,7 @@ fn named(name: &str, controller: Controller) -> NamedController {
 }
 
 fn limits(lower: f64, upper: f64) -> Limits<f64> {
-    Limits::new("limits", lower, upper).expect("allowed")
+    Limits::new(ControllerSetting::OutputLimits, lower, upper).expect("allowed")
 }
 
 /// The configuration of `pid` and `fspid`, which set everything.

@@ -1,9 +1,9 @@
 //! The controller of a certificate's loop: radians and supervisor units, nothing left to defaults.
 
 use fspid_core::{
-    AntiWindup, Change, DeadZone, Derivative, ErrorSign, Fspid, GainLimits, Gains, Guard,
-    InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner, SetpointWeights,
-    TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainLimits,
+    Gains, Guard, InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner,
+    SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, Label, OutOfRange, Output, RuleTable, Supervisor};
 use fspid_sim::Controller;
@@ -112,7 +112,7 @@ fn ends(limits: &Limits<f64>) -> Ends {
     [limits.lower(), limits.upper()].map(|end| end.is_finite().then_some(end))
 }
 
-fn limits(what: &'static str, [lower, upper]: Ends) -> Result<Limits<f64>, String> {
+fn limits(what: ControllerSetting, [lower, upper]: Ends) -> Result<Limits<f64>, String> {
     let lower = lower.unwrap_or(f64::NEG_INFINITY);
     let upper = upper.unwrap_or(f64::INFINITY);
     Limits::new(what, lower, upper).map_err(|error| error.to_string())
@@ -172,7 +172,10 @@ impl ControllerFile {
                 IntegralFile::Literal => IntegralForm::Literal,
             },
             anti_windup: self.anti_windup.build()?,
-            limits: self.output_limits_rad.map(|ends| limits("output limits", ends)).transpose()?,
+            limits: self
+                .output_limits_rad
+                .map(|ends| limits(ControllerSetting::OutputLimits, ends))
+                .transpose()?,
             slew_rad_s: self.slew_limit_rad_s,
             guard: Guard::new(self.sample_guard_rad).map_err(|error| error.to_string())?,
             ..PidConfig::sampled_every(dt_s)
@@ -194,7 +197,7 @@ impl AntiWindupFile {
         Ok(match *self {
             Self::None => AntiWindup::None,
             Self::Clamping { limits_rad } => {
-                AntiWindup::Clamping(limits("anti-windup limits", limits_rad)?)
+                AntiWindup::Clamping(limits(ControllerSetting::AntiWindupLimits, limits_rad)?)
             }
             Self::Conditional => AntiWindup::Conditional,
             Self::BackCalculation { tracking_s } => AntiWindup::BackCalculation { tracking_s },
@@ -295,7 +298,7 @@ fn samples(defuzzifier: Defuzzifier) -> Option<u32> {
 }
 
 fn gain_limits([kp, ki, kd]: [Ends; 3]) -> Result<GainLimits<f64>, String> {
-    let limits = |ends| limits("gain limits", ends);
+    let limits = |ends| limits(ControllerSetting::GainLimits, ends);
     Ok(GainLimits { kp: limits(kp)?, ki: limits(ki)?, kd: limits(kd)? })
 }
 

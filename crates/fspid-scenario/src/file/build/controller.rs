@@ -1,9 +1,9 @@
 //! Controllers.
 
 use fspid_core::{
-    AntiWindup, Change, ConfigError, DeadZone, Derivative, Fspid, GainCoupling, GainLimits, Gains,
-    Guard, InputScale, InputSets, Law, Limits, Pid, PidConfig, ReferenceModel, SecondInput,
-    SelfTuner, SetCentres, SetpointWeights, TunerSettings,
+    AntiWindup, Change, ConfigError, ControllerSetting, DeadZone, Derivative, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, Law, Limits, Pid, PidConfig, ReferenceModel,
+    SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_sim::Controller;
 
@@ -115,7 +115,7 @@ fn config(
 pub(super) fn ends(report: &mut Report, section: &Section, dt_s: f64) -> Option<PidConfig<f64>> {
     let limits = match section.get(keys::OUTPUT_LIMITS_DEG) {
         Some((lower, upper)) => {
-            let limits = Limits::new("output limits", rad(lower), rad(upper));
+            let limits = Limits::new(ControllerSetting::OutputLimits, rad(lower), rad(upper));
             Some(judged(report, (section, keys::OUTPUT_LIMITS_DEG), limits)?)
         }
         None => None,
@@ -195,7 +195,7 @@ fn anti_windup(report: &mut Report, section: &Section, limited: bool) -> Option<
                 );
                 return None;
             }
-            let limits = Limits::new("anti-windup limits", rad(lower), rad(upper));
+            let limits = Limits::new(ControllerSetting::AntiWindupLimits, rad(lower), rad(upper));
             AntiWindup::Clamping(judged(report, (part, keys::UPPER_DEG), limits)?)
         }
         AntiWindupKind::Conditional => AntiWindup::Conditional,
@@ -357,7 +357,7 @@ fn gain_limits(report: &mut Report, part: &Section) -> Option<GainLimits<f64>> {
         let lower = part.get(least).unwrap_or(f64::NEG_INFINITY);
         let upper = part.get(most).unwrap_or(f64::INFINITY);
         if lower < upper {
-            return Limits::new("gain limits", lower, upper).ok();
+            return Limits::new(ControllerSetting::GainLimits, lower, upper).ok();
         }
         let message = format!("not above `{}`", least.name);
         let allowed = format!("above {lower:?}");
@@ -368,16 +368,21 @@ fn gain_limits(report: &mut Report, part: &Section) -> Option<GainLimits<f64>> {
     Some(GainLimits { kp: kp?, ki: ki?, kd: kd? })
 }
 
+/// The nominal gain that a setting is.
+fn nominal_key(what: ControllerSetting) -> Option<Key<f64>> {
+    match what {
+        ControllerSetting::NominalKp => Some(keys::NOMINAL_KP),
+        ControllerSetting::NominalKi => Some(keys::NOMINAL_KI),
+        ControllerSetting::NominalKd => Some(keys::NOMINAL_KD),
+        _ => None,
+    }
+}
+
 /// Reports nominal gains outside their limits at the gain itself.
 fn refuse_nominal(report: &mut Report, section: &Section, error: ConfigError) {
     let ConfigError::OutsideLimits { what, found, lower, upper } = error else {
         judged(report, (section, keys::SUPERVISOR), Err::<(), _>(error));
         return;
-    };
-    let gain = match what {
-        "nominal kp" => keys::NOMINAL_KP,
-        "nominal ki" => keys::NOMINAL_KI,
-        _ => keys::NOMINAL_KD,
     };
     let message = format!("{found:?} is outside `gain_limits`");
     let allowed = match (lower.is_finite(), upper.is_finite()) {
@@ -385,11 +390,10 @@ fn refuse_nominal(report: &mut Report, section: &Section, error: ConfigError) {
         (true, false) => format!("{lower:?} or above"),
         _ => format!("{upper:?} or below"),
     };
-    let (place, path) = match section.get(keys::NOMINAL) {
-        Some(nominal) => (nominal.at(gain), nominal.path(gain)),
-        None => (section.at(keys::NOMINAL_ISA), section.path(keys::NOMINAL_ISA)),
-    };
-    report.missing(place, &path, message, allowed);
+    match section.get(keys::NOMINAL).zip(nominal_key(what)) {
+        Some((nominal, gain)) => nominal.problem(report, gain, message, allowed),
+        None => section.problem(report, keys::NOMINAL_ISA, message, allowed),
+    }
 }
 
 /// Says where the accumulating law would take the gains at rest, if nothing stops it.
