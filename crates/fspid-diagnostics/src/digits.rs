@@ -1,5 +1,7 @@
 //! Numbers in sentences: no more digits than mean something, and never a row of zeros.
 
+use std::ops::Range;
+
 /// Smallest size that is written without a power of ten.
 const SMALLEST: f64 = 1e-4;
 /// The first size that is written as a power of ten.
@@ -20,7 +22,13 @@ pub fn to_digits(value: f64, digits: usize) -> String {
 /// The shortest digits that read back as `value`; with a power of ten below 1e-4 and from 1e6 on.
 #[must_use]
 pub fn shortest(value: f64) -> String {
-    match value == 0.0 || (SMALLEST..LARGEST).contains(&value.abs()) || !value.is_finite() {
+    shortest_within(value, SMALLEST..LARGEST)
+}
+
+/// As [`shortest`], with a power of ten for sizes outside of `plain`.
+#[must_use]
+pub fn shortest_within(value: f64, plain: Range<f64>) -> String {
+    match value == 0.0 || plain.contains(&value.abs()) || !value.is_finite() {
         // No sign of a zero.
         true => format!("{}", value + 0.0),
         false => format!("{value:e}"),

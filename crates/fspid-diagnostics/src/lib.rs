@@ -13,5 +13,5 @@ mod report;
 pub use nearest::{known_words, nearest};
 pub use note::Note;
 pub use place::{LineStarts, Place};
-pub use problem::{Problem, Problems};
+pub use problem::{Problem, Problems, in_two};
 pub use report::{Report, Span, excerpt};

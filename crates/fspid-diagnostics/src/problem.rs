@@ -9,6 +9,14 @@ use crate::place::Place;
 /// Most problems that are kept; a file with more has the same mistake many times over.
 const MOST: usize = 100;
 
+/// What is wrong, and what is allowed (empty where nothing is said): errors of other crates say both in one sentence, the
+/// second behind "; allowed is" or "; allowed are".
+#[must_use]
+pub fn in_two(sentence: &str) -> (&str, &str) {
+    let joints = ["; allowed is ", "; allowed are "];
+    joints.iter().find_map(|joint| sentence.split_once(joint)).unwrap_or((sentence, ""))
+}
+
 /// One thing that is wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {

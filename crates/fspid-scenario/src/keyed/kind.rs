@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use fspid_diagnostics::digits::shortest_within;
 use fspid_fuzzy::{Defuzzifier, Grid, NumberGrid};
 use serde_json::Value;
 
@@ -126,11 +127,7 @@ impl Range {
 
 /// A number for people: without a point where it is whole, with an exponent where it is long.
 fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e7).contains(&value.abs()) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
+    shortest_within(value, 1e-3..1e7)
 }
 
 /// A kind with the type of what it holds.

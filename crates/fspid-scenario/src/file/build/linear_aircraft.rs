@@ -11,7 +11,7 @@ use crate::file::spec::flight as keys;
 use crate::file::spec::flight::ModelWord;
 use crate::keyed::{Key, Section};
 use crate::units::FOOT_M;
-use fspid_diagnostics::Report;
+use fspid_diagnostics::{Report, digits::without_zeros};
 
 /// How far an airspeed may be from that of the model, as a share of it: the dynamic pressure changes by 1 %, less than
 /// the derivatives of any source are good for, and speeds rounded to whole knots fit in above 100 kt.
@@ -88,9 +88,7 @@ fn holds(
 /// A value in the unit of a key, to the four decimals that say more than any source.
 fn in_unit(key: Key<f64>, value_si: f64) -> String {
     let (size, unit) = (unit_size(key.unit()), key.unit());
-    let value = format!("{:.4}", value_si / size);
-    let value = value.trim_end_matches('0').trim_end_matches('.');
-    format!("{value} {unit}")
+    format!("{} {unit}", without_zeros(&format!("{:.4}", value_si / size)))
 }
 
 fn assume(report: &mut Report, (part, key): (&Section, Key<str>), target: TrimTarget) {

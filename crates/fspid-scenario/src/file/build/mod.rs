@@ -40,7 +40,7 @@ use crate::keyed::{KeyName, Section};
 use crate::requirement::Requirement;
 use crate::tuning::{Contest, Tuning};
 use crate::units::radians as rad;
-use fspid_diagnostics::Report;
+use fspid_diagnostics::{Report, in_two};
 
 /// A scenario with what is asked of it.
 pub(crate) struct Built {
@@ -184,16 +184,6 @@ fn judged<T, E: std::fmt::Display>(
             None
         }
     }
-}
-
-/// A model's sentence in two: what is wrong, and what is allowed if it says so at its end.
-fn in_two(text: &str) -> (&str, &str) {
-    for words in ["; allowed is ", "; allowed are "] {
-        if let Some(parts) = text.split_once(words) {
-            return parts;
-        }
-    }
-    (text, "")
 }
 
 /// Names of all controllers, sound or not.

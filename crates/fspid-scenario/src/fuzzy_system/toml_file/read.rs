@@ -16,8 +16,7 @@ use super::{activation, membership, norm, rules};
 use crate::keyed::Section;
 use crate::keyed::check;
 use crate::keyed::document::{self, Value as Written};
-use fspid_diagnostics::Problems;
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Problems, Report, Span, in_two};
 
 /// Where the things of a file stand, by what [`System::new`] calls them.
 type Places = BTreeMap<String, Span>;
@@ -51,8 +50,7 @@ fn tell(report: &mut Report, errors: &[SystemError], places: &Places, whole: Spa
     for error in errors {
         let place = places.get(&error.place).copied().unwrap_or(whole);
         let text = error.problem.to_string();
-        let (message, allowed) = text.split_once("; allowed ").unwrap_or((&text, ""));
-        let allowed = allowed.trim_start_matches("is ").trim_start_matches("are ");
+        let (message, allowed) = in_two(&text);
         report.missing(place, &error.place, message, allowed);
     }
 }

@@ -5,7 +5,7 @@ use fspid_fuzzy::{Grid, GridError, LABEL_COUNT, Label};
 use super::value::wrong_type;
 use crate::keyed::Kind;
 use crate::keyed::document::{Item, Value};
-use fspid_diagnostics::{Report, Span};
+use fspid_diagnostics::{Report, Span, in_two};
 
 pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Grid> {
     let Value::Text(text) = &item.value else {
@@ -18,7 +18,7 @@ pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Grid
             let place = place_of(report, item.place, error, hole);
             // The sentence says what is allowed after a semicolon.
             let text = hole.map_or_else(|| error.to_string(), Hole::in_words);
-            let (message, allowed) = text.split_once("; allowed are ").unwrap_or((&text, ""));
+            let (message, allowed) = in_two(&text);
             report.value(place, path, message, allowed);
             None
         }
