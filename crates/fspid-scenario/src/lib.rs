@@ -12,13 +12,18 @@
 )]
 
 pub mod aircraft;
+mod carried;
 pub mod dispersion;
 pub mod file;
 pub mod flyer;
 pub mod fuzzy_system;
 mod keyed;
 pub mod measure;
+mod refused;
+mod regular_file;
 pub mod requirement;
+mod setting_path;
 pub mod supervisor;
+mod system_text;
 pub mod tuning;
 pub mod units;

@@ -1,10 +1,9 @@
 //! A supervisor by the name of its rule table.
 
-use std::fmt;
-
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
 use crate::file;
+pub use crate::refused::Refused;
 
 /// A supervisor as it is named on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,32 +17,6 @@ pub struct Question<'a> {
     /// Name of the policy for inputs beyond the range.
     pub out_of_range: &'a str,
 }
-
-/// Why there is no answer: every problem, in sentences.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refused(Vec<String>);
-
-impl Refused {
-    /// One reason.
-    #[must_use]
-    pub fn one(reason: impl Into<String>) -> Self {
-        Self(vec![reason.into()])
-    }
-
-    /// All reasons.
-    #[must_use]
-    pub fn all(reasons: Vec<String>) -> Self {
-        Self(reasons)
-    }
-}
-
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.join("\n"))
-    }
-}
-
-impl std::error::Error for Refused {}
 
 impl Question<'_> {
     /// The supervisor in question.
@@ -72,9 +45,9 @@ impl Question<'_> {
         let (Ok(table), Ok(defuzzifier), Some(policy), true) =
             (table, defuzzifier, policy, usable_range)
         else {
-            return Err(Refused(problems));
+            return Err(Refused::all(problems));
         };
         Supervisor::new(&table, self.range, defuzzifier, policy)
-            .map_err(|problem| Refused(vec![problem.to_string()]))
+            .map_err(|problem| Refused::one(problem.to_string()))
     }
 }

@@ -1,3 +1,4 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
 mod file;
+mod modules;

@@ -8,9 +8,8 @@ use fspid_aircraft::{AircraftError, Departure, Quantity, TrimFailure};
 
 use super::number::{short, significant};
 use super::units::{Kind, Units};
-use crate::file::Problems;
-use crate::supervisor::Refused;
-use fspid_diagnostics::nearest;
+use crate::refused::Refused;
+use fspid_diagnostics::{Problems, nearest};
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq)]

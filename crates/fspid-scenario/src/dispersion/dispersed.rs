@@ -1,7 +1,7 @@
 //! A dispersion of a scenario: which of its places get what is drawn.
 
 use super::{Distribution, Draw};
-use crate::file::{NewValue, SettingPath};
+use crate::setting_path::{NewValue, SettingPath};
 
 /// What is drawn for a run, as it is kept beside the run's results.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,8 +9,8 @@ use fspid_aircraft::aerodynamics::derivatives::{
 };
 use fspid_aircraft::data::{AircraftData, DerivativeData, Inertia, Loading, ModelData, Reference};
 use fspid_aircraft::{Range, Travel, Validity};
-use fspid_data::AIRCRAFT;
 
+use crate::carried::aircraft_text;
 use crate::file::files::Files;
 use crate::file::spec::aircraft as keys;
 use crate::file::spec::{AIRCRAFT_FILE, AircraftKind};
@@ -34,18 +34,6 @@ pub(super) fn unit_size(unit: &str) -> f64 {
         "slug/ft3" => SLUG_KG / (FOOT_M * FOOT_M * FOOT_M),
         _ => 1.0,
     }
-}
-
-/// Names of the aircraft that the program carries.
-#[must_use]
-pub fn aircraft_names() -> Vec<&'static str> {
-    AIRCRAFT.iter().map(|(name, _)| *name).collect()
-}
-
-/// The text of an aircraft by its name.
-pub(super) fn aircraft_text(name: &str) -> Option<&'static str> {
-    let known = AIRCRAFT.iter().find(|(known, _)| *known == name);
-    known.map(|(_, text)| *text)
 }
 
 /// The aircraft of that name, `None` if the program carries none.
@@ -281,6 +269,7 @@ mod tests {
     use super::*;
     use fspid_aircraft::data::Laws;
     use fspid_aircraft::{AircraftError, Environment};
+    use fspid_data::AIRCRAFT;
 
     fn text(name: &str) -> &'static str {
         AIRCRAFT.iter().find(|(known, _)| *known == name).expect("carried").1

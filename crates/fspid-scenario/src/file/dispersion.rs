@@ -4,13 +4,14 @@ use crate::dispersion::{
     Choice, Correlated, Dispersion, DispersionError, Distribution, LogUniform, Normal, Target,
     Uniform,
 };
+use crate::file::Template;
 use crate::file::spec::dispersion as keys;
 use crate::file::spec::dispersion::{
     DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
 };
-use crate::file::{NewValue, SettingPath, Template};
 use crate::keyed::Section;
 use crate::keyed::document::{Item, Value};
+use crate::setting_path::{NewValue, SettingPath};
 use fspid_diagnostics::{Problems, Report, Span};
 
 /// Most values that a choice is made from.

@@ -1,11 +1,11 @@
 //! What is asked of a scenario from outside of its file: changes, ready sets, files of requirements.
 
 use crate::file::files::Files;
-use crate::file::spec::REQUIREMENT_FILE;
-use crate::file::spec::requirement as keys;
 use crate::keyed::check;
 use crate::keyed::document::{self, Item, Member, Value};
 use crate::requirement::SET_NAMES;
+use crate::requirement::keys;
+use crate::requirement::keys::REQUIREMENT_FILE;
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
 
 /// Everything that comes from outside of a scenario's file.

@@ -1,15 +1,14 @@
 //! The files that a file refers to, and the digest of all that was read.
 
-use std::io::Read as _;
 use std::path::Path;
-use std::sync::OnceLock;
 
 use sha2::{Digest as _, Sha256};
 
 use crate::file::overrides::Change;
 use crate::keyed::Section;
 use crate::keyed::Table;
-use crate::keyed::document::{FILE_LIMIT, Item};
+use crate::keyed::document::Item;
+use crate::regular_file::read_regular;
 use fspid_diagnostics::Report;
 
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
@@ -136,57 +135,4 @@ impl<'a> Files<'a> {
             format!("not UTF-8 from byte {position} on")
         })
     }
-}
-
-/// Why a file could not be read, in the same words everywhere.
-#[must_use]
-pub fn unread_in_words(reason: &std::io::Error) -> String {
-    match reason.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "it may not be read".to_owned(),
-        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
-        _ => reason.to_string(),
-    }
-}
-
-/// The name that stands for standard input.
-pub const STANDARD_INPUT: &str = "-";
-
-/// What standard input holds. It is read once, for a scenario is asked for again and again.
-fn standard_input() -> Result<Vec<u8>, String> {
-    static READ: OnceLock<Result<Vec<u8>, String>> = OnceLock::new();
-    let read = || {
-        let mut bytes = Vec::new();
-        let mut limited = std::io::stdin().lock().take(FILE_LIMIT + 1);
-        limited.read_to_end(&mut bytes).map_err(|error| unread_in_words(&error))?;
-        match bytes.len() as u64 > FILE_LIMIT {
-            true => Err(format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024))),
-            false => Ok(bytes),
-        }
-    };
-    READ.get_or_init(read).clone()
-}
-
-/// The bytes of a regular file that is not too large.
-pub fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
-    let reason = |error: std::io::Error| unread_in_words(&error);
-    if path == Path::new(STANDARD_INPUT) {
-        return standard_input();
-    }
-    let metadata = std::fs::metadata(path).map_err(reason)?;
-    if !metadata.is_file() {
-        return Err("it is no regular file".to_owned());
-    }
-    let too_large = || format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024));
-    if metadata.len() > FILE_LIMIT {
-        return Err(too_large());
-    }
-    let file = std::fs::File::open(path).map_err(reason)?;
-    let mut bytes = Vec::new();
-    let mut limited = file.take(FILE_LIMIT + 1);
-    limited.read_to_end(&mut bytes).map_err(reason)?;
-    if bytes.len() as u64 > FILE_LIMIT {
-        return Err(too_large());
-    }
-    Ok(bytes)
 }

@@ -3,10 +3,11 @@
 
 use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
-use crate::file::setting::{grid_text, named_step};
-use crate::file::{NewValue, SettingPath, Template};
-use crate::keyed::check::number_grid;
+use crate::file::Template;
+use crate::file::setting::named_step;
+use crate::keyed::check::{grid_text, number_grid};
 use crate::keyed::document::{Item, Member, Value};
+use crate::setting_path::{NewValue, SettingPath, bare};
 use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
 use fspid_diagnostics::{Problems, Report, Span, nearest};
 use fspid_optimise::Scale;
@@ -179,12 +180,6 @@ fn rows(grid: &NumberGrid<f64>, place: Span) -> Value {
         item(Value::Array(row.iter().map(|number| item(Value::Float(*number))).collect()))
     };
     Value::Array(grid.iter().map(row).collect())
-}
-
-/// A name as a step of a path.
-pub(super) fn bare(name: &str) -> String {
-    let is_bare = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
-    if is_bare && !name.is_empty() { name.to_owned() } else { format!("\"{name}\"") }
 }
 
 fn name_of(item: &Item) -> &str {

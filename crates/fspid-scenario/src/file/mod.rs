@@ -24,7 +24,6 @@ mod mark;
 mod overrides;
 mod paths;
 mod preset;
-mod renamed;
 mod requirement;
 mod rewrite;
 mod schema;
@@ -43,31 +42,29 @@ use fspid_sim::Scenario;
 use crate::dispersion::Dispersion;
 use crate::file::build::Built;
 use crate::file::files::Files;
-use crate::fuzzy_system::other_kind;
 use crate::keyed::{check, document};
+use crate::setting_path::renamed;
+use crate::system_text::other_kind;
 use crate::tuning::{Contest, Mark, Tuning};
 use fspid_diagnostics::{Place, Report, Span};
 
+pub use crate::carried::{aircraft_names, plant_names, rule_table_names};
+pub use crate::regular_file::{STANDARD_INPUT, read_regular, unread_in_words};
 pub use crate::requirement::Requirement;
+pub use crate::setting_path::{NewValue, SettingPath};
 pub use aircraft::parse_aircraft_at;
-pub use aircraft::{aircraft, aircraft_names, parse_aircraft};
+pub use aircraft::{aircraft, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
 pub use extra::Extra;
-pub use files::{STANDARD_INPUT, read_regular, unread_in_words};
 pub use fspid_diagnostics::{Problem, Problems, known_words};
 pub use paths::{PathRow, paths, paths_json, paths_text};
-pub use preset::{
-    Condition, PlantFile, load_rule_table, parse_plant, plant_names, preset, rule_table,
-    rule_table_names,
-};
-pub(crate) use requirement::requirement_set;
+pub use preset::{Condition, PlantFile, load_rule_table, parse_plant, preset, rule_table};
 pub use rewrite::{Replay, replay};
 pub use schema::schema;
 pub use setting::Setting;
-pub(crate) use setting::grid_text;
 pub use spec::scenario_keys;
 pub use tables::read_model;
-pub use template::{NewValue, SettingPath, Template};
+pub use template::Template;
 pub use templates::{STARTERS, Starter, starter_named};
 
 /// A scenario with what its file asks of it.
@@ -203,7 +200,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Study, LoadError> {
 /// A file that cannot be read, is too large, or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, LoadError> {
     let name = path.display().to_string();
-    let bytes = files::read_regular(path)
+    let bytes = read_regular(path)
         .map_err(|reason| LoadError::Unreadable { path: name.clone(), reason })?;
     String::from_utf8(bytes).map_err(|error| {
         let problems = not_utf8(&name, error.as_bytes(), error.utf8_error().valid_up_to());

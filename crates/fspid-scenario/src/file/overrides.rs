@@ -4,17 +4,9 @@
 //! `plant.preset.numerator[0]`. Such a change waits in [`Files`] until the file has been read.
 
 use crate::file::files::Files;
-use crate::file::mark::bare;
-use crate::file::renamed;
 use crate::keyed::document::{Item, Member, Value, read_value};
+use crate::setting_path::{Step, renamed, steps};
 use fspid_diagnostics::{Report, Span, excerpt, nearest};
-
-/// A step of a path.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Step {
-    Name(String),
-    Index(usize),
-}
 
 /// Name of the key that lists changes in the file itself.
 pub(crate) const KEY: &str = "set";
@@ -150,50 +142,6 @@ impl Change {
 fn whole(report: &mut Report, origin: &str, text: &str) -> Span {
     let source = report.add_source(Some(origin.to_owned()), text);
     Span { source, start: 0, end: text.len() }
-}
-
-/// The steps of `controller[0].nominal.kp` or `controller."my PID".kp`.
-pub(crate) fn steps(path: &str) -> Option<Vec<Step>> {
-    let mut steps = Vec::new();
-    let mut rest = path.trim();
-    loop {
-        if let Some(quoted) = rest.strip_prefix('"') {
-            let (name, after) = quoted.split_once('"')?;
-            steps.push(Step::Name(name.to_owned()));
-            rest = after;
-        } else {
-            let end = rest.find(['.', '[']).unwrap_or(rest.len());
-            let (name, after) = rest.split_at(end);
-            if name.trim().is_empty() {
-                return None;
-            }
-            steps.push(Step::Name(name.trim().to_owned()));
-            rest = after;
-        }
-        while let Some(bracket) = rest.strip_prefix('[') {
-            let (index, after) = bracket.split_once(']')?;
-            steps.push(Step::Index(index.trim().parse().ok()?));
-            rest = after;
-        }
-        if rest.is_empty() {
-            // As deep as a file may nest.
-            return (steps.len() <= 64).then_some(steps);
-        }
-        rest = rest.strip_prefix('.')?;
-    }
-}
-
-/// The path of the steps, as [`steps`] reads it.
-pub(crate) fn path_of(steps: &[Step]) -> String {
-    let mut path = String::new();
-    for step in steps {
-        match step {
-            Step::Index(index) => path.push_str(&format!("[{index}]")),
-            Step::Name(name) if path.is_empty() => path.push_str(&bare(name)),
-            Step::Name(name) => path.push_str(&format!(".{}", bare(name))),
-        }
-    }
-    path
 }
 
 /// Follows the steps and sets what is there. Answers the path of a text on the way and the steps

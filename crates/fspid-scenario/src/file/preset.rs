@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use fspid_data::{PLANTS, RULE_TABLES};
 use fspid_fuzzy::RuleTable;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
+use crate::carried::{plant_text, rule_table_text};
 use crate::file::build::{data, elevator_sign};
 use crate::file::files::Files;
 use crate::file::spec::PLANT_FILE;
@@ -13,30 +13,6 @@ use crate::file::spec::data as keys;
 use crate::file::{check, document};
 use crate::keyed::Section;
 use fspid_diagnostics::{Problems, Report};
-
-/// Names of the plants that the program carries.
-#[must_use]
-pub fn plant_names() -> Vec<&'static str> {
-    PLANTS.iter().map(|(name, _)| *name).collect()
-}
-
-/// Names of the rule tables that the program carries.
-#[must_use]
-pub fn rule_table_names() -> Vec<&'static str> {
-    RULE_TABLES.iter().map(|(name, _)| *name).collect()
-}
-
-/// The text of a plant by its name.
-pub(crate) fn plant_text(name: &str) -> Option<&'static str> {
-    let known = PLANTS.iter().find(|(known, _)| *known == name);
-    known.map(|(_, text)| *text)
-}
-
-/// The text of a rule table by its name.
-pub(crate) fn rule_table_text(name: &str) -> Option<&'static str> {
-    let known = RULE_TABLES.iter().find(|(known, _)| *known == name);
-    known.map(|(_, text)| *text)
-}
 
 /// A linear aircraft with what is known about it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,8 @@
 //! Every setting of a scenario in one list, whether the file gave it or a default filled it in.
 
-use fspid_fuzzy::{Grid, LABEL_COUNT, Label};
+use fspid_fuzzy::LABEL_COUNT;
+
+use crate::keyed::check::grid_text;
 
 use crate::file::files::Files;
 use crate::file::rewrite;
@@ -215,12 +217,6 @@ pub(super) fn quoted(value: &str) -> String {
         c => c.to_string(),
     };
     format!("\"{}\"", value.chars().map(escaped).collect::<String>())
-}
-
-/// A grid as seven lines of seven labels.
-pub(crate) fn grid_text(grid: &Grid) -> String {
-    let row = |error| Label::ALL.map(|change| grid.at(error, change).name()).join(" ");
-    Label::ALL.map(row).join("\n")
 }
 
 #[cfg(test)]

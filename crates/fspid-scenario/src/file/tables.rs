@@ -9,9 +9,10 @@ use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
 use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};
-use crate::file::files::{Files, STANDARD_INPUT};
+use crate::file::files::Files;
 use crate::file::spec::tables as keys;
 use crate::keyed::{Key, Section};
+use crate::regular_file::STANDARD_INPUT;
 use fspid_diagnostics::{Report, Span};
 
 /// What each file of tables may be.

@@ -1,103 +1,17 @@
 //! A scenario that is read once and built many times, each time with other numbers.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::build::{Built, scenario};
 use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::Files;
-use super::overrides::{self, Found, Setting, Step};
-use super::renamed::{self, Renamed};
+use super::overrides::{self, Found, Setting};
+use crate::setting_path::{NewValue, SettingPath, steps};
 use crate::tuning::Mark;
 use fspid_diagnostics::{Problems, Report, Span};
 
 use super::{LoadError, Study, changed_document, check, spec};
-
-/// A place in a scenario, as `--set` names it: `controller.FSPID.nominal.kp`,
-/// `plant.preset.numerator[0]`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SettingPath {
-    text: String,
-    steps: Vec<Step>,
-}
-
-impl SettingPath {
-    /// Reads a path; `None` for a text that is none.
-    #[must_use]
-    pub fn parse(text: &str) -> Option<Self> {
-        Self::renamed(text).map(|(path, _)| path)
-    }
-
-    /// The same, and the key in it that was called by its old name.
-    pub(super) fn renamed(text: &str) -> Option<(Self, Option<&'static Renamed>)> {
-        let mut steps = overrides::steps(text)?;
-        let key = renamed::in_steps(&mut steps);
-        let text = key.map_or_else(|| text.trim().to_owned(), |_| overrides::path_of(&steps));
-        Some((Self { text, steps }, key))
-    }
-
-    /// The first name in it.
-    pub(crate) fn root(&self) -> &str {
-        match self.steps.first() {
-            Some(Step::Name(name)) => name,
-            _ => "",
-        }
-    }
-
-    /// As it was written, but for an old key.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-}
-
-/// What is put at a place.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NewValue {
-    /// A number.
-    Number(f64),
-    /// A whole number, such as a seed.
-    Integer(i64),
-    /// A text, such as the name of a plant.
-    Text(String),
-    /// True or false.
-    Boolean(bool),
-    /// Numbers in rows.
-    Rows(Vec<Vec<f64>>),
-}
-
-impl NewValue {
-    fn value(&self, place: Span) -> Value {
-        let item = |value| Item { place, value };
-        match self {
-            Self::Number(number) => Value::Float(*number),
-            Self::Integer(integer) => Value::Integer(*integer as f64, Some(*integer)),
-            Self::Text(text) => Value::Text(text.clone()),
-            Self::Boolean(boolean) => Value::Boolean(*boolean),
-            Self::Rows(rows) => {
-                let row = |row: &Vec<f64>| {
-                    Value::Array(row.iter().map(|number| item(Value::Float(*number))).collect())
-                };
-                Value::Array(rows.iter().map(|numbers| item(row(numbers))).collect())
-            }
-        }
-    }
-}
-
-/// As `--set` takes it; reads back as the same bits.
-impl fmt::Display for NewValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number:?}"),
-            Self::Integer(integer) => write!(f, "{integer}"),
-            Self::Text(text) => write!(f, "{text:?}"),
-            Self::Boolean(boolean) => write!(f, "{boolean}"),
-            // As a list of lists of TOML.
-            Self::Rows(rows) => write!(f, "{rows:?}"),
-        }
-    }
-}
 
 /// A scenario with everything that comes from outside, ready to be built with other numbers.
 #[derive(Clone, Debug)]
@@ -161,7 +75,7 @@ impl Template {
 
     /// Where a part of the scenario stands; its beginning if it is not there.
     pub(super) fn place_of(&self, path: &str) -> Span {
-        let steps = overrides::steps(path).unwrap_or_default();
+        let steps = steps(path).unwrap_or_default();
         match overrides::find(&self.document, &steps, "") {
             Found::Here(item) => item.place,
             _ => self.document.place,
@@ -190,7 +104,7 @@ impl Template {
         let (mut report, mut document) = (self.report.clone(), self.document.clone());
         for (path, value) in values {
             let set = setting(&mut report, path, value);
-            overrides::put(&mut report, files, &mut document, (&path.steps, &set));
+            overrides::put(&mut report, files, &mut document, (path.steps(), &set));
         }
         let built = build(&mut report, files, &document);
         files.report_unused_changes(&mut report);
@@ -236,7 +150,7 @@ impl Template {
     /// The number at a place, in the scenario or in a file that it names; `None` where there is none.
     #[must_use]
     pub fn number_at(&self, path: &SettingPath) -> Option<f64> {
-        let (key, rest) = match overrides::find(&self.document, &path.steps, "") {
+        let (key, rest) = match overrides::find(&self.document, path.steps(), "") {
             Found::Here(item) => return number(item),
             Found::InFile(key, rest) => (key, rest),
             Found::Nothing => return None,
@@ -265,7 +179,7 @@ fn build(report: &mut Report, files: &mut Files<'_>, document: &Item) -> Option<
 /// A new value with the words that a problem quotes.
 fn setting(report: &mut Report, path: &SettingPath, value: &NewValue) -> Setting {
     let text = value.to_string();
-    let origin = format!("--set {}={text}", path.text);
+    let origin = format!("--set {}={text}", path.text());
     let source = report.add_source(Some(origin.clone()), &text);
     let place = Span { source, start: 0, end: text.len() };
     Setting { origin, item: Item { place, value: value.value(place) } }

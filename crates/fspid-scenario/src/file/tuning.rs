@@ -1,14 +1,15 @@
 //! Tuning and contest as files have them.
 
 use crate::file::dispersion::placed_texts;
+use crate::file::overrides;
 use crate::file::requirement::{limit_requirement, objective_requirement};
 use crate::file::spec::FRONT;
 use crate::file::spec::tuning as keys;
 use crate::file::spec::tuning::{ConstantLoadWord, OverWord};
-use crate::file::{overrides, renamed};
 use crate::keyed::{Key, Section};
 use crate::measure::Measure;
 use crate::requirement::Requirement;
+use crate::setting_path::renamed;
 use crate::tuning::{Case, Contest, Objective, Over, Tuning};
 use fspid_diagnostics::Report;
 

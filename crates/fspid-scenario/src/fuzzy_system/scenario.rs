@@ -5,32 +5,9 @@ use std::path::Path;
 use fspid_fuzzy::system::Parts;
 use fspid_sim::Controller;
 
-use super::load::{LoadError, Loaded, built};
-use super::toml_file;
 use crate::file;
-use crate::keyed::document::{Item, Value, read as read_document};
 use crate::supervisor::Refused;
-use fspid_diagnostics::Report;
-
-/// True for a text with controllers, however they are written.
-///
-/// A text that is no TOML is one if a line of it looks like their heading, so that what is wrong with it is told
-/// as of a scenario.
-pub(super) fn is_one(text: &str) -> bool {
-    if toml_file::is_of_this_kind(text) {
-        return false;
-    }
-    let is_heading = |line: &str| {
-        let heading: String = line.chars().filter(|c| !c.is_whitespace()).collect();
-        heading.starts_with("[[controller]]")
-    };
-    match read_document(&mut Report::default(), None, text) {
-        Some(Item { value: Value::Table(members), .. }) => {
-            members.iter().any(|member| member.name == "controller")
-        }
-        _ => text.lines().any(is_heading),
-    }
-}
+use crate::system_text::{LoadError, Loaded, built};
 
 /// The supervisor of the controller of this name, or of the only one that has any.
 ///

@@ -5,11 +5,13 @@
 
 mod condition;
 mod confidence;
+pub(crate) mod keys;
+pub(crate) mod read;
 mod set;
 
 pub use condition::{Air, Conditions};
 pub use confidence::Confidence;
-pub(crate) use set::{Choices, SetLine, set_names, set_text};
+pub(crate) use set::{Choices, set_names, set_text};
 pub use set::{RequirementSet, SET_NAMES, set};
 
 use crate::measure::Measure;

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use fspid_data::REQUIREMENTS as SETS;
 
 use super::condition::Air;
+use super::read::requirement_set;
 use super::{AskedIn, Conditions, Confidence, Origin, Requirement};
 use crate::measure::Measure;
 
@@ -27,7 +28,7 @@ pub fn set(name: &str) -> Option<RequirementSet> {
     // Read once: scenarios ask for them again and again.
     static READ: OnceLock<Vec<RequirementSet>> = OnceLock::new();
     // The tests read every set that is carried.
-    let read = |(name, text): (&str, &str)| crate::file::requirement_set(text, name).ok();
+    let read = |(name, text): (&str, &str)| requirement_set(text, name).ok();
     let sets = READ.get_or_init(|| SETS.into_iter().filter_map(read).collect());
     sets.iter().find(|set| set.name == name).cloned()
 }

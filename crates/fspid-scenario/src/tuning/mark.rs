@@ -1,7 +1,8 @@
 //! A place of a scenario that tuning may change.
 
 use super::{GridMark, NumbersMark};
-use crate::file::{NewValue, SettingPath};
+use crate::keyed::check::grid_text;
+use crate::setting_path::{NewValue, SettingPath};
 use fspid_optimise::Scale;
 
 /// A place that is marked free.
@@ -106,7 +107,7 @@ impl Mark {
             Free::Number(number) => {
                 NewValue::Number(number.at(unit.first().copied().unwrap_or(0.5)))
             }
-            Free::Grid(grid) => NewValue::Text(crate::file::grid_text(&grid.at(unit))),
+            Free::Grid(grid) => NewValue::Text(grid_text(&grid.at(unit))),
             Free::Numbers(numbers) => {
                 NewValue::Rows(numbers.at(unit).iter().map(|row| row.to_vec()).collect())
             }

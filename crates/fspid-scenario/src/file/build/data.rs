@@ -5,8 +5,8 @@ use fspid_lti::LtiError;
 use fspid_sim::{ElevatorSign, LinearPlant, SimError};
 
 use super::elevator_sign;
+use crate::carried::{plant_text, rule_table_text};
 use crate::file::files::Files;
-use crate::file::preset::{plant_text, rule_table_text};
 use crate::file::spec::controller::TABLE;
 use crate::file::spec::data::{DELTA_KD, DELTA_KI, DELTA_KP};
 use crate::file::spec::scenario as keys;

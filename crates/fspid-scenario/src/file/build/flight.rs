@@ -9,7 +9,8 @@ use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
 use super::{data, judged, linear_aircraft, loading, rad};
 use crate::aircraft::{AircraftFailure, Units};
-use crate::file::aircraft::{Given, aircraft_data, aircraft_text, quantity};
+use crate::carried::aircraft_text;
+use crate::file::aircraft::{Given, aircraft_data, quantity};
 use crate::file::files::Files;
 use crate::file::spec::AIRCRAFT_FILE;
 use crate::file::spec::flight as keys;

@@ -6,8 +6,8 @@ use super::{data, judged};
 use crate::file::files::Files;
 use crate::file::spec::controller as keys;
 use crate::file::spec::data::{NUMBER_DELTA_KD, NUMBER_DELTA_KI, NUMBER_DELTA_KP};
-use crate::fuzzy_system::{Format, LoadError, Options, numbers_of, read};
 use crate::keyed::Section;
+use crate::system_text::{Format, LoadError, Options, numbers_of, read};
 use fspid_diagnostics::Report;
 
 /// How far the range of a system may be from that of the supervisor, as a part of it: a range that was

@@ -2,7 +2,7 @@
 
 use super::data::{GRIDS_TABLE, NUMBER_GRIDS_TABLE};
 use super::{ANGLE_LIMIT_DEG, angle};
-use crate::file::preset::rule_table_names;
+use crate::carried::rule_table_names;
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
     Choice, DEFUZZIFIER_NAME, FILE_PATH, Key, KeyRow, Range, Rules, Section, TEXT, Table, Way,

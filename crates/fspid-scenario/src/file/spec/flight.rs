@@ -8,7 +8,7 @@ use crate::keyed::{
 };
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 
-use crate::file::aircraft::aircraft_names;
+use crate::carried::aircraft_names;
 
 words! {
     /// How an aircraft is flown.

@@ -32,3 +32,35 @@ fn walk(table: &'static Table, before: &str, found: &mut BTreeSet<String>) {
         found.insert(format!("{before}kind"));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setting_path::renamed::{EACH, RENAMED, Renamed};
+
+    /// Names of the keys of the table at a path, of all kinds.
+    fn names(path: &str) -> Vec<&'static str> {
+        let mut tables: Vec<&'static Table> = vec![&SCENARIO];
+        for part in path.split('.').filter(|part| *part != EACH) {
+            let keys = tables.iter().flat_map(|table| table.all_keys());
+            let inner =
+                keys.filter(|key| key.name().as_str() == part).filter_map(|key| match key.kind() {
+                    Kind::Table(table) | Kind::Tables { table, .. } => Some(*table),
+                    _ => None,
+                });
+            tables = inner.collect();
+        }
+        tables.into_iter().flat_map(Table::all_keys).map(|key| key.name().as_str()).collect()
+    }
+
+    #[test]
+    fn a_new_key_is_in_the_specification_and_an_old_one_is_not() {
+        for Renamed { table, old, new } in &RENAMED {
+            let known = names(table);
+            assert!(
+                known.contains(new) && !known.contains(old),
+                "{table}: {old}, {new}: {known:?}"
+            );
+        }
+    }
+}

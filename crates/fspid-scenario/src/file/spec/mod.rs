@@ -12,7 +12,6 @@ pub(crate) mod dispersion;
 pub(crate) mod flight;
 mod keys;
 pub(crate) mod lqi;
-pub(crate) mod requirement;
 pub(crate) mod scenario;
 pub(crate) mod schedule;
 pub(crate) mod sensor;
@@ -25,7 +24,6 @@ use crate::keyed::{KindOf, Range, number};
 pub(crate) use aircraft::{AIRCRAFT_FILE, AircraftKind};
 pub(crate) use data::{PLANT_FILE, RULE_FILE};
 pub use keys::scenario_keys;
-pub(crate) use requirement::REQUIREMENT_FILE;
 pub(crate) use scenario::SCENARIO;
 pub(crate) use tuning::FRONT;
 

@@ -14,12 +14,12 @@ use super::air::{GUST_TABLE, TURBULENCE_TABLE, WIND_TABLE};
 use super::controller::CONTROLLER_TABLE;
 use super::dispersion::DISPERSION_TABLE;
 use super::flight::AIRCRAFT_TABLE;
-use super::requirement::REQUIREMENT_TABLE;
 use super::sensor::SENSOR_TABLE;
 use super::signal::{DISTURBANCE_TABLE, SETPOINT_TABLE};
 use super::tuning::{CONTEST_TABLE, TUNING_TABLE};
+use crate::carried::plant_names;
 use crate::file::overrides;
-use crate::file::preset::plant_names;
+use crate::requirement::keys::REQUIREMENT_TABLE;
 
 pub(crate) const SCHEMA: Key<i64> = required("schema", whole(1, 1), "Version of this format.");
 pub(crate) const NAME: Key<str> = required("name", TEXT, "Name in reports.");

@@ -1,6 +1,5 @@
 //! How a scenario is tuned, and on what tuned controllers are compared.
 
-use super::requirement::{CONDITIONS, LIMITS};
 use crate::file::overrides;
 use crate::keyed::document::Item;
 use crate::keyed::word::words;
@@ -9,6 +8,7 @@ use crate::keyed::{
     required, tables, whole, word,
 };
 use crate::measure::Measure;
+use crate::requirement::keys::{CONDITIONS, LIMITS};
 
 /// Names of the optimisers.
 const OPTIMISERS: [&str; 7] = ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "nsga-ii"];

@@ -25,6 +25,12 @@ pub(super) fn check(report: &mut Report, item: &Item, path: &str) -> Option<Grid
     }
 }
 
+/// A grid as seven lines of seven labels.
+pub(crate) fn grid_text(grid: &Grid) -> String {
+    let row = |error| Label::ALL.map(|change| grid.at(error, change).name()).join(" ");
+    Label::ALL.map(row).join("\n")
+}
+
 /// An empty cell. Row and column count from 0.
 #[derive(Clone, Copy)]
 struct Hole {

@@ -5,6 +5,7 @@ mod grid;
 pub(crate) mod number_grid;
 mod value;
 
+pub(crate) use grid::grid_text;
 pub(crate) use value::allowed;
 
 use crate::keyed::document::{Item, Member, Value};

@@ -1,5 +1,6 @@
 //! What responses must meet: requirements in a scenario, in a file of their own, and in ready sets.
 
+use super::{Air, Confidence, set_names};
 use crate::keyed::document::Item;
 use crate::keyed::word::Word;
 use crate::keyed::{
@@ -7,7 +8,6 @@ use crate::keyed::{
     name_in, not_negative, number, optional, own, plain, positive, required, tables, whole, word,
 };
 use crate::measure::Measure;
-use crate::requirement::{Air, Confidence, set_names};
 
 impl Word for Measure {
     const WORDS: &'static [&'static str] = &Self::NAMES;
@@ -52,7 +52,7 @@ pub(crate) const MOST: Key<f64> =
     optional("most", not_negative(""), "Largest value that is met, in the unit of the measure.");
 
 /// Limits.
-pub(super) const LIMITS: &[KeyRow] = &[&LEAST, &MOST];
+pub(crate) const LIMITS: &[KeyRow] = &[&LEAST, &MOST];
 
 pub(crate) const STEP_DEG: Key<f64> = optional(
     "step_deg",
@@ -161,7 +161,7 @@ const WITH_SET: &[KeyName] =
     &[LEVEL.name, CATEGORY.name, SPEED.name, FIRST_AEROELASTIC_MODE_HZ.name];
 
 /// A requirement of a scenario.
-pub(super) static REQUIREMENT_TABLE: Table = choosing(
+pub(crate) static REQUIREMENT_TABLE: Table = choosing(
     "Limits of a measure that every controller, or one, must meet; or a ready set of them.",
     &[ASKED, LIMITS, CONDITIONS, ORIGIN, OF_SET, WHERE],
     &[Choice {

@@ -30,7 +30,7 @@ pub fn schema() -> Value {
 }
 
 /// True for a text that says it is a fuzzy system; also for one with other mistakes.
-pub(super) fn is_of_this_kind(text: &str) -> bool {
+pub(crate) fn is_of_this_kind(text: &str) -> bool {
     let mut head = text.lines().map(str::trim).take_while(|line| !line.starts_with('['));
     head.any(|line| {
         let value = line.strip_prefix("kind").map(str::trim_start);
