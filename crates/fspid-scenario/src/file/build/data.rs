@@ -1,7 +1,7 @@
 //! Plants and rule tables: by name, by file or by their numbers.
 
 use fspid_fuzzy::RuleTable;
-use fspid_lti::LtiError;
+use fspid_lti::{LtiError, Polynomial};
 use fspid_sim::{ElevatorSign, LinearPlant, SimError};
 
 use super::elevator_sign;
@@ -64,7 +64,10 @@ pub(crate) fn coefficients(
             let (place, path) = match &error {
                 SimError::Linear(LtiError::NotFinite { .. }) => farthest_coefficient(section)?,
                 _ => {
-                    let key = key_at_fault(&error);
+                    // The denominator where it is none by itself; all else is said of the numerator.
+                    let is_polynomial = |numbers: &[f64]| Polynomial::new(numbers).is_ok();
+                    let of_denominator = is_polynomial(&numerator) && !is_polynomial(&denominator);
+                    let key = if of_denominator { keys::DENOMINATOR } else { keys::NUMERATOR };
                     (section.at(key), section.path(key))
                 }
             };
@@ -89,19 +92,6 @@ fn farthest_coefficient(section: &Section) -> Option<(Span, String)> {
     let farthest = all.iter().max_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
     let (_, place, key, index) = *farthest;
     Some((place, format!("{}[{index}]", section.path(key))))
-}
-
-/// The list of coefficients that an error is about.
-fn key_at_fault(error: &SimError) -> Key<[f64]> {
-    match error {
-        SimError::Linear(
-            LtiError::Empty { what }
-            | LtiError::ZeroPolynomial { what }
-            | LtiError::LeadingZero { what, .. }
-            | LtiError::DegreeTooHigh { what, .. },
-        ) if *what == keys::DENOMINATOR.name.as_str() => keys::DENOMINATOR,
-        _ => keys::NUMERATOR,
-    }
 }
 
 /// What is wrong with coefficients, and what is allowed.
