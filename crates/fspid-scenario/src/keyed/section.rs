@@ -54,12 +54,13 @@ pub(crate) enum Checked {
 impl Section {
     pub(crate) fn entry(&self, name: impl Into<KeyName>) -> Option<&Entry> {
         let name = name.into();
+        let found = self.entries.iter().find(|entry| entry.name == name);
         debug_assert!(
-            self.spec.all_keys().any(|key| key.name() == name),
+            found.is_some() || self.spec.all_keys().any(|key| key.name() == name),
             "\"{}\" has no key `{name}`",
             self.spec.doc
         );
-        self.entries.iter().find(|entry| entry.name == name)
+        found
     }
 
     /// What a key holds: what is written, or its default.
