@@ -186,3 +186,15 @@ impl fmt::Display for Problems {
 }
 
 impl std::error::Error for Problems {}
+
+#[cfg(test)]
+mod tests {
+    use super::in_two;
+
+    #[test]
+    fn a_sentence_is_split_where_it_says_what_is_allowed() {
+        assert_eq!(in_two("kp is NaN; allowed is a number"), ("kp is NaN", "a number"));
+        assert_eq!(in_two("3 rows; allowed are 7, one each"), ("3 rows", "7, one each"));
+        assert_eq!(in_two("it has no end; none is needed"), ("it has no end; none is needed", ""));
+    }
+}

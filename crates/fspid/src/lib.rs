@@ -62,8 +62,9 @@ pub use fspid_tune as tune;
 /// What most programs need: `use fspid::prelude::*;`.
 pub mod prelude {
     pub use fspid_core::{
-        AntiWindup, ConfigError, Derivative, Fspid, GainLimits, Gains, InputScale, Law, Limits,
-        Pid, PidConfig, Sample, SelfTuner, SetpointWeights, State, TunerSettings,
+        AntiWindup, ConfigError, ControllerSetting, Derivative, Fspid, GainLimits, Gains,
+        InputScale, Law, Limits, Pid, PidConfig, Sample, SelfTuner, SetpointWeights, State,
+        TunerSettings,
     };
     pub use fspid_fuzzy::{
         Defuzzifier, FuzzyError, Grid, Label, OutOfRange, RuleTable, Supervisor,
