@@ -28,7 +28,7 @@ impl Prover<'_> {
         let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let form = solution.p;
-            let level = self.level(&corners, (&form, &rest));
+            let level = self.level(&corners, &form, &rest);
             (Claim::CommonQuadratic { form, rate }, level)
         })
     }
@@ -69,7 +69,7 @@ impl Prover<'_> {
         let problem = Problem { conditions: &conditions, cones: &forms, rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let solve::Solution { p: form, multipliers, .. } = solution;
-            let level = self.level(&corners, (&form, &rest));
+            let level = self.level(&corners, &form, &rest);
             (Claim::SProcedure { form, rate, multipliers }, level)
         })
     }

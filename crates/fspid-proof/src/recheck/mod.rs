@@ -12,7 +12,7 @@ use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
-use crate::check::{IntervalMatrix, NotProved, decreases, is_positive, prove_growth};
+use crate::check::{IntervalMatrix, NotProved, Relaxation, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
@@ -255,18 +255,18 @@ impl<'a> Recheck<'a> {
         match &self.certificate.claim {
             Claim::CommonQuadratic { form, rate } => {
                 let proved = self.common_quadratic(form, *rate)?;
-                self.with_pitch(proved, (form, *rate))
+                self.with_pitch(proved, form, *rate)
             }
             Claim::SProcedure { form, rate, multipliers } => {
                 let proved = self.s_procedure(form, *rate, multipliers)?;
-                self.with_pitch(proved, (form, *rate))
+                self.with_pitch(proved, form, *rate)
             }
             Claim::BoundedRate(claim) => self.bounded_rate(claim),
             Claim::FrozenGrowth { input, factor, form, direction } => {
-                self.growth(&[*input], *factor, (form, direction)).map(only)
+                self.growth(&[*input], *factor, form, direction).map(only)
             }
             Claim::SequenceGrowth { inputs, factor, form, direction } => {
-                self.growth(inputs, *factor, (form, direction)).map(only)
+                self.growth(inputs, *factor, form, direction).map(only)
             }
         }
     }
@@ -274,7 +274,8 @@ impl<'a> Recheck<'a> {
     fn with_pitch(
         &self,
         inequalities: usize,
-        (form, rate): (&Matrix, f64),
+        form: &Matrix,
+        rate: f64,
     ) -> Result<Proved, RecheckError> {
         let level = self.certificate.level;
         let within = |level| limits::pitch_within(&self.model, form, level);
@@ -301,22 +302,23 @@ impl<'a> Recheck<'a> {
     fn holds(
         &self,
         HeldGains { gains, change_gain }: HeldGains,
-        (form, rate): (&Matrix, f64),
-        region: Option<(f64, &IntervalMatrix)>,
+        form: &Matrix,
+        rate: f64,
+        relaxation: Option<Relaxation<'_>>,
     ) -> Result<usize, RecheckError> {
         let doubt = |reason| RecheckError::Inequality { gains: Some(gains), reason };
         let at = points(gains);
         let model = self.model.with_change_gain(Interval::point(change_gain));
-        decreases(form, rate, &closed(&model, at)?, region).map_err(doubt)?;
+        decreases(form, rate, &closed(&model, at)?, relaxation).map_err(doubt)?;
         let Some(level) = self.certificate.level else { return Ok(1) };
         let description = &self.certificate.description;
-        let limits = limits::prove(description, &model, at, (form, level, &self.rest));
-        Ok(1 + limits.map_err(doubt)?)
+        let limits = limits::rows(description, &model, at, &self.rest);
+        Ok(1 + limits::prove(&limits, form, level).map_err(doubt)?)
     }
 
     fn common_quadratic(&self, form: &Matrix, rate: f64) -> Result<usize, RecheckError> {
         self.form(form, rate)?;
-        let holds = |(_, gains)| self.holds(gains, (form, rate), None);
+        let holds = |(_, gains)| self.holds(gains, form, rate, None);
         let proved = self.held.held_corners().map(holds).sum::<Result<usize, RecheckError>>()?;
         Ok(1 + proved)
     }
@@ -349,9 +351,10 @@ impl<'a> Recheck<'a> {
         let mut proved = 1;
         for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
             let region = cone_form(&self.model, fspid, cone);
+            let relaxation = Relaxation { weight: *tau, matrix: &region };
             let inside = corners.iter().filter(|(cell, _)| cone.cells.contains(cell));
             for (_, gains) in inside {
-                proved += self.holds(*gains, (form, rate), Some((*tau, &region)))?;
+                proved += self.holds(*gains, form, rate, Some(relaxation))?;
             }
         }
         Ok(proved)
@@ -362,7 +365,8 @@ impl<'a> Recheck<'a> {
         &self,
         inputs: &[[f64; 2]],
         factor: f64,
-        (form, direction): (&Matrix, &[f64]),
+        form: &Matrix,
+        direction: &[f64],
     ) -> Result<usize, RecheckError> {
         if !(factor >= 1.0 && factor.is_finite()) {
             return Err(malformed("the factor of the growth is below 1"));

@@ -182,7 +182,7 @@ impl Search {
         let forms: Vec<Dense> = self.forms.iter().map(back).collect();
         let mut margin = f64::INFINITY;
         for (now, motion) in &self.places {
-            margin = margin.min(margin_at(&self.family, &forms, (now, motion), level)?);
+            margin = margin.min(margin_at(&self.family, &forms, now, motion, level)?);
         }
         let forms = forms.iter().map(Dense::to_matrix).collect::<Option<_>>()?;
         Some(MovingForm { forms, margin, cells, steps })
@@ -199,7 +199,8 @@ fn mean(points: &[Vec<f64>]) -> Vec<f64> {
 fn margin_at(
     family: &GainFamily,
     forms: &[Dense],
-    (now, motion): (&[f64], &Motion),
+    now: &[f64],
+    motion: &Motion,
     level: f64,
 ) -> Option<f64> {
     let lower = combination(forms, now).cholesky()?;
