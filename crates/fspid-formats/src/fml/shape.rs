@@ -92,7 +92,8 @@ pub(super) fn read(term: Element<'_, '_>, context: &mut Context<'_>) -> Option<M
         context.problem(shape.start(), shape.name(), message, row.count.to_string());
         return None;
     }
-    checked(shape, (row.shape)(&params), context)
+    let (kind, params) = (row.shape)(&params);
+    checked(shape, kind, params, context)
 }
 
 fn names() -> impl Iterator<Item = &'static str> + Clone {
@@ -144,7 +145,7 @@ fn pi(shape: Element<'_, '_>, params: &[f64], context: &mut Context<'_>) -> Opti
         "`piShape` with two numbers is read as centre and width: 0 at one width from the centre";
     context.note_once(shape.start(), message);
     let sides = vec![centre - width, centre, centre, centre + width];
-    checked(shape, (ShapeKind::Pi, sides), context)
+    checked(shape, ShapeKind::Pi, sides, context)
 }
 
 fn points(shape: Element<'_, '_>, context: &mut Context<'_>) -> Option<Membership> {
@@ -170,13 +171,14 @@ fn points(shape: Element<'_, '_>, context: &mut Context<'_>) -> Option<Membershi
             params.push(context.number(point, name)?);
         }
     }
-    checked(shape, (ShapeKind::Points, params), context)
+    checked(shape, ShapeKind::Points, params, context)
 }
 
 /// The set, unless its parameters are refused; then at the one that is wrong.
 fn checked(
     shape: Element<'_, '_>,
-    (kind, params): (ShapeKind, Vec<f64>),
+    kind: ShapeKind,
+    params: Vec<f64>,
     context: &mut Context<'_>,
 ) -> Option<Membership> {
     let (kind, params) = narrow(kind, params);
