@@ -11,6 +11,7 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::units::degrees;
 use fspid_study::judgement::Judgement;
 use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
+use serde::Serialize;
 
 use crate::engine::FlightResult;
 use crate::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, TableError};
@@ -54,7 +55,8 @@ pub struct Run {
 }
 
 /// Which values of a measure are bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Bad {
     /// High ones, as of overshoot.
     High,
@@ -193,7 +195,7 @@ impl Rows {
         let mut table = Table::new(Arc::clone(&self.schema));
         for run in runs {
             for (place, controller) in self.controllers.iter().enumerate() {
-                self.push(&mut table, run, (place, controller))?;
+                self.push(&mut table, run, place, controller)?;
             }
         }
         Ok(table)
@@ -203,7 +205,8 @@ impl Rows {
         &self,
         table: &mut Table,
         run: &Run,
-        (place, controller): (usize, &str),
+        place: usize,
+        controller: &str,
     ) -> Result<(), TableError> {
         let flight = run.flights.as_ref().map(|flights| flights.get(place));
         let flight = flight.ok().flatten();

@@ -7,8 +7,9 @@ use fspid_campaign::rows::HIT_GROUND;
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::statistics::{rank, share};
 use fspid_campaign::summary::{
-    Bad, ControllerSummary, Extreme, MeasureSummary, NotMerged, Note, SENSITIVITY_RUNS,
-    SensitivityTarget, Severity, Summary, SummaryError, SummarySettings, json, text,
+    Bad, ControllerSummary, Extreme, MeasureCount, MeasureSummary, NotMerged, Note,
+    SENSITIVITY_RUNS, SensitivityTarget, Severity, Summary, SummaryError, SummarySettings, json,
+    text,
 };
 use fspid_campaign::table::{
     Cell, Column, Kind, Reader, Schema, Table, TableError, Values, Writer,
@@ -156,7 +157,7 @@ fn no_failures_in_three_hundred_runs_are_bounded_from_above() {
     let failed = summary.controllers[0].failed;
     assert_eq!((failed.count, failed.of, failed.estimate), (0, 300, Some(0.0)));
     assert!(near(failed.at_most.expect("a bound"), 1.0 - libm::pow(0.05, 1.0 / 300.0)));
-    assert!(near(failed.interval[1], 1.0 - libm::pow(0.025, 1.0 / 300.0)));
+    assert!(near(failed.upper, 1.0 - libm::pow(0.025, 1.0 / 300.0)));
     assert_eq!(summary.notes, []);
     assert!(summary.controllers[0].failed_runs.is_empty());
     assert!(text(&summary).contains("fails 0 of 300: at most 1.0 % (95 %)"), "{}", text(&summary));
@@ -181,7 +182,8 @@ fn a_campaign_whose_flights_all_diverged_has_no_measures_and_says_so() {
     // The earliest first, and ten of them.
     let runs: Vec<u64> = controller.failed_runs.iter().map(|failed| failed.run).collect();
     assert_eq!(runs, [39, 38, 37, 36, 35, 34, 33, 32, 31, 30]);
-    let missing = vec![("overshoot_pct".to_owned(), 40), ("requirement.low.value".to_owned(), 40)];
+    let missing = ["overshoot_pct", "requirement.low.value"];
+    let missing = missing.map(|name| MeasureCount { name: name.to_owned(), flights: 40 }).to_vec();
     assert_eq!(summary.notes, [Note::Missing { controller: "A".to_owned(), measures: missing }]);
     assert!(text(&summary).contains("fails 40 of 40: at least"), "{}", text(&summary));
     assert!(json(&summary)["controllers"][0]["measures"][1]["mean"].is_null());
@@ -269,7 +271,7 @@ fn texts_explain_by_class_and_numbers_by_rank() {
     let depends = &summary.controllers[0].sensitivities;
     let overshoot = SensitivityTarget::Measure("overshoot_pct".to_owned());
     let overshoot = depends.iter().find(|it| it.of == overshoot).expect("there");
-    assert_eq!((overshoot.used, overshoot.used_of), (300, [300, 300]));
+    assert_eq!((overshoot.used, [overshoot.runs_used, overshoot.runs]), (300, [300, 300]));
     let runs: Vec<Row> = (0..300).map(good).collect();
     let y: Vec<f64> = runs.iter().filter_map(|row| row.overshoot_pct).collect();
     let gain: Vec<f64> = runs.iter().map(|row| row.gain).collect();
@@ -375,15 +377,15 @@ fn of_many_runs_the_first_are_asked_what_measures_depend_on() {
         true => good(run),
         false => Row { overshoot_pct: Some(1000.0 + run as f64), ..good(run) },
     });
-    let used = SENSITIVITY_RUNS as u64;
-    assert_eq!(summary.notes, [Note::FirstRunsOnly { used, of: runs }]);
+    let runs_used = SENSITIVITY_RUNS as u64;
+    assert_eq!(summary.notes, [Note::FirstRunsOnly { runs_used, runs }]);
     let controller = &summary.controllers[0];
     let overshoot = measure(controller, "overshoot_pct");
     assert_eq!((overshoot.count, overshoot.highest[0].run), (runs, runs - 1));
     let depends = &controller.sensitivities[2];
-    assert_eq!((depends.used, depends.used_of), (used, [used, runs]));
-    let y: Vec<f64> = (0..used).filter_map(|run| good(run).overshoot_pct).collect();
-    let gain: Vec<f64> = (0..used).map(|run| good(run).gain).collect();
+    assert_eq!((depends.used, [depends.runs_used, depends.runs]), (runs_used, [runs_used, runs]));
+    let y: Vec<f64> = (0..runs_used).filter_map(|run| good(run).overshoot_pct).collect();
+    let gain: Vec<f64> = (0..runs_used).map(|run| good(run).gain).collect();
     assert_eq!(depends.influences[0].correlation, rank::spearman(&gain, &y));
 }
 
@@ -550,7 +552,7 @@ fn the_text_fits_into_a_hundred_columns_and_the_json_says_the_same() {
     assert_eq!(json["controllers"][1]["name"], "FSPID");
     let failed = &json["controllers"][0]["failed"];
     assert_eq!(failed["of"], 60);
-    assert_eq!(failed["upper"].as_f64(), Some(summary.controllers[0].failed.interval[1]));
+    assert_eq!(failed["upper"].as_f64(), Some(summary.controllers[0].failed.upper));
     let measures = json["controllers"][0]["measures"].as_array().expect("a list");
     assert_eq!(measures.len(), summary.controllers[0].measures.len());
     let named = |name: &str| measures.iter().find(|it| it["name"] == name).expect("there");

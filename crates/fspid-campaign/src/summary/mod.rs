@@ -28,9 +28,9 @@ mod text;
 pub mod words;
 
 pub use data::{
-    Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureSummary, Note,
-    Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity, SensitivityTarget,
-    Severity, Summary, SummarySettings, VerdictCount,
+    Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureCount,
+    MeasureSummary, Note, Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity,
+    SensitivityTarget, Severity, Summary, SummarySettings, VerdictCount,
 };
 pub use error::{NotMerged, SummaryError};
 pub use json::json;
