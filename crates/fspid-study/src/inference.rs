@@ -3,6 +3,7 @@
 use fspid_core::fuzzy::{Inference, Supervisor};
 use serde_json::{Value, json};
 
+use crate::json::{merged, present};
 use crate::rows::Table;
 use fspid_diagnostics::lines;
 
@@ -10,14 +11,12 @@ use fspid_diagnostics::lines;
 #[must_use]
 pub fn json(inference: &Inference<f64>) -> Value {
     let delta = inference.delta;
-    let mut answer = json!({"delta_kp": delta.kp, "delta_ki": delta.ki, "delta_kd": delta.kd});
-    if inference.clamped {
-        answer["clamped"] = json!(true);
-    }
-    if inference.underflowed {
-        answer["underflowed"] = json!(true);
-    }
-    answer
+    let outputs = json!({ "delta_kp": delta.kp, "delta_ki": delta.ki, "delta_kd": delta.kd });
+    let remarks = present(json!({
+        "clamped": inference.clamped.then_some(true),
+        "underflowed": inference.underflowed.then_some(true),
+    }));
+    merged([outputs, remarks])
 }
 
 /// The answer for people.

@@ -21,7 +21,7 @@ impl CheckedFile {
             sentence(certificate)
         );
         let dt_s = certificate.description.controller.config().dt_s;
-        push_claim(&mut out, (certificate, self.result.as_ref().ok()), dt_s);
+        push_claim(&mut out, certificate, self.result.as_ref().ok(), dt_s);
         if let Ok(rechecked) = &self.result {
             push_rechecked(&mut out, rechecked);
             push_kept(&mut out, certificate, rechecked);

@@ -125,7 +125,7 @@ fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
         None => f64::NAN,
     };
     if let Some((certificate, rechecked)) = found(outcome) {
-        push_claim(out, (certificate, Some(rechecked)), dt_s);
+        push_claim(out, certificate, Some(rechecked), dt_s);
         push_rechecked(out, rechecked);
     }
     push_largest(out, outcome);
@@ -150,7 +150,8 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
 /// What is claimed, with what its re-check found where it holds.
 pub(super) fn push_claim(
     out: &mut String,
-    (certificate, rechecked): (&Certificate, Option<&Rechecked>),
+    certificate: &Certificate,
+    rechecked: Option<&Rechecked>,
     dt_s: f64,
 ) {
     let remains = rechecked.is_some_and(|rechecked| rechecked.remains_rad > 0.0);

@@ -4,14 +4,16 @@ use std::fmt;
 
 use fspid_core::Gains;
 use fspid_sim::RestPoint;
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::analysis::held_in_words;
+use crate::json::present;
 use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::units::degrees;
 
 /// A step of the command.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StepAt {
     /// Which, counted from 1.
     pub number: usize,
@@ -24,7 +26,7 @@ pub struct StepAt {
 }
 
 /// One of the plants of a flight whose plant changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlantAt {
     /// 0 for the first, otherwise the change after which it is the plant.
     pub index: usize,
@@ -79,40 +81,30 @@ impl Place {
     /// For programs; only what there is.
     #[must_use]
     pub fn json(&self) -> Value {
-        let mut whole = Map::new();
-        let mut put = |key: &str, value: Option<Value>| {
-            if let Some(value) = value {
-                whole.insert(key.to_owned(), value);
-            }
-        };
-        put(
-            "step",
-            self.step.map(|step| {
-                json!({ "number": step.number, "at_s": step.at_s, "from_deg": step.from_deg, "to_deg": step.to_deg })
-            }),
-        );
-        put("at_s", self.at_s.map(|at_s| json!(at_s)));
-        put(
-            "plant",
-            self.plant.map(|plant| json!({ "index": plant.index, "from_s": plant.from_s })),
-        );
-        put("setpoint_deg", self.rest.map(|at| json!(degrees(at.setpoint_rad))));
-        put("load_deg", self.rest.map(|at| json!(degrees(at.load_rad))));
-        put("frozen_gains", self.frozen.map(|frozen| frozen_json(&frozen)));
-        put("frequency_rad_s", self.frequency_rad_s.map(|omega| json!(omega)));
-        put("spectral_radius", self.spectral_radius.map(|radius| json!(radius)));
-        Value::Object(whole)
+        present(json!({
+            "step": self.step,
+            "at_s": self.at_s,
+            "plant": self.plant,
+            "setpoint_deg": self.rest.map(|at| degrees(at.setpoint_rad)),
+            "load_deg": self.rest.map(|at| degrees(at.load_rad)),
+            "frozen_gains": self.frozen.map(|frozen| frozen.json()),
+            "frequency_rad_s": self.frequency_rad_s,
+            "spectral_radius": self.spectral_radius,
+        }))
     }
 }
 
-fn frozen_json(frozen: &FrozenAt) -> Value {
-    let Gains { kp, ki, kd } = frozen.gains;
-    let mut value = json!({ "kp": kp, "ki": ki, "kd": kd });
-    if let Some([error, change]) = frozen.inputs {
-        value["supervisor_error"] = json!(error);
-        value["supervisor_change"] = json!(change);
+impl FrozenAt {
+    fn json(&self) -> Value {
+        let Gains { kp, ki, kd } = self.gains;
+        present(json!({
+            "kp": kp,
+            "ki": ki,
+            "kd": kd,
+            "supervisor_error": self.inputs.map(|[error, _]| error),
+            "supervisor_change": self.inputs.map(|[_, change]| change),
+        }))
     }
-    value
 }
 
 impl fmt::Display for Place {

@@ -10,7 +10,8 @@ pub(super) fn findings_of(
     audit: &Audit<'_>,
     input: usize,
     along: &AlongInput,
-    (meant, unit): (bool, f64),
+    meant: bool,
+    unit: f64,
 ) -> [Finding; 2] {
     let name = audit.input(input);
     let (mark, way) = direction(audit, along, meant);

@@ -13,8 +13,8 @@ pub(super) fn findings(audit: &Audit<'_>, index: usize) -> Vec<Finding> {
         let unit = (surface.most.bounds[1] - surface.least.bounds[0]).abs();
         all.push(at_rest(audit, surface, unit));
         for (input, found) in surface.along.iter().enumerate() {
-            let meant = (labels_go_one_way(audit, index, input), unit);
-            all.extend(along::findings_of(audit, input, found, meant));
+            let meant = labels_go_one_way(audit, index, input);
+            all.extend(along::findings_of(audit, input, found, meant, unit));
         }
         all.push(symmetry(audit, surface));
     }

@@ -133,7 +133,7 @@ impl Slice<'_> {
                 };
                 surface.render(SurfaceKind::Relief)
             }
-            axes => curve(title, name, (axes, self), values),
+            axes => curve(title, name, axes, self, values),
         }
     }
 
@@ -180,7 +180,8 @@ impl Slice<'_> {
 fn curve(
     title: String,
     name: &str,
-    (axes, slice): (&[(usize, Vec<f64>)], &Slice<'_>),
+    axes: &[(usize, Vec<f64>)],
+    slice: &Slice<'_>,
     values: &[f64],
 ) -> Svg {
     let (input, xs) = axes.first().map_or((0, [].as_slice()), |(n, xs)| (*n, xs.as_slice()));

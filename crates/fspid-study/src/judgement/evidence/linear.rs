@@ -126,7 +126,7 @@ fn of_rest(rest: &RestLoop, place: Place, requirement: &Requirement) -> Result<C
         Measure::GainMargin | Measure::GainMarginLow | Measure::GainMarginHigh
             if requirement.conditions.has_band() =>
         {
-            gain_margin_in_band((rest, place), &margins, requirement)
+            gain_margin_in_band(rest, place, &margins, requirement)
         }
         Measure::GainCrossover => {
             let value = margins.gain_crossover_rad_s.ok_or(NotEvaluated::NoCrossover)?;
@@ -199,7 +199,8 @@ const SAME_FACTOR: f64 = 1e-9;
 ///
 /// Between the two ends of the gain margin poles may touch the limit of stability and turn back; these are no limits.
 fn gain_margin_in_band(
-    (rest, place): (&RestLoop, Place),
+    rest: &RestLoop,
+    place: Place,
     margins: &Margins,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
