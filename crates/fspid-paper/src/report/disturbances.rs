@@ -49,8 +49,16 @@ impl Match {
     }
 }
 
-/// The disturbance scenarios at their stored size, with the names of their traces.
-pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simulation)> {
+/// The flight of a disturbance scenario at its stored size.
+pub(in crate::report) struct StoredFlight {
+    /// Name of its traces.
+    pub(in crate::report) name: String,
+    study: Study,
+    pub(in crate::report) simulation: Simulation,
+}
+
+/// The disturbance scenarios at their stored size.
+pub(in crate::report) fn flights(library: &Library) -> Vec<StoredFlight> {
     let mut flights = Vec::new();
     for shape in SHAPES {
         for entry in ENTRIES {
@@ -58,7 +66,8 @@ pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simul
                 Simulation::of_window(&study).ok().map(|simulation| (study, simulation))
             });
             if let Some((study, simulation)) = flown {
-                flights.push((format!("disturbance-{shape}-{entry}"), study, simulation));
+                let name = format!("disturbance-{shape}-{entry}");
+                flights.push(StoredFlight { name, study, simulation });
             }
         }
     }
@@ -110,11 +119,11 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
 }
 
 /// The form of a shape as its scenario has it.
-fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
+fn form(shape: &str, flights: &[StoredFlight]) -> String {
     let named =
-        flights.iter().find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
-    named.map_or_else(String::new, |(_, study, _)| {
-        settings::disturbance_forms(&study.settings).join(" and ")
+        flights.iter().find(|flown| flown.name.starts_with(&format!("disturbance-{shape}-")));
+    named.map_or_else(String::new, |flown| {
+        settings::disturbance_forms(&flown.study.settings).join(" and ")
     })
 }
 
@@ -169,7 +178,7 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
 
 fn response(
     shape: &str,
-    (name, study, simulation): &(String, Study, Simulation),
+    StoredFlight { name, study, simulation }: &StoredFlight,
 ) -> Option<Figure> {
     if *name != format!("disturbance-{shape}-{SHOWN_AT}") {
         return None;
@@ -205,11 +214,11 @@ fn outcome(sweeps: &[Sweep]) -> Table {
 }
 
 /// The gains that are compared: the first two are the same everywhere.
-fn gains(flights: &[(String, Study, Simulation)]) -> Table {
+fn gains(flights: &[StoredFlight]) -> Table {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
     let mut table = Table::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
-    for (index, (name, study, _)) in flights.iter().enumerate() {
+    for (index, StoredFlight { name, study, .. }) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");
             if index > 0 && !tuned {

@@ -55,7 +55,7 @@ fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
         let name = format!("traces/figure-{}-{}.csv", flown.figure.id, flown.fit.name());
         files.push((name, flown.simulation.csv()));
     }
-    for (name, _, simulation) in disturbances::flights(library) {
+    for disturbances::StoredFlight { name, simulation, .. } in disturbances::flights(library) {
         files.push((format!("traces/{name}.csv"), simulation.csv()));
     }
     files.push(("traces/long-term-change.csv".to_owned(), reproduction.long_term.csv()));

@@ -52,14 +52,10 @@ fn rows(figure: &str, study: &Study) -> Vec<Vec<Cell>> {
         return Vec::new();
     };
     let found = analysis.loops.iter().zip(&certification.results);
-    found.map(|(analysed, certified)| row(figure, study, (analysed, certified))).collect()
+    found.map(|(analysed, certified)| row(figure, study, analysed, certified)).collect()
 }
 
-fn row(
-    figure: &str,
-    study: &Study,
-    (analysed, certified): (&AnalysedLoop, &Certified),
-) -> Vec<Cell> {
+fn row(figure: &str, study: &Study, analysed: &AnalysedLoop, certified: &Certified) -> Vec<Cell> {
     let margin = |of: &dyn Fn(&Margins) -> f64, decimals, least| match analysed.margins() {
         Ok(margins) if of(&margins) < least => {
             Cell { class: "number unmet", ..Cell::number(fixed(of(&margins), decimals)) }
