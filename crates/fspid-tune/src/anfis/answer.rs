@@ -3,7 +3,7 @@
 use fspid_diagnostics::lines::line;
 use serde_json::{Value, json};
 
-use super::{Epoch, Learned};
+use super::Learned;
 
 impl Learned {
     /// The answer of `learn --format text`.
@@ -27,18 +27,10 @@ impl Learned {
     /// The answer of `learn --format json`.
     #[must_use]
     pub fn json(&self) -> Value {
-        let epoch = |epoch: &Epoch| {
-            let mut value = json!({ "training": epoch.training });
-            if let Some(validation) = epoch.validation {
-                value["validation"] = json!(validation);
-            }
-            value["step"] = json!(epoch.step);
-            value
-        };
         json!({
             "stop": self.stop.to_string(),
             "best_epoch": self.best + 1,
-            "epochs": self.history.iter().map(epoch).collect::<Vec<_>>(),
+            "epochs": self.history,
         })
     }
 }

@@ -75,7 +75,7 @@ impl Consequents {
             let unknowns = self.outputs.iter().zip(&mut triangles).zip(row.outputs);
             for (index, ((unknowns, triangle), &target)) in unknowns.enumerate() {
                 unknowns
-                    .fill(&mut line, (&system, index), &mut workspace)
+                    .fill(&mut line, &system, index, &mut workspace)
                     .ok_or(AnfisError::NotCovered { row: row.number })?;
                 triangle.add(&mut line, target);
             }
@@ -100,7 +100,8 @@ impl Unknowns {
     fn fill(
         &self,
         line: &mut Vec<f64>,
-        (system, index): (&System, usize),
+        system: &System,
+        index: usize,
         workspace: &mut Workspace,
     ) -> Option<()> {
         let fired = system.contributions(index, workspace);

@@ -32,7 +32,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     let cases = templates(source, &rules, &mut problems);
     let mut entrants = Vec::new();
     for name in &names {
-        match entrant(source, study, (name, &cases), &rules) {
+        match entrant(source, study, name, &cases, &rules) {
             Ok(entrant) => entrants.push(entrant),
             Err(error) => problems.push(in_lines(&format!("controller \"{name}\": {error}"))),
         }
@@ -138,7 +138,8 @@ fn templates(source: &Source, rules: &Rules, problems: &mut Vec<String>) -> Vec<
 fn entrant(
     source: &Source,
     study: &Study,
-    (name, cases): (&str, &[Template]),
+    name: &str,
+    cases: &[Template],
     rules: &Rules,
 ) -> Result<Entrant, TuneError> {
     let marks = marks_of(study, name);

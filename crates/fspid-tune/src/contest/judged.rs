@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use serde::Serialize;
+
 use super::flight::{Flight, IAE, MEASURES, TRAVEL};
 use super::tuning::Found;
 
@@ -93,7 +95,7 @@ impl Quantity {
 }
 
 /// How many flights are lost or fail, and how many there are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Count {
     /// Flights that are lost.
     pub lost: u64,
@@ -102,8 +104,10 @@ pub struct Count {
     /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
     /// Flights of a loop that does not remove a constant load within the flight.
+    #[serde(rename = "constant_load_left")]
     pub load_left: u64,
     /// Those of them of which it stays for good.
+    #[serde(rename = "constant_load_stays")]
     pub load_stays: u64,
     /// All flights.
     pub of: u64,

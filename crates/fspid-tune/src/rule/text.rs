@@ -6,7 +6,9 @@ use fspid_scenario::units::degrees;
 use fspid_study::analysis::{Margins, PlantLoop};
 
 use super::outcome::least_damped;
-use super::{Design, FittedModel, Form, Identified, RelayExperiment, UltimatePoint};
+use super::{
+    Design, FittedModel, Form, Identified, ModelParameter, RelayExperiment, UltimatePoint,
+};
 
 impl Design {
     /// What was found out, the gains, what came of them, and the lines for the scenario's controller at the end.
@@ -174,10 +176,11 @@ fn push_relay(out: &mut String, relay: &RelayExperiment) {
 }
 
 fn push_model(out: &mut String, fitted: &FittedModel) {
-    let values = fitted.model.parameters().into_iter().map(|(name, value, unit)| {
-        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-        format!("{name} {value:.4}{unit}")
-    });
+    let values =
+        fitted.model.parameters().into_iter().map(|ModelParameter { name, value, unit }| {
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            format!("{name} {value:.4}{unit}")
+        });
     let mut values = values.collect::<Vec<_>>().join(", ");
     if let Some(relative) = fitted.model.relative_dead_time() {
         add(&mut values, format_args!("; L/(L + T) {relative:.3}"));
