@@ -14,7 +14,7 @@ use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
 use serde::Serialize;
 
 use crate::engine::FlightResult;
-use crate::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, TableError};
+use crate::table::{Cell, Column, ColumnTable, Kind, MAX_TEXT_BYTES, Schema, TableError};
 
 /// The verdict on a flight that ended at the ground.
 pub const HIT_GROUND: &str = "hit the ground";
@@ -191,8 +191,8 @@ impl Rows {
     ///
     /// # Errors
     /// None where the runs are of this campaign.
-    pub fn table(&self, runs: &[Run]) -> Result<Table, TableError> {
-        let mut table = Table::new(Arc::clone(&self.schema));
+    pub fn table(&self, runs: &[Run]) -> Result<ColumnTable, TableError> {
+        let mut table = ColumnTable::new(Arc::clone(&self.schema));
         for run in runs {
             for (place, controller) in self.controllers.iter().enumerate() {
                 self.push(&mut table, run, place, controller)?;
@@ -203,7 +203,7 @@ impl Rows {
 
     fn push(
         &self,
-        table: &mut Table,
+        table: &mut ColumnTable,
         run: &Run,
         place: usize,
         controller: &str,

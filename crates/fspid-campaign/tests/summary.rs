@@ -12,7 +12,7 @@ use fspid_campaign::summary::{
     text,
 };
 use fspid_campaign::table::{
-    Cell, Column, Kind, Reader, Schema, Table, TableError, Values, Writer,
+    Cell, Column, ColumnTable, Kind, Reader, Schema, TableError, Values, Writer,
 };
 use fspid_campaign::{Folder, Progress, Question, local, plan};
 use fspid_study::metrics::LEFT_RANGE;
@@ -113,7 +113,7 @@ fn metadata(runs: u64, sampling: &str) -> Vec<(String, String)> {
         .to_vec()
 }
 
-fn written(table: &Table, metadata: &[(String, String)]) -> File {
+fn written(table: &ColumnTable, metadata: &[(String, String)]) -> File {
     let home = tempfile::tempdir().expect("a folder");
     let path = home.path().join("campaign.parquet");
     let file = std::fs::File::create(&path).expect("created");
@@ -123,8 +123,8 @@ fn written(table: &Table, metadata: &[(String, String)]) -> File {
     File { _home: home, path }
 }
 
-fn table(runs: u64, controllers: &[&str], row: impl Fn(u64, usize) -> Row) -> Table {
-    let mut table = Table::new(schema());
+fn table(runs: u64, controllers: &[&str], row: impl Fn(u64, usize) -> Row) -> ColumnTable {
+    let mut table = ColumnTable::new(schema());
     for run in 0..runs {
         for (place, controller) in controllers.iter().enumerate() {
             table.push(&cells(run, controller, &row(run, place))).expect("a row");
@@ -320,7 +320,7 @@ fn samples_that_are_not_independent_are_said_to_be_so() {
 #[test]
 fn files_that_are_no_merged_campaign_are_refused_with_the_reason() {
     let rows = table(20, &["A", "B"], |run, _| good(run));
-    let refused = |table: &Table, metadata: &[(String, String)]| {
+    let refused = |table: &ColumnTable, metadata: &[(String, String)]| {
         let file = written(table, metadata);
         match Summary::of(&file.path, SummarySettings::default()) {
             Err(SummaryError::NotMerged { reason, .. }) => reason,
@@ -340,7 +340,7 @@ fn files_that_are_no_merged_campaign_are_refused_with_the_reason() {
     let order = NotMerged::Order { row: 10, run: 5, controller: "A".to_owned() };
     assert_eq!(refused(&swapped, &meta), order);
     let other = Arc::new(Schema::new(vec![Column::new("run", Kind::Float)]).expect("columns"));
-    let mut other = Table::new(other);
+    let mut other = ColumnTable::new(other);
     other.push(&[1.0.into()]).expect("a row");
     let no_column = NotMerged::NoColumn { name: "run".to_owned(), kind: Kind::Integer };
     assert_eq!(refused(&other, &meta), no_column);
@@ -435,11 +435,11 @@ fn campaign_file(runs: u64) -> File {
 }
 
 /// The numbers of a column in the rows of one of two controllers.
-fn floats(table: &Table, name: &str, place: usize) -> Vec<Option<f64>> {
+fn floats(table: &ColumnTable, name: &str, place: usize) -> Vec<Option<f64>> {
     table.floats(name).expect("numbers").iter().skip(place).step_by(2).copied().collect()
 }
 
-fn truths(table: &Table, name: &str, place: usize) -> Vec<Option<bool>> {
+fn truths(table: &ColumnTable, name: &str, place: usize) -> Vec<Option<bool>> {
     let Values::Boolean(cells) = table.column(name).expect("a column") else { panic!("truths") };
     cells.iter().skip(place).step_by(2).copied().collect()
 }

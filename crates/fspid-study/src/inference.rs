@@ -4,7 +4,7 @@ use fspid_core::fuzzy::{Inference, Supervisor};
 use serde_json::{Value, json};
 
 use crate::json::{merged, present};
-use crate::rows::Table;
+use crate::rows::RowAnswers;
 use fspid_diagnostics::lines;
 
 /// The answer as JSON.
@@ -39,7 +39,7 @@ pub fn text(inference: &Inference<f64>) -> String {
 #[derive(Clone, Debug)]
 pub struct SupervisorTable(pub Supervisor<f64>);
 
-impl Table for SupervisorTable {
+impl RowAnswers for SupervisorTable {
     fn inputs(&self) -> Vec<&str> {
         vec!["e", "ec"]
     }

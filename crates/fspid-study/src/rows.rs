@@ -49,7 +49,7 @@ impl fmt::Display for RowsError {
 impl std::error::Error for RowsError {}
 
 /// Something that answers rows of numbers.
-pub trait Table {
+pub trait RowAnswers {
     /// Names of the columns that a row is read from.
     fn inputs(&self) -> Vec<&str>;
     /// Names of the columns of the answers.
@@ -72,7 +72,7 @@ pub trait Table {
 /// # Errors
 /// [`RowsError`]; each problem begins with the path.
 pub fn answer_file(
-    table: &mut impl Table,
+    table: &mut impl RowAnswers,
     path: &Path,
     out: &mut impl Write,
 ) -> Result<u64, RowsError> {
@@ -118,7 +118,7 @@ pub fn named(name: &str, error: RowsError) -> RowsError {
 /// # Errors
 /// [`RowsError`].
 pub fn answer_rows(
-    table: &mut impl Table,
+    table: &mut impl RowAnswers,
     rows: &mut impl BufRead,
     out: &mut impl Write,
 ) -> Result<u64, RowsError> {
@@ -156,7 +156,7 @@ pub fn answer_rows(
 ///
 /// # Errors
 /// [`RowsError`].
-pub fn check_rows(table: &impl Table, rows: &mut impl BufRead) -> Result<(), RowsError> {
+pub fn check_rows(table: &impl RowAnswers, rows: &mut impl BufRead) -> Result<(), RowsError> {
     let mut reader = Reader::new(rows, &table.inputs())?;
     let mut problems = Vec::new();
     while let Some(row) = reader.next()? {
@@ -179,7 +179,7 @@ fn finish(problems: Vec<String>, answered: Option<u64>) -> Result<(), RowsError>
     if problems.is_empty() { Ok(()) } else { Err(RowsError::Problems { problems, answered }) }
 }
 
-fn heading(table: &impl Table) -> String {
+fn heading(table: &impl RowAnswers) -> String {
     let names = table.inputs().into_iter().chain(table.outputs());
     names.map(quoted).collect::<Vec<_>>().join(",")
 }

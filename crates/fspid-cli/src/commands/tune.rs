@@ -16,7 +16,7 @@ use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Effort, Kept, Problem, Search, Source, Then, TuneError, Tuned, Unfit, design,
+    Beginning, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, Unfit, design,
     history,
 };
 
@@ -130,7 +130,7 @@ fn all(arguments: &Arguments, source: &Source) -> Result<Vec<Tuned>, Failure> {
 
 /// Tunes one controller, and writes its design.
 fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tuned, Failure> {
-    let problem = Problem::new(source, name).map_err(failure)?;
+    let problem = TuningProblem::new(source, name).map_err(failure)?;
     problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let out = arguments.out.as_ref().map(|out| design_file(arguments, out, problem.controller()));
     if let Some(out) = &out {
@@ -220,7 +220,7 @@ fn failure(error: TuneError) -> Failure {
     }
 }
 
-fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
+fn effort(arguments: &Arguments, problem: &TuningProblem) -> Effort {
     let tuning = problem.tuning();
     Effort {
         optimiser: arguments.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
@@ -234,7 +234,7 @@ fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
 /// Searches to the end; what was found, and the best point.
 fn search(
     arguments: &Arguments,
-    problem: &Problem,
+    problem: &TuningProblem,
     effort: &Effort,
     place: &mut Kept,
 ) -> Result<(Tuned, Vec<f64>), TuneError> {

@@ -9,7 +9,7 @@ use super::document::{Context, Element};
 use crate::vocabulary::known;
 
 /// An element and how its `param1`, `param2`, … become a shape.
-struct Row {
+struct ShapeElement {
     name: &'static str,
     count: usize,
     shape: fn(&[f64]) -> (ShapeKind, Vec<f64>),
@@ -31,20 +31,20 @@ fn left_gaussian(params: &[f64]) -> (ShapeKind, Vec<f64>) {
     (ShapeKind::GaussianProduct, params.first_chunk().map(sided).unwrap_or_default())
 }
 
-const ROWS: &[Row] = &[
-    Row { name: "triangularShape", count: 3, shape: |p| same(ShapeKind::Triangle, p) },
-    Row { name: "trapezoidShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
-    Row { name: "trapezoidalShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
-    Row { name: "gaussianShape", count: 2, shape: |p| same(ShapeKind::Gaussian, p) },
-    Row { name: "rightGaussianShape", count: 2, shape: right_gaussian },
-    Row { name: "leftGaussianShape", count: 2, shape: left_gaussian },
-    Row { name: "rightLinearShape", count: 2, shape: |p| same(ShapeKind::LinearS, p) },
-    Row { name: "leftLinearShape", count: 2, shape: |p| same(ShapeKind::LinearZ, p) },
-    Row { name: "piShape", count: 4, shape: |p| same(ShapeKind::Pi, p) },
-    Row { name: "sShape", count: 2, shape: |p| same(ShapeKind::SmoothS, p) },
-    Row { name: "zShape", count: 2, shape: |p| same(ShapeKind::SmoothZ, p) },
-    Row { name: "rectangularShape", count: 2, shape: |p| same(ShapeKind::Rectangle, p) },
-    Row { name: "singletonShape", count: 1, shape: |p| same(ShapeKind::Singleton, p) },
+const ROWS: &[ShapeElement] = &[
+    ShapeElement { name: "triangularShape", count: 3, shape: |p| same(ShapeKind::Triangle, p) },
+    ShapeElement { name: "trapezoidShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
+    ShapeElement { name: "trapezoidalShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
+    ShapeElement { name: "gaussianShape", count: 2, shape: |p| same(ShapeKind::Gaussian, p) },
+    ShapeElement { name: "rightGaussianShape", count: 2, shape: right_gaussian },
+    ShapeElement { name: "leftGaussianShape", count: 2, shape: left_gaussian },
+    ShapeElement { name: "rightLinearShape", count: 2, shape: |p| same(ShapeKind::LinearS, p) },
+    ShapeElement { name: "leftLinearShape", count: 2, shape: |p| same(ShapeKind::LinearZ, p) },
+    ShapeElement { name: "piShape", count: 4, shape: |p| same(ShapeKind::Pi, p) },
+    ShapeElement { name: "sShape", count: 2, shape: |p| same(ShapeKind::SmoothS, p) },
+    ShapeElement { name: "zShape", count: 2, shape: |p| same(ShapeKind::SmoothZ, p) },
+    ShapeElement { name: "rectangularShape", count: 2, shape: |p| same(ShapeKind::Rectangle, p) },
+    ShapeElement { name: "singletonShape", count: 1, shape: |p| same(ShapeKind::Singleton, p) },
 ];
 
 /// Elements that are no row.
@@ -112,7 +112,7 @@ fn refuse(shape: Element<'_, '_>, context: &mut Context<'_>) {
 }
 
 /// Says which way a set with one side is read, for descriptions of the language differ.
-fn sided(shape: Element<'_, '_>, row: &Row, before: bool, context: &mut Context<'_>) {
+fn sided(shape: Element<'_, '_>, row: &ShapeElement, before: bool, context: &mut Context<'_>) {
     let way = match row.name {
         "rightLinearShape" | "rightGaussianShape" => "rises to 1 and stays there",
         "leftLinearShape" | "leftGaussianShape" => "begins with 1 and falls",

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Defuzzifier, Sampling, SetReading};
 
 /// A defuzzifier, its fuzzylite class, and its words in FCL; the first is the one that is written.
-pub(crate) struct Row {
+pub(crate) struct MethodWords {
     pub(crate) class: &'static str,
     pub(crate) words: &'static [&'static str],
     /// The method with exact integrals.
@@ -13,30 +13,34 @@ pub(crate) struct Row {
 const EXACT: Sampling = Sampling::Exact;
 
 /// Every defuzzifier.
-pub(crate) const METHODS: &[Row] = &[
-    Row { class: "Centroid", words: &["COG", "COGF"], method: Defuzzifier::Centroid(EXACT) },
-    Row { class: "Bisector", words: &["COA"], method: Defuzzifier::Bisector(EXACT) },
-    Row {
+pub(crate) const METHODS: &[MethodWords] = &[
+    MethodWords {
+        class: "Centroid",
+        words: &["COG", "COGF"],
+        method: Defuzzifier::Centroid(EXACT),
+    },
+    MethodWords { class: "Bisector", words: &["COA"], method: Defuzzifier::Bisector(EXACT) },
+    MethodWords {
         class: "SmallestOfMaximum",
         words: &["LM", "SOM"],
         method: Defuzzifier::SmallestOfMaximum(EXACT),
     },
-    Row {
+    MethodWords {
         class: "MeanOfMaximum",
         words: &["MM", "MOM"],
         method: Defuzzifier::MeanOfMaximum(EXACT),
     },
-    Row {
+    MethodWords {
         class: "LargestOfMaximum",
         words: &["RM", "LOM"],
         method: Defuzzifier::LargestOfMaximum(EXACT),
     },
-    Row {
+    MethodWords {
         class: "WeightedAverage",
         words: &["COGS"],
         method: Defuzzifier::WeightedAverage(SetReading::Tsukamoto),
     },
-    Row {
+    MethodWords {
         class: "WeightedSum",
         words: &["COGSS"],
         method: Defuzzifier::WeightedSum(SetReading::Tsukamoto),
@@ -47,22 +51,22 @@ pub(crate) const METHODS: &[Row] = &[
 pub(crate) const STANDARD: [&str; 5] = ["COG", "COGS", "COA", "LM", "RM"];
 
 /// The row of a fuzzylite class, in any case.
-pub(crate) fn of_class(class: &str) -> Option<&'static Row> {
+pub(crate) fn of_class(class: &str) -> Option<&'static MethodWords> {
     METHODS.iter().find(|row| row.class.eq_ignore_ascii_case(class))
 }
 
 /// The row of a word of FCL or a fuzzylite class, in any case.
-pub(crate) fn of_word(word: &str) -> Option<&'static Row> {
-    let named = |row: &&Row| row.words.iter().any(|known| known.eq_ignore_ascii_case(word));
+pub(crate) fn of_word(word: &str) -> Option<&'static MethodWords> {
+    let named = |row: &&MethodWords| row.words.iter().any(|known| known.eq_ignore_ascii_case(word));
     METHODS.iter().find(named).or_else(|| of_class(word))
 }
 
 /// The row of a method.
-pub(crate) fn row_of(method: Defuzzifier) -> Option<&'static Row> {
+pub(crate) fn row_of(method: Defuzzifier) -> Option<&'static MethodWords> {
     METHODS.iter().find(|row| row.method.name() == method.name())
 }
 
-impl Row {
+impl MethodWords {
     /// The word that is written in FCL.
     pub(crate) fn word(&self) -> &'static str {
         self.words.first().copied().unwrap_or(self.class)
@@ -71,7 +75,7 @@ impl Row {
 
 /// Words for a message.
 pub(crate) fn words() -> impl Iterator<Item = &'static str> + Clone {
-    METHODS.iter().map(Row::word)
+    METHODS.iter().map(MethodWords::word)
 }
 
 /// Classes for a message.

@@ -12,7 +12,7 @@ use crate::disturbance::{
 use crate::report::Paper;
 use fspid_page::context;
 use fspid_page::number::{capital, exact, fixed, significant};
-use fspid_page::page::{Cell, Figure, Row, Section, Table};
+use fspid_page::page::{Cell, Figure, PageSection, PageTable, TableRow};
 use fspid_plot::{RatioFigure, Series, SeriesStyle};
 use fspid_scenario::file::Study;
 use fspid_study::report::settings;
@@ -85,7 +85,7 @@ struct Shape {
 }
 
 /// Fig. 7.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let sweeps = &paper.reproduction.sweeps;
     let flights = flights(paper.library);
     let shapes: Vec<Shape> = SHAPES
@@ -114,7 +114,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         cases => SIZES_DEG.len() * ENTRIES.len(),
         budget => budget(paper),
     };
-    Section::of("disturbances", "Figure 7: disturbances", render("disturbances", context))
+    PageSection::of("disturbances", "Figure 7: disturbances", render("disturbances", context))
         .with_figures(figures)
 }
 
@@ -197,27 +197,27 @@ fn response(
 }
 
 /// Every comparison in numbers.
-fn outcome(sweeps: &[Sweep]) -> Table {
+fn outcome(sweeps: &[Sweep]) -> PageTable {
     let caption = "Ratios of cost over all sizes and places of entry; below 1 the FSPID is better. The mean is geometric.";
     let head = ["disturbance", "comparison", "FSPID better in", "lowest", "mean", "highest"];
-    let mut table = Table::new(caption, &head).in_cards();
+    let mut table = PageTable::new(caption, &head).in_cards();
     for shape in SHAPES {
         for of in &MATCHES {
             let Contest { won, cases, lowest, mean, highest } = of.contest(sweeps, shape);
             let mut cells = vec![Cell::text(shape), Cell::text(of.name)];
             cells.push(Cell::number(format!("{won} of {cases}")));
             cells.extend([lowest, mean, highest].map(|ratio| Cell::number(fixed(ratio, 3))));
-            table.push(Row::from(cells));
+            table.push(TableRow::from(cells));
         }
     }
     table
 }
 
 /// The gains that are compared: the first two are the same everywhere.
-fn gains(flights: &[StoredFlight]) -> Table {
+fn gains(flights: &[StoredFlight]) -> PageTable {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
-    let mut table = Table::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
+    let mut table = PageTable::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
     for (index, StoredFlight { name, study, .. }) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");

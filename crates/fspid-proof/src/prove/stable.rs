@@ -7,7 +7,7 @@ use super::Prover;
 use crate::certificate::{Certificate, Claim};
 use crate::gain_set::GainSet;
 use crate::recheck::{Rechecked, cone_form};
-use crate::solve::{self, Condition, Problem};
+use crate::solve::{self, Condition, LyapunovProblem};
 
 /// Corners may lie outside of those that are solved for by this share of half the set's extent: the form
 /// found lies inside of the set of forms, and the re-check asks all corners.
@@ -25,7 +25,7 @@ impl Prover<'_> {
         let matrices = self.matrices(&corners)?;
         let conditions: Vec<Condition<'_>> =
             matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-        let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let form = solution.p;
             let level = self.level(&corners, &form, &rest);
@@ -66,7 +66,7 @@ impl Prover<'_> {
         }
         let conditions: Vec<Condition<'_>> =
             matrices.iter().map(|(cone, matrix)| Condition { matrix, cone: Some(*cone) }).collect();
-        let problem = Problem { conditions: &conditions, cones: &forms, rate: 1.0 };
+        let problem = LyapunovProblem { conditions: &conditions, cones: &forms, rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let solve::Solution { p: form, multipliers, .. } = solution;
             let level = self.level(&corners, &form, &rest);
@@ -77,7 +77,7 @@ impl Prover<'_> {
     /// Solves, and re-checks what was found: at the best rate first, then for stability alone.
     pub(super) fn settled(
         &self,
-        problem: &Problem<'_>,
+        problem: &LyapunovProblem<'_>,
         factor: f64,
         best_rate: bool,
         claim: impl Fn(solve::Solution, f64) -> (Claim, Option<f64>),

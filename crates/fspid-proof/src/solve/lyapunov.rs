@@ -33,7 +33,7 @@ pub struct Condition<'a> {
 /// A cone is the set of x with $x^T Q_g x \ge 0$; there the form falls by $\rho^2$ at least. All conditions
 /// of one cone share its multiplier.
 #[derive(Debug, Clone, Copy)]
-pub struct Problem<'a> {
+pub struct LyapunovProblem<'a> {
     /// Matrices, each with its cone.
     pub conditions: &'a [Condition<'a>],
     /// Symmetric matrices $Q_g$ of the cones.
@@ -81,7 +81,7 @@ pub struct BestRate {
 ///
 /// The form returned lies inside the set of all such forms, near its analytic centre and not on its edge.
 #[must_use]
-pub fn common_lyapunov(problem: &Problem, effort: &Effort) -> Verdict {
+pub fn common_lyapunov(problem: &LyapunovProblem, effort: &Effort) -> Verdict {
     let missing = Verdict::NotFound { best_margin: f64::NEG_INFINITY };
     let level = problem.rate * problem.rate;
     let Some(mut search) = Search::start(problem) else { return missing };
@@ -98,7 +98,7 @@ pub fn common_lyapunov(problem: &Problem, effort: &Effort) -> Verdict {
 /// The rate may come out above 1: then no form was found that falls at all. `None` for a problem that is
 /// empty, or whose matrices do not fit each other or are not finite.
 #[must_use]
-pub fn best_rate(problem: &Problem, effort: &Effort) -> Option<BestRate> {
+pub fn best_rate(problem: &LyapunovProblem, effort: &Effort) -> Option<BestRate> {
     let mut search = Search::start(problem)?;
     let descent = descend(&mut search, Goal::Lowest, effort.newton_steps)?;
     let level = settled_level(descent);
@@ -116,7 +116,7 @@ fn settled_level(descent: Descent) -> f64 {
 pub(super) fn closest_form(matrices: &[Matrix], effort: &Effort) -> Option<Dense> {
     let conditions: Vec<Condition> =
         matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-    let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+    let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
     let mut search = Search::start(&problem)?;
     descend(&mut search, Goal::Below(1.0), effort.newton_steps)?;
     Some(search.form())
@@ -134,7 +134,7 @@ struct Search {
 
 impl Search {
     /// `None` when the problem is empty or does not fit together.
-    fn start(problem: &Problem) -> Option<Self> {
+    fn start(problem: &LyapunovProblem) -> Option<Self> {
         let matrices: Vec<Dense> =
             problem.conditions.iter().map(|condition| Dense::from(condition.matrix)).collect();
         let cones: Vec<Dense> =
@@ -171,7 +171,7 @@ impl Search {
         self.scaled_form().0
     }
 
-    fn solution(&self, problem: &Problem, level: f64, steps: usize) -> Option<Solution> {
+    fn solution(&self, problem: &LyapunovProblem, level: f64, steps: usize) -> Option<Solution> {
         let (p, size) = self.scaled_form();
         let multipliers: Vec<f64> = self.multipliers.iter().map(|value| value / size).collect();
         let margin = margin(&p, &multipliers, problem, level)?;
@@ -180,7 +180,7 @@ impl Search {
 }
 
 /// Smallest eigenvalue of all differences relative to P, from the numbers that are handed out.
-fn margin(p: &Dense, multipliers: &[f64], problem: &Problem, level: f64) -> Option<f64> {
+fn margin(p: &Dense, multipliers: &[f64], problem: &LyapunovProblem, level: f64) -> Option<f64> {
     let lower = p.cholesky()?;
     let (inverse, upper) = (lower.lower_inverse().transpose(), lower.transpose());
     let mut least = f64::INFINITY;

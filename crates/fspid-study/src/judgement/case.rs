@@ -45,7 +45,7 @@ pub struct FrozenAt {
 
 /// Where a value was found, as far as there is a choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct CasePlace {
     /// The step.
     pub step: Option<StepAt>,
     /// The time, s.
@@ -68,10 +68,10 @@ pub struct Case {
     /// The value, in the unit of the measure; infinite for a margin without an end.
     pub value: f64,
     /// Where.
-    pub place: Place,
+    pub place: CasePlace,
 }
 
-impl Place {
+impl CasePlace {
     /// True where there is nothing to say.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -107,7 +107,7 @@ impl FrozenAt {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for CasePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut parts = Vec::new();
         if let Some(step) = self.step {
@@ -154,18 +154,18 @@ mod tests {
 
     #[test]
     fn a_place_is_told_in_words_and_only_as_far_as_there_is_one() {
-        assert_eq!(Place::default().to_string(), "");
+        assert_eq!(CasePlace::default().to_string(), "");
         let step = StepAt { number: 2, at_s: 5.0, from_deg: 1.0, to_deg: -1.0 };
-        let place = Place { step: Some(step), ..Place::default() };
+        let place = CasePlace { step: Some(step), ..CasePlace::default() };
         assert_eq!(place.to_string(), "step 2 at 5 s, 1 to -1 deg");
         let frozen =
             FrozenAt { gains: Gains { kp: 1.25, ki: 0.5, kd: 0.1 }, inputs: Some([4.0, -0.2]) };
         let plant = PlantAt { index: 1, from_s: 20.0 };
-        let place = Place {
+        let place = CasePlace {
             plant: Some(plant),
             frozen: Some(frozen),
             frequency_rad_s: Some(2.5),
-            ..Place::default()
+            ..CasePlace::default()
         };
         assert_eq!(
             place.to_string(),

@@ -5,7 +5,7 @@ use std::fmt;
 use fspid_aircraft::qualities;
 use fspid_sim::SimError;
 
-use super::case::Place;
+use super::case::CasePlace;
 use crate::metrics::Absent;
 use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::requirement::Air;
@@ -30,7 +30,7 @@ pub enum NotEvaluated {
         /// How long there was time, s.
         window_s: f64,
         /// The step that it was asked of.
-        place: Box<Place>,
+        place: Box<CasePlace>,
     },
     /// The time that counts is not part of the flight.
     NotFlown {
@@ -51,7 +51,7 @@ pub enum NotEvaluated {
     /// The loop is unstable, so that it has no margins and a flight of it proves nothing.
     Unstable {
         /// Which loop.
-        place: Box<Place>,
+        place: Box<CasePlace>,
         /// Spectral radius of the sampled loop.
         spectral_radius: f64,
     },
@@ -77,10 +77,10 @@ pub enum NotEvaluated {
 impl NotEvaluated {
     /// Where it was found out, if there is a choice.
     #[must_use]
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> CasePlace {
         match self {
             Self::Unstable { place, .. } | Self::NotRecovered { place, .. } => **place,
-            _ => Place::default(),
+            _ => CasePlace::default(),
         }
     }
 }

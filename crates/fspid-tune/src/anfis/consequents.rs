@@ -4,7 +4,7 @@ use fspid_fuzzy::system::{
     Conclusion, Defuzzifier, Output, Parameter, Parts, Source, System, Workspace,
 };
 
-use super::data::{Data, Row};
+use super::data::{Data, DataRow};
 use super::error::AnfisError;
 use super::squares::Triangle;
 
@@ -144,7 +144,11 @@ pub(super) fn squared_error(system: &System, data: &Data) -> Result<f64, AnfisEr
     Ok(sum)
 }
 
-fn row_error(system: &System, row: Row<'_>, workspace: &mut Workspace) -> Result<f64, AnfisError> {
+fn row_error(
+    system: &System,
+    row: DataRow<'_>,
+    workspace: &mut Workspace,
+) -> Result<f64, AnfisError> {
     let refused = |reason| AnfisError::Input { row: row.number, reason };
     let answers = system.evaluate(row.inputs, workspace).map_err(refused)?;
     let mut sum = 0.0;

@@ -43,7 +43,7 @@ use fspid_fuzzy::system::{Parts, System};
 use serde::Serialize;
 
 use consequents::{Consequents, squared_error};
-pub use data::{Data, Row};
+pub use data::{Data, DataRow};
 pub use error::AnfisError;
 use pace::Pace;
 use premises::Premises;

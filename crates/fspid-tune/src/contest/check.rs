@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use super::{Contest, Entrant, Options, flight};
 use crate::error::TuneError;
 use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
-use crate::problem::{Problem, marks_of};
+use crate::problem::{TuningProblem, marks_of};
 use crate::search::Effort;
 use crate::source::Source;
 use crate::space::Space;
@@ -145,7 +145,7 @@ fn entrant(
     let marks = marks_of(study, name);
     let problem = match marks.is_empty() {
         true => None,
-        false => Some(Problem::new(source, Some(name))?),
+        false => Some(TuningProblem::new(source, Some(name))?),
     };
     let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
     let flown = cases
