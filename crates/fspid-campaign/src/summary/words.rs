@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fspid_diagnostics::digits::without_zeros;
+use fspid_diagnostics::digits::{grouped, without_zeros};
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
 use super::data::{MeasureCount, Note, Probability, Severity};
@@ -30,18 +30,10 @@ pub fn number(value: f64) -> String {
 /// A whole number, from five digits on in groups of three: `10 000`, `3000`.
 #[must_use]
 pub fn whole(value: u64) -> String {
-    let digits = value.to_string();
-    if digits.len() < 5 {
-        return digits;
+    match value {
+        0..10_000 => value.to_string(),
+        _ => grouped(value),
     }
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// A confidence or a share of the flights in percent, with the digits it has: `95 %`, `99.9 %`.

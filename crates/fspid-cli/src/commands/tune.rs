@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use serde_json::json;
 
-use super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, drawings, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
+use fspid_diagnostics::digits::grouped;
 use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
