@@ -39,7 +39,7 @@ pub(super) fn report(audit: &Audit<'_>) -> String {
 
 /// How many findings of each kind, and those that are probably not meant.
 fn summary(chapters: &[Chapter]) -> PageSection {
-    let marks = [Mark::Holds, Mark::Worth, Mark::Broken, Mark::Open];
+    let marks = [Mark::Holds, Mark::Worth, Mark::NotMeant, Mark::Open];
     let head = [
         "about",
         "\u{2713} holds",
@@ -57,7 +57,7 @@ fn summary(chapters: &[Chapter]) -> PageSection {
     let worst: Vec<Line> = chapters
         .iter()
         .flat_map(|chapter| {
-            let broken = chapter.findings.iter().filter(|found| found.mark == Mark::Broken);
+            let broken = chapter.findings.iter().filter(|found| found.mark == Mark::NotMeant);
             broken.map(|found| Line {
                 class: class(found.mark),
                 sign: found.mark.sign(),
@@ -77,7 +77,7 @@ const fn class(mark: Mark) -> &'static str {
     match mark {
         Mark::Holds => "good",
         Mark::Worth | Mark::Open => "fair",
-        Mark::Broken => "bad",
+        Mark::NotMeant => "bad",
     }
 }
 

@@ -49,7 +49,7 @@ fn direction(audit: &Audit<'_>, along: &AlongInput, meant: bool) -> (Mark, Strin
         "{way} for the most part, but {other} on {share} of the range, with a slope of up to {worst}; for example by {change} from {from} to {to}"
     );
     match meant {
-        true => (Mark::Broken, format!("{sentence}; the labels go one way without exception")),
+        true => (Mark::NotMeant, format!("{sentence}; the labels go one way without exception")),
         false => (Mark::Worth, sentence),
     }
 }

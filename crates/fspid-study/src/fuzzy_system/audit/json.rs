@@ -108,7 +108,7 @@ const fn mark(mark: Mark) -> &'static str {
     match mark {
         Mark::Holds => "holds",
         Mark::Worth => "worth-knowing",
-        Mark::Broken => "not-meant",
+        Mark::NotMeant => "not-meant",
         Mark::Open => "open",
     }
 }

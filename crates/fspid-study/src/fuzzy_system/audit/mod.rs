@@ -46,7 +46,7 @@ pub enum Mark {
     /// Worth knowing.
     Worth,
     /// Probably not meant.
-    Broken,
+    NotMeant,
     /// Neither proved nor refuted within the budget.
     Open,
 }
@@ -58,7 +58,7 @@ impl Mark {
         match self {
             Self::Holds => "\u{2713}",
             Self::Worth => "\u{2248}",
-            Self::Broken => "\u{2717}",
+            Self::NotMeant => "\u{2717}",
             Self::Open => "?",
         }
     }

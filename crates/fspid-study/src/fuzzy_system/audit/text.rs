@@ -33,7 +33,7 @@ impl Audit<'_> {
              {} rules, {} boxes",
                 Mark::Holds.sign(),
                 Mark::Worth.sign(),
-                Mark::Broken.sign(),
+                Mark::NotMeant.sign(),
                 Mark::Open.sign(),
                 parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
                 self.surface.boxes

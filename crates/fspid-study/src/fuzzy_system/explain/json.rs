@@ -51,7 +51,7 @@ impl Explanation<'_> {
             Basis::Outline => "outline",
             Basis::Grid(_) => "grid",
             Basis::Weights => "weights",
-            Basis::Joined => "joined",
+            Basis::Aggregated => "joined",
         };
         let one = |share: &Share| {
             let [block, rule, _] = share.of.origin;

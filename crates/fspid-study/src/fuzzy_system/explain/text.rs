@@ -151,7 +151,7 @@ fn kind_of(basis: Basis) -> String {
             )
         }
         Basis::Weights => ": part of the weight, and what it adds to the answer".to_owned(),
-        Basis::Joined => {
+        Basis::Aggregated => {
             ": the conclusions are joined so that no part belongs to one rule alone".to_owned()
         }
     }
