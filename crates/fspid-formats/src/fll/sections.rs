@@ -57,6 +57,10 @@ struct SectionKey {
     fill: Fill,
 }
 
+const fn key(key: &'static str, sections: &'static [Kindred], fill: Fill) -> SectionKey {
+    SectionKey { key, sections, fill }
+}
+
 const VARIABLE: &[Kindred] = &[Kindred::Input, Kindred::Output];
 const OUTPUT: &[Kindred] = &[Kindred::Output];
 const BLOCK: &[Kindred] = &[Kindred::Block];
@@ -64,60 +68,30 @@ const ANY: &[Kindred] = &[Kindred::Engine, Kindred::Input, Kindred::Output, Kind
 
 /// Every key; the last four of versions before 6.
 const KEYS: &[SectionKey] = &[
-    SectionKey {
-        key: "description",
-        sections: ANY,
-        fill: |s, line, _| s.description = line.text().into(),
-    },
-    SectionKey {
-        key: "enabled",
-        sections: &[Kindred::Input, Kindred::Output, Kindred::Block],
-        fill: |s, line, report| s.enabled = line.boolean(report).unwrap_or(true),
-    },
-    SectionKey {
-        key: "range",
-        sections: VARIABLE,
-        fill: |s, line, report| s.universe = range(line, report),
-    },
-    SectionKey {
-        key: "lock-range",
-        sections: VARIABLE,
-        fill: |s, line, report| s.lock_range = line.boolean(report).unwrap_or(false),
-    },
-    SectionKey { key: "term", sections: VARIABLE, fill: |s, line, _| s.terms.push(line) },
-    SectionKey { key: "aggregation", sections: OUTPUT, fill: aggregation },
-    SectionKey {
-        key: "defuzzifier",
-        sections: OUTPUT,
-        fill: |s, line, _| s.defuzzifier = Some(line),
-    },
-    SectionKey { key: "default", sections: OUTPUT, fill: default },
-    SectionKey { key: "lock-previous", sections: OUTPUT, fill: lock_previous },
-    SectionKey {
-        key: "conjunction",
-        sections: BLOCK,
-        fill: |s, line, report| s.conjunction = t_norm(line, report),
-    },
-    SectionKey {
-        key: "disjunction",
-        sections: BLOCK,
-        fill: |s, line, report| s.disjunction = s_norm(line, report),
-    },
-    SectionKey {
-        key: "implication",
-        sections: BLOCK,
-        fill: |s, line, report| s.implication = t_norm(line, report),
-    },
-    SectionKey { key: "activation", sections: BLOCK, fill: activation },
-    SectionKey { key: "rule", sections: BLOCK, fill: |s, line, _| s.rules.push(line) },
-    SectionKey { key: "accumulation", sections: OUTPUT, fill: aggregation },
-    SectionKey { key: "lock-valid", sections: OUTPUT, fill: lock_previous },
-    SectionKey { key: "lock-output-value", sections: OUTPUT, fill: lock_previous },
-    SectionKey {
-        key: "lock-output-range",
-        sections: OUTPUT,
-        fill: |s, line, report| s.lock_range = line.boolean(report).unwrap_or(false),
-    },
+    key("description", ANY, |s, line, _| s.description = line.text().into()),
+    key("enabled", &[Kindred::Input, Kindred::Output, Kindred::Block], |s, line, report| {
+        s.enabled = line.boolean(report).unwrap_or(true)
+    }),
+    key("range", VARIABLE, |s, line, report| s.universe = range(line, report)),
+    key("lock-range", VARIABLE, |s, line, report| {
+        s.lock_range = line.boolean(report).unwrap_or(false)
+    }),
+    key("term", VARIABLE, |s, line, _| s.terms.push(line)),
+    key("aggregation", OUTPUT, aggregation),
+    key("defuzzifier", OUTPUT, |s, line, _| s.defuzzifier = Some(line)),
+    key("default", OUTPUT, default),
+    key("lock-previous", OUTPUT, lock_previous),
+    key("conjunction", BLOCK, |s, line, report| s.conjunction = t_norm(line, report)),
+    key("disjunction", BLOCK, |s, line, report| s.disjunction = s_norm(line, report)),
+    key("implication", BLOCK, |s, line, report| s.implication = t_norm(line, report)),
+    key("activation", BLOCK, activation),
+    key("rule", BLOCK, |s, line, _| s.rules.push(line)),
+    key("accumulation", OUTPUT, aggregation),
+    key("lock-valid", OUTPUT, lock_previous),
+    key("lock-output-value", OUTPUT, lock_previous),
+    key("lock-output-range", OUTPUT, |s, line, report| {
+        s.lock_range = line.boolean(report).unwrap_or(false)
+    }),
 ];
 
 impl<'a> FllSection<'a> {

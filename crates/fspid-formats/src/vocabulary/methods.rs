@@ -10,41 +10,25 @@ pub(crate) struct MethodWords {
     pub(crate) method: Defuzzifier,
 }
 
+const fn row(
+    class: &'static str,
+    words: &'static [&'static str],
+    method: Defuzzifier,
+) -> MethodWords {
+    MethodWords { class, words, method }
+}
+
 const EXACT: Sampling = Sampling::Exact;
 
 /// Every defuzzifier.
 pub(crate) const METHODS: &[MethodWords] = &[
-    MethodWords {
-        class: "Centroid",
-        words: &["COG", "COGF"],
-        method: Defuzzifier::Centroid(EXACT),
-    },
-    MethodWords { class: "Bisector", words: &["COA"], method: Defuzzifier::Bisector(EXACT) },
-    MethodWords {
-        class: "SmallestOfMaximum",
-        words: &["LM", "SOM"],
-        method: Defuzzifier::SmallestOfMaximum(EXACT),
-    },
-    MethodWords {
-        class: "MeanOfMaximum",
-        words: &["MM", "MOM"],
-        method: Defuzzifier::MeanOfMaximum(EXACT),
-    },
-    MethodWords {
-        class: "LargestOfMaximum",
-        words: &["RM", "LOM"],
-        method: Defuzzifier::LargestOfMaximum(EXACT),
-    },
-    MethodWords {
-        class: "WeightedAverage",
-        words: &["COGS"],
-        method: Defuzzifier::WeightedAverage(SetReading::Tsukamoto),
-    },
-    MethodWords {
-        class: "WeightedSum",
-        words: &["COGSS"],
-        method: Defuzzifier::WeightedSum(SetReading::Tsukamoto),
-    },
+    row("Centroid", &["COG", "COGF"], Defuzzifier::Centroid(EXACT)),
+    row("Bisector", &["COA"], Defuzzifier::Bisector(EXACT)),
+    row("SmallestOfMaximum", &["LM", "SOM"], Defuzzifier::SmallestOfMaximum(EXACT)),
+    row("MeanOfMaximum", &["MM", "MOM"], Defuzzifier::MeanOfMaximum(EXACT)),
+    row("LargestOfMaximum", &["RM", "LOM"], Defuzzifier::LargestOfMaximum(EXACT)),
+    row("WeightedAverage", &["COGS"], Defuzzifier::WeightedAverage(SetReading::Tsukamoto)),
+    row("WeightedSum", &["COGSS"], Defuzzifier::WeightedSum(SetReading::Tsukamoto)),
 ];
 
 /// Methods of the standard, by their words.
