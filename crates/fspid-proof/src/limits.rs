@@ -1,6 +1,6 @@
 //! An ellipsoid in which no limit acts, so that the linear proof is one of the loop with its limits.
 //!
-//! Where $z^T P z$ falls, a state that is inside of $z^T P z \le c$ stays inside. With
+//! Where $z^T P z$ decreases, a state that is inside of $z^T P z \le c$ stays inside. With
 //!
 //! $$ c \le \frac{L^2}{r P^{-1} r^T} $$
 //!

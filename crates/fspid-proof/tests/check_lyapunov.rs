@@ -218,10 +218,10 @@ fn form(size: usize, a: &[i64], v: &[i128], w: &[i128]) -> i128 {
 /// A whole vector near the direction in which $S = P - M^T P M$ is least, by inverse iteration.
 fn worst_direction(size: usize, p: &Matrix, m: &Matrix) -> Vec<i128> {
     let after = m.transpose().product(p).and_then(|mp| mp.product(m)).expect("square");
-    let fall = p.sum(&after.scaled(-1.0)).expect("one shape");
+    let decrease = p.sum(&after.scaled(-1.0)).expect("one shape");
     let mut v = matrix(1, &vec![1.0; size]);
     for _ in 0..60 {
-        v = fall.solve(&v).expect("regular");
+        v = decrease.solve(&v).expect("regular");
         let largest = v.data().iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
         v = v.scaled(1.0 / largest);
     }
@@ -247,12 +247,12 @@ proptest! {
         let moved: Vec<i128> = (0..size)
             .map(|i| (0..size).map(|j| i128::from(m[i * size + j]) * v[j]).sum())
             .collect();
-        let fall = (form(size, &p, &v, &v) << 24) - form(size, &p, &moved, &moved);
+        let decrease = (form(size, &p, &v, &v) << 24) - form(size, &p, &moved, &moved);
         let length: i128 = v.iter().map(|x| x * x).sum();
-        prop_assume!(fall > 0);
+        prop_assume!(decrease > 0);
         // The least weight, in units of 2^-48, at which the difference is not above zero along v.
-        let weight = (fall + length - 1) / length;
-        prop_assert!(fall - weight * length <= 0);
+        let weight = (decrease + length - 1) / length;
+        prop_assert!(decrease - weight * length <= 0);
         let tau = exact(i64::try_from(weight).expect("P is below 1000")) * libm::exp2(-48.0);
         let loops = point(&m_float);
         let identity = Matrix::identity(size);

@@ -133,8 +133,8 @@ fn a_cone_excuses_what_happens_outside_of_it() {
     let Verdict::Found(solution) = ask(Some(0)) else { panic!("the form falls inside the cone") };
     let tau = solution.multipliers[0];
     assert!(tau > 0.0 && is_positive_definite(&solution.p));
-    let fall = difference(1.0 - 0.5 * solution.margin, &solution.p, &m, &solution.p);
-    assert!(is_positive_definite(&fall.sum(&cones[0].scaled(-tau)).unwrap()));
+    let decrease = difference(1.0 - 0.5 * solution.margin, &solution.p, &m, &solution.p);
+    assert!(is_positive_definite(&decrease.sum(&cones[0].scaled(-tau)).unwrap()));
 }
 
 #[test]
@@ -150,9 +150,9 @@ fn conditions_share_the_multiplier_of_their_cone() {
     };
     assert_eq!(solution.multipliers.len(), 1);
     for m in &matrices {
-        let fall = difference(1.0, &solution.p, m, &solution.p);
-        let fall = fall.sum(&cones[0].scaled(-solution.multipliers[0])).unwrap();
-        assert!(is_positive_definite(&fall));
+        let decrease = difference(1.0, &solution.p, m, &solution.p);
+        let decrease = decrease.sum(&cones[0].scaled(-solution.multipliers[0])).unwrap();
+        assert!(is_positive_definite(&decrease));
     }
 }
 

@@ -1,6 +1,5 @@
 //! Tables of questions, answered row by row in constant memory.
 
-use std::fmt;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
@@ -13,9 +12,10 @@ const MOST_PROBLEMS: usize = 20;
 const LONGEST_LINE: u64 = 1 << 20;
 
 /// Why not every row was answered.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum RowsError {
     /// The table is wrong.
+    #[error("{}\n{}", problems.join("\n"), in_words(*answered))]
     Problems {
         /// What is wrong, each with its line.
         problems: Vec<String>,
@@ -24,29 +24,21 @@ pub enum RowsError {
         answered: Option<u64>,
     },
     /// The table could not be read to its end.
+    #[error("{0}")]
     Reading(io::Error),
     /// The answers could not be written.
+    #[error("cannot be written: {0}")]
     Writing(io::Error),
 }
 
-impl fmt::Display for RowsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Problems { problems, answered } => {
-                write!(f, "{}", problems.join("\n"))?;
-                match answered {
-                    None => f.write_str("\nno row was answered"),
-                    Some(1) => f.write_str("\n1 row was answered before the first problem"),
-                    Some(n) => write!(f, "\n{n} rows were answered before the first problem"),
-                }
-            }
-            Self::Reading(error) => write!(f, "{error}"),
-            Self::Writing(error) => write!(f, "cannot be written: {error}"),
-        }
+/// How many rows were answered before the first problem.
+fn in_words(answered: Option<u64>) -> String {
+    match answered {
+        None => "no row was answered".to_owned(),
+        Some(1) => "1 row was answered before the first problem".to_owned(),
+        Some(n) => format!("{n} rows were answered before the first problem"),
     }
 }
-
-impl std::error::Error for RowsError {}
 
 /// Something that answers rows of numbers.
 pub trait RowAnswers {

@@ -51,16 +51,9 @@ pub struct Identified {
 }
 
 /// Why no identification could begin: a shipped plant or table is missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the program carries no {0}")]
 pub struct Missing(&'static str);
-
-impl std::fmt::Display for Missing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the program carries no {}", self.0)
-    }
-}
-
-impl std::error::Error for Missing {}
 
 /// Finds everything anew. `progress` is told a line after each search.
 ///

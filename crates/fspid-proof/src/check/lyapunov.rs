@@ -27,7 +27,7 @@ pub struct Relaxation<'a> {
     pub matrix: &'a IntervalMatrix,
 }
 
-/// Proves that V falls by the factor `rate`² at least with every step, for every M inside `matrix`:
+/// Proves that V decreases by the factor `rate`² at least with every step, for every M inside `matrix`:
 ///
 /// $$ \rho^2 P - M^T P M - \tau Q \succ 0 $$
 ///
@@ -48,7 +48,7 @@ pub fn decreases(
     relaxation: Option<Relaxation<'_>>,
 ) -> Result<(), NotProved> {
     let own = symmetric("Lyapunov matrix", p)?;
-    prove_fall([&own, &own], rate, matrix, relaxation)
+    prove_decrease([&own, &own], rate, matrix, relaxation)
 }
 
 /// Proves that $z^T P_{\text{next}} z$ after a step is below `rate`² times $z^T P_{\text{now}} z$ before it:
@@ -69,13 +69,13 @@ pub fn decreases_between(
 ) -> Result<(), NotProved> {
     let now = symmetric("Lyapunov matrix", p_now)?;
     let next = symmetric("next Lyapunov matrix", p_next)?;
-    prove_fall([&now, &next], rate, matrix, relaxation)
+    prove_decrease([&now, &next], rate, matrix, relaxation)
 }
 
 /// All is computed in the basis X in which the present form is about the identity, with M X before
 /// anything else: what is uncertain in M is then weighed with the root of the condition number of P,
 /// and not with the number itself.
-fn prove_fall(
+fn prove_decrease(
     [now, next]: [&IntervalMatrix; 2],
     rate: f64,
     matrix: &IntervalMatrix,
@@ -94,12 +94,12 @@ fn prove_fall(
     dominant("Lyapunov matrix", &present)?;
     let before = present.scaled(rate * rate);
     let after = form(next, &matrix.product(&basis)?)?;
-    let mut fall = before.difference(&after)?;
+    let mut decrease = before.difference(&after)?;
     if let Some(relaxation) = relaxation {
         let q = weighed(relaxation, size)?;
-        fall = fall.difference(&form(&q, &basis)?)?;
+        decrease = decrease.difference(&form(&q, &basis)?)?;
     }
-    prove_named(WHAT, &fall)
+    prove_named(WHAT, &decrease)
 }
 
 /// $\tau Q$ with τ ≥ 0 and a Q whose bounds are symmetric; of the matrices inside it the symmetric ones

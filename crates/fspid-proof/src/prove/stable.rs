@@ -1,4 +1,4 @@
-//! Forms that fall however fast the gains move, and forms that fall as the error ties the gains.
+//! Forms that decrease however fast the gains move, and forms that decrease as the error ties the gains.
 
 use fspid_core::{Fspid, Law};
 use fspid_lti::Matrix;

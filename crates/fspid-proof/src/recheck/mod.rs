@@ -3,8 +3,6 @@
 mod moving;
 mod remains;
 
-use core::fmt;
-
 use fspid_core::{Change, Fspid, Gains, Law};
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::{Base, Interval};
@@ -43,7 +41,7 @@ pub struct Rechecked {
     pub any_load: bool,
     /// How far rest may be from the set-point, rad: without an integral an error stays.
     pub rest_error_rad: f64,
-    /// How far from rest the pitch angle may stay, rad; 0 where every deviation falls for ever.
+    /// How far from rest the pitch angle may stay, rad; 0 where every deviation decreases for ever.
     pub remains_rad: f64,
 }
 
@@ -66,11 +64,13 @@ struct Proved {
 }
 
 /// Why a certificate is not believed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecheckError {
     /// The loop is not one that a proof can speak of.
-    NotProvable(NotProvable),
+    #[error(transparent)]
+    NotProvable(#[from] NotProvable),
     /// An inequality does not hold, or not with certainty.
+    #[error("{}{reason}", at(.gains))]
     Inequality {
         /// Which gains; none where the inequality is not about gains.
         gains: Option<Gains<f64>>,
@@ -78,63 +78,36 @@ pub enum RecheckError {
         reason: NotProved,
     },
     /// The certificate is too large, or its parts do not fit the loop; nothing was computed.
+    #[error("{0}")]
     Sizes(WrongSizes),
     /// Nothing is known of rest for these set-points and loads.
-    Rest(NoRest),
+    #[error(transparent)]
+    Rest(#[from] NoRest),
     /// Nothing bounds what the gains make of the command that holds set-points and loads.
-    Held(NoSlopes),
+    #[error(
+        "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {0}"
+    )]
+    Held(#[from] NoSlopes),
     /// Every inequality holds, and what they leave is no statement about the flight.
+    #[error("{0}")]
     Remains(Remains),
     /// The certificate does not fit together.
+    #[error("{what}")]
     Malformed {
         /// What is wrong.
         what: &'static str,
     },
 }
 
-impl fmt::Display for RecheckError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotProvable(reason) => reason.fmt(f),
-            Self::Inequality { gains: Some(gains), reason } => {
-                write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
-            }
-            Self::Inequality { gains: None, reason } => reason.fmt(f),
-            Self::Sizes(wrong) => wrong.fmt(f),
-            Self::Rest(reason) => reason.fmt(f),
-            Self::Held(reason) => write!(
-                f,
-                "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {reason}"
-            ),
-            Self::Remains(remains) => remains.fmt(f),
-            Self::Malformed { what } => f.write_str(what),
-        }
-    }
+/// At which gains, if at some.
+fn at(gains: &Option<Gains<f64>>) -> String {
+    let words = |Gains { kp, ki, kd }| format!("at kp {kp:?}, ki {ki:?}, kd {kd:?}: ");
+    gains.map_or_else(String::new, words)
 }
-
-impl core::error::Error for RecheckError {}
 
 impl From<WrongSizes> for RecheckError {
     fn from(wrong: WrongSizes) -> Self {
         Self::Sizes(wrong)
-    }
-}
-
-impl From<NotProvable> for RecheckError {
-    fn from(reason: NotProvable) -> Self {
-        Self::NotProvable(reason)
-    }
-}
-
-impl From<NoRest> for RecheckError {
-    fn from(reason: NoRest) -> Self {
-        Self::Rest(reason)
-    }
-}
-
-impl From<NoSlopes> for RecheckError {
-    fn from(reason: NoSlopes) -> Self {
-        Self::Held(reason)
     }
 }
 
@@ -298,7 +271,7 @@ impl<'a> Recheck<'a> {
         Ok(is_positive(form)?)
     }
 
-    /// Proves at gains that the form falls, and that no limit acts within the level.
+    /// Proves at gains that the form decreases, and that no limit acts within the level.
     fn holds(
         &self,
         HeldGains { gains, change_gain }: HeldGains,
