@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use crate::json::merged;
 use crate::metrics::short;
-use fspid_diagnostics::lines::line;
 use fspid_scenario::units::degrees;
 
 /// The scope of a claim, ready to be told.
@@ -44,7 +43,7 @@ impl Told {
 
     pub(super) fn push(&self, out: &mut String) {
         for (about, sentence) in self.sentences() {
-            line(out, format_args!("  {about:<18} {sentence}"));
+            out.push_str(&format!("  {about:<18} {sentence}\n"));
         }
     }
 

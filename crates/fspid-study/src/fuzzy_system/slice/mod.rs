@@ -6,7 +6,6 @@ use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
-use fspid_diagnostics::lines::line;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use fspid_scenario::supervisor::Refused;
 
@@ -171,7 +170,7 @@ impl Slice<'_> {
                     cell.filter(|x| !x.is_nan()).map_or(String::new(), |x| format!("{x:?}"))
                 })
                 .collect();
-            line(&mut csv, format_args!("{}", cells.join(",")));
+            csv.push_str(&format!("{}\n", cells.join(",")));
         }
         csv
     }
