@@ -95,7 +95,7 @@ pub(super) struct FlightModel {
     pub setting: Setting,
     /// The command.
     pub command: Command,
-    /// Who flies.
+    /// The controllers that fly it, each on its own.
     pub controllers: Vec<ControllerModel>,
 }
 

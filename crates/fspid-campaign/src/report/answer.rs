@@ -27,7 +27,7 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
         (some, of) => format!("{} of {} flights failed", count(some), count(of)),
     };
     let standing = match (failed.count, failed.at_most) {
-        // So few flights that failing may be the rule.
+        // None failed of so few flights that half of all may: nothing to call good yet.
         (0, Some(bound)) if bound >= 0.5 => Standing::Fair,
         (0, _) => Standing::Good,
         _ => Standing::Bad,

@@ -26,7 +26,7 @@ pub struct DistributionFigure {
 /// The histogram of one controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionRow {
-    /// Whose it is.
+    /// Name of the controller.
     pub name: String,
     /// What is said of it, right of the name; may be empty.
     pub words: String,

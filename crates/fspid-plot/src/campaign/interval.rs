@@ -48,7 +48,7 @@ pub struct IntervalRow {
 pub struct IntervalMark {
     /// Position of its column.
     pub column: usize,
-    /// Whose it is.
+    /// Colour and sign of the controller.
     pub style: SeriesStyle,
     /// The estimate.
     pub value: f64,

@@ -153,7 +153,7 @@ impl Pair<'_> {
         let typical = SignedRank::of(&cases, CONFIDENCE);
         let (over, ratio) = self.ratio(mine, &all, together);
         let groups = self.judged.groups();
-        let groups = groups.iter().map(|(_, cases)| self.ratio(mine, cases, CONFIDENCE).1);
+        let groups = groups.iter().map(|it| self.ratio(mine, &it.cases, CONFIDENCE).1);
         let p = match (over, typical) {
             // Two tests that point in different directions have found nothing.
             (Some(over), Some(typical)) if over.estimate * typical.estimate >= 0.0 => {

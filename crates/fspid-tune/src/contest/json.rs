@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::compare::{CONFIDENCE, Comparison, Ratio, Standing};
-use super::judged::{Contestant, Design, Quantity};
+use super::judged::{CaseGroup, Contestant, Design, Quantity};
 use super::outcome::{First, Outcome};
 use super::summary::{Spread, Summary};
 use super::words::{Headline, headline};
@@ -29,10 +29,11 @@ pub(super) fn json(outcome: &Outcome) -> Value {
         })
     });
     let controllers = judged.contestants.iter().zip(&outcome.summaries).enumerate();
-    let groups = judged.groups().into_iter().enumerate().map(|(place, (group, cases))| {
-        let first = outcome.first_of_group(place);
-        json!({ "name": group, "cases": cases.len(), "ranking": ranking(outcome, &first) })
-    });
+    let groups =
+        judged.groups().into_iter().enumerate().map(|(place, CaseGroup { name, cases })| {
+            let first = outcome.first_of_group(place);
+            json!({ "name": name, "cases": cases.len(), "ranking": ranking(outcome, &first) })
+        });
     json!({
         "schema": SCHEMA,
         "scenario": setting.scenario,
@@ -89,7 +90,7 @@ fn controller(
 ) -> Value {
     let groups = outcome.judged.groups().into_iter().zip(&summary.groups);
     let groups: Vec<Value> = groups
-        .map(|((name, _), it)| json!({ "name": name, "measures": measures(&it.spreads), "flights": it.count }))
+        .map(|(group, it)| json!({ "name": group.name, "measures": measures(&it.spreads), "flights": it.count }))
         .collect();
     let mirror = summary.mirror.map(|it| {
         json!({
@@ -153,7 +154,7 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
     };
     let names = outcome.judged.groups();
     let groups = names.iter().zip(&found.groups);
-    let groups = groups.map(|((name, _), ratio)| GroupRatio { ratio, name });
+    let groups = groups.map(|(group, ratio)| GroupRatio { ratio, name: &group.name });
     let cases = outcome.judged.cases.iter().zip(&found.cases);
     let cases: Map<String, Value> =
         cases.map(|(case, it)| (case.name.clone(), json!(libm::exp(*it)))).collect();

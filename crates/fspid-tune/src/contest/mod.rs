@@ -46,7 +46,7 @@ use fspid_study::output;
 pub use crate::kept::Then;
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
-pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
+pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
 pub use summary::{Mirror, Part, Spread, Summary};

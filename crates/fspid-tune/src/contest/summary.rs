@@ -86,7 +86,7 @@ impl Summary {
         Self {
             lost: interval(whole.count.lost),
             failed: interval(whole.count.failed),
-            groups: judged.groups().iter().map(|(_, cases)| part(cases)).collect(),
+            groups: judged.groups().iter().map(|group| part(&group.cases)).collect(),
             cases: judged.all().into_iter().map(|case| part(&[case])).collect(),
             mirror: mirror(judged, contestant),
             whole,

@@ -22,7 +22,7 @@ use fspid_scenario::aircraft::units::{Kind, TIMES, Units};
 use fspid_scenario::file::preset;
 use fspid_scenario::supervisor::Refused;
 
-/// Whose flying qualities, and behind what.
+/// Which aircraft is judged for its flying qualities, and behind which servo and delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QualitiesQuestion<'a> {
     /// The aircraft and its flight; a plant that the program carries does as well.

@@ -41,7 +41,7 @@ pub struct Audit<'a> {
 /// How a finding is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// As one would wish, and proved.
+    /// A property that rule tables should have, proved.
     Holds,
     /// Worth knowing.
     Worth,
