@@ -106,7 +106,7 @@ impl Explanation<'_> {
             (output.map_or("", |output| &output.name), term.map_or("", |term| &term.name));
         out.push_str(&format!("\nwhy not {output} = {term}\n"));
         if why_not.rules.is_empty() {
-            out.push_str(&format!("  no rule concludes it\n"));
+            out.push_str("  no rule concludes it\n");
         }
         for lack in why_not.rules.iter().take(MOST) {
             self.lack_in_words(lack, out);
@@ -122,9 +122,9 @@ impl Explanation<'_> {
         let (name, text) = (self.rule_name(block, rule), self.rule(block, rule));
         out.push_str(&format!("  {}  {name}: {text}\n", grade(lack.strength)));
         if !lack.enabled {
-            out.push_str(&format!("            it is switched off\n"));
+            out.push_str("            it is switched off\n");
         } else if lack.acting <= 0.0 && lack.strength > 0.0 {
-            out.push_str(&format!("            the block's activation leaves it out\n"));
+            out.push_str("            the block's activation leaves it out\n");
         }
         for (index, (statement, found)) in lack.statements.iter().enumerate() {
             let text = words::statement(statement, self.system().parts());
