@@ -6,7 +6,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use fspid_campaign::bench::{SCENARIO, Work};
 use fspid_campaign::sample::Sampling;
-use fspid_campaign::table::{Table, Writer};
+use fspid_campaign::table::{ColumnTable, Writer};
 use fspid_campaign::{Campaign, Folder, Progress, Question, Range, local, merge, plan};
 
 /// Flights of a sample: four groups in lanes.
@@ -78,10 +78,10 @@ fn flights_with_all_measures(bencher: Bencher<'_, '_>, threads: usize) {
 }
 
 /// Rows enough for a shard, of a few flights again and again.
-fn rows(campaign: &Campaign) -> Table {
+fn rows(campaign: &Campaign) -> ColumnTable {
     let range = Range { first: 0, end: FLIGHTS };
     let flown = campaign.fly(range, &Progress::default()).expect("flown");
-    let mut table = Table::new(std::sync::Arc::clone(campaign.rows().schema()));
+    let mut table = ColumnTable::new(std::sync::Arc::clone(campaign.rows().schema()));
     for _ in 0..ROWS / FLIGHTS {
         table.append(&flown).expect("the same columns");
     }

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fspid_campaign::table::{
-    Cell, Column, Digest, Kind, MAX_TEXT_BYTES, ROWS_PER_GROUP, Reader, Schema, Table, Writer,
+    Cell, Column, ColumnTable, Digest, Kind, MAX_TEXT_BYTES, ROWS_PER_GROUP, Reader, Schema, Writer,
 };
 
 /// Columns of every kind: all different, few different, one for all, none at all.
@@ -65,8 +65,8 @@ const fn mixed(row: usize) -> u64 {
 }
 
 /// The table of so many rows.
-fn table(rows: usize) -> Result<Table, Box<dyn Error>> {
-    let mut table = Table::new(schema()?);
+fn table(rows: usize) -> Result<ColumnTable, Box<dyn Error>> {
+    let mut table = ColumnTable::new(schema()?);
     for row in 0..rows {
         let random = mixed(row);
         // Of 53 bits, so that the division by 2⁵³ is exact.
@@ -95,7 +95,7 @@ fn table(rows: usize) -> Result<Table, Box<dyn Error>> {
 }
 
 /// Writes a table and reads it again.
-fn write(path: &Path, table: &Table) -> Result<Digest, Box<dyn Error>> {
+fn write(path: &Path, table: &ColumnTable) -> Result<Digest, Box<dyn Error>> {
     let metadata = [("campaign".to_owned(), "an example, ü".to_owned())];
     let mut writer = Writer::new(File::create(path)?, table.schema(), &metadata)?;
     writer.write(table)?;

@@ -12,7 +12,7 @@ use crate::engine::{self, Memory};
 use crate::error::CampaignError;
 use crate::plan::{Plan, Range};
 use crate::rows::{Rows, Run};
-use crate::table::Table;
+use crate::table::ColumnTable;
 
 /// A planned campaign with its scenario read.
 #[derive(Clone, Debug)]
@@ -132,7 +132,7 @@ impl Campaign {
     ///
     /// # Errors
     /// None where the runs are of this campaign.
-    pub fn fly(&self, range: Range, progress: &Progress) -> Result<Table, CampaignError> {
+    pub fn fly(&self, range: Range, progress: &Progress) -> Result<ColumnTable, CampaignError> {
         let at_once = engine::at_once(self.template.study()) as u64;
         let groups = (range.end.saturating_sub(range.first)).div_ceil(at_once);
         let fly = |memory: &mut Memory, group: u64| {
@@ -144,7 +144,7 @@ impl Campaign {
             self.rows.table(&runs)
         };
         let tables: Vec<_> = (0..groups).into_par_iter().map_init(Memory::default, fly).collect();
-        let mut whole = Table::new(std::sync::Arc::clone(self.rows.schema()));
+        let mut whole = ColumnTable::new(std::sync::Arc::clone(self.rows.schema()));
         for table in tables {
             whole.append(&table?)?;
         }

@@ -10,7 +10,7 @@ use crate::folder::Folder;
 use crate::plan::{Plan, Range};
 use crate::rows::RUN;
 use crate::shard::{Part, provenance, write_whole};
-use crate::table::{Digest, Digester, Table, Values, Writer};
+use crate::table::{ColumnTable, Digest, Digester, Values, Writer};
 
 /// Key of the metadata that holds the plan: everything but how it was cut into shards.
 pub const PLAN_KEY: &str = "fspid.plan";
@@ -120,7 +120,7 @@ fn copy<W: std::io::Write + Send>(
 }
 
 /// Checks that the rows are those of the next runs.
-fn check_runs(table: &Table, row: &mut u64, of_run: u64) -> Result<(), String> {
+fn check_runs(table: &ColumnTable, row: &mut u64, of_run: u64) -> Result<(), String> {
     let Ok(Values::Integer(runs)) = table.column(RUN) else {
         return Err("it has no runs".to_owned());
     };

@@ -11,9 +11,10 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::units::degrees;
 use fspid_study::judgement::Judgement;
 use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
+use serde::Serialize;
 
 use crate::engine::FlightResult;
-use crate::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, TableError};
+use crate::table::{Cell, Column, ColumnTable, Kind, MAX_TEXT_BYTES, Schema, TableError};
 
 /// The verdict on a flight that ended at the ground.
 pub const HIT_GROUND: &str = "hit the ground";
@@ -54,7 +55,8 @@ pub struct Run {
 }
 
 /// Which values of a measure are bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Bad {
     /// High ones, as of overshoot.
     High,
@@ -189,11 +191,11 @@ impl Rows {
     ///
     /// # Errors
     /// None where the runs are of this campaign.
-    pub fn table(&self, runs: &[Run]) -> Result<Table, TableError> {
-        let mut table = Table::new(Arc::clone(&self.schema));
+    pub fn table(&self, runs: &[Run]) -> Result<ColumnTable, TableError> {
+        let mut table = ColumnTable::new(Arc::clone(&self.schema));
         for run in runs {
             for (place, controller) in self.controllers.iter().enumerate() {
-                self.push(&mut table, run, (place, controller))?;
+                self.push(&mut table, run, place, controller)?;
             }
         }
         Ok(table)
@@ -201,9 +203,10 @@ impl Rows {
 
     fn push(
         &self,
-        table: &mut Table,
+        table: &mut ColumnTable,
         run: &Run,
-        (place, controller): (usize, &str),
+        place: usize,
+        controller: &str,
     ) -> Result<(), TableError> {
         let flight = run.flights.as_ref().map(|flights| flights.get(place));
         let flight = flight.ok().flatten();

@@ -10,7 +10,7 @@ use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::plan::{Plan, Range};
-use crate::table::{Reader, Table, Writer};
+use crate::table::{ColumnTable, Reader, Writer};
 
 /// Key of the metadata that names the campaign.
 pub const CAMPAIGN_KEY: &str = "fspid.campaign";
@@ -70,7 +70,7 @@ fn write(
     path: &Path,
     campaign: &Campaign,
     range: Range,
-    table: &Table,
+    table: &ColumnTable,
 ) -> Result<(), CampaignError> {
     let text = |key: &str, value: String| (key.to_owned(), value);
     let mut metadata = provenance(campaign.plan());

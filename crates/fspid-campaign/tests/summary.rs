@@ -7,11 +7,12 @@ use fspid_campaign::rows::HIT_GROUND;
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::statistics::{rank, share};
 use fspid_campaign::summary::{
-    Bad, ControllerSummary, Extreme, MeasureSummary, NotMerged, Note, SENSITIVITY_RUNS,
-    SensitivityTarget, Severity, Summary, SummaryError, SummarySettings, json, text,
+    Bad, ControllerSummary, Extreme, MeasureCount, MeasureSummary, NotMerged, Note,
+    SENSITIVITY_RUNS, SensitivityTarget, Severity, Summary, SummaryError, SummarySettings, json,
+    text,
 };
 use fspid_campaign::table::{
-    Cell, Column, Kind, Reader, Schema, Table, TableError, Values, Writer,
+    Cell, Column, ColumnTable, Kind, Reader, Schema, TableError, Values, Writer,
 };
 use fspid_campaign::{Folder, Progress, Question, local, plan};
 use fspid_study::metrics::LEFT_RANGE;
@@ -112,7 +113,7 @@ fn metadata(runs: u64, sampling: &str) -> Vec<(String, String)> {
         .to_vec()
 }
 
-fn written(table: &Table, metadata: &[(String, String)]) -> File {
+fn written(table: &ColumnTable, metadata: &[(String, String)]) -> File {
     let home = tempfile::tempdir().expect("a folder");
     let path = home.path().join("campaign.parquet");
     let file = std::fs::File::create(&path).expect("created");
@@ -122,8 +123,8 @@ fn written(table: &Table, metadata: &[(String, String)]) -> File {
     File { _home: home, path }
 }
 
-fn table(runs: u64, controllers: &[&str], row: impl Fn(u64, usize) -> Row) -> Table {
-    let mut table = Table::new(schema());
+fn table(runs: u64, controllers: &[&str], row: impl Fn(u64, usize) -> Row) -> ColumnTable {
+    let mut table = ColumnTable::new(schema());
     for run in 0..runs {
         for (place, controller) in controllers.iter().enumerate() {
             table.push(&cells(run, controller, &row(run, place))).expect("a row");
@@ -156,7 +157,7 @@ fn no_failures_in_three_hundred_runs_are_bounded_from_above() {
     let failed = summary.controllers[0].failed;
     assert_eq!((failed.count, failed.of, failed.estimate), (0, 300, Some(0.0)));
     assert!(near(failed.at_most.expect("a bound"), 1.0 - libm::pow(0.05, 1.0 / 300.0)));
-    assert!(near(failed.interval[1], 1.0 - libm::pow(0.025, 1.0 / 300.0)));
+    assert!(near(failed.upper, 1.0 - libm::pow(0.025, 1.0 / 300.0)));
     assert_eq!(summary.notes, []);
     assert!(summary.controllers[0].failed_runs.is_empty());
     assert!(text(&summary).contains("fails 0 of 300: at most 1.0 % (95 %)"), "{}", text(&summary));
@@ -181,7 +182,8 @@ fn a_campaign_whose_flights_all_diverged_has_no_measures_and_says_so() {
     // The earliest first, and ten of them.
     let runs: Vec<u64> = controller.failed_runs.iter().map(|failed| failed.run).collect();
     assert_eq!(runs, [39, 38, 37, 36, 35, 34, 33, 32, 31, 30]);
-    let missing = vec![("overshoot_pct".to_owned(), 40), ("requirement.low.value".to_owned(), 40)];
+    let missing = ["overshoot_pct", "requirement.low.value"];
+    let missing = missing.map(|name| MeasureCount { name: name.to_owned(), flights: 40 }).to_vec();
     assert_eq!(summary.notes, [Note::Missing { controller: "A".to_owned(), measures: missing }]);
     assert!(text(&summary).contains("fails 40 of 40: at least"), "{}", text(&summary));
     assert!(json(&summary)["controllers"][0]["measures"][1]["mean"].is_null());
@@ -269,7 +271,7 @@ fn texts_explain_by_class_and_numbers_by_rank() {
     let depends = &summary.controllers[0].sensitivities;
     let overshoot = SensitivityTarget::Measure("overshoot_pct".to_owned());
     let overshoot = depends.iter().find(|it| it.of == overshoot).expect("there");
-    assert_eq!((overshoot.used, overshoot.used_of), (300, [300, 300]));
+    assert_eq!((overshoot.used, [overshoot.runs_used, overshoot.runs]), (300, [300, 300]));
     let runs: Vec<Row> = (0..300).map(good).collect();
     let y: Vec<f64> = runs.iter().filter_map(|row| row.overshoot_pct).collect();
     let gain: Vec<f64> = runs.iter().map(|row| row.gain).collect();
@@ -318,7 +320,7 @@ fn samples_that_are_not_independent_are_said_to_be_so() {
 #[test]
 fn files_that_are_no_merged_campaign_are_refused_with_the_reason() {
     let rows = table(20, &["A", "B"], |run, _| good(run));
-    let refused = |table: &Table, metadata: &[(String, String)]| {
+    let refused = |table: &ColumnTable, metadata: &[(String, String)]| {
         let file = written(table, metadata);
         match Summary::of(&file.path, SummarySettings::default()) {
             Err(SummaryError::NotMerged { reason, .. }) => reason,
@@ -338,7 +340,7 @@ fn files_that_are_no_merged_campaign_are_refused_with_the_reason() {
     let order = NotMerged::Order { row: 10, run: 5, controller: "A".to_owned() };
     assert_eq!(refused(&swapped, &meta), order);
     let other = Arc::new(Schema::new(vec![Column::new("run", Kind::Float)]).expect("columns"));
-    let mut other = Table::new(other);
+    let mut other = ColumnTable::new(other);
     other.push(&[1.0.into()]).expect("a row");
     let no_column = NotMerged::NoColumn { name: "run".to_owned(), kind: Kind::Integer };
     assert_eq!(refused(&other, &meta), no_column);
@@ -375,15 +377,15 @@ fn of_many_runs_the_first_are_asked_what_measures_depend_on() {
         true => good(run),
         false => Row { overshoot_pct: Some(1000.0 + run as f64), ..good(run) },
     });
-    let used = SENSITIVITY_RUNS as u64;
-    assert_eq!(summary.notes, [Note::FirstRunsOnly { used, of: runs }]);
+    let runs_used = SENSITIVITY_RUNS as u64;
+    assert_eq!(summary.notes, [Note::FirstRunsOnly { runs_used, runs }]);
     let controller = &summary.controllers[0];
     let overshoot = measure(controller, "overshoot_pct");
     assert_eq!((overshoot.count, overshoot.highest[0].run), (runs, runs - 1));
     let depends = &controller.sensitivities[2];
-    assert_eq!((depends.used, depends.used_of), (used, [used, runs]));
-    let y: Vec<f64> = (0..used).filter_map(|run| good(run).overshoot_pct).collect();
-    let gain: Vec<f64> = (0..used).map(|run| good(run).gain).collect();
+    assert_eq!((depends.used, [depends.runs_used, depends.runs]), (runs_used, [runs_used, runs]));
+    let y: Vec<f64> = (0..runs_used).filter_map(|run| good(run).overshoot_pct).collect();
+    let gain: Vec<f64> = (0..runs_used).map(|run| good(run).gain).collect();
     assert_eq!(depends.influences[0].correlation, rank::spearman(&gain, &y));
 }
 
@@ -433,11 +435,11 @@ fn campaign_file(runs: u64) -> File {
 }
 
 /// The numbers of a column in the rows of one of two controllers.
-fn floats(table: &Table, name: &str, place: usize) -> Vec<Option<f64>> {
+fn floats(table: &ColumnTable, name: &str, place: usize) -> Vec<Option<f64>> {
     table.floats(name).expect("numbers").iter().skip(place).step_by(2).copied().collect()
 }
 
-fn truths(table: &Table, name: &str, place: usize) -> Vec<Option<bool>> {
+fn truths(table: &ColumnTable, name: &str, place: usize) -> Vec<Option<bool>> {
     let Values::Boolean(cells) = table.column(name).expect("a column") else { panic!("truths") };
     cells.iter().skip(place).step_by(2).copied().collect()
 }
@@ -550,7 +552,7 @@ fn the_text_fits_into_a_hundred_columns_and_the_json_says_the_same() {
     assert_eq!(json["controllers"][1]["name"], "FSPID");
     let failed = &json["controllers"][0]["failed"];
     assert_eq!(failed["of"], 60);
-    assert_eq!(failed["upper"].as_f64(), Some(summary.controllers[0].failed.interval[1]));
+    assert_eq!(failed["upper"].as_f64(), Some(summary.controllers[0].failed.upper));
     let measures = json["controllers"][0]["measures"].as_array().expect("a list");
     assert_eq!(measures.len(), summary.controllers[0].measures.len());
     let named = |name: &str| measures.iter().find(|it| it["name"] == name).expect("there");

@@ -1,7 +1,9 @@
 //! Models as TOML: written and read back bit for bit, and refused where something is wrong.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test")]
 
-use fspid_daveml::document::{Breakpoints, Document, Expression, Mention, Role, Table, Variable};
+use fspid_daveml::document::{
+    Breakpoints, Document, Expression, GridTable, Mention, Role, Variable,
+};
 use fspid_daveml::{Model, data, read};
 use proptest::prelude::*;
 
@@ -85,11 +87,11 @@ proptest! {
         let values: Vec<_> = values.into_iter().chain([small, -0.0]).collect();
         let document = Document {
             breakpoints: vec![Breakpoints { id: "A".into(), values: values.clone(), ..Breakpoints::default() }],
-            tables: vec![Table {
+            tables: vec![GridTable {
                 id: "T".into(),
                 breakpoints: vec![Mention { id: "A".into(), ..Mention::default() }],
                 values: values.clone(),
-                ..Table::default()
+                ..GridTable::default()
             }],
             ..Document::default()
         };

@@ -42,6 +42,20 @@ pub fn without_zeros(text: &str) -> &str {
     if is_plain { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
+/// A number with its digits in groups of three: `1 234 567`.
+#[must_use]
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// "1 controller", "2 controllers".
 #[must_use]
 pub fn counted(count: usize, noun: &str) -> String {
@@ -64,6 +78,11 @@ mod tests {
         );
         assert_eq!(shortest(f64::INFINITY), "inf");
         assert_eq!(shortest(0.1 + 0.2), "0.30000000000000004");
+    }
+
+    #[test]
+    fn digits_stand_in_groups_of_three() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1 000", "1 234 567"]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use fspid_fuzzy::{Formula, FuzzyError};
 use crate::lexer::Token;
 use crate::number;
 use crate::report::Report;
-use crate::vocabulary::shapes::Row;
+use crate::vocabulary::shapes::ToolShape;
 use fspid_diagnostics::Place;
 
 /// A number with its place.
@@ -41,7 +41,7 @@ pub(crate) fn finite<'a>(token: Token<'a>, report: &mut Report) -> Option<Number
 
 /// A row's shape with these parameters; one number more is the height.
 pub(crate) fn shape(
-    row: &Row,
+    row: &ToolShape,
     word: Token,
     numbers: &[Number],
     report: &mut Report,
@@ -80,7 +80,13 @@ fn checked_height(height: &Number, report: &mut Report) -> Option<f64> {
 }
 
 /// Says what is wrong with parameters, at the number that is wrong if it can be found.
-fn refuse(row: &Row, word: Token, numbers: &[Number], error: &FuzzyError, report: &mut Report) {
+fn refuse(
+    row: &ToolShape,
+    word: Token,
+    numbers: &[Number],
+    error: &FuzzyError,
+    report: &mut Report,
+) {
     match error {
         FuzzyError::Parameter { name, found, allowed } => {
             let same = |number: &&Number| number.value.to_bits() == found.to_bits();

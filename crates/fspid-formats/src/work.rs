@@ -8,7 +8,7 @@ std::thread_local! {
     static DONE: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
-/// So much more has been done.
+/// Counts work, which tests hold to be linear in the length of a text.
 #[inline]
 pub(crate) fn add(_more: usize) {
     #[cfg(test)]

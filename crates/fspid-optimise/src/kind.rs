@@ -118,19 +118,12 @@ pub enum Snapshot {
 }
 
 /// A state that no optimiser can have been in: lengths that do not fit, points outside the cube.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this is not a state of `{optimiser}`: its numbers do not fit together")]
 pub struct UnsoundState {
     /// Name of the optimiser whose state it claims to be.
     pub optimiser: &'static str,
 }
-
-impl std::fmt::Display for UnsoundState {
-    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(to, "this is not a state of `{}`: its numbers do not fit together", self.optimiser)
-    }
-}
-
-impl std::error::Error for UnsoundState {}
 
 impl Snapshot {
     /// The optimiser as it was; it asks again for the candidates that were on their way.

@@ -32,23 +32,20 @@ pub struct Found {
 /// Searches `space` for the least `cost`: L-SHADE, then Nelder and Mead's simplex from the best point.
 /// Ends early when a cost of `enough` is reached.
 ///
-/// A cost that is NaN counts as infinite. `about` is a point to begin from, in the parameters' own
-/// units, with the spread of the first population as a share of the box; without it the first
-/// population lies anywhere.
+/// A cost that is NaN counts as infinite. The point of [`Start::About`] is in the parameters' own units.
 pub fn search(
     space: &Space,
     budget: Budget,
-    about: Option<(&[f64], f64)>,
+    start: Start<'_>,
     enough: f64,
     cost: impl Fn(&[f64]) -> f64 + Sync,
 ) -> Found {
-    let begin = about.map(|(point, spread)| (space.unit(point), spread));
-    let start = match &begin {
-        Some((point, spread)) => Start::About(point, *spread),
-        None => Start::Anywhere,
+    let Budget { seed, population, global, .. } = budget;
+    let begin = |start: Start<'_>| LShade::new(space.dimension(), population, global, seed, start);
+    let mut global = match start {
+        Start::About(point, spread) => begin(Start::About(&space.unit(point), spread)),
+        Start::Anywhere => begin(Start::Anywhere),
     };
-    let mut global =
-        LShade::new(space.dimension(), budget.population, budget.global, budget.seed, start);
     let spent = run(&mut global, space, budget.global, enough, &cost);
     let (best, best_cost) = global.best();
     let polished = polish(space, (&space.point(best), best_cost), budget.polish, enough, cost);
@@ -146,7 +143,7 @@ mod tests {
     #[test]
     fn a_search_finds_the_bottom_of_a_curved_valley() {
         for seed in 0..5 {
-            let found = search(&space(), budget(seed), None, 0.0, rosenbrock);
+            let found = search(&space(), budget(seed), Start::Anywhere, 0.0, rosenbrock);
             assert!(found.cost < 1e-10, "seed {seed}: {found:?}");
             assert!(found.evaluations <= 8_100);
         }
@@ -155,7 +152,7 @@ mod tests {
     #[test]
     fn the_same_seed_finds_the_same_bits_and_another_seed_does_not() {
         let bits = |seed| {
-            let point = search(&space(), budget(seed), None, 0.0, rosenbrock).point;
+            let point = search(&space(), budget(seed), Start::Anywhere, 0.0, rosenbrock).point;
             point.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(1), bits(1));
@@ -170,7 +167,7 @@ mod tests {
             outside.fetch_add(usize::from(!inside), std::sync::atomic::Ordering::Relaxed);
             point.iter().map(|x| (x - 20.0).abs()).sum()
         };
-        let found = search(&space(), budget(3), None, 0.0, away);
+        let found = search(&space(), budget(3), Start::Anywhere, 0.0, away);
         assert_eq!(outside.into_inner(), 0);
         assert!(found.point.iter().all(|x| (x - 5.0).abs() < 1e-6), "{found:?}");
     }
@@ -180,7 +177,7 @@ mod tests {
         let cost = |point: &[f64]| {
             if point[0] > 0.0 { f64::NAN } else { rosenbrock(point) }
         };
-        let found = search(&space(), budget(1), None, 0.0, cost);
+        let found = search(&space(), budget(1), Start::Anywhere, 0.0, cost);
         assert!(found.point[0] <= 0.0 && found.cost.is_finite());
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod analysis;
 pub mod campaign;
+pub mod columns;
 pub mod html;
 pub mod markdown;
 pub mod number;

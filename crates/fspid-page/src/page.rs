@@ -132,7 +132,7 @@ impl Cell {
 
 /// A row of a table; its first cell heads it.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Row {
+pub struct TableRow {
     /// Its id in the page, if something refers to it.
     pub id: String,
     /// How it looks.
@@ -141,7 +141,7 @@ pub struct Row {
     pub cells: Vec<Cell>,
 }
 
-impl From<Vec<Cell>> for Row {
+impl From<Vec<Cell>> for TableRow {
     fn from(cells: Vec<Cell>) -> Self {
         Self { cells, ..Self::default() }
     }
@@ -158,7 +158,7 @@ pub struct Group {
 
 /// A table.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Table {
+pub struct PageTable {
     /// What it holds.
     pub caption: String,
     /// Headings over several columns, or none.
@@ -168,12 +168,12 @@ pub struct Table {
     /// What each cell is called where the headings are out of sight.
     pub labels: Vec<String>,
     /// Rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TableRow>,
     /// True for a table that becomes a list of cards on a narrow screen.
     pub cards: bool,
 }
 
-impl Table {
+impl PageTable {
     /// A table with these columns.
     pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
         let head: Vec<String> = head.iter().map(|text| (*text).to_owned()).collect();
@@ -200,14 +200,14 @@ impl Table {
     }
 
     /// Adds a row.
-    pub fn push(&mut self, row: impl Into<Row>) {
+    pub fn push(&mut self, row: impl Into<TableRow>) {
         self.rows.push(row.into());
     }
 }
 
 /// A part of a report.
 #[derive(Clone, Debug, Serialize)]
-pub struct Section {
+pub struct PageSection {
     /// Its id in the page.
     pub id: &'static str,
     /// Its heading.
@@ -219,7 +219,7 @@ pub struct Section {
     pub figures: Vec<Figure>,
 }
 
-impl Section {
+impl PageSection {
     /// A section with this markup.
     #[must_use]
     pub fn of(id: &'static str, title: &str, body: String) -> Self {

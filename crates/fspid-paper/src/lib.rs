@@ -19,8 +19,6 @@ pub use judge::JudgedClaim;
 pub use qualitative::JudgedStatement;
 pub use recorded::{Fallen, fallen, recorded_toml};
 
-use std::fmt;
-
 use fspid_sim::SimError;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -33,38 +31,17 @@ use fspid_study::metrics::Measured;
 use fspid_study::simulation::Simulation;
 
 /// Why the paper could not be flown: a stored scenario is wrong, which no shipped one is.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum ReproduceError {
     /// A stored scenario has problems.
-    Problems(Problems),
+    #[error(transparent)]
+    Problems(#[from] Problems),
     /// A stored scenario cannot be flown.
-    Flight(SimError),
+    #[error(transparent)]
+    Flight(#[from] SimError),
     /// Something the program should carry is not there.
+    #[error("the program carries no {0}")]
     Missing(&'static str),
-}
-
-impl fmt::Display for ReproduceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Problems(problems) => problems.fmt(f),
-            Self::Flight(error) => error.fmt(f),
-            Self::Missing(what) => write!(f, "the program carries no {what}"),
-        }
-    }
-}
-
-impl std::error::Error for ReproduceError {}
-
-impl From<Problems> for ReproduceError {
-    fn from(problems: Problems) -> Self {
-        Self::Problems(problems)
-    }
-}
-
-impl From<SimError> for ReproduceError {
-    fn from(error: SimError) -> Self {
-        Self::Flight(error)
-    }
 }
 
 /// The scenario of the long-term change.

@@ -11,7 +11,6 @@ use fspid_sim::{
     Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
 };
 
-use fspid_diagnostics::lines::line;
 use fspid_scenario::units::{degrees, radians};
 
 /// Sample period of all figures, s (assumption A4).
@@ -96,7 +95,7 @@ pub(super) struct FlightModel {
     pub setting: Setting,
     /// The command.
     pub command: Command,
-    /// Who flies.
+    /// The controllers that fly it, each on its own.
     pub controllers: Vec<ControllerModel>,
 }
 
@@ -193,11 +192,11 @@ impl FlightModel {
     pub(super) fn toml(&self, heading: &[String]) -> String {
         let mut out = String::new();
         for comment in heading {
-            line(&mut out, format_args!("# {comment}"));
+            out.push_str(&format!("# {comment}\n"));
         }
-        line(&mut out, format_args!("schema = 1\nname = \"{}\"", self.name));
-        line(&mut out, format_args!("\n[plant]\npreset = \"{}\"", self.setting.plant));
-        line(&mut out, format_args!("\n[actuator]\ntime_constant_s = {SERVO_S:?}"));
+        out.push_str(&format!("schema = 1\nname = \"{}\"\n", self.name));
+        out.push_str(&format!("\n[plant]\npreset = \"{}\"\n", self.setting.plant));
+        out.push_str(&format!("\n[actuator]\ntime_constant_s = {SERVO_S:?}\n"));
         let setpoint = match self.command {
             Command::Step { .. } | Command::Rest { .. } => "kind = \"step\"".to_owned(),
             Command::Square { half_period_s, .. } => {
@@ -205,13 +204,10 @@ impl FlightModel {
             }
         };
         let (duration_s, amplitude_deg) = (self.duration_s(), self.amplitude_deg());
-        line(
-            &mut out,
-            format_args!(
-                "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}"
-            ),
-        );
-        line(&mut out, format_args!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}"));
+        out.push_str(&format!(
+            "\n[loop]\nsample_period_s = {SAMPLE_PERIOD_S:?}\nduration_s = {duration_s:?}\n"
+        ));
+        out.push_str(&format!("\n[setpoint]\n{setpoint}\namplitude_deg = {amplitude_deg:?}\n"));
         for controller in &self.controllers {
             self.push_controller(&mut out, controller);
         }
@@ -220,27 +216,24 @@ impl FlightModel {
 
     fn push_controller(&self, out: &mut String, controller: &ControllerModel) {
         let ControllerModel { name, gains: [kp, ki, kd], rate_gain, scales } = controller;
-        line(out, format_args!("\n[[controller]]\nname = \"{name}\""));
+        out.push_str(&format!("\n[[controller]]\nname = \"{name}\"\n"));
         match scales {
             None if *ki == 0.0 && *kd == 0.0 => {
-                line(out, format_args!("kind = \"p\"\nkp = {kp:?}"));
+                out.push_str(&format!("kind = \"p\"\nkp = {kp:?}\n"));
             }
             None => {
-                line(out, format_args!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}"));
+                out.push_str(&format!("kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}\n"));
             }
             Some(_) => {
-                line(
-                    out,
-                    format_args!(
-                        "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
-                     law = \"memoryless\"\nintegral = \"literal\"\n\
-                     gain_limits = {{ kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }}"
-                    ),
-                );
+                out.push_str(&format!(
+                    "kind = \"fspid\"\nnominal = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n\
+                    law = \"memoryless\"\nintegral = \"literal\"\n\
+                    gain_limits = {{ kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }}\n"
+                ));
             }
         }
         if *rate_gain != 0.0 {
-            line(out, format_args!("rate_gain = {rate_gain:?}"));
+            out.push_str(&format!("rate_gain = {rate_gain:?}\n"));
         }
         if let Some(scales) = scales {
             self.push_supervisor(out, scales);
@@ -253,16 +246,13 @@ impl FlightModel {
             ErrorSign::MeasurementMinusSetpoint => "measurement-minus-setpoint",
         };
         let [kp, ki, kd] = scales.output;
-        line(
-            out,
-            format_args!(
-                "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
-             supervisor.error_sign = \"{sign}\"\nsupervisor.error_scale = {:?}\n\
-             supervisor.change = \"rate\"\nsupervisor.change_scale = {:?}\n\
-             supervisor.output_scale = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}",
-                self.setting.range, scales.error, scales.change
-            ),
-        );
+        out.push_str(&format!(
+            "supervisor.table = \"printed\"\nsupervisor.range = {:?}\n\
+            supervisor.error_sign = \"{sign}\"\nsupervisor.error_scale = {:?}\n\
+            supervisor.change = \"rate\"\nsupervisor.change_scale = {:?}\n\
+            supervisor.output_scale = {{ kp = {kp:?}, ki = {ki:?}, kd = {kd:?} }}\n",
+            self.setting.range, scales.error, scales.change
+        ));
     }
 }
 

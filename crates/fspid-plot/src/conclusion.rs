@@ -1,4 +1,4 @@
-//! What rules concluded about one variable: the joined set, with each rule's part of it, and the
+//! What rules concluded about one variable: the aggregated set, with each rule's part of it, and the
 //! number that was read off.
 
 use super::axis::{Axis, extent, short_number};

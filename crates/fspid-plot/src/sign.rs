@@ -24,27 +24,30 @@ pub(super) enum Sign {
     Triangle,
 }
 
+/// Colour and width (px) of a line.
+#[derive(Clone, Copy)]
+struct Pen {
+    role: Role,
+    width: f64,
+}
+
 /// Half the size of most signs (px).
 const ARM: f64 = 4.2;
 
 impl Sign {
     /// Draws the sign at `at`.
     pub(super) fn draw(self, canvas: &mut Canvas, at: (f64, f64), role: Role) {
-        self.stroke(canvas, (at, ARM), (role, 1.7));
+        self.stroke(canvas, at, ARM, Pen { role, width: 1.7 });
     }
 
     /// Draws the sign with a light edge around it, for grounds of any colour; `arm` is half its size (px).
     pub(super) fn draw_on_data(self, canvas: &mut Canvas, at: (f64, f64), arm: f64) {
-        self.stroke(canvas, (at, arm), (Role::Fixed(LIGHT), 4.4));
-        self.stroke(canvas, (at, arm), (Role::Fixed(DARK), 1.9));
+        self.stroke(canvas, at, arm, Pen { role: Role::Fixed(LIGHT), width: 4.4 });
+        self.stroke(canvas, at, arm, Pen { role: Role::Fixed(DARK), width: 1.9 });
     }
 
-    fn stroke(
-        self,
-        canvas: &mut Canvas,
-        ((x, y), arm): ((f64, f64), f64),
-        (role, width): (Role, f64),
-    ) {
+    fn stroke(self, canvas: &mut Canvas, (x, y): (f64, f64), arm: f64, pen: Pen) {
+        let Pen { role, width } = pen;
         let line = Paint::line(role, width);
         let solid = Paint::line(role, (width - 1.2).max(0.4)).filled(role);
         match self {

@@ -1,4 +1,4 @@
-//! Who may be drawn how: roles, colours, dash patterns and markers.
+//! How things are drawn: roles with their colours, dash patterns and markers.
 //!
 //! Nothing in a figure has a free colour. A thing has a [`Role`]; the role has a fallback colour for
 //! stand-alone files and a CSS variable that a page can set, for instance for its dark mode.

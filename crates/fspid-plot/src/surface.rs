@@ -105,7 +105,7 @@ impl Surface {
         page::title(&mut canvas, &self.title);
         let z = self.draw_view(&mut canvas, top, WIDTH - 2.0 * EDGE - 56.0, Light::Flat);
         let bar = Rect { x: WIDTH - EDGE - 52.0, y: top + 24.0, width: BAR, height: 186.0 };
-        self.bar(&mut canvas, (bar, WIDTH), &z, &shades(&z));
+        self.bar(&mut canvas, bar, &z, &shades(&z));
         canvas.finish(&self.title, &self.describe("Surface in space"))
     }
 
@@ -115,7 +115,7 @@ impl Surface {
         page::title(&mut canvas, &self.title);
         self.draw_view(&mut canvas, top + 12.0, WIDTH - 2.0 * EDGE, Light::FromTheLeft);
         canvas.begin_shift(WIDTH, 0.0);
-        self.draw_map(&mut canvas, top + 4.0, (WIDTH, false));
+        self.draw_map(&mut canvas, top + 4.0, false);
         canvas.end();
         canvas.finish(&self.title, &self.describe("Surface in space, and as a map"))
     }
@@ -157,7 +157,7 @@ impl Surface {
         let top = page::title_height(&self.title, WIDTH) + 4.0;
         let mut canvas = Canvas::new(WIDTH, top + MAP + 48.0);
         page::title(&mut canvas, &self.title);
-        self.draw_map(&mut canvas, top, (WIDTH, false));
+        self.draw_map(&mut canvas, top, false);
         canvas.finish(&self.title, &self.describe("Map with lines of equal value"))
     }
 
@@ -167,13 +167,13 @@ impl Surface {
         let top = page::title_height(&self.title, WIDE) + 4.0;
         let mut canvas = Canvas::new(WIDE, top + MAP + 48.0 + gaps::LEGEND);
         page::title(&mut canvas, &self.title);
-        self.draw_map(&mut canvas, top, (WIDE, true));
+        self.draw_map(&mut canvas, top, true);
         gaps::legend(&mut canvas, (WIDTH / 2.0, top + MAP + 46.0), words);
         let kind = format!("Map with lines of equal value; hatched: {words}");
         canvas.finish(&self.title, &self.describe(&kind))
     }
 
-    fn draw_map(&self, canvas: &mut Canvas, top: f64, (edge, hatched): (f64, bool)) {
+    fn draw_map(&self, canvas: &mut Canvas, top: f64, hatched: bool) {
         let [x, y] =
             [&self.xs, &self.ys].map(|nodes| Axis::linear(extent(nodes.iter().copied()), 0.0, 10));
         let left = EDGE + page::upright_room(1) + page::tick_room(&y);
@@ -207,7 +207,7 @@ impl Surface {
             std::slice::from_ref(&self.y_label),
         );
         let bar = Rect { x: area.x + MAP + 22.0, y: top, width: BAR, height: MAP };
-        self.bar(canvas, (bar, edge), &z, &bands(&z));
+        self.bar(canvas, bar, &z, &bands(&z));
         for level in levels(&z) {
             let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
             canvas.line((bar.x, y), (bar.x + bar.width, y), &level_line(level, z.step()));
@@ -238,7 +238,7 @@ impl Surface {
     }
 
     /// The colour bar with its numbers; `slices` are its boundaries from below.
-    fn bar(&self, canvas: &mut Canvas, (r, edge): (Rect, f64), z: &Axis, slices: &[f64]) {
+    fn bar(&self, canvas: &mut Canvas, r: Rect, z: &Axis, slices: &[f64]) {
         let scale = self.scale();
         let place = |value: f64| r.y + (1.0 - z.fraction(value)) * r.height;
         for pair in slices.windows(2) {
@@ -261,7 +261,7 @@ impl Surface {
             );
             widest = widest.max(text_width(&tick.label, TICK_PX));
         }
-        let x = (r.x + r.width + 22.0 + widest).min(edge - 4.0);
+        let x = (r.x + r.width + 22.0 + widest).min(canvas.width() - 4.0);
         page::upright_label(canvas, x, r.y + r.height / 2.0, std::slice::from_ref(&self.z_label));
     }
 

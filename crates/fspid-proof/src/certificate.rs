@@ -79,7 +79,7 @@ pub enum Claim {
 }
 
 /// For every gain that the tuner can produce, as long as no gain moves by more than a share of the half
-/// width of its box in a sample, $V = z^T P(\kappa) z$ falls:
+/// width of its box in a sample, $V = z^T P(\kappa) z$ decreases:
 ///
 /// $$ M(\kappa)^T P(\kappa^+) M(\kappa) \prec \rho^2 P(\kappa), \quad
 /// P(\kappa) = P_0 + \sum_j \kappa_j P_j, \quad |\kappa_j^+ - \kappa_j| \le d_j $$
@@ -148,7 +148,7 @@ impl Claim {
         }
     }
 
-    /// The factor per sample by which the root of the form falls, of a claim of stability.
+    /// The factor per sample by which the root of the form decreases, of a claim of stability.
     #[must_use]
     pub const fn rate(&self) -> Option<f64> {
         match self {

@@ -1,7 +1,5 @@
 //! What a certificate is about, complete in itself.
 
-use core::fmt;
-
 use fspid_core::{AntiWindup, GainCoupling, PidConfig, SecondInput, SelfTuner, TunerSettings};
 use fspid_numeric::scalar::Interval;
 use fspid_sim::actuator::{Actuator, ActuatorParts};
@@ -36,75 +34,46 @@ pub struct LoopDescription {
 }
 
 /// Why nothing can be proved of a loop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotProvable {
     /// Deadband or play: around rest the actuator is no linear system.
+    #[error(
+        "the actuator has {what}, so that around rest the loop is not linear and may keep a small oscillation; a proof needs an actuator without"
+    )]
     NotLinearAroundRest {
         /// What is in the way.
         what: &'static str,
     },
     /// A sensor with a clock of its own: there is no single matrix from one sample to the next.
+    #[error(
+        "a sensor samples with a clock of its own, so that the age of its values changes and no single matrix leads from one sample to the next; a proof needs period_s to be that of the loop, or 0"
+    )]
     ChangingAge,
     /// A vertical gyro that erects, in an aircraft.
+    #[error(
+        "the vertical gyro erects to the apparent vertical at a bounded rate, so that around rest the loop is not linear and may keep an oscillation; a proof needs erection_deg_min to be 0"
+    )]
     Erection,
     /// A self-tuner of another structure than the paper's.
+    #[error(
+        "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
+    )]
     Structure {
         /// What is in the way.
         what: &'static str,
     },
     /// Nothing bounds the gains of an accumulating law.
-    UnboundedGains(NoBound),
+    #[error(transparent)]
+    UnboundedGains(#[from] NoBound),
     /// The loop has more states than a proof may speak of.
+    #[error("{0}")]
     TooLarge(WrongSize),
     /// The model is refused.
-    Model(SimError),
+    #[error(transparent)]
+    Model(#[from] SimError),
     /// The plant cannot be enclosed.
-    Plant(NotProved),
-}
-
-impl fmt::Display for NotProvable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotLinearAroundRest { what } => write!(
-                f,
-                "the actuator has {what}, so that around rest the loop is not linear and may keep a small oscillation; a proof needs an actuator without"
-            ),
-            Self::ChangingAge => f.write_str(
-                "a sensor samples with a clock of its own, so that the age of its values changes and no single matrix leads from one sample to the next; a proof needs period_s to be that of the loop, or 0",
-            ),
-            Self::Erection => f.write_str(
-                "the vertical gyro erects to the apparent vertical at a bounded rate, so that around rest the loop is not linear and may keep an oscillation; a proof needs erection_deg_min to be 0",
-            ),
-            Self::Structure { what } => write!(
-                f,
-                "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
-            ),
-            Self::UnboundedGains(reason) => reason.fmt(f),
-            Self::TooLarge(wrong) => wrong.fmt(f),
-            Self::Plant(reason) => reason.fmt(f),
-            Self::Model(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for NotProvable {}
-
-impl From<NoBound> for NotProvable {
-    fn from(reason: NoBound) -> Self {
-        Self::UnboundedGains(reason)
-    }
-}
-
-impl From<NotProved> for NotProvable {
-    fn from(reason: NotProved) -> Self {
-        Self::Plant(reason)
-    }
-}
-
-impl From<SimError> for NotProvable {
-    fn from(error: SimError) -> Self {
-        Self::Model(error)
-    }
+    #[error(transparent)]
+    Plant(#[from] NotProved),
 }
 
 /// What keeps a self-tuner from being proved; nothing for one that is plain.

@@ -1,6 +1,6 @@
 //! An ellipsoid in which no limit acts, so that the linear proof is one of the loop with its limits.
 //!
-//! Where $z^T P z$ falls, a state that is inside of $z^T P z \le c$ stays inside. With
+//! Where $z^T P z$ decreases, a state that is inside of $z^T P z \le c$ stays inside. With
 //!
 //! $$ c \le \frac{L^2}{r P^{-1} r^T} $$
 //!
@@ -224,7 +224,8 @@ pub(crate) fn level(
     description: &LoopDescription,
     model: &LoopModel<f64>,
     corners: &[HeldGains],
-    (form, rest): (&Matrix, &Rest),
+    form: &Matrix,
+    rest: &Rest,
 ) -> Option<f64> {
     let mut level = f64::INFINITY;
     for HeldGains { gains, change_gain } in corners {
@@ -244,15 +245,13 @@ pub(crate) fn level(
     (level > 0.0 && level.is_finite()).then_some(level)
 }
 
-/// Proves that no limit acts within a level, at these gains; answers how many inequalities that took.
+/// Proves that no limit acts within a level; answers how many inequalities that took.
 pub(crate) fn prove(
-    description: &LoopDescription,
-    model: &LoopModel<Interval>,
-    gains: Gains<Interval>,
-    (form, level, rest): (&Matrix, f64, &Rest),
+    rows: &[(Vec<Interval>, f64)],
+    form: &Matrix,
+    level: f64,
 ) -> Result<usize, NotProved> {
-    let rows = rows(description, model, gains, rest);
-    for (row, limit) in &rows {
+    for (row, limit) in rows {
         inside_limit(form, level, row, *limit)?;
     }
     Ok(rows.len())

@@ -71,7 +71,7 @@ pub struct Scope {
     pub any_load: bool,
     /// How far rest may be from the set-point, rad: without an integral an error stays.
     pub rest_error_rad: f64,
-    /// How far from rest the pitch angle may stay, rad: 0 where every deviation falls for ever; above where
+    /// How far from rest the pitch angle may stay, rad: 0 where every deviation decreases for ever; above where
     /// resolution, or what is not known of the rules to the last digit, leaves something.
     pub remains_rad: f64,
     /// Limits that may act in larger motions, in words.

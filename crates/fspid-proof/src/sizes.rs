@@ -25,7 +25,7 @@ pub const MOST_SAMPLES: usize = 20_000;
 /// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
 pub const MOST_WORK: u64 = 4_000_000_000;
 
-/// Coefficients of a cell's fall in which the form moves with all gains.
+/// Coefficients of a cell's decrease in which the form moves with all gains.
 const BERNSTEIN: u64 = 64;
 
 /// A part of a certificate that is larger than allowed, or of another size than the loop asks for.

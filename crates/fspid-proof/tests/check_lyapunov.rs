@@ -3,7 +3,7 @@
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{
-    IntervalMatrix, NotProved, decreases, decreases_between, inside_limit, is_positive,
+    IntervalMatrix, NotProved, Relaxation, decreases, decreases_between, inside_limit, is_positive,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -24,6 +24,10 @@ fn matrix(size: usize, entries: &[f64]) -> Matrix {
 
 fn point(matrix: &Matrix) -> IntervalMatrix {
     IntervalMatrix::from(matrix)
+}
+
+fn relaxation(weight: f64, matrix: &IntervalMatrix) -> Option<Relaxation<'_>> {
+    Some(Relaxation { weight, matrix })
 }
 
 /// A loop whose Lyapunov function is known in closed form. With T unit upper triangular and D
@@ -128,7 +132,7 @@ proptest! {
         let (p, m, slowest) = (known.p(), point(&known.m()), known.slowest());
         prop_assume!(slowest < 1.0 - 1e-6);
         let weight = share * (1.0 - slowest * slowest);
-        let relaxed = |tau: f64| decreases(&p, 1.0, &m, Some((tau, &point(&p))));
+        let relaxed = |tau: f64| decreases(&p, 1.0, &m, relaxation(tau, &point(&p)));
         let largest = 1.0 - slowest * slowest;
         prop_assert!(relaxed(largest * (1.0 + 1e-15)).is_err() && relaxed(largest).is_err());
         prop_assert_eq!(relaxed((weight - 1e-8).max(0.0)), Ok(()));
@@ -214,10 +218,10 @@ fn form(size: usize, a: &[i64], v: &[i128], w: &[i128]) -> i128 {
 /// A whole vector near the direction in which $S = P - M^T P M$ is least, by inverse iteration.
 fn worst_direction(size: usize, p: &Matrix, m: &Matrix) -> Vec<i128> {
     let after = m.transpose().product(p).and_then(|mp| mp.product(m)).expect("square");
-    let fall = p.sum(&after.scaled(-1.0)).expect("one shape");
+    let decrease = p.sum(&after.scaled(-1.0)).expect("one shape");
     let mut v = matrix(1, &vec![1.0; size]);
     for _ in 0..60 {
-        v = fall.solve(&v).expect("regular");
+        v = decrease.solve(&v).expect("regular");
         let largest = v.data().iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
         v = v.scaled(1.0 / largest);
     }
@@ -243,16 +247,16 @@ proptest! {
         let moved: Vec<i128> = (0..size)
             .map(|i| (0..size).map(|j| i128::from(m[i * size + j]) * v[j]).sum())
             .collect();
-        let fall = (form(size, &p, &v, &v) << 24) - form(size, &p, &moved, &moved);
+        let decrease = (form(size, &p, &v, &v) << 24) - form(size, &p, &moved, &moved);
         let length: i128 = v.iter().map(|x| x * x).sum();
-        prop_assume!(fall > 0);
+        prop_assume!(decrease > 0);
         // The least weight, in units of 2^-48, at which the difference is not above zero along v.
-        let weight = (fall + length - 1) / length;
-        prop_assert!(fall - weight * length <= 0);
+        let weight = (decrease + length - 1) / length;
+        prop_assert!(decrease - weight * length <= 0);
         let tau = exact(i64::try_from(weight).expect("P is below 1000")) * libm::exp2(-48.0);
         let loops = point(&m_float);
         let identity = Matrix::identity(size);
-        let relaxed = |tau: f64| decreases(&p_float, 1.0, &loops, Some((tau, &point(&identity))));
+        let relaxed = |tau: f64| decreases(&p_float, 1.0, &loops, relaxation(tau, &point(&identity)));
         prop_assert!(relaxed(tau).is_err());
         prop_assert!(relaxed(tau * (1.0 + 1e-12)).is_err());
         // The direction is off by 2^-14, the least value by its square times the spread of S.
@@ -354,10 +358,10 @@ fn a_relaxation_helps_on_its_cone_only() {
     let (p, m) = (Matrix::identity(2), point(&matrix(2, &[1.1, 0.0, 0.0, 0.5])));
     let cone = matrix(2, &[-1.0, 0.0, 0.0, 1.0]);
     assert!(decreases(&p, 1.0, &m, None).is_err());
-    assert_eq!(decreases(&p, 1.0, &m, Some((0.5, &point(&cone)))), Ok(()));
-    assert!(decreases(&p, 1.0, &m, Some((0.5, &point(&cone.scaled(-1.0))))).is_err());
+    assert_eq!(decreases(&p, 1.0, &m, relaxation(0.5, &point(&cone))), Ok(()));
+    assert!(decreases(&p, 1.0, &m, relaxation(0.5, &point(&cone.scaled(-1.0)))).is_err());
     // A negative weight would turn the cone around.
-    let turned = decreases(&p, 1.0, &m, Some((-0.5, &point(&cone.scaled(-1.0)))));
+    let turned = decreases(&p, 1.0, &m, relaxation(-0.5, &point(&cone.scaled(-1.0))));
     assert!(matches!(turned, Err(NotProved::Number { .. })));
 }
 
@@ -392,7 +396,7 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
     let (p, m) = (Matrix::identity(2), Matrix::identity(2).scaled(0.5));
     let loops = point(&m);
     let row = [Interval::ONE, Interval::ZERO];
-    assert_eq!(decreases(&p, 0.9, &loops, Some((0.1, &point(&p)))), Ok(()));
+    assert_eq!(decreases(&p, 0.9, &loops, relaxation(0.1, &point(&p))), Ok(()));
     assert_eq!(inside_limit(&p, 1.0, &row, 1.5), Ok(()));
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for place in 0..4 {
@@ -405,13 +409,13 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
             assert!(is_positive(&broken_p).is_err());
             assert!(decreases(&broken_p, 0.9, &loops, None).is_err());
             assert!(decreases(&p, 0.9, &broken_m, None).is_err());
-            assert!(decreases(&p, 0.9, &loops, Some((0.0, &point(&broken_p)))).is_err());
+            assert!(decreases(&p, 0.9, &loops, relaxation(0.0, &point(&broken_p))).is_err());
             assert!(decreases_between(&broken_p, &p, 0.9, &loops, None).is_err());
             assert!(decreases_between(&p, &broken_p, 0.9, &loops, None).is_err());
             assert!(inside_limit(&broken_p, 1.0, &row, 1.5).is_err());
         }
         assert!(decreases(&p, bad, &loops, None).is_err());
-        assert!(decreases(&p, 0.9, &loops, Some((bad, &point(&p)))).is_err());
+        assert!(decreases(&p, 0.9, &loops, relaxation(bad, &point(&p))).is_err());
         assert!(inside_limit(&p, bad, &row, 1.5).is_err());
         assert!(inside_limit(&p, 1.0, &row, bad).is_err());
         assert!(inside_limit(&p, 1.0, &[Interval::point(bad), Interval::ZERO], 1.5).is_err());
@@ -433,13 +437,13 @@ fn matrices_that_are_not_symmetric_or_do_not_fit_are_refused() {
     let (p, loops) = (Matrix::identity(2), IntervalMatrix::zeros(2, 2));
     let skewed = matrix(2, &[1.0, 1e-16, 0.0, 1.0]);
     assert!(matches!(decreases(&skewed, 1.0, &loops, None), Err(NotProved::NotSymmetric { .. })));
-    assert!(decreases(&p, 1.0, &loops, Some((0.1, &point(&skewed)))).is_err());
+    assert!(decreases(&p, 1.0, &loops, relaxation(0.1, &point(&skewed))).is_err());
     assert!(decreases_between(&p, &skewed, 1.0, &loops, None).is_err());
     let (wide, three) = (Matrix::zeros(2, 3), Matrix::identity(3));
     assert!(matches!(decreases(&wide, 1.0, &loops, None), Err(NotProved::Shape(_))));
     assert!(decreases(&three, 1.0, &loops, None).is_err());
     assert!(decreases(&p, 1.0, &IntervalMatrix::zeros(2, 3), None).is_err());
-    assert!(decreases(&p, 1.0, &loops, Some((0.1, &point(&three)))).is_err());
+    assert!(decreases(&p, 1.0, &loops, relaxation(0.1, &point(&three))).is_err());
     assert!(decreases_between(&p, &three, 1.0, &loops, None).is_err());
     assert!(inside_limit(&p, 1.0, &[Interval::ONE], 1.0).is_err());
     assert!(is_positive(&wide).is_err());

@@ -5,7 +5,7 @@ use crate::solve_loops;
 
 use fspid_lti::Matrix;
 use fspid_proof::solve::{
-    BestRate, Condition, Effort, Problem, Solution, Verdict, best_rate, common_lyapunov,
+    BestRate, Condition, Effort, LyapunovProblem, Solution, Verdict, best_rate, common_lyapunov,
 };
 use proptest::prelude::*;
 use solve_loops::{GAINS_747, GAINS_NAVION, Plant, difference, is_positive_definite, matrix};
@@ -16,7 +16,10 @@ fn everywhere(matrices: &[Matrix]) -> Vec<Condition<'_>> {
 
 fn search(matrices: &[Matrix], rate: f64) -> Verdict {
     let conditions = everywhere(matrices);
-    common_lyapunov(&Problem { conditions: &conditions, cones: &[], rate }, &Effort::default())
+    common_lyapunov(
+        &LyapunovProblem { conditions: &conditions, cones: &[], rate },
+        &Effort::default(),
+    )
 }
 
 fn found(matrices: &[Matrix], rate: f64) -> Option<Solution> {
@@ -28,7 +31,7 @@ fn found(matrices: &[Matrix], rate: f64) -> Option<Solution> {
 
 fn best(matrices: &[Matrix]) -> BestRate {
     let conditions = everywhere(matrices);
-    let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+    let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
     best_rate(&problem, &Effort::default()).unwrap()
 }
 
@@ -122,7 +125,7 @@ fn a_cone_excuses_what_happens_outside_of_it() {
     let ask = |cone| {
         let conditions = [Condition { matrix: &m, cone }];
         common_lyapunov(
-            &Problem { conditions: &conditions, cones: &cones, rate: 1.0 },
+            &LyapunovProblem { conditions: &conditions, cones: &cones, rate: 1.0 },
             &Effort::default(),
         )
     };
@@ -130,8 +133,8 @@ fn a_cone_excuses_what_happens_outside_of_it() {
     let Verdict::Found(solution) = ask(Some(0)) else { panic!("the form falls inside the cone") };
     let tau = solution.multipliers[0];
     assert!(tau > 0.0 && is_positive_definite(&solution.p));
-    let fall = difference(1.0 - 0.5 * solution.margin, &solution.p, &m, &solution.p);
-    assert!(is_positive_definite(&fall.sum(&cones[0].scaled(-tau)).unwrap()));
+    let decrease = difference(1.0 - 0.5 * solution.margin, &solution.p, &m, &solution.p);
+    assert!(is_positive_definite(&decrease.sum(&cones[0].scaled(-tau)).unwrap()));
 }
 
 #[test]
@@ -141,15 +144,15 @@ fn conditions_share_the_multiplier_of_their_cone() {
     let cones = [matrix(&[[-9.0, 0.0], [0.0, 1.0]])];
     let conditions: Vec<Condition> =
         matrices.iter().map(|matrix| Condition { matrix, cone: Some(0) }).collect();
-    let problem = Problem { conditions: &conditions, cones: &cones, rate: 1.0 };
+    let problem = LyapunovProblem { conditions: &conditions, cones: &cones, rate: 1.0 };
     let Verdict::Found(solution) = common_lyapunov(&problem, &Effort::default()) else {
         panic!("the form falls inside the cone")
     };
     assert_eq!(solution.multipliers.len(), 1);
     for m in &matrices {
-        let fall = difference(1.0, &solution.p, m, &solution.p);
-        let fall = fall.sum(&cones[0].scaled(-solution.multipliers[0])).unwrap();
-        assert!(is_positive_definite(&fall));
+        let decrease = difference(1.0, &solution.p, m, &solution.p);
+        let decrease = decrease.sum(&cones[0].scaled(-solution.multipliers[0])).unwrap();
+        assert!(is_positive_definite(&decrease));
     }
 }
 
@@ -163,7 +166,7 @@ fn what_does_not_fit_together_is_not_found() {
     assert_eq!(search(&[two.scaled(f64::NAN)], 1.0), refused);
     assert!(matches!(search(core::slice::from_ref(&two), f64::NAN), Verdict::NotFound { .. }));
     let conditions = [Condition { matrix: &two, cone: Some(0) }];
-    let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+    let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
     assert_eq!(common_lyapunov(&problem, &Effort::default()), refused);
     assert_eq!(best_rate(&problem, &Effort::default()), None);
 }

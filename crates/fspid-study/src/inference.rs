@@ -3,21 +3,20 @@
 use fspid_core::fuzzy::{Inference, Supervisor};
 use serde_json::{Value, json};
 
-use crate::rows::Table;
+use crate::json::{merged, present};
+use crate::rows::RowAnswers;
 use fspid_diagnostics::lines;
 
 /// The answer as JSON.
 #[must_use]
 pub fn json(inference: &Inference<f64>) -> Value {
     let delta = inference.delta;
-    let mut answer = json!({"delta_kp": delta.kp, "delta_ki": delta.ki, "delta_kd": delta.kd});
-    if inference.clamped {
-        answer["clamped"] = json!(true);
-    }
-    if inference.underflowed {
-        answer["underflowed"] = json!(true);
-    }
-    answer
+    let outputs = json!({ "delta_kp": delta.kp, "delta_ki": delta.ki, "delta_kd": delta.kd });
+    let remarks = present(json!({
+        "clamped": inference.clamped.then_some(true),
+        "underflowed": inference.underflowed.then_some(true),
+    }));
+    merged([outputs, remarks])
 }
 
 /// The answer for people.
@@ -40,7 +39,7 @@ pub fn text(inference: &Inference<f64>) -> String {
 #[derive(Clone, Debug)]
 pub struct SupervisorTable(pub Supervisor<f64>);
 
-impl Table for SupervisorTable {
+impl RowAnswers for SupervisorTable {
     fn inputs(&self) -> Vec<&str> {
         vec!["e", "ec"]
     }

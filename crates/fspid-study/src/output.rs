@@ -1,24 +1,17 @@
 //! Files that are either the old ones or the new ones, never halves.
 
-use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 /// A file or folder that could not be written. Nothing at the path has changed.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {}; nothing there was changed", path.display(), in_words(reason))]
 pub struct OutputError {
     /// Where.
     pub path: PathBuf,
     /// Why.
     pub reason: io::Error,
-}
-
-impl fmt::Display for OutputError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let reason = in_words(&self.reason);
-        write!(f, "cannot write {}: {reason}; nothing there was changed", self.path.display())
-    }
 }
 
 /// Why a file could not be written; the system's own words would name the new file beside it, which
@@ -35,8 +28,6 @@ pub fn in_words(reason: &io::Error) -> String {
     }
     .to_owned()
 }
-
-impl std::error::Error for OutputError {}
 
 /// Writes `contents` to `path`: into a new file beside it first, flushed to the disk, then renamed. `-` is standard
 /// output.

@@ -1,6 +1,5 @@
 //! Tables of questions, answered row by row in constant memory.
 
-use std::fmt;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
@@ -13,9 +12,10 @@ const MOST_PROBLEMS: usize = 20;
 const LONGEST_LINE: u64 = 1 << 20;
 
 /// Why not every row was answered.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum RowsError {
     /// The table is wrong.
+    #[error("{}\n{}", problems.join("\n"), in_words(*answered))]
     Problems {
         /// What is wrong, each with its line.
         problems: Vec<String>,
@@ -24,32 +24,24 @@ pub enum RowsError {
         answered: Option<u64>,
     },
     /// The table could not be read to its end.
+    #[error("{0}")]
     Reading(io::Error),
     /// The answers could not be written.
+    #[error("cannot be written: {0}")]
     Writing(io::Error),
 }
 
-impl fmt::Display for RowsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Problems { problems, answered } => {
-                write!(f, "{}", problems.join("\n"))?;
-                match answered {
-                    None => f.write_str("\nno row was answered"),
-                    Some(1) => f.write_str("\n1 row was answered before the first problem"),
-                    Some(n) => write!(f, "\n{n} rows were answered before the first problem"),
-                }
-            }
-            Self::Reading(error) => write!(f, "{error}"),
-            Self::Writing(error) => write!(f, "cannot be written: {error}"),
-        }
+/// How many rows were answered before the first problem.
+fn in_words(answered: Option<u64>) -> String {
+    match answered {
+        None => "no row was answered".to_owned(),
+        Some(1) => "1 row was answered before the first problem".to_owned(),
+        Some(n) => format!("{n} rows were answered before the first problem"),
     }
 }
 
-impl std::error::Error for RowsError {}
-
 /// Something that answers rows of numbers.
-pub trait Table {
+pub trait RowAnswers {
     /// Names of the columns that a row is read from.
     fn inputs(&self) -> Vec<&str>;
     /// Names of the columns of the answers.
@@ -72,7 +64,7 @@ pub trait Table {
 /// # Errors
 /// [`RowsError`]; each problem begins with the path.
 pub fn answer_file(
-    table: &mut impl Table,
+    table: &mut impl RowAnswers,
     path: &Path,
     out: &mut impl Write,
 ) -> Result<u64, RowsError> {
@@ -118,7 +110,7 @@ pub fn named(name: &str, error: RowsError) -> RowsError {
 /// # Errors
 /// [`RowsError`].
 pub fn answer_rows(
-    table: &mut impl Table,
+    table: &mut impl RowAnswers,
     rows: &mut impl BufRead,
     out: &mut impl Write,
 ) -> Result<u64, RowsError> {
@@ -156,7 +148,7 @@ pub fn answer_rows(
 ///
 /// # Errors
 /// [`RowsError`].
-pub fn check_rows(table: &impl Table, rows: &mut impl BufRead) -> Result<(), RowsError> {
+pub fn check_rows(table: &impl RowAnswers, rows: &mut impl BufRead) -> Result<(), RowsError> {
     let mut reader = Reader::new(rows, &table.inputs())?;
     let mut problems = Vec::new();
     while let Some(row) = reader.next()? {
@@ -179,7 +171,7 @@ fn finish(problems: Vec<String>, answered: Option<u64>) -> Result<(), RowsError>
     if problems.is_empty() { Ok(()) } else { Err(RowsError::Problems { problems, answered }) }
 }
 
-fn heading(table: &impl Table) -> String {
+fn heading(table: &impl RowAnswers) -> String {
     let names = table.inputs().into_iter().chain(table.outputs());
     names.map(quoted).collect::<Vec<_>>().join(",")
 }

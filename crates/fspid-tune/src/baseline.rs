@@ -35,7 +35,8 @@ impl Baseline {
     pub fn of(
         source: &Source,
         controller: Option<&str>,
-        (rule, options): (Rule, &Options),
+        rule: Rule,
+        options: &Options,
     ) -> Result<Self, TuneError> {
         let template = source.template()?;
         let study = template.study();
@@ -103,13 +104,11 @@ impl Baseline {
     /// The answer for programs: that of the rule, with the controller.
     #[must_use]
     pub fn json(&self) -> Value {
+        const NOT_USED: &str = "not used: the gains are the nominal ones, standing still";
         let mut answer = self.design.json();
         answer["controller"] = json!(self.controller);
         answer["other_controllers"] = json!(self.others);
-        answer["supervisor"] = match self.is_self_tuning {
-            true => json!("not used: the gains are the nominal ones, standing still"),
-            false => Value::Null,
-        };
+        answer["supervisor"] = json!(self.is_self_tuning.then_some(NOT_USED));
         answer
     }
 

@@ -121,7 +121,7 @@ impl Flights {
         let groups = jobs.par_chunks(self.at_once.max(1));
         let fly = |memory: &mut Memory, group: &[(&Vec<f64>, &FlownCase, usize)]| {
             let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
-            fly(memory, (studies.collect(), self.judging), read)
+            fly(memory, studies.collect(), self.judging, read)
         };
         let flown: Vec<Vec<T>> = groups.map_init(Memory::default, fly).collect();
         let mut of_point = vec![Vec::with_capacity(self.count()); points.len()];
@@ -154,7 +154,8 @@ impl Flights {
 
 fn fly<T>(
     memory: &mut Memory,
-    (studies, judging): (Vec<Result<Study, String>>, Judging),
+    studies: Vec<Result<Study, String>>,
+    judging: Judging,
     read: &impl Fn(Result<&FlightResult, String>, f64) -> T,
 ) -> Vec<T> {
     let mut answers = Vec::with_capacity(studies.len());

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use fspid_campaign::table::{Cell, Column, Kind, Schema, Table, Writer};
+use fspid_campaign::table::{Cell, Column, ColumnTable, Kind, Schema, Writer};
 use fspid_study::output;
 
 use crate::error::TuneError;
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::search::Search;
 
 /// Key of the metadata that names the search.
@@ -17,7 +17,7 @@ pub const SEARCH_KEY: &str = "fspid.search";
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(path: &Path, problem: &Problem, search: &Search<'_>) -> Result<(), TuneError> {
+pub fn write(path: &Path, problem: &TuningProblem, search: &Search<'_>) -> Result<(), TuneError> {
     let table = table(problem, search)?;
     let effort = search.effort();
     let name = format!(
@@ -40,8 +40,8 @@ pub fn write(path: &Path, problem: &Problem, search: &Search<'_>) -> Result<(), 
 ///
 /// # Errors
 /// Two coordinates of the same name.
-pub fn table(problem: &Problem, search: &Search<'_>) -> Result<Table, TuneError> {
-    let mut table = Table::new(Arc::new(schema(problem)?));
+pub fn table(problem: &TuningProblem, search: &Search<'_>) -> Result<ColumnTable, TuneError> {
+    let mut table = ColumnTable::new(Arc::new(schema(problem)?));
     for (number, trial) in search.trials().iter().enumerate() {
         let score = &trial.score;
         let mut row = vec![
@@ -65,7 +65,7 @@ pub fn table(problem: &Problem, search: &Search<'_>) -> Result<Table, TuneError>
     Ok(table)
 }
 
-fn schema(problem: &Problem) -> Result<Schema, TuneError> {
+fn schema(problem: &TuningProblem) -> Result<Schema, TuneError> {
     let mut columns = vec![
         Column::new("candidate", Kind::Integer).meaning("number of the candidate; 0 is the start"),
         Column::new("generation", Kind::Integer)

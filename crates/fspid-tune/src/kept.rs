@@ -7,7 +7,7 @@ use fspid_scenario::file::unread_in_words;
 use fspid_study::output;
 
 use crate::error::TuneError;
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::search::{Effort, Search, State};
 
 /// What is done before the next generation.
@@ -64,7 +64,7 @@ impl Kept {
     /// A start without a cost, and a state that is refused.
     pub fn begun<'a>(
         &mut self,
-        problem: &'a Problem,
+        problem: &'a TuningProblem,
         effort: &Effort,
     ) -> Result<(Search<'a>, Beginning), TuneError> {
         let anew = || Search::begin(problem, effort.clone());
@@ -139,7 +139,7 @@ impl Kept {
 
 fn resumed<'a>(
     path: &Path,
-    problem: &'a Problem,
+    problem: &'a TuningProblem,
     effort: &Effort,
 ) -> Result<Search<'a>, TuneError> {
     let name = path.display().to_string();

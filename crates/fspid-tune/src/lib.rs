@@ -30,7 +30,7 @@ mod tuned;
 
 pub use error::TuneError;
 pub use kept::{Beginning, Kept, Then, Unfit};
-pub use problem::{Problem, controllers_with_marks};
+pub use problem::{TuningProblem, controllers_with_marks};
 pub use score::{FORBIDDEN, Score};
 pub use search::{Effort, Search, State, Trial, stop_in_words};
 pub use source::Source;

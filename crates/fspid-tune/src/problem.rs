@@ -16,14 +16,14 @@ use crate::space::Space;
 
 /// Everything that decides what a candidate is worth.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct TuningProblem {
     controller: String,
     tuning: Tuning,
     flights: Flights,
     digest: String,
 }
 
-impl Problem {
+impl TuningProblem {
     /// The tuning of one controller of a scenario; of the one that has marks where none is named.
     ///
     /// # Errors

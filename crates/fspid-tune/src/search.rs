@@ -9,7 +9,7 @@ use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
 
 use crate::error::TuneError;
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::score::Score;
 use crate::source::Source;
 
@@ -133,7 +133,7 @@ enum Running {
 
 /// A search for the best numbers of a problem.
 pub struct Search<'a> {
-    problem: &'a Problem,
+    problem: &'a TuningProblem,
     effort: Effort,
     running: Running,
     generation: u64,
@@ -146,7 +146,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// An effort that is none, or a start without a cost (unless candidates begin anywhere).
-    pub fn begin(problem: &'a Problem, effort: Effort) -> Result<Self, TuneError> {
+    pub fn begin(problem: &'a TuningProblem, effort: Effort) -> Result<Self, TuneError> {
         effort.check(problem.tuning().objectives.len())?;
         let start = problem.space().start();
         let score = problem.scores(std::slice::from_ref(&start)).pop();
@@ -163,7 +163,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// A state of another search, or one that no search can have been in; `path` is told.
     pub fn resume(
-        problem: &'a Problem,
+        problem: &'a TuningProblem,
         effort: &Effort,
         state: State,
         path: &str,
@@ -340,7 +340,7 @@ impl<'a> Search<'a> {
     }
 }
 
-fn started(problem: &Problem, effort: &Effort, start: &[f64]) -> Running {
+fn started(problem: &TuningProblem, effort: &Effort, start: &[f64]) -> Running {
     let dimension = problem.space().dimension();
     let kind = Kind::from_name(&effort.optimiser);
     let usual = kind.map_or(FRONT_POPULATION, |kind| kind.usual_population(dimension));

@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::search::{Search, Trial, stop_in_words};
 
 /// How near to a bound a number counts as at it, as a share of the way between the bounds.
@@ -72,7 +72,7 @@ pub struct Number {
 impl Tuned {
     /// Of a search that is over.
     #[must_use]
-    pub fn of(problem: &Problem, search: &Search<'_>, stop: Stop) -> Self {
+    pub fn of(problem: &TuningProblem, search: &Search<'_>, stop: Stop) -> Self {
         let (start, best) = (search.trials()[0].clone(), search.best().clone());
         let front: Vec<Trial> = search.front().into_iter().cloned().collect();
         let objectives = problem.tuning().objectives.iter().map(|objective| {
@@ -339,7 +339,7 @@ impl Tuned {
     }
 }
 
-fn numbers(problem: &Problem, start: &Trial, best: &Trial) -> Vec<Number> {
+fn numbers(problem: &TuningProblem, start: &Trial, best: &Trial) -> Vec<Number> {
     let space = problem.space();
     let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
         Free::Number(number) => vec![Some([number.lower, number.upper])],

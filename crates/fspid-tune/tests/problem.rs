@@ -4,7 +4,7 @@
 use fspid_scenario::file;
 use fspid_scenario::units::degrees;
 use fspid_study::simulation::Simulation;
-use fspid_tune::{Effort, FORBIDDEN, Problem, Search, Source};
+use fspid_tune::{Effort, FORBIDDEN, Search, Source, TuningProblem};
 
 const SCENARIO: &str = r#"schema = 1
 name = "to be tuned"
@@ -55,7 +55,7 @@ weight = 0.05
 "#;
 
 /// The scenario with changes of its text, in a folder of its own.
-fn problem(changes: &[(&str, &str)]) -> Problem {
+fn problem(changes: &[(&str, &str)]) -> TuningProblem {
     let text = changes.iter().fold(SCENARIO.to_owned(), |text, (from, to)| {
         assert!(text.contains(from), "{from}");
         text.replace(from, to)
@@ -64,11 +64,11 @@ fn problem(changes: &[(&str, &str)]) -> Problem {
     let path = folder.path().join("pitch.toml");
     std::fs::write(&path, text).expect("written");
     let source = Source { path, overrides: Vec::new() };
-    Problem::new(&source, None).unwrap_or_else(|error| panic!("{error}"))
+    TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A place in the unit cube where the proportional gain is `kp`.
-fn with_kp(problem: &Problem, kp: f64) -> Vec<f64> {
+fn with_kp(problem: &TuningProblem, kp: f64) -> Vec<f64> {
     let mut point = problem.space().start();
     point[0] = libm::log(kp / 0.1) / libm::log(400.0);
     point

@@ -6,8 +6,8 @@ use fspid_scenario::file::{self, Study};
 use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_study::analysis::{Analysis, Question};
 use fspid_tune::rule::{
-    Design, Form, LqrOptions, Model, Options, PoleOptions, ProcessKind, Rule, RuleError, Verdict,
-    design,
+    Design, Form, LqrOptions, Model, ModelParameter, Options, PoleOptions, ProcessKind, Rule,
+    RuleError, Verdict, design,
 };
 use proptest::prelude::*;
 use serde_json::Value;
@@ -91,7 +91,7 @@ fn models_and_their_fit_errors_are_those_of_forty_digits() {
             };
             let options = Options { process, ..in_form(form) };
             let fitted = made(&preset(plant), rule, &options).identified.model.expect("a model");
-            for (name, value, _) in fitted.model.parameters() {
+            for ModelParameter { name, value, .. } in fitted.model.parameters() {
                 // The steady rate is read off at 1e-4 rad/s, and T2 is the root of a small difference.
                 assert_close(value, &model[name], 1e-6, &format!("{plant} {kind} {name}"));
             }

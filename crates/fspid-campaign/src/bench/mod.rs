@@ -141,7 +141,7 @@ impl Bench {
         for round in 0..=effort.rounds {
             for ((kind, answer), rates) in Kind::ALL.into_iter().zip(&mut answers).zip(&mut rates) {
                 for (pool, rates) in [&one, &all].into_iter().zip(rates) {
-                    let rate = measure(&work, kind, (pool, effort), answer)?;
+                    let rate = measure(&work, kind, pool, effort, answer)?;
                     // The first round warms up.
                     if round > 0 {
                         rates.push(rate);
@@ -169,7 +169,8 @@ impl Bench {
 fn measure(
     work: &Work,
     kind: Kind,
-    (pool, effort): (&ThreadPool, Effort),
+    pool: &ThreadPool,
+    effort: Effort,
     expected: &mut Option<String>,
 ) -> Result<f64, BenchError> {
     let passes = effort.passes * kind.passes();
@@ -239,11 +240,11 @@ mod tests {
         let effort = Effort { rounds: 1, flights: 1, passes: 1 };
         let mut expected = None;
         for _ in 0..2 {
-            let rate = measure(&work, Kind::StepBatch, (&one, effort), &mut expected);
+            let rate = measure(&work, Kind::StepBatch, &one, effort, &mut expected);
             assert!(rate.expect("the same answer") > 0.0);
         }
         let mut other = Some(in_words(0.5));
-        let refused = measure(&work, Kind::StepBatch, (&one, effort), &mut other);
+        let refused = measure(&work, Kind::StepBatch, &one, effort, &mut other);
         let refused = refused.expect_err("another answer").to_string();
         assert!(refused.contains("0.5 (3fe0000000000000)"), "{refused}");
         assert!(refused.contains(&expected.expect("an answer")), "{refused}");

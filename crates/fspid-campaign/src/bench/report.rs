@@ -1,6 +1,5 @@
 //! The measurements for people and for programs.
 
-use fspid_diagnostics::lines::{add, line};
 use serde_json::{Map, Value, json};
 
 use super::{Bench, Kind, Rates, instruction_set, program};
@@ -100,21 +99,18 @@ impl Bench {
         let threads = self.threads;
         let plural = if threads == 1 { "" } else { "s" };
         let heading = format!("{threads} thread{plural}");
-        line(
-            &mut text,
-            format_args!("{}, vector instructions: {}\n", program(), instruction_set()),
-        );
-        line(&mut text, format_args!("{:<28}{:>39}{heading:>39}", "", "1 thread"));
+        text.push_str(&format!("{}, vector instructions: {}\n\n", program(), instruction_set()));
+        text.push_str(&format!("{:<28}{:>39}{heading:>39}\n", "", "1 thread"));
         let columns = format!("{:>15}{:>15}{:>9}", "median", "best", "spread");
-        line(&mut text, format_args!("{:<28}{columns}{columns}{:>9}", "", "scaling"));
+        text.push_str(&format!("{:<28}{columns}{columns}{:>9}\n", "", "scaling"));
         for measurement in &self.measurements {
             let kind = measurement.kind;
-            add(&mut text, format_args!("{:<28}", in_words(kind)));
+            text.push_str(&format!("{:<28}", in_words(kind)));
             for rates in [&measurement.one, &measurement.all] {
                 let (median, best) = (rate(rates.median_per_s()), rate(rates.best_per_s()));
-                add(&mut text, format_args!("{median}{best}{:>7.1} %", rates.spread_pct()));
+                text.push_str(&format!("{median}{best}{:>7.1} %", rates.spread_pct()));
             }
-            line(&mut text, format_args!("{:>7.0} %", self.scaling_pct(kind)));
+            text.push_str(&format!("{:>7.0} %\n", self.scaling_pct(kind)));
         }
         self.summary(&mut text);
         text
@@ -122,49 +118,34 @@ impl Bench {
 
     fn summary(&self, text: &mut String) {
         let flights = self.rate_per_s(Kind::Flights);
-        line(
-            text,
-            format_args!(
-                "\nOn one thread a batch makes {:.1} times as many inferences, and flights side by side {:.1} times as many steps, as one by one.",
-                self.times_by_batch(Kind::InferenceScalar, Kind::InferenceBatch),
-                self.times_by_batch(Kind::StepScalar, Kind::StepBatch)
-            ),
-        );
-        line(
-            text,
-            format_args!(
-                "1000 flights of 50 s at 100 Hz with all measures take {:.2} s on all threads, a million {:.1} min.",
-                1e3 / flights,
-                1e6 / flights / 60.0
-            ),
-        );
-        line(
-            text,
-            format_args!(
-                "Rates are medians of {} rounds; spread is from quartile to quartile, of the median. Digest of all answers, the same in every round: {}",
-                self.effort.rounds,
-                self.digest.get(..16).unwrap_or(&self.digest)
-            ),
-        );
+        text.push_str(&format!(
+            "\nOn one thread a batch makes {:.1} times as many inferences, and flights side by side {:.1} times as many steps, as one by one.\n",
+            self.times_by_batch(Kind::InferenceScalar, Kind::InferenceBatch),
+            self.times_by_batch(Kind::StepScalar, Kind::StepBatch)
+        ));
+        text.push_str(&format!(
+            "1000 flights of 50 s at 100 Hz with all measures take {:.2} s on all threads, a million {:.1} min.\n",
+            1e3 / flights,
+            1e6 / flights / 60.0
+        ));
+        text.push_str(&format!(
+            "Rates are medians of {} rounds; spread is from quartile to quartile, of the median. Digest of all answers, the same in every round: {}\n",
+            self.effort.rounds,
+            self.digest.get(..16).unwrap_or(&self.digest)
+        ));
         // Inferences share nothing between threads, so that only the machine can hold them up.
         let scaling_pct = self.scaling_pct(Kind::InferenceScalar);
         if scaling_pct < SMALL_SCALING_PCT {
-            line(
-                text,
-                format_args!(
-                    "warning: {} threads make {scaling_pct:.0} % of what as many processors would: some are busy with something else, or are no whole processors",
-                    self.threads
-                ),
-            );
+            text.push_str(&format!(
+                "warning: {} threads make {scaling_pct:.0} % of what as many processors would: some are busy with something else, or are no whole processors\n",
+                self.threads
+            ));
         }
         if self.is_noisy() {
-            line(
-                text,
-                format_args!(
-                    "warning: a spread of {:.0} % is more than {LARGE_SPREAD_PCT:.0} %: something else uses this machine, and the numbers mean little",
-                    self.largest_spread_pct()
-                ),
-            );
+            text.push_str(&format!(
+                "warning: a spread of {:.0} % is more than {LARGE_SPREAD_PCT:.0} %: something else uses this machine, and the numbers mean little\n",
+                self.largest_spread_pct()
+            ));
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::plan::{MOST_RUNS, Plan, Range};
 use crate::sample::Sampling;
-use crate::table::Table;
+use crate::table::ColumnTable;
 
 /// The scenario that is flown, a file that `fspid simulate` takes too.
 pub const SCENARIO: &str = include_str!("scenario.toml");
@@ -145,7 +145,7 @@ impl Work {
     ///
     /// # Errors
     /// None: the scenario is built in.
-    pub fn fly(&self, flights: u64) -> Result<Table, CampaignError> {
+    pub fn fly(&self, flights: u64) -> Result<ColumnTable, CampaignError> {
         self.campaign.fly(Range { first: 0, end: flights }, &Progress::default())
     }
 }

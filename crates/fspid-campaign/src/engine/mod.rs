@@ -111,7 +111,7 @@ pub fn fly_judging(
     }
     let measured = studies.iter().zip(&prepared).zip(traces);
     let judged = |((study, prepared), traces): ((&Study, _), Result<_, _>)| {
-        measure(memory, (study, judging), prepared, traces?)
+        measure(memory, study, judging, prepared, traces?)
     };
     measured.map(judged).collect()
 }
@@ -128,18 +128,19 @@ fn keep(traces: &mut Result<Vec<Trace>, SimError>, flown: Option<Result<Trace, S
 
 fn measure(
     memory: &mut Memory,
-    (study, Judging { stability, loads }): (&Study, Judging),
+    study: &Study,
+    judging: Judging,
     prepared: &Result<Prepared, SimError>,
     traces: Vec<Trace>,
 ) -> Result<Vec<FlightResult>, SimError> {
     let prepared = prepared.as_ref().map_err(Clone::clone)?;
     let scenario = &study.scenario;
     let results = scenario.controllers.iter().zip(traces).map(|(named, trace)| {
-        let at_rest = match loads {
+        let at_rest = match judging.loads {
             true => AtRest::of(scenario, &named.controller),
             false => AtRest::stability(scenario, &named.controller),
         };
-        let unstable = at_rest.unstable.filter(|_| stability == Stability::Analysed);
+        let unstable = at_rest.unstable.filter(|_| judging.stability == Stability::Analysed);
         let (edges, pushes_s) = (prepared.edges(), scenario.pushes_s());
         let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
         let (name, range_rule) = (named.name.clone(), study.range_rule);

@@ -27,7 +27,7 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
         (some, of) => format!("{} of {} flights failed", count(some), count(of)),
     };
     let standing = match (failed.count, failed.at_most) {
-        // So few flights that failing may be the rule.
+        // None failed of so few flights that half of all may: nothing to call good yet.
         (0, Some(bound)) if bound >= 0.5 => Standing::Fair,
         (0, _) => Standing::Good,
         _ => Standing::Bad,
@@ -72,7 +72,7 @@ pub(super) fn items(source: &Source<'_>) -> Vec<Item> {
 }
 
 fn mark(column: usize, controller: usize, found: &Probability) -> Option<IntervalMark> {
-    let [lower, upper] = found.interval.map(|end| 100.0 * end);
+    let [lower, upper] = [found.lower, found.upper].map(|end| 100.0 * end);
     let value = 100.0 * found.estimate?;
     // Where nothing or everything was seen, the one-sided bound is what is said in words.
     let upper = found.at_most.map_or(upper, |bound| 100.0 * bound);

@@ -2,7 +2,7 @@
 
 use crate::rows::{FAILED, PARAMETER};
 use crate::summary::SummaryError;
-use crate::table::{Reader, Table, Values};
+use crate::table::{ColumnTable, Reader, Values};
 
 /// Flights that failed, and all of them, in a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Event {
     }
 
     /// Whether it happened in each row of a table that begins with that row of the file.
-    fn happened(&self, table: &Table, first: usize, controllers: usize) -> Vec<bool> {
+    fn happened(&self, table: &ColumnTable, first: usize, controllers: usize) -> Vec<bool> {
         match self {
             Self::Failed => booleans(table),
             Self::Beyond { column, limits, above } => {
@@ -180,7 +180,7 @@ fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, 
 }
 
 /// Numbers of a column, NaN where there is none.
-fn floats(table: &Table, name: &str) -> Vec<f64> {
+fn floats(table: &ColumnTable, name: &str) -> Vec<f64> {
     match table.column(name) {
         Ok(Values::Float(cells)) => cells.iter().map(|cell| cell.unwrap_or(f64::NAN)).collect(),
         Ok(Values::Integer(cells)) => {
@@ -190,7 +190,7 @@ fn floats(table: &Table, name: &str) -> Vec<f64> {
     }
 }
 
-fn booleans(table: &Table) -> Vec<bool> {
+fn booleans(table: &ColumnTable) -> Vec<bool> {
     match table.column(FAILED) {
         Ok(Values::Boolean(cells)) => cells.iter().map(|cell| *cell == Some(true)).collect(),
         _ => vec![false; table.rows()],

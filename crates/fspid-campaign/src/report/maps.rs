@@ -221,7 +221,7 @@ fn items(maps: &Maps<'_>) -> Vec<Item> {
     for controller in &maps.what.shown {
         let Some(of) = maps.counted.of.get(*controller) else { continue };
         for (n, pair) in pairs.iter().enumerate() {
-            let map = maps.map((*controller, of), (n, *pair));
+            let map = maps.map(*controller, of, n, *pair);
             match n {
                 0 => items.push(Item::Figures(vec![maps.scatter(*controller, of), map])),
                 _ => further.push(map),
@@ -331,8 +331,10 @@ impl Maps<'_> {
 
     fn map(
         &self,
-        (controller, of): (usize, &ByParameter),
-        (n, (a, b)): (usize, (usize, usize)),
+        controller: usize,
+        of: &ByParameter,
+        n: usize,
+        (a, b): (usize, usize),
     ) -> Picture {
         let name = self.source.name(controller);
         let grid = of.together.get(n).map_or(&[][..], Vec::as_slice);

@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::words::{count, cut, list, percent};
-use crate::summary::Note;
+use crate::summary::{MeasureCount, Note};
 
 /// Most measures that a note names.
 const MOST_NAMES: usize = 5;
@@ -33,11 +33,11 @@ fn in_words(note: &Note) -> String {
     let Note::Missing { controller, measures } = note else {
         return cut(&note.to_string(), MOST);
     };
-    let mut sorted: Vec<&(String, u64)> = measures.iter().collect();
-    sorted.sort_by_key(|(_, flights)| std::cmp::Reverse(*flights));
+    let mut sorted: Vec<&MeasureCount> = measures.iter().collect();
+    sorted.sort_by_key(|it| std::cmp::Reverse(it.flights));
     let named = sorted.iter().take(MOST_NAMES);
     let mut words: Vec<String> =
-        named.map(|(name, flights)| format!("{} ({})", cut(name, 60), count(*flights))).collect();
+        named.map(|it| format!("{} ({})", cut(&it.name, 60), count(it.flights))).collect();
     if sorted.len() > MOST_NAMES {
         words.push(format!("{} more", sorted.len() - MOST_NAMES));
     }

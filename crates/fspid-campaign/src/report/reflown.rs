@@ -134,7 +134,7 @@ fn compare(campaign: &Campaign, reader: &Reader) -> Result<(), String> {
     Err("run 0, flown again, does not give the numbers in the file".to_owned())
 }
 
-/// So many that a page takes seconds.
+/// How many runs are flown again: few enough that a page takes seconds.
 fn how_many(study: &Study, runs: u64) -> u64 {
     let scenario = &study.scenario;
     let linear = scenario.plant.linear().is_some();

@@ -122,10 +122,11 @@ fn group_views(source: &Source<'_>, reflown: &Reflown, group: &[usize]) -> Vec<V
     ];
     let panels = quantities.map(|(title, _, pick)| {
         let setpoint = if title == "Pitch" { reflown.setpoint_deg.as_slice() } else { &[] };
+        let shown = Quantity { time_s: &reflown.time_s, setpoint, pick };
         let of = |place: &usize| Some((*place, reflown.controllers.get(*place)?));
         let chosen = group.iter().filter_map(of);
         let mut panels: Vec<EnvelopePanel> =
-            chosen.map(|it| panel(source, it, (&reflown.time_s, setpoint, pick))).collect();
+            chosen.map(|(place, flights)| panel(source, place, flights, &shown)).collect();
         scale(&mut panels);
         panels
     });
@@ -192,12 +193,21 @@ fn beginning<'a>(
     (short && shown > start).then_some((start, shown))
 }
 
+/// What a panel shows over time, with its set-point where it has one.
+struct Quantity<'a> {
+    time_s: &'a [f64],
+    setpoint: &'a [f64],
+    pick: Pick,
+}
+
 fn panel(
     source: &Source<'_>,
-    (place, flights): (usize, &Flights),
-    (time_s, setpoint, pick): (&[f64], &[f64], Pick),
+    place: usize,
+    flights: &Flights,
+    shown: &Quantity<'_>,
 ) -> EnvelopePanel {
     let shares = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
+    let &Quantity { time_s, setpoint, pick } = shown;
     let mut lines: [Vec<f64>; 7] = Default::default();
     for k in 0..time_s.len() {
         let at: Vec<f64> = flights.first.iter().filter_map(|it| pick(it).get(k).copied()).collect();

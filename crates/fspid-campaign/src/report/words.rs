@@ -84,7 +84,8 @@ mod tests {
                 count,
                 of,
                 estimate: (of > 0).then(|| count as f64 / of as f64),
-                interval: [0.0, 0.002],
+                lower: 0.0,
+                upper: 0.002,
                 at_most: (count == 0 && of > 0).then_some(0.001),
                 at_least: None,
             };

@@ -24,6 +24,8 @@ mod tests;
 
 pub use error::SampleError;
 
+use serde::Serialize;
+
 use directions::DIRECTIONS;
 use key::Key;
 use latin_hypercube::Permutation;
@@ -42,7 +44,8 @@ pub const DIMENSIONS_LIMIT: usize = 4096;
 pub const SOBOL_DIMENSIONS_LIMIT: usize = DIRECTIONS.len() + 1;
 
 /// How the points of a campaign are spread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sampling {
     /// Independent points: what the formulas of confidence intervals assume.
     #[default]

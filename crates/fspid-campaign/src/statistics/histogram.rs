@@ -1,5 +1,7 @@
 //! How often which values occur, in bins whose edges are round numbers.
 
+use serde::Serialize;
+
 use super::Sorted;
 use super::quantile::quantile_of;
 
@@ -7,7 +9,7 @@ use super::quantile::quantile_of;
 ///
 /// Bin *i* holds the values from `edges[i]` up to but without `edges[i + 1]`; the last one holds its upper edge too. The edges
 /// are multiples of 1, 2 or 5 times a power of ten, each the double nearest to that decimal.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
     /// Ends of the bins in ascending order, one more than bins, in the unit of the column.
     pub edges: Vec<f64>,

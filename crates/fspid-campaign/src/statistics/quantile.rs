@@ -1,11 +1,13 @@
 //! Quantiles of a column and how sure they are.
 
+use serde::Serialize;
+
 use super::Sorted;
 use super::error::{StatisticsError, confidence as checked_confidence, share as checked_share};
 use super::tail::{Chance, at_least, at_most};
 
 /// Where the quantile of the population lies; an end that so few runs cannot bound is `None`: unbounded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// Lower end, in the unit of the column.
     pub lower: Option<f64>,

@@ -1,9 +1,11 @@
 //! Ranks, and the correlation of ranks: does one column rise with another, whatever the shape of the curve?
 
+use serde::Serialize;
+
 use super::sum::Sum;
 
 /// How closely two columns follow each other in rank.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
     /// Spearman's coefficient, −1 (one falls as the other rises) to 1.
     pub coefficient: f64,

@@ -1,10 +1,12 @@
 //! Which parameter the spread of a measure comes from.
 
+use serde::Serialize;
+
 use super::Moments;
 use super::rank::{equal, ordered};
 
 /// Share of the variance of a measure that a parameter explains alone.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
     /// 0 (nothing) to 1 (everything).
     pub fraction: f64,

@@ -1,5 +1,7 @@
 //! The parts of a summary, as plain data.
 
+use serde::Serialize;
+
 pub use crate::rows::Bad;
 use crate::sample::Sampling;
 use crate::statistics::quantile::Interval;
@@ -67,7 +69,7 @@ pub struct Head {
 }
 
 /// Something that differed from run to run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Parameter {
     /// Its name, without `parameter.`.
     pub name: String,
@@ -80,7 +82,7 @@ pub struct Parameter {
 }
 
 /// What one controller did.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ControllerSummary {
     /// Name of the controller.
     pub name: String,
@@ -101,7 +103,7 @@ pub struct ControllerSummary {
 }
 
 /// How many flights came to a verdict.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct VerdictCount {
     /// The verdict in a word: settled, flown, not settled, refused, unstable, hit the ground, diverged.
     pub verdict: String,
@@ -110,7 +112,7 @@ pub struct VerdictCount {
 }
 
 /// How probable something is that was seen in some of many runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Probability {
     /// Runs in which it was seen.
     pub count: u64,
@@ -118,8 +120,10 @@ pub struct Probability {
     pub of: u64,
     /// Their quotient; `None` where no run was asked.
     pub estimate: Option<f64>,
-    /// Two-sided interval of Clopper and Pearson at the confidence of the summary, lower end first.
-    pub interval: [f64; 2],
+    /// Lower end of the two-sided interval of Clopper and Pearson at the confidence of the summary.
+    pub lower: f64,
+    /// Its upper end.
+    pub upper: f64,
     /// One-sided bound at the confidence, where it was never seen: at most this.
     pub at_most: Option<f64>,
     /// One-sided bound at the confidence, where it was always seen: at least this.
@@ -127,7 +131,7 @@ pub struct Probability {
 }
 
 /// A requirement over all flights of a controller.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RequirementSummary {
     /// Its id.
     pub id: String,
@@ -138,6 +142,7 @@ pub struct RequirementSummary {
     /// What is required, in words: "at most 35 %".
     pub required: String,
     /// The same in numbers.
+    #[serde(flatten)]
     pub limits: Limits,
     /// Flights that do not meet it, of those that were judged.
     pub not_met: Probability,
@@ -150,7 +155,7 @@ pub struct RequirementSummary {
 }
 
 /// Limits of a requirement in its unit; both `None` where they are no numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Limits {
     /// Least value that is allowed.
     pub least: Option<f64>,
@@ -191,7 +196,7 @@ pub struct MeasureSummary {
 }
 
 /// A value and the run that it is from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extreme {
     /// Number of the run.
     pub run: u64,
@@ -200,7 +205,7 @@ pub struct Extreme {
 }
 
 /// A quantile and how sure it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct QuantileSummary {
     /// Share of the flights below.
     pub share: f64,
@@ -209,11 +214,12 @@ pub struct QuantileSummary {
     /// Where the quantile of all such flights lies, at the confidence of the summary; an end that is `None` is
     /// beyond what so few flights can bound. Of one or two flights, the interval of an outer quantile may lie
     /// beside the value.
+    #[serde(flatten)]
     pub interval: Interval,
 }
 
 /// A failed run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FailedRun {
     /// Number of the run.
     pub run: u64,
@@ -245,15 +251,19 @@ pub enum Severity {
 }
 
 /// What something depends on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sensitivity {
     /// What depends.
+    #[serde(flatten)]
     pub of: SensitivityTarget,
     /// How many flights had a finite value of it among the runs that were looked at.
     pub used: u64,
-    /// How many runs were looked at, the first of the campaign, and how many there are.
-    pub used_of: [u64; 2],
+    /// How many runs were looked at, the first of the campaign.
+    pub runs_used: u64,
+    /// How many runs there are.
+    pub runs: u64,
     /// What each parameter does, in the order of [`Head::parameters`].
+    #[serde(rename = "parameters")]
     pub influences: Vec<Influence>,
 }
 
@@ -267,19 +277,31 @@ pub enum SensitivityTarget {
 }
 
 /// What a parameter does.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Influence {
     /// Name of the parameter, without `parameter.`.
     pub parameter: String,
     /// Rank correlation with its interval of 95 %; `None` for texts, and where nothing varies.
+    #[serde(rename = "rank_correlation")]
     pub correlation: Option<Correlation>,
     /// Share of the variance that the parameter explains alone; `None` where nothing varies, for fewer than 16
     /// flights, and for texts with more different ones than the root of the number of flights.
+    #[serde(rename = "variance_share")]
     pub share: Option<Share>,
 }
 
+/// A measure and in how many flights something is so of it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MeasureCount {
+    /// Name of the measure.
+    pub name: String,
+    /// How many flights.
+    pub flights: u64,
+}
+
 /// What must be known to read the numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Note {
     /// Intervals assume independent runs, which these are not: usually the intervals are too wide for means and
     /// probabilities, which is not proven.
@@ -299,23 +321,23 @@ pub enum Note {
     /// Sensitivities are of the first runs alone.
     FirstRunsOnly {
         /// How many.
-        used: u64,
+        runs_used: u64,
         /// How many there are.
-        of: u64,
+        runs: u64,
     },
     /// Measures that not all flights of a controller have: what is said of them is said of the others.
     Missing {
         /// Name of the controller.
         controller: String,
-        /// Names of the measures and how many flights do not have them. Events (`MeasureSummary::is_event`) and
+        /// The measures and how many flights do not have them. Events (`MeasureSummary::is_event`) and
         /// requirements that do not concern the controller are not among them.
-        measures: Vec<(String, u64)>,
+        measures: Vec<MeasureCount>,
     },
     /// Measures with values that are no finite numbers, which are left out.
     NotFinite {
         /// Name of the controller.
         controller: String,
-        /// Names of the measures and in how many flights.
-        measures: Vec<(String, u64)>,
+        /// The measures and in how many flights.
+        measures: Vec<MeasureCount>,
     },
 }

@@ -8,7 +8,7 @@ use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
 use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT};
-use crate::table::{Kind, Table, TableError, Values};
+use crate::table::{ColumnTable, Kind, TableError, Values};
 
 /// Verdicts from good to bad.
 const VERDICTS: [&str; 7] =
@@ -66,7 +66,7 @@ struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    fn of(table: &'a Table) -> Result<Self, TableError> {
+    fn of(table: &'a ColumnTable) -> Result<Self, TableError> {
         Ok(Self {
             runs: integers(table, RUN)?,
             controllers: texts(table, CONTROLLER)?,
@@ -166,19 +166,19 @@ impl Flights {
     }
 }
 
-fn wrong(table: &Table, column: &str, found: Kind) -> TableError {
+fn wrong(table: &ColumnTable, column: &str, found: Kind) -> TableError {
     let expected = table.column(column).map_or(found, Values::kind);
     TableError::Kind { column: column.to_owned(), expected, found }
 }
 
-fn integers<'a>(table: &'a Table, column: &str) -> Result<&'a [Option<i64>], TableError> {
+fn integers<'a>(table: &'a ColumnTable, column: &str) -> Result<&'a [Option<i64>], TableError> {
     match table.column(column)? {
         Values::Integer(cells) => Ok(cells),
         _ => Err(wrong(table, column, Kind::Integer)),
     }
 }
 
-fn texts<'a>(table: &'a Table, column: &str) -> Result<&'a [Option<String>], TableError> {
+fn texts<'a>(table: &'a ColumnTable, column: &str) -> Result<&'a [Option<String>], TableError> {
     match table.column(column)? {
         Values::Text(cells) => Ok(cells),
         _ => Err(wrong(table, column, Kind::Text)),
@@ -187,7 +187,7 @@ fn texts<'a>(table: &'a Table, column: &str) -> Result<&'a [Option<String>], Tab
 
 /// The cells of a column of truths.
 pub(super) fn booleans<'a>(
-    table: &'a Table,
+    table: &'a ColumnTable,
     column: &str,
 ) -> Result<&'a [Option<bool>], TableError> {
     match table.column(column)? {

@@ -1,12 +1,9 @@
 //! A summary for other programs.
 
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use super::data::{
-    Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, MeasureSummary, Note, Probability,
-    RequirementSummary, Sensitivity, SensitivityTarget, Summary,
-};
-use crate::statistics::Histogram;
+use super::data::{MeasureSummary, Note, SensitivityTarget, Severity, Summary};
 
 /// Version of the JSON.
 const SCHEMA: u64 = 1;
@@ -51,184 +48,77 @@ const SCHEMA: u64 = 1;
 /// ```
 #[must_use]
 pub fn json(summary: &Summary) -> Value {
-    let Head { scenario_text, scenario_digest, changes, .. } = &summary.head;
     let head = &summary.head;
-    let parameters: Vec<Value> = head
-        .parameters
-        .iter()
-        .map(|it| json!({ "name": it.name, "kind": it.kind.name(), "unit": it.unit, "meaning": it.meaning }))
-        .collect();
+    let notes = summary.notes.iter();
+    let notes = notes.map(|it| NoteView { note: it.name(), text: it.to_string(), about: it });
     json!({
         "schema": SCHEMA,
         "campaign": head.campaign,
         "program": head.program,
         "scenario": {
             "name": head.scenario,
-            "digest": scenario_digest,
-            "changes": changes,
-            "text": scenario_text,
+            "digest": head.scenario_digest,
+            "changes": head.changes,
+            "text": head.scenario_text,
         },
         "runs": head.runs,
         "rows": head.rows,
         "seed": head.seed.to_string(),
-        "sampling": head.sampling.name(),
+        "sampling": head.sampling,
         "digest": head.digest.to_string(),
         "confidence": head.confidence,
-        "parameters": parameters,
-        "controllers": list(&summary.controllers, controller),
-        "notes": list(&summary.notes, note),
+        "parameters": head.parameters,
+        "controllers": summary.controllers,
+        "notes": notes.collect::<Vec<_>>(),
     })
 }
 
-fn list<T>(items: &[T], one: fn(&T) -> Value) -> Value {
-    items.iter().map(one).collect()
+/// A note as a word, in words, and what it is about.
+#[derive(Serialize)]
+struct NoteView<'a> {
+    note: &'static str,
+    text: String,
+    #[serde(flatten)]
+    about: &'a Note,
 }
 
-fn controller(it: &ControllerSummary) -> Value {
-    let verdicts = it.verdicts.iter();
-    let verdicts = verdicts.map(|it| json!({ "verdict": it.verdict, "flights": it.flights }));
-    json!({
-        "name": it.name,
-        "verdicts": verdicts.collect::<Vec<_>>(),
-        "failed": probability(&it.failed),
-        "refused": probability(&it.refused),
-        "requirements": list(&it.requirements, requirement),
-        "measures": list(&it.measures, measure),
-        "failed_runs": list(&it.failed_runs, failed_run),
-        "sensitivities": list(&it.sensitivities, sensitivity),
-    })
-}
-
-fn probability(it: &Probability) -> Value {
-    let [lower, upper] = it.interval;
-    json!({
-        "count": it.count,
-        "of": it.of,
-        "estimate": it.estimate,
-        "lower": lower,
-        "upper": upper,
-        "at_most": it.at_most,
-        "at_least": it.at_least,
-    })
-}
-
-fn requirement(it: &RequirementSummary) -> Value {
-    json!({
-        "id": it.id,
-        "measure": it.measure,
-        "unit": it.unit,
-        "required": it.required,
-        "least": it.limits.least,
-        "most": it.limits.most,
-        "not_met": probability(&it.not_met),
-        "without_value": it.without_value,
-        "not_judged": it.not_judged,
-        "worst": it.worst.as_ref().map(extreme),
-    })
-}
-
-fn extreme(it: &Extreme) -> Value {
-    json!({ "run": it.run, "value": it.value })
-}
-
-fn measure(it: &MeasureSummary) -> Value {
-    let quantiles = it.quantiles.iter().map(|quantile| {
-        json!({
-            "share": quantile.share,
-            "value": quantile.value,
-            "lower": quantile.interval.lower,
-            "upper": quantile.interval.upper,
-        })
-    });
-    let bad = it.bad.map(|bad| match bad {
-        Bad::High => "high",
-        Bad::Low => "low",
-    });
-    json!({
-        "name": it.name,
-        "unit": it.unit,
-        "meaning": it.meaning,
-        "count": it.count,
-        "missing": it.missing,
-        "not_finite": it.not_finite,
-        "bad": bad,
-        "is_event": it.is_event,
-        "mean": it.moments.map(|moments| moments.mean),
-        "standard_deviation": it.moments.and_then(|moments| moments.standard_deviation),
-        "standard_error": it.moments.and_then(|moments| moments.standard_error),
-        "minimum": it.lowest.first().map(|lowest| lowest.value),
-        "maximum": it.highest.first().map(|highest| highest.value),
-        "quantiles": quantiles.collect::<Vec<_>>(),
-        "histogram": it.histogram.as_ref().map(histogram),
-        "lowest": list(&it.lowest, extreme),
-        "highest": list(&it.highest, extreme),
-    })
-}
-
-fn histogram(it: &Histogram) -> Value {
-    json!({ "edges": it.edges, "counts": it.counts, "below": it.below, "above": it.above })
-}
-
-fn failed_run(it: &FailedRun) -> Value {
-    json!({
-        "run": it.run,
-        "severity": it.severity.name(),
-        "diverged_at_s": it.diverged_at_s,
-        "reasons": it.reasons,
-    })
-}
-
-fn sensitivity(it: &Sensitivity) -> Value {
-    let (of, measure) = match &it.of {
-        SensitivityTarget::Failure => ("failure", None),
-        SensitivityTarget::Measure(name) => ("measure", Some(name)),
-    };
-    let [runs_used, runs] = it.used_of;
-    json!({
-        "of": of,
-        "measure": measure,
-        "used": it.used,
-        "runs_used": runs_used,
-        "runs": runs,
-        "parameters": list(&it.influences, influence),
-    })
-}
-
-fn influence(it: &Influence) -> Value {
-    let correlation = it.correlation.map(|found| {
-        json!({
-            "coefficient": found.coefficient,
-            "interval_95": found.interval_95,
-            "pairs": found.pairs,
-        })
-    });
-    let share = it.share.map(|share| {
-        json!({
-            "fraction": share.fraction,
-            "uncorrected": share.uncorrected,
-            "standard_error": share.standard_error,
-            "classes": share.classes,
-        })
-    });
-    json!({ "parameter": it.parameter, "rank_correlation": correlation, "variance_share": share })
-}
-
-fn note(it: &Note) -> Value {
-    let mut value = json!({ "note": it.name(), "text": it.to_string() });
-    let counted = |measures: &[(String, u64)]| -> Value {
-        measures.iter().map(|(name, flights)| json!({ "name": name, "flights": flights })).collect()
-    };
-    let more = match it {
-        Note::RunsNotIndependent { sampling } => vec![("sampling", json!(sampling.name()))],
-        Note::SharesOvercorrected => Vec::new(),
-        Note::NothingRequired { controller } => vec![("controller", json!(controller))],
-        Note::FirstRunsOnly { used, of } => vec![("runs_used", json!(used)), ("runs", json!(of))],
-        Note::Missing { controller, measures } | Note::NotFinite { controller, measures } => {
-            vec![("controller", json!(controller)), ("measures", counted(measures))]
-        }
-    };
-    if let Some(object) = value.as_object_mut() {
-        object.extend(more.into_iter().map(|(name, value)| (name.to_owned(), value)));
+impl Serialize for MeasureSummary {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let view = json!({
+            "name": self.name,
+            "unit": self.unit,
+            "meaning": self.meaning,
+            "count": self.count,
+            "missing": self.missing,
+            "not_finite": self.not_finite,
+            "bad": self.bad,
+            "is_event": self.is_event,
+            "mean": self.moments.map(|moments| moments.mean),
+            "standard_deviation": self.moments.and_then(|moments| moments.standard_deviation),
+            "standard_error": self.moments.and_then(|moments| moments.standard_error),
+            "minimum": self.lowest.first().map(|lowest| lowest.value),
+            "maximum": self.highest.first().map(|highest| highest.value),
+            "quantiles": self.quantiles,
+            "histogram": self.histogram,
+            "lowest": self.lowest,
+            "highest": self.highest,
+        });
+        view.serialize(to)
     }
-    value
+}
+
+impl Serialize for SensitivityTarget {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let view = match self {
+            Self::Failure => json!({ "of": "failure", "measure": null }),
+            Self::Measure(name) => json!({ "of": "measure", "measure": name }),
+        };
+        view.serialize(to)
+    }
+}
+
+impl Serialize for Severity {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.name())
+    }
 }

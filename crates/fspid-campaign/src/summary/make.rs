@@ -5,8 +5,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::data::{
-    ControllerSummary, Limits, MeasureSummary, Note, Probability, Sensitivity, SensitivityTarget,
-    Summary, SummarySettings,
+    ControllerSummary, MeasureCount, MeasureSummary, Note, Probability, Sensitivity,
+    SensitivityTarget, Summary, SummarySettings,
 };
 use super::flights::{self, Flights};
 use super::sensitivity::{Factors, Selections};
@@ -70,26 +70,21 @@ fn columns(source: &Source, flights: &[Flights]) -> Result<Vec<Columns>, Summary
         let limits = asked.iter().find(|asked| asked.value() == column.name).map(|it| it.limits);
         let cells = measures::read(source, &column.name)?;
         let results = columns.par_iter_mut().zip(cells);
-        let results = results
-            .map(|(columns, cells)| columns.add(cells, column, limits, (&factors, confidence)));
+        let results = results.map(|(columns, cells)| {
+            columns.depend(&factors, column, &cells);
+            columns.measures.push(cells.summary(column, limits, confidence)?);
+            Ok(())
+        });
         results.collect::<Result<(), SummaryError>>()?;
     }
     Ok(columns)
 }
 
 impl Columns {
-    fn add(
-        &mut self,
-        cells: measures::Cells,
-        column: &Column,
-        limits: Option<Limits>,
-        (factors, confidence): (&Factors, f64),
-    ) -> Result<(), SummaryError> {
+    fn depend(&mut self, factors: &Factors, column: &Column, cells: &measures::Cells) {
         let target = SensitivityTarget::Measure(column.name.clone());
         let depends = factors.sensitivity(&mut self.selections, target, &cells.first);
         self.sensitivities.push(depends);
-        self.measures.push(cells.summary(column, limits, confidence)?);
-        Ok(())
     }
 }
 
@@ -103,9 +98,9 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
     if head.sampling == Sampling::Sobol {
         notes.push(Note::SharesOvercorrected);
     }
-    let used = super::SENSITIVITY_RUNS as u64;
-    if head.runs > used {
-        notes.push(Note::FirstRunsOnly { used, of: head.runs });
+    let runs_used = super::SENSITIVITY_RUNS as u64;
+    if head.runs > runs_used {
+        notes.push(Note::FirstRunsOnly { runs_used, runs: head.runs });
     }
     for controller in controllers {
         let name = || controller.name.clone();
@@ -113,13 +108,14 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
         if judged == 0 && controller.refused.count < head.runs {
             notes.push(Note::NothingRequired { controller: name() });
         }
-        let of = |number: fn(&MeasureSummary) -> u64| -> Vec<(String, u64)> {
-            let counts = controller.measures.iter().map(|it| (it.name.clone(), number(it)));
-            counts.filter(|(_, number)| *number > 0).collect()
+        let of = |flights: fn(&MeasureSummary) -> u64| -> Vec<MeasureCount> {
+            let counts = controller.measures.iter();
+            let counts =
+                counts.map(|it| MeasureCount { name: it.name.clone(), flights: flights(it) });
+            counts.filter(|it| it.flights > 0).collect()
         };
-        let missing = of(|it| if it.is_event { 0 } else { it.missing });
-        let missing: Vec<_> =
-            missing.into_iter().filter(|(name, _)| controller.is_asked(name)).collect();
+        let mut missing = of(|it| if it.is_event { 0 } else { it.missing });
+        missing.retain(|it| controller.is_asked(&it.name));
         if !missing.is_empty() {
             notes.push(Note::Missing { controller: name(), measures: missing });
         }

@@ -13,7 +13,6 @@
 //! of one column at a time, and of the first [`SENSITIVITY_RUNS`] runs every parameter with its ranks. All sums
 //! run in the order of the file: the same file gives the same bits on every machine, with any number of threads.
 
-mod columns;
 mod data;
 mod error;
 mod flights;
@@ -28,9 +27,9 @@ mod text;
 pub mod words;
 
 pub use data::{
-    Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureSummary, Note,
-    Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity, SensitivityTarget,
-    Severity, Summary, SummarySettings, VerdictCount,
+    Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureCount,
+    MeasureSummary, Note, Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity,
+    SensitivityTarget, Severity, Summary, SummarySettings, VerdictCount,
 };
 pub use error::{NotMerged, SummaryError};
 pub use json::json;

@@ -11,11 +11,13 @@ impl Probability {
     pub fn of(count: u64, of: u64, confidence: f64) -> Result<Self, StatisticsError> {
         let at_most = binomial::upper_bound(count, of, confidence)?;
         let at_least = binomial::lower_bound(count, of, confidence)?;
+        let [lower, upper] = binomial::clopper_pearson(count, of, confidence)?;
         Ok(Self {
             count,
             of,
             estimate: (of > 0).then(|| count as f64 / of as f64),
-            interval: binomial::clopper_pearson(count, of, confidence)?,
+            lower,
+            upper,
             at_most: (of > 0 && count == 0).then_some(at_most),
             at_least: (of > 0 && count == of).then_some(at_least),
         })
@@ -44,7 +46,7 @@ mod tests {
     fn without_runs_there_is_no_estimate() {
         let nothing = Probability::of(0, 0, 0.95).expect("counts");
         assert_eq!((nothing.estimate, nothing.at_most, nothing.at_least), (None, None, None));
-        assert_eq!(nothing.interval, [0.0, 1.0]);
+        assert_eq!([nothing.lower, nothing.upper], [0.0, 1.0]);
         assert!(Probability::of(1, 2, 1.0).is_err());
     }
 }

@@ -37,7 +37,8 @@ fn tallies(source: &Source, asked: &Asked) -> Result<Vec<Tally>, SummaryError> {
         for (met, value) in booleans(&table, &met)?.iter().zip(table.floats(&value)?) {
             if let Some(tally) = tallies.get_mut(row % of_run) {
                 tally.add(*met, *value);
-                tally.keep(asked, value.map(|value| ((row / of_run) as u64, value)));
+                let run = (row / of_run) as u64;
+                tally.keep(asked, value.map(|value| Extreme { run, value }));
             }
             row += 1;
         }
@@ -57,16 +58,16 @@ impl Tally {
     }
 
     /// Keeps a value if it is worse than those so far.
-    fn keep(&mut self, asked: &Asked, found: Option<(u64, f64)>) {
-        let Some((run, value)) = found else {
+    fn keep(&mut self, asked: &Asked, found: Option<Extreme>) {
+        let Some(found) = found else {
             return;
         };
-        let Some(outside) = asked.outside(value) else {
+        let Some(outside) = asked.outside(found.value) else {
             return;
         };
         let before = self.worst.and_then(|worst| asked.outside(worst.value));
         if before.is_none_or(|before| outside > before) {
-            self.worst = Some(Extreme { run, value });
+            self.worst = Some(found);
         }
     }
 

@@ -96,7 +96,8 @@ impl Factors {
         Sensitivity {
             of,
             used: values.len() as u64,
-            used_of: [self.used as u64, self.all],
+            runs_used: self.used as u64,
+            runs: self.all,
             influences: influences.collect(),
         }
     }

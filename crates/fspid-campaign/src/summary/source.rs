@@ -11,7 +11,7 @@ use crate::merge::PLAN_KEY;
 use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, PARAMETER, REASONS, REQUIREMENT, RUN, VERDICT};
 use crate::sample::Sampling;
 use crate::shard::{CAMPAIGN_KEY, PROGRAM_KEY};
-use crate::table::{Column, Kind, Reader, Table, Values};
+use crate::table::{Column, ColumnTable, Kind, Reader, Values};
 
 /// Ends of the names of a requirement's columns.
 const VALUE: &str = ".value";
@@ -174,7 +174,7 @@ fn parameter(column: &Column) -> Option<Parameter> {
 fn controllers(reader: &Reader) -> Result<Vec<String>, SummaryError> {
     let mut controllers = Vec::new();
     for table in reader.columns(&[RUN, CONTROLLER])? {
-        let table: Table = table?;
+        let table: ColumnTable = table?;
         let (Values::Integer(runs), Values::Text(names)) =
             (table.column(RUN)?, table.column(CONTROLLER)?)
         else {

@@ -1,6 +1,7 @@
 //! A summary for a terminal.
 
-use super::columns::{Align, Columns};
+use fspid_page::columns::{Align, Columns};
+
 use super::data::{
     Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, RequirementSummary,
     Sensitivity, SensitivityTarget, Severity, Summary,
@@ -103,7 +104,15 @@ fn requirements(requirements: &[RequirementSummary], confidence: f64) -> Vec<Str
         let not_met = requirement.not_met.in_words(confidence);
         table.row(vec![cut(&requirement.id), cut(&requirement.required), not_met, worst, run]);
     }
-    table.lines()
+    below(&table)
+}
+
+/// An empty line and the table; nothing at all without rows.
+fn below(table: &Columns) -> Vec<String> {
+    if table.is_empty() {
+        return Vec::new();
+    }
+    format!("\n{table}").lines().map(str::to_owned).collect()
 }
 
 fn measures(heading: &str, measures: &[&MeasureSummary]) -> Vec<String> {
@@ -137,7 +146,7 @@ fn measures(heading: &str, measures: &[&MeasureSummary]) -> Vec<String> {
             run,
         ]);
     }
-    table.lines()
+    below(&table)
 }
 
 /// The worst value, where it is known which side is bad.
@@ -184,7 +193,7 @@ fn sensitivities(heading: &str, sensitivities: &[&Sensitivity]) -> Vec<String> {
             table.row(row);
         }
     }
-    table.lines()
+    below(&table)
 }
 
 /// An influence whose share is clearly above 0, with it.

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use fspid_diagnostics::digits::without_zeros;
+use fspid_diagnostics::digits::{grouped, without_zeros};
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
-use super::data::{Note, Probability, Severity};
+use super::data::{MeasureCount, Note, Probability, Severity};
 use crate::sample::Sampling;
 
 /// Four significant digits: more say nothing of a campaign.
@@ -30,18 +30,10 @@ pub fn number(value: f64) -> String {
 /// A whole number, from five digits on in groups of three: `10 000`, `3000`.
 #[must_use]
 pub fn whole(value: u64) -> String {
-    let digits = value.to_string();
-    if digits.len() < 5 {
-        return digits;
+    match value {
+        0..10_000 => value.to_string(),
+        _ => grouped(value),
     }
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// A confidence or a share of the flights in percent, with the digits it has: `95 %`, `99.9 %`.
@@ -74,10 +66,10 @@ impl Probability {
         let Some(estimate) = self.estimate else {
             return counts;
         };
-        let [low, high] = self.interval;
-        let decimals = decimals(high - low);
-        let (low, high) = (outwards(low, decimals, false), outwards(high, decimals, true));
-        format!("{counts}: {:.decimals$} % ({low} % to {high} %)", 100.0 * estimate)
+        let decimals = decimals(self.upper - self.lower);
+        let lower = outwards(self.lower, decimals, false);
+        let upper = outwards(self.upper, decimals, true);
+        format!("{counts}: {:.decimals$} % ({lower} % to {upper} %)", 100.0 * estimate)
     }
 }
 
@@ -162,11 +154,11 @@ impl fmt::Display for Note {
                 "Shares of the variance are corrected as for independent runs, which takes off too much on a \
                  Sobol' sequence: the truth lies between the corrected and the uncorrected share.",
             ),
-            Self::FirstRunsOnly { used, of } => write!(
+            Self::FirstRunsOnly { runs_used, runs } => write!(
                 f,
                 "Correlations and shares of the variance are of the first {} of {} runs.",
-                whole(*used),
-                whole(*of)
+                whole(*runs_used),
+                whole(*runs)
             ),
             Self::Missing { controller, measures } => {
                 write!(
@@ -184,13 +176,13 @@ impl fmt::Display for Note {
 }
 
 /// Counts with the names they belong to: `5082 flights rise_time_s, overshoot_pct and 9 others; …`.
-fn counted(f: &mut fmt::Formatter<'_>, measures: &[(String, u64)]) -> fmt::Result {
-    let mut left: Vec<&(String, u64)> = measures.iter().collect();
+fn counted(f: &mut fmt::Formatter<'_>, measures: &[MeasureCount]) -> fmt::Result {
+    let mut left: Vec<&MeasureCount> = measures.iter().collect();
     let mut between = "";
-    while let Some(&&(_, count)) = left.first() {
-        let (same, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|(_, it)| *it == count);
+    while let Some(&&MeasureCount { flights: count, .. }) = left.first() {
+        let (same, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|it| it.flights == count);
         left = others;
-        let named: Vec<&str> = same.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
+        let named: Vec<&str> = same.iter().take(NAMED).map(|it| it.name.as_str()).collect();
         let flights = if count == 1 { "flight" } else { "flights" };
         write!(f, "{between}{} {flights} {}", whole(count), named.join(", "))?;
         if same.len() > NAMED {
@@ -223,7 +215,8 @@ mod tests {
     #[test]
     fn measures_missing_in_equally_many_flights_are_named_together() {
         let names = [("a", 5), ("b", 2), ("c", 5), ("d", 5), ("e", 5), ("f", 1)];
-        let measures = names.map(|(name, count)| (name.to_owned(), count)).to_vec();
+        let measures = names.map(|(name, flights)| MeasureCount { name: name.to_owned(), flights });
+        let measures = measures.to_vec();
         let note = Note::NotFinite { controller: "A".to_owned(), measures };
         assert_eq!(
             note.to_string(),

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use sha2::{Digest as _, Sha256};
 
 use super::values::canonical;
-use super::{Cell, Column, Kind, Schema, Table, Values};
+use super::{Cell, Column, ColumnTable, Kind, Schema, Values};
 
 /// First bytes of every digested content: what it is, and the version of the rules below.
 const HEADER: &[u8] = b"fspid table 1\n";
@@ -33,7 +33,7 @@ pub struct Digest([u8; 32]);
 impl Digest {
     /// The digest of one table.
     #[must_use]
-    pub fn of(table: &Table) -> Self {
+    pub fn of(table: &ColumnTable) -> Self {
         let mut digester = Digester::new(table.schema());
         digester.update(table);
         digester.finish()
@@ -119,7 +119,7 @@ impl Digester {
     }
 
     /// Adds the rows of a table, whose schema must be the one given to [`Digester::new`].
-    pub fn update(&mut self, table: &Table) {
+    pub fn update(&mut self, table: &ColumnTable) {
         self.update_values(table.values(), table.rows());
     }
 

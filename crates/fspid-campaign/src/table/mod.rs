@@ -1,6 +1,6 @@
 //! Tables of results: columns with names and units, written as Parquet and read again.
 //!
-//! A [`Table`] is rows in memory under a [`Schema`]; every cell may be absent. A [`Writer`] takes
+//! A [`ColumnTable`] is rows in memory under a [`Schema`]; every cell may be absent. A [`Writer`] takes
 //! tables of any size and writes a Parquet file whose bytes depend on the rows and the metadata
 //! only; a [`Reader`] gives them back one row group at a time. A [`Digest`] names the content,
 //! whatever file it lies in.
@@ -39,7 +39,7 @@ pub use digest::{Digest, Digester, NotADigest};
 pub use error::{Damage, Foreign, TableError};
 pub use reader::Reader;
 pub use schema::{Column, Kind, Schema};
-pub use values::{Cell, Table, Values};
+pub use values::{Cell, ColumnTable, Values};
 pub use writer::Writer;
 
 /// Rows of every row group but the last, which may have fewer.

@@ -14,8 +14,8 @@ use parquet::file::serialized_reader::{ReadOptionsBuilder, SerializedFileReader}
 use super::checks::{self, Refusal};
 use super::chunk::Chunk;
 use super::{
-    COLUMNS_KEY, DIGEST_KEY, Damage, Digest, Digester, Kind, Schema, Table, TableError, Values,
-    footer,
+    COLUMNS_KEY, ColumnTable, DIGEST_KEY, Damage, Digest, Digester, Kind, Schema, TableError,
+    Values, footer,
 };
 
 /// A file that a [`Writer`](super::Writer) wrote.
@@ -118,7 +118,7 @@ impl Reader {
     ///
     /// # Errors
     /// Each item: [`TableError::Damaged`]. After an error come the other row groups.
-    pub fn tables(&self) -> impl Iterator<Item = Result<Table, TableError>> + '_ {
+    pub fn tables(&self) -> impl Iterator<Item = Result<ColumnTable, TableError>> + '_ {
         let indices: Vec<usize> = (0..self.schema.columns().len()).collect();
         self.select(Arc::clone(&self.schema), indices)
     }
@@ -131,7 +131,7 @@ impl Reader {
     pub fn columns(
         &self,
         names: &[&str],
-    ) -> Result<impl Iterator<Item = Result<Table, TableError>> + '_, TableError> {
+    ) -> Result<impl Iterator<Item = Result<ColumnTable, TableError>> + '_, TableError> {
         let indices =
             names.iter().map(|name| self.schema.index(name)).collect::<Result<Vec<_>, _>>()?;
         let schema = Arc::new(self.schema.select(&indices)?);
@@ -202,14 +202,14 @@ impl Reader {
         &self,
         schema: Arc<Schema>,
         indices: Vec<usize>,
-    ) -> impl Iterator<Item = Result<Table, TableError>> + '_ {
+    ) -> impl Iterator<Item = Result<ColumnTable, TableError>> + '_ {
         self.row_groups().map(move |row_group| {
             guarded(&self.path, || {
                 let values = indices
                     .iter()
                     .map(|&index| self.read(row_group, index))
                     .collect::<Result<_, _>>()?;
-                Table::from_values(Arc::clone(&schema), values)
+                ColumnTable::from_values(Arc::clone(&schema), values)
             })
         })
     }

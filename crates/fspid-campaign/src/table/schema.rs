@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Foreign, TableError};
@@ -11,7 +12,8 @@ use super::{Foreign, TableError};
 const FORMAT: u64 = 1;
 
 /// What the cells of a column are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// A number of 64 bits: `DOUBLE` in Parquet, `float` in the metadata.
     Float,

@@ -246,12 +246,12 @@ impl Values {
 
 /// Rows under a schema.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub struct ColumnTable {
     schema: Arc<Schema>,
     values: Vec<Values>,
 }
 
-impl Table {
+impl ColumnTable {
     /// No rows.
     #[must_use]
     pub fn new(schema: Arc<Schema>) -> Self {
@@ -384,7 +384,7 @@ impl Table {
 }
 
 /// The same columns and the same cells, bit for bit.
-impl PartialEq for Table {
+impl PartialEq for ColumnTable {
     fn eq(&self, other: &Self) -> bool {
         self.schema == other.schema
             && self.rows() == other.rows()

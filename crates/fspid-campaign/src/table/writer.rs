@@ -9,8 +9,8 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 
 use super::{
-    COLUMNS_KEY, DIGEST_KEY, Digest, Digester, METADATA_DIGEST_KEY, ROWS_PER_GROUP, Schema, Table,
-    TableError, Values, layout,
+    COLUMNS_KEY, ColumnTable, DIGEST_KEY, Digest, Digester, METADATA_DIGEST_KEY, ROWS_PER_GROUP,
+    Schema, TableError, Values, layout,
 };
 
 /// Writes tables one below the other into a file.
@@ -24,7 +24,7 @@ use super::{
 pub struct Writer<W: Write + Send> {
     file: SerializedFileWriter<W>,
     /// Rows that wait for their row group to be full.
-    waiting: Table,
+    waiting: ColumnTable,
     digester: Digester,
     /// Metadata so far, which is written with the footer.
     metadata: Vec<(String, String)>,
@@ -46,7 +46,7 @@ impl<W: Write + Send> Writer<W> {
         let properties = Arc::new(layout::properties(schema));
         let file =
             SerializedFileWriter::new(sink, parquet_schema, properties).map_err(write_error)?;
-        let waiting = Table::new(Arc::clone(schema));
+        let waiting = ColumnTable::new(Arc::clone(schema));
         let columns = vec![(COLUMNS_KEY.to_owned(), schema.to_json())];
         let digester = Digester::new(schema);
         let mut writer = Self { file, waiting, digester, metadata: columns, failed: false };
@@ -59,7 +59,7 @@ impl<W: Write + Send> Writer<W> {
     /// # Errors
     /// [`TableError::OtherSchema`]; [`TableError::Write`] if the sink does not take them, after which
     /// the file cannot be finished; [`TableError::Failed`] after that.
-    pub fn write(&mut self, table: &Table) -> Result<(), TableError> {
+    pub fn write(&mut self, table: &ColumnTable) -> Result<(), TableError> {
         if self.failed {
             return Err(TableError::Failed);
         }

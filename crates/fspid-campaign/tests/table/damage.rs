@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
 use fspid_campaign::table::{
-    COLUMNS_KEY, Damage, Foreign, Kind, METADATA_DIGEST_KEY, Reader, Table, TableError, Values,
+    COLUMNS_KEY, ColumnTable, Damage, Foreign, Kind, METADATA_DIGEST_KEY, Reader, TableError,
+    Values,
 };
 use parquet::basic::{Compression, Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
@@ -19,7 +20,7 @@ use tempfile::tempdir;
 use crate::table::{file, long_table, read, schema};
 
 /// What comes of a file: nothing but an error, or all that was in it. Returns whether it was read.
-fn survives(path: &Path, bytes: &[u8], original: &Table, place: &str) -> bool {
+fn survives(path: &Path, bytes: &[u8], original: &ColumnTable, place: &str) -> bool {
     let found = read(path, bytes).and_then(|(reader, table)| Ok((reader.verify()?, reader, table)));
     match found {
         Ok((_, reader, table)) => {
@@ -78,9 +79,9 @@ fn a_file_cut_off_anywhere_is_refused() {
 }
 
 /// Every row another float, so that the dictionary is given up on the way; and texts and counts.
-fn mixed_table() -> Table {
+fn mixed_table() -> ColumnTable {
     let schema = schema(&[Kind::Float, Kind::Text, Kind::Integer]);
-    let mut table = Table::new(schema);
+    let mut table = ColumnTable::new(schema);
     for row in 0..3000_i64 {
         let text = format!("{}", row % 300);
         table
@@ -91,7 +92,7 @@ fn mixed_table() -> Table {
 }
 
 /// The table and its file, made once for all cases.
-static MIXED: LazyLock<(Table, Vec<u8>)> = LazyLock::new(|| {
+static MIXED: LazyLock<(ColumnTable, Vec<u8>)> = LazyLock::new(|| {
     let table = mixed_table();
     let bytes = file(&table);
     (table, bytes)
@@ -179,7 +180,7 @@ fn a_dictionary_that_announces_more_than_it_has_is_refused() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("t.parquet");
     let texts = Values::Text(vec![Some("some".to_owned()); 60]);
-    let whole = file(&Table::from_values(schema(&[Kind::Text]), vec![texts]).unwrap());
+    let whole = file(&ColumnTable::from_values(schema(&[Kind::Text]), vec![texts]).unwrap());
     // The header of the dictionary page: field 7 of the page, its field 1 with one value (2 as signed).
     let place = whole.windows(3).position(|window| window == [0x4c, 0x15, 0x02]).unwrap() + 2;
     let mut bytes = whole[..place].to_vec();
@@ -238,7 +239,7 @@ impl Other {
 /// The metadata of a file of ours with one column of floats, as another program may copy it.
 fn own_keys(path: &Path) -> Vec<KeyValue> {
     use parquet::file::reader::{FileReader as _, SerializedFileReader};
-    fs::write(path, file(&Table::new(schema(&[Kind::Float])))).unwrap();
+    fs::write(path, file(&ColumnTable::new(schema(&[Kind::Float])))).unwrap();
     let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
     reader.metadata().file_metadata().key_value_metadata().unwrap().clone()
 }

@@ -4,7 +4,8 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use fspid_campaign::table::{
-    Cell, Column, Digest, Kind, ROWS_PER_GROUP, Reader, Schema, Table, TableError, Values, Writer,
+    Cell, Column, ColumnTable, Digest, Kind, ROWS_PER_GROUP, Reader, Schema, TableError, Values,
+    Writer,
 };
 use proptest::prelude::*;
 use tempfile::tempdir;
@@ -56,7 +57,7 @@ fn metadata_and_columns_come_back_in_their_order() {
     ];
     let schema = Arc::new(Schema::new(columns).unwrap());
     let mut writer = Writer::new(Vec::new(), &schema, &[pair("z", "1"), pair("a", "")]).unwrap();
-    writer.write(&Table::new(Arc::clone(&schema))).unwrap();
+    writer.write(&ColumnTable::new(Arc::clone(&schema))).unwrap();
     let (bytes, digest) = writer.finish(&[pair("m", "ü\n")]).unwrap();
     let (reader, _) = read(&folder.path().join("t.parquet"), &bytes).unwrap();
     assert_eq!(reader.schema(), &schema);
@@ -82,7 +83,7 @@ fn a_key_is_taken_once() {
 #[test]
 fn a_table_of_other_columns_is_not_written() {
     let mut writer = Writer::new(Vec::new(), &schema(&[Kind::Float]), &[]).unwrap();
-    let other = Table::new(schema(&[Kind::Float, Kind::Float]));
+    let other = ColumnTable::new(schema(&[Kind::Float, Kind::Float]));
     assert!(matches!(writer.write(&other), Err(TableError::OtherSchema)));
 }
 
@@ -159,7 +160,7 @@ fn the_longest_texts_all_different_go_through() {
     let folder = tempdir().unwrap();
     let schema = schema(&[Kind::Text]);
     let texts = (0..300).map(|i| Some(format!("{i:0>4096}"))).collect();
-    let table = Table::from_values(schema, vec![Values::Text(texts)]).unwrap();
+    let table = ColumnTable::from_values(schema, vec![Values::Text(texts)]).unwrap();
     let (reader, whole) = read(&folder.path().join("t.parquet"), &file(&table)).unwrap();
     assert!(whole == table);
     reader.verify().unwrap();
@@ -189,7 +190,7 @@ impl Write for Sink {
 }
 
 /// The table written to a sink, and then, if that failed, written on.
-fn write_to(sink: Sink, table: &Table) -> Result<Vec<u8>, TableError> {
+fn write_to(sink: Sink, table: &ColumnTable) -> Result<Vec<u8>, TableError> {
     let mut writer = Writer::new(sink, table.schema(), &[pair("campaign", "test")])?;
     if let Err(error) = writer.write(table) {
         assert!(matches!(writer.write(table), Err(TableError::Failed)));
@@ -246,7 +247,7 @@ fn a_sink_that_cannot_be_flushed_is_an_error() {
 fn numbers_that_are_none_come_back_as_they_were() {
     let folder = tempdir().unwrap();
     let nan = f64::from_bits(0xfff8_dead_beef_0001);
-    let mut table = Table::new(schema(&[Kind::Float]));
+    let mut table = ColumnTable::new(schema(&[Kind::Float]));
     for value in [nan, f64::INFINITY, f64::NEG_INFINITY, -0.0, 0.0, 5e-324] {
         table.push(&[value.into()]).unwrap();
     }

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fspid_campaign::table::{
-    Cell, Column, Digest, Kind, Reader, Schema, Table, TableError, Writer,
+    Cell, Column, ColumnTable, Digest, Kind, Reader, Schema, TableError, Writer,
 };
 use proptest::prelude::*;
 
@@ -52,8 +52,8 @@ pub(crate) fn schema(kinds: &[Kind]) -> Arc<Schema> {
 }
 
 /// A table of these rows.
-pub(crate) fn table(schema: &Arc<Schema>, rows: &[Vec<Owned>]) -> Table {
-    let mut table = Table::new(Arc::clone(schema));
+pub(crate) fn table(schema: &Arc<Schema>, rows: &[Vec<Owned>]) -> ColumnTable {
+    let mut table = ColumnTable::new(Arc::clone(schema));
     for row in rows {
         table.push(&row.iter().map(Owned::cell).collect::<Vec<_>>()).unwrap();
     }
@@ -61,9 +61,9 @@ pub(crate) fn table(schema: &Arc<Schema>, rows: &[Vec<Owned>]) -> Table {
 }
 
 /// A table of every kind whose cells are made from the row, with absent ones and all different ones.
-pub(crate) fn long_table(rows: usize) -> Table {
+pub(crate) fn long_table(rows: usize) -> ColumnTable {
     let schema = schema(&[Kind::Float, Kind::Integer, Kind::Text, Kind::Boolean, Kind::Float]);
-    let mut table = Table::new(schema);
+    let mut table = ColumnTable::new(schema);
     for row in 0..rows {
         let text = format!("run {}", row % 7);
         let float = (row as f64).sqrt();
@@ -81,7 +81,7 @@ pub(crate) fn long_table(rows: usize) -> Table {
 
 /// A file of a table that arrives in pieces of so many rows.
 pub(crate) fn file_in_pieces(
-    table: &Table,
+    table: &ColumnTable,
     piece: usize,
     metadata: &[(String, String)],
 ) -> (Vec<u8>, Digest) {
@@ -96,15 +96,15 @@ pub(crate) fn file_in_pieces(
 }
 
 /// A file of a table.
-pub(crate) fn file(table: &Table) -> Vec<u8> {
+pub(crate) fn file(table: &ColumnTable) -> Vec<u8> {
     file_in_pieces(table, usize::MAX / 2, &[("campaign".to_owned(), "test".to_owned())]).0
 }
 
 /// Everything in a file whose bytes are put to a path.
-pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<(Reader, Table), TableError> {
+pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<(Reader, ColumnTable), TableError> {
     std::fs::write(path, bytes).unwrap();
     let reader = Reader::open(path)?;
-    let mut whole = Table::new(Arc::clone(reader.schema()));
+    let mut whole = ColumnTable::new(Arc::clone(reader.schema()));
     for table in reader.tables() {
         whole.append(&table?)?;
     }
@@ -127,7 +127,7 @@ fn any_cell(kind: Kind) -> BoxedStrategy<Owned> {
 }
 
 /// Any table of at most five columns and so many rows.
-pub(crate) fn any_table(rows: std::ops::Range<usize>) -> impl Strategy<Value = Table> {
+pub(crate) fn any_table(rows: std::ops::Range<usize>) -> impl Strategy<Value = ColumnTable> {
     let kinds = prop::collection::vec(prop::sample::select(Kind::ALL.to_vec()), 1..6);
     (kinds, rows).prop_flat_map(|(kinds, rows)| {
         let row: Vec<_> = kinds.iter().map(|kind| any_cell(*kind)).collect();

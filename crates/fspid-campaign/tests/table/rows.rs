@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fspid_campaign::table::{
-    Cell, Column, Digest, Digester, Kind, MAX_TEXT_BYTES, Schema, Table, TableError, Values,
+    Cell, Column, ColumnTable, Digest, Digester, Kind, MAX_TEXT_BYTES, Schema, TableError, Values,
 };
 use proptest::prelude::*;
 
@@ -34,7 +34,7 @@ fn a_name_without_letters_or_with_a_line_feed_is_refused() {
 
 #[test]
 fn a_row_that_does_not_fit_leaves_the_table_as_it_was() {
-    let mut table = Table::new(schema(&[Kind::Float, Kind::Text]));
+    let mut table = ColumnTable::new(schema(&[Kind::Float, Kind::Text]));
     let error = table.push(&[1.0.into()]).unwrap_err();
     assert!(matches!(error, TableError::RowLength { found: 1, expected: 2 }), "{error}");
     let error = table.push(&[1.0.into(), 2_i64.into()]).unwrap_err();
@@ -56,14 +56,14 @@ fn columns_that_do_not_fit_are_refused() {
     let schema = schema(&[Kind::Float, Kind::Text]);
     let (float, text) =
         (|rows| Values::Float(vec![None; rows]), |rows| Values::Text(vec![None; rows]));
-    let error = Table::from_values(Arc::clone(&schema), vec![float(2), text(3)]).unwrap_err();
+    let error = ColumnTable::from_values(Arc::clone(&schema), vec![float(2), text(3)]).unwrap_err();
     assert!(matches!(error, TableError::UnequalRows { found: 3, expected: 2, .. }), "{error}");
-    let error = Table::from_values(Arc::clone(&schema), vec![text(2), float(2)]).unwrap_err();
+    let error = ColumnTable::from_values(Arc::clone(&schema), vec![text(2), float(2)]).unwrap_err();
     assert!(matches!(error, TableError::Kind { .. }), "{error}");
-    let error = Table::from_values(Arc::clone(&schema), vec![float(2)]).unwrap_err();
+    let error = ColumnTable::from_values(Arc::clone(&schema), vec![float(2)]).unwrap_err();
     assert!(matches!(error, TableError::RowLength { found: 1, expected: 2 }), "{error}");
     let long = Values::Text(vec![Some("x".repeat(MAX_TEXT_BYTES + 1)), None]);
-    let error = Table::from_values(schema, vec![float(2), long]).unwrap_err();
+    let error = ColumnTable::from_values(schema, vec![float(2), long]).unwrap_err();
     assert!(matches!(error, TableError::TextTooLong { .. }), "{error}");
 }
 
@@ -92,8 +92,8 @@ fn numbers_are_had_by_the_name_of_their_column() {
 
 #[test]
 fn tables_of_other_columns_are_not_appended() {
-    let mut table = Table::new(schema(&[Kind::Float]));
-    let other = Table::new(schema(&[Kind::Integer]));
+    let mut table = ColumnTable::new(schema(&[Kind::Float]));
+    let other = ColumnTable::new(schema(&[Kind::Integer]));
     assert!(matches!(table.append(&other), Err(TableError::OtherSchema)));
 }
 
@@ -106,7 +106,7 @@ fn the_digest_is_what_its_rules_say() {
         Column::new("t", Kind::Text),
         Column::new("b", Kind::Boolean),
     ];
-    let mut table = Table::new(Arc::new(Schema::new(columns).unwrap()));
+    let mut table = ColumnTable::new(Arc::new(Schema::new(columns).unwrap()));
     let nan = f64::from_bits(0xfff8_dead_beef_0001);
     table.push(&[nan.into(), (-2_i64).into(), "ü".into(), true.into()]).unwrap();
     table.push(&[(-0.0).into(), Cell::Absent, "".into(), false.into()]).unwrap();
@@ -130,8 +130,9 @@ fn a_digest_is_read_from_64_small_hexadecimal_digits_only() {
 #[test]
 fn the_digest_changes_with_every_word_of_the_columns() {
     let column = Column::new("a", Kind::Float).unit("m").meaning("x");
-    let digest =
-        |column: Column| Digest::of(&Table::new(Arc::new(Schema::new(vec![column]).unwrap())));
+    let digest = |column: Column| {
+        Digest::of(&ColumnTable::new(Arc::new(Schema::new(vec![column]).unwrap())))
+    };
     let others = [
         Column { name: "b".to_owned(), ..column.clone() },
         Column { kind: Kind::Integer, ..column.clone() },
@@ -161,8 +162,8 @@ fn other_than(cell: Cell<'_>, kind: Kind) -> Cell<'static> {
 }
 
 /// The table with one cell replaced.
-fn with_cell(table: &Table, place: (usize, usize), cell: Cell<'_>) -> Table {
-    let mut other = Table::new(Arc::clone(table.schema()));
+fn with_cell(table: &ColumnTable, place: (usize, usize), cell: Cell<'_>) -> ColumnTable {
+    let mut other = ColumnTable::new(Arc::clone(table.schema()));
     for row in 0..table.rows() {
         let mut cells: Vec<Cell<'_>> =
             table.values().iter().map(|values| values.cell(row).unwrap()).collect();
@@ -210,7 +211,7 @@ proptest! {
 
     #[test]
     fn a_table_of_its_own_columns_is_the_same(table in any_table(0..20)) {
-        let again = Table::from_values(Arc::clone(table.schema()), table.values().to_vec()).unwrap();
+        let again = ColumnTable::from_values(Arc::clone(table.schema()), table.values().to_vec()).unwrap();
         prop_assert!(again == table);
     }
 }

@@ -4,12 +4,12 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_campaign::local;
-use fspid_diagnostics::digits::counted;
+use fspid_diagnostics::digits::{counted, grouped};
 use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::{Source, TuneError};
 

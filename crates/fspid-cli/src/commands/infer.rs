@@ -11,7 +11,7 @@ use crate::exit::{Failure, print};
 use fspid_scenario::supervisor::Question;
 use fspid_study::fuzzy_system::{self, SystemTable};
 use fspid_study::inference::{self, SupervisorTable};
-use fspid_study::rows::{self, RowsError, Table};
+use fspid_study::rows::{self, RowAnswers, RowsError};
 
 /// Ask a fuzzy system: one question, or a table of them.
 ///
@@ -82,7 +82,7 @@ fn supervisor(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Answers a table; a reader that has gone away (`| head`) is no failure.
-fn table(table: &mut impl Table, path: &Path) -> Result<(), Failure> {
+fn table(table: &mut impl RowAnswers, path: &Path) -> Result<(), Failure> {
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     let done = if path == Path::new("-") {
         let mut rows = BufReader::with_capacity(1 << 16, io::stdin().lock());

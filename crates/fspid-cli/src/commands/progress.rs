@@ -50,19 +50,6 @@ pub(crate) fn answer_after(telling: Telling, line: &str) {
     }
 }
 
-/// A number with its digits in groups of three.
-pub(crate) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// A time in words.
 pub(crate) fn duration(seconds: f64) -> String {
     let seconds = seconds.ceil().min(1e9) as u64;
@@ -79,8 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_times_are_written_for_people() {
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1 000", "1 234 567"]);
+    fn times_are_written_for_people() {
         let times = [0.2, 59.0, 61.0, 3600.0 * 25.0].map(duration);
         assert_eq!(times, ["1 s", "59 s", "1 min 1 s", "25 h 0 min"]);
     }

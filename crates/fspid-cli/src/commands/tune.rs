@@ -6,17 +6,18 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use serde_json::json;
 
-use super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, drawings, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
+use fspid_diagnostics::digits::grouped;
 use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Effort, Kept, Problem, Search, Source, Then, TuneError, Tuned, Unfit, design,
+    Beginning, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, Unfit, design,
     history,
 };
 
@@ -130,7 +131,7 @@ fn all(arguments: &Arguments, source: &Source) -> Result<Vec<Tuned>, Failure> {
 
 /// Tunes one controller, and writes its design.
 fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tuned, Failure> {
-    let problem = Problem::new(source, name).map_err(failure)?;
+    let problem = TuningProblem::new(source, name).map_err(failure)?;
     problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let out = arguments.out.as_ref().map(|out| design_file(arguments, out, problem.controller()));
     if let Some(out) = &out {
@@ -139,7 +140,7 @@ fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tun
     let effort = effort(arguments, &problem);
     let mut place = kept(arguments, out.as_deref(), problem.controller());
     let tuned =
-        local::in_threads(arguments.threads, || search(arguments, &problem, (&effort, &mut place)));
+        local::in_threads(arguments.threads, || search(arguments, &problem, &effort, &mut place));
     let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
     if let Some(out) = &out {
         let heading = tuned.heading(&effort.command(source, name));
@@ -182,7 +183,7 @@ fn by_rule(arguments: &Arguments, source: &Source, name: &str) -> Result<(), Fai
         }
     };
     let options = Options { form, closed_loop_s: arguments.closed_loop_s, ..Options::default() };
-    let found = Baseline::of(source, arguments.controller.as_deref(), (rule, &options));
+    let found = Baseline::of(source, arguments.controller.as_deref(), rule, &options);
     let found = found.map_err(failure)?;
     match arguments.format {
         Format::Text => print(&found.answer())?,
@@ -220,7 +221,7 @@ fn failure(error: TuneError) -> Failure {
     }
 }
 
-fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
+fn effort(arguments: &Arguments, problem: &TuningProblem) -> Effort {
     let tuning = problem.tuning();
     Effort {
         optimiser: arguments.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
@@ -234,8 +235,9 @@ fn effort(arguments: &Arguments, problem: &Problem) -> Effort {
 /// Searches to the end; what was found, and the best point.
 fn search(
     arguments: &Arguments,
-    problem: &Problem,
-    (effort, place): (&Effort, &mut Kept),
+    problem: &TuningProblem,
+    effort: &Effort,
+    place: &mut Kept,
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
     let (mut search, beginning) = place.begun(problem, effort)?;
     match beginning {
@@ -250,26 +252,26 @@ fn search(
         }
     }
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
-    let begun_at = (Instant::now(), search.spent());
+    let begun = Begun { at: Instant::now(), spent: search.spent() };
     let (mut told, mut saved) = (Instant::now(), None::<Instant>);
     let stop = place.search(&mut search, &mut |search| {
         if telling != Telling::Nothing && told.elapsed() >= telling.period() {
             told = Instant::now();
-            tell(telling, &line(search, begun_at));
+            tell(telling, &line(search, begun));
         }
         if interrupt::asked() {
             return Then::Stop;
         }
         // The first generation is kept at once: what is found must not be lost, nor whether it can be kept.
         let is_due = saved.is_none_or(|saved| saved.elapsed() >= SAVED_EVERY);
-        if search.spent() == begun_at.1 || !is_due {
+        if search.spent() == begun.spent || !is_due {
             return Then::GoOn;
         }
         saved = Some(Instant::now());
         Then::Save
     })?;
     if telling != Telling::Nothing {
-        answer_after(telling, &line(&search, begun_at));
+        answer_after(telling, &line(&search, begun));
     }
     if let Some(path) = &arguments.history {
         history::write(path, problem, &search)?;
@@ -293,7 +295,14 @@ fn kept(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Kept {
     Kept::at(scenario.map(|path| beside(path, &ending)), Unfit::Left)
 }
 
-fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {
+/// When a search went on, and how many candidates it had flown by then.
+#[derive(Clone, Copy)]
+struct Begun {
+    at: Instant,
+    spent: usize,
+}
+
+fn line(search: &Search<'_>, begun: Begun) -> String {
     let (spent, budget) = (search.spent(), search.effort().budget);
     let mut parts =
         vec![format!("{} of {} candidates", grouped(spent as u64), grouped(budget as u64))];
@@ -302,8 +311,8 @@ fn line(search: &Search<'_>, (start, before): (Instant, usize)) -> String {
         true => format!("best cost {:.6}", score.cost),
         false => format!("none allowed yet, violation {:.4}", score.violation),
     });
-    let seconds = start.elapsed().as_secs_f64();
-    let flown = spent.saturating_sub(before);
+    let seconds = begun.at.elapsed().as_secs_f64();
+    let flown = spent.saturating_sub(begun.spent);
     if flown > 0 && spent < budget {
         let left = (budget - spent) as f64 * seconds / flown as f64;
         parts.push(format!("{} left", duration(left)));

@@ -2,7 +2,9 @@
 
 use crate::MAX_AXES;
 use crate::compile::names::Names;
-use crate::document::{Breakpoints, Document, Extrapolate, FunctionInput, Table, TableFunction};
+use crate::document::{
+    Breakpoints, Document, Extrapolate, FunctionInput, GridTable, TableFunction,
+};
 use crate::finding::Findings;
 use crate::model::{Axis, Grid};
 
@@ -33,7 +35,7 @@ pub(super) fn resolve(
 }
 
 fn breakpoints<'a>(
-    table: &Table,
+    table: &GridTable,
     document: &'a Document,
     names: &Names<'_>,
     findings: &mut Findings,
@@ -72,7 +74,7 @@ fn rising(breakpoints: &Breakpoints, findings: &mut Findings) -> bool {
     false
 }
 
-fn right_size(table: &Table, breakpoints: &[&Breakpoints], findings: &mut Findings) {
+fn right_size(table: &GridTable, breakpoints: &[&Breakpoints], findings: &mut Findings) {
     let counts: Vec<_> = breakpoints.iter().map(|set| set.values.len()).collect();
     let product = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count));
     if product != Some(table.values.len()) {

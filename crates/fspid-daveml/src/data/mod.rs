@@ -34,7 +34,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::MAX_INPUT_BYTES;
 use crate::compile::compile;
-use crate::document::{Breakpoints, Document, Header, Shot, Table, TableFunction, Variable};
+use crate::document::{Breakpoints, Document, GridTable, Header, Shot, TableFunction, Variable};
 use crate::finding::{Findings, Origin};
 use crate::xml::Reading;
 use fspid_diagnostics::Problems;
@@ -57,7 +57,7 @@ struct File {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     breakpoints: Vec<Breakpoints>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    tables: Vec<Table>,
+    tables: Vec<GridTable>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     functions: Vec<TableFunction>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -9,7 +9,7 @@ pub use crate::expression::Expression;
 pub use crate::finding::Origin;
 pub use header::{Author, Header, Modification, Provenance, Source};
 pub use shot::{Shot, Signal};
-pub use table::{Breakpoints, Extrapolate, FunctionInput, Mention, Table, TableFunction};
+pub use table::{Breakpoints, Extrapolate, FunctionInput, GridTable, Mention, TableFunction};
 pub use variable::{Role, Variable};
 
 /// Everything of a file that is kept.
@@ -22,7 +22,7 @@ pub struct Document {
     /// Breakpoints of tables.
     pub breakpoints: Vec<Breakpoints>,
     /// Tables; those written inside a function are here too.
-    pub tables: Vec<Table>,
+    pub tables: Vec<GridTable>,
     /// Which table makes which variable of which others.
     pub functions: Vec<TableFunction>,
     /// Check cases.

@@ -52,7 +52,7 @@ impl From<Mention> for String {
 /// Values on a grid; along the last axis they follow each other.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Table {
+pub struct GridTable {
     /// Identifier.
     pub id: String,
     /// Name.

@@ -1,4 +1,4 @@
-//! Models of tables as an aircraft that flies: the names of the standard tied to the forces of `fspid-aircraft`.
+//! Models of tables as an aircraft that flies: the names of the standard bound to the forces of `fspid-aircraft`.
 //!
 //! Aerodynamic coefficients, an engine and mass properties come as models with variables named by S-119; units are read
 //! from the variables. Everything is turned into SI here, once.
@@ -44,7 +44,7 @@ pub struct Setting {
     pub travel: Travel,
 }
 
-/// A model with its inputs tied to a flight and some of its outputs in SI.
+/// A model with its inputs bound to a flight and some of its outputs in SI.
 #[derive(Clone, Debug)]
 struct Wired<const N: usize> {
     model: Model,

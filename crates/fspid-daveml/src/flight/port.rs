@@ -1,4 +1,4 @@
-//! Inputs tied to quantities of a flight, outputs turned into SI.
+//! Inputs bound to quantities of a flight, outputs turned into SI.
 
 use crate::flight::error::FlightError;
 use crate::flight::quantity::{Quantities, Quantity, output_factor};

@@ -1,7 +1,5 @@
 //! Computing a model.
 
-use core::fmt;
-
 use crate::MAX_VARIABLES;
 use crate::expression::is_true;
 use crate::model::axis::{Location, limited};
@@ -9,10 +7,11 @@ use crate::model::{Model, Operation, STACK, Step};
 use crate::number::Number;
 
 /// Why a model was not computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {
     /// Too many or too few inputs.
+    #[error("{found} inputs were given; the model has {expected}")]
     Inputs {
         /// How many were given.
         found: usize,
@@ -20,6 +19,7 @@ pub enum EvaluateError {
         expected: usize,
     },
     /// Room for too many or too few answers.
+    #[error("there is room for {found} answers; the model gives {expected}")]
     Outputs {
         /// For how many there was room.
         found: usize,
@@ -27,21 +27,6 @@ pub enum EvaluateError {
         expected: usize,
     },
 }
-
-impl fmt::Display for EvaluateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Inputs { found, expected } => {
-                write!(f, "{found} inputs were given; the model has {expected}")
-            }
-            Self::Outputs { found, expected } => {
-                write!(f, "there is room for {found} answers; the model gives {expected}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for EvaluateError {}
 
 impl Model {
     /// Answers the outputs for inputs, each in the order of the file and in its units there.

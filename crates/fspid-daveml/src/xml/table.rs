@@ -1,6 +1,6 @@
 //! Breakpoints and tables.
 
-use crate::document::{Breakpoints, Mention, Table};
+use crate::document::{Breakpoints, GridTable, Mention};
 use crate::finding::Findings;
 use crate::xml::element::Element;
 use crate::xml::header;
@@ -29,14 +29,14 @@ pub(super) fn read(
     definition: Element<'_, '_>,
     function: Option<&str>,
     findings: &mut Findings,
-) -> Table {
+) -> GridTable {
     definition.only(&["name", "gtID", "units"], findings);
-    let mut table = Table {
+    let mut table = GridTable {
         id: identifier(definition, function, findings),
         name: definition.optional("name"),
         units: definition.optional("units"),
         origin: definition.origin(),
-        ..Table::default()
+        ..GridTable::default()
     };
     for part in definition.children(findings) {
         match part.name() {

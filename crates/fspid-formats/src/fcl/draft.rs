@@ -61,7 +61,7 @@ pub(super) struct Variable<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Method<'a> {
     pub(super) word: Token<'a>,
-    pub(super) row: &'static methods::Row,
+    pub(super) row: &'static methods::MethodWords,
     pub(super) resolution: Option<u32>,
 }
 

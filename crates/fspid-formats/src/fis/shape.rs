@@ -4,7 +4,7 @@ use fspid_fuzzy::membership::ShapeKind;
 
 /// A name of a membership function.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(super) struct ShapeWord {
     /// As files write it.
     pub(super) name: &'static str,
     /// Which one it is.
@@ -24,8 +24,8 @@ const fn row(
     kind: ShapeKind,
     usage: &'static str,
     order: &'static [usize],
-) -> Row {
-    Row { name, kind, usage, order, even: &[], matlab: true }
+) -> ShapeWord {
+    ShapeWord { name, kind, usage, order, even: &[], matlab: true }
 }
 
 const fn foreign(
@@ -33,16 +33,16 @@ const fn foreign(
     kind: ShapeKind,
     usage: &'static str,
     order: &'static [usize],
-) -> Row {
-    Row { name, kind, usage, order, even: &[], matlab: false }
+) -> ShapeWord {
+    ShapeWord { name, kind, usage, order, even: &[], matlab: false }
 }
 
 /// Every name that is known.
-pub(super) const SHAPES: &[Row] = &[
+pub(super) const SHAPES: &[ShapeWord] = &[
     row("trimf", ShapeKind::Triangle, "[a b c]", &[0, 1, 2]),
     row("trapmf", ShapeKind::Trapezoid, "[a b c d]", &[0, 1, 2, 3]),
-    Row { even: &[0], ..row("gaussmf", ShapeKind::Gaussian, "[sigma centre]", &[1, 0]) },
-    Row {
+    ShapeWord { even: &[0], ..row("gaussmf", ShapeKind::Gaussian, "[sigma centre]", &[1, 0]) },
+    ShapeWord {
         even: &[0, 2],
         ..row("gauss2mf", ShapeKind::GaussianProduct, "[sigma1 c1 sigma2 c2]", &[1, 0, 3, 2])
     },
@@ -67,12 +67,12 @@ pub(super) const SHAPES: &[Row] = &[
 ];
 
 /// The row of a name.
-pub(super) fn by_name(name: &str) -> Option<&'static Row> {
+pub(super) fn by_name(name: &str) -> Option<&'static ShapeWord> {
     SHAPES.iter().find(|row| row.name.eq_ignore_ascii_case(name))
 }
 
 /// The row that MATLAB has for a kind.
-pub(super) fn by_kind(kind: ShapeKind) -> Option<&'static Row> {
+pub(super) fn by_kind(kind: ShapeKind) -> Option<&'static ShapeWord> {
     SHAPES.iter().find(|row| row.matlab && row.kind == kind)
 }
 

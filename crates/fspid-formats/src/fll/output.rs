@@ -9,7 +9,7 @@ use fspid_fuzzy::{MAX_SAMPLES, SNormKind};
 use super::RESOLUTION;
 use super::lines::{Line, numbers};
 use super::read::{TermLine, membership, needs, terms};
-use super::sections::{Section, defuzzifiers, whole};
+use super::sections::{FllSection, defuzzifiers, whole};
 use crate::lexer::{Kind, Token};
 use crate::report::Report;
 use crate::term;
@@ -26,7 +26,7 @@ pub(super) struct Known<'k> {
     pub(super) inputs: usize,
 }
 
-pub(super) fn read(section: &Section, known: Known, report: &mut Report) -> Option<Output> {
+pub(super) fn read(section: &FllSection, known: Known, report: &mut Report) -> Option<Output> {
     let method = method(section, report);
     let integrates = method.is_none_or(|(method, _)| method.sampling().is_some());
     let mut found = Vec::new();
@@ -54,7 +54,7 @@ pub(super) fn read(section: &Section, known: Known, report: &mut Report) -> Opti
 }
 
 /// Weighted methods may do without; equal conclusions then add up.
-fn aggregation(section: &Section, integrates: bool, report: &mut Report) -> SNormKind {
+fn aggregation(section: &FllSection, integrates: bool, report: &mut Report) -> SNormKind {
     if section.aggregation.is_none() && integrates {
         let message = "has no aggregation, but its defuzzifier integrates";
         needs(section.heading, message, norms::classes(S_NORMS), report);
@@ -77,7 +77,7 @@ const TYPES: [(&str, Weighted); 3] = [
     ("Tsukamoto", Weighted::Tsukamoto),
 ];
 
-fn method(section: &Section, report: &mut Report) -> Option<(Defuzzifier, Weighted)> {
+fn method(section: &FllSection, report: &mut Report) -> Option<(Defuzzifier, Weighted)> {
     let Some(line) = section.defuzzifier.filter(|line| !line.is_none()) else {
         needs(section.heading, "has no defuzzifier", methods::classes(), report);
         return None;

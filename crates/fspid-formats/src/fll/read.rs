@@ -6,7 +6,7 @@ use fspid_fuzzy::system::{Input, Membership, Parts, Rule, RuleBlock, Term};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
 use super::lines::{self, Line, numbers};
-use super::sections::{HEADINGS, Kindred, Section};
+use super::sections::{FllSection, HEADINGS, Kindred};
 use super::{output, readable};
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer, Token};
@@ -54,12 +54,12 @@ fn tell(parts: &Parts, report: &mut Report) {
     }
 }
 
-fn sections<'a>(mut text: Cursor<'a>, report: &mut Report) -> Vec<Section<'a>> {
-    let mut sections: Vec<Section> = Vec::new();
+fn sections<'a>(mut text: Cursor<'a>, report: &mut Report) -> Vec<FllSection<'a>> {
+    let mut sections: Vec<FllSection> = Vec::new();
     while let Some(line) = lines::next(&mut text, report) {
         let heading = HEADINGS.iter().find(|row| line.is(row.0));
         match (heading, sections.last_mut()) {
-            (Some(row), _) => sections.push(Section::new(row.1, line)),
+            (Some(row), _) => sections.push(FllSection::new(row.1, line)),
             (None, Some(section)) => section.fill(line, report),
             (None, None) => {
                 let expected = known(HEADINGS.iter().map(|row| row.0), line.key);
@@ -75,7 +75,7 @@ fn sections<'a>(mut text: Cursor<'a>, report: &mut Report) -> Vec<Section<'a>> {
     sections
 }
 
-fn assembled(sections: &[Section], report: &mut Report) -> Parts {
+fn assembled(sections: &[FllSection], report: &mut Report) -> Parts {
     let mut parts = Parts::default();
     let of = |kind| sections.iter().filter(move |section| section.kind == kind);
     engine(&mut parts, of(Kindred::Engine), report);
@@ -103,7 +103,7 @@ fn assembled(sections: &[Section], report: &mut Report) -> Parts {
 
 fn engine<'s, 'a: 's>(
     parts: &mut Parts,
-    mut engines: impl Iterator<Item = &'s Section<'a>>,
+    mut engines: impl Iterator<Item = &'s FllSection<'a>>,
     report: &mut Report,
 ) {
     if let Some(engine) = engines.next() {
@@ -139,7 +139,7 @@ pub(super) struct TermLine<'a> {
 }
 
 /// The terms of a section; lines without name and class are reported.
-pub(super) fn terms<'a>(section: &Section<'a>, report: &mut Report) -> Vec<TermLine<'a>> {
+pub(super) fn terms<'a>(section: &FllSection<'a>, report: &mut Report) -> Vec<TermLine<'a>> {
     let mut found = Vec::new();
     for line in &section.terms {
         let mut rest = line.tokens();
@@ -180,7 +180,7 @@ pub(super) fn membership(
     shape(row, class, &numbers(rest, report)?, report)
 }
 
-fn input(section: &Section, with_x: &[&str], report: &mut Report) -> Input {
+fn input(section: &FllSection, with_x: &[&str], report: &mut Report) -> Input {
     let mut found = Vec::new();
     for term in terms(section, report) {
         let membership = membership(&term, with_x, report);
@@ -197,7 +197,7 @@ fn input(section: &Section, with_x: &[&str], report: &mut Report) -> Input {
     }
 }
 
-fn block(section: &Section, names: &Names, weighted: &[bool], report: &mut Report) -> RuleBlock {
+fn block(section: &FllSection, names: &Names, weighted: &[bool], report: &mut Report) -> RuleBlock {
     let rules = rules(section, names, report);
     let integrates = |rule: &Rule| {
         let own = rule.consequents.iter().map(|consequent| weighted.get(consequent.output));
@@ -220,7 +220,7 @@ fn block(section: &Section, names: &Names, weighted: &[bool], report: &mut Repor
     }
 }
 
-fn rules(section: &Section, names: &Names, report: &mut Report) -> Vec<Rule> {
+fn rules(section: &FllSection, names: &Names, report: &mut Report) -> Vec<Rule> {
     let mut rules = Vec::new();
     let (mut and, mut or) = (None, None);
     for line in &section.rules {

@@ -11,7 +11,7 @@ use crate::vocabulary::{known, methods};
 
 /// What is said about a variable or rule block, kept until the whole file has been read.
 #[derive(Debug)]
-pub(super) struct Section<'a> {
+pub(super) struct FllSection<'a> {
     pub(super) heading: Line<'a>,
     pub(super) kind: Kindred,
     pub(super) description: String,
@@ -48,13 +48,17 @@ pub(super) const HEADINGS: [(&str, Kindred); 4] = [
     ("RuleBlock", Kindred::Block),
 ];
 
-type Fill = for<'a> fn(&mut Section<'a>, Line<'a>, &mut Report);
+type Fill = for<'a> fn(&mut FllSection<'a>, Line<'a>, &mut Report);
 
 /// A key and the sections it may stand in.
-struct Row {
+struct SectionKey {
     key: &'static str,
     sections: &'static [Kindred],
     fill: Fill,
+}
+
+const fn key(key: &'static str, sections: &'static [Kindred], fill: Fill) -> SectionKey {
+    SectionKey { key, sections, fill }
 }
 
 const VARIABLE: &[Kindred] = &[Kindred::Input, Kindred::Output];
@@ -63,60 +67,34 @@ const BLOCK: &[Kindred] = &[Kindred::Block];
 const ANY: &[Kindred] = &[Kindred::Engine, Kindred::Input, Kindred::Output, Kindred::Block];
 
 /// Every key; the last four of versions before 6.
-const KEYS: &[Row] = &[
-    Row {
-        key: "description",
-        sections: ANY,
-        fill: |s, line, _| s.description = line.text().into(),
-    },
-    Row {
-        key: "enabled",
-        sections: &[Kindred::Input, Kindred::Output, Kindred::Block],
-        fill: |s, line, report| s.enabled = line.boolean(report).unwrap_or(true),
-    },
-    Row {
-        key: "range",
-        sections: VARIABLE,
-        fill: |s, line, report| s.universe = range(line, report),
-    },
-    Row {
-        key: "lock-range",
-        sections: VARIABLE,
-        fill: |s, line, report| s.lock_range = line.boolean(report).unwrap_or(false),
-    },
-    Row { key: "term", sections: VARIABLE, fill: |s, line, _| s.terms.push(line) },
-    Row { key: "aggregation", sections: OUTPUT, fill: aggregation },
-    Row { key: "defuzzifier", sections: OUTPUT, fill: |s, line, _| s.defuzzifier = Some(line) },
-    Row { key: "default", sections: OUTPUT, fill: default },
-    Row { key: "lock-previous", sections: OUTPUT, fill: lock_previous },
-    Row {
-        key: "conjunction",
-        sections: BLOCK,
-        fill: |s, line, report| s.conjunction = t_norm(line, report),
-    },
-    Row {
-        key: "disjunction",
-        sections: BLOCK,
-        fill: |s, line, report| s.disjunction = s_norm(line, report),
-    },
-    Row {
-        key: "implication",
-        sections: BLOCK,
-        fill: |s, line, report| s.implication = t_norm(line, report),
-    },
-    Row { key: "activation", sections: BLOCK, fill: activation },
-    Row { key: "rule", sections: BLOCK, fill: |s, line, _| s.rules.push(line) },
-    Row { key: "accumulation", sections: OUTPUT, fill: aggregation },
-    Row { key: "lock-valid", sections: OUTPUT, fill: lock_previous },
-    Row { key: "lock-output-value", sections: OUTPUT, fill: lock_previous },
-    Row {
-        key: "lock-output-range",
-        sections: OUTPUT,
-        fill: |s, line, report| s.lock_range = line.boolean(report).unwrap_or(false),
-    },
+const KEYS: &[SectionKey] = &[
+    key("description", ANY, |s, line, _| s.description = line.text().into()),
+    key("enabled", &[Kindred::Input, Kindred::Output, Kindred::Block], |s, line, report| {
+        s.enabled = line.boolean(report).unwrap_or(true)
+    }),
+    key("range", VARIABLE, |s, line, report| s.universe = range(line, report)),
+    key("lock-range", VARIABLE, |s, line, report| {
+        s.lock_range = line.boolean(report).unwrap_or(false)
+    }),
+    key("term", VARIABLE, |s, line, _| s.terms.push(line)),
+    key("aggregation", OUTPUT, aggregation),
+    key("defuzzifier", OUTPUT, |s, line, _| s.defuzzifier = Some(line)),
+    key("default", OUTPUT, default),
+    key("lock-previous", OUTPUT, lock_previous),
+    key("conjunction", BLOCK, |s, line, report| s.conjunction = t_norm(line, report)),
+    key("disjunction", BLOCK, |s, line, report| s.disjunction = s_norm(line, report)),
+    key("implication", BLOCK, |s, line, report| s.implication = t_norm(line, report)),
+    key("activation", BLOCK, activation),
+    key("rule", BLOCK, |s, line, _| s.rules.push(line)),
+    key("accumulation", OUTPUT, aggregation),
+    key("lock-valid", OUTPUT, lock_previous),
+    key("lock-output-value", OUTPUT, lock_previous),
+    key("lock-output-range", OUTPUT, |s, line, report| {
+        s.lock_range = line.boolean(report).unwrap_or(false)
+    }),
 ];
 
-impl<'a> Section<'a> {
+impl<'a> FllSection<'a> {
     pub(super) fn new(kind: Kindred, heading: Line<'a>) -> Self {
         Self {
             heading,
@@ -140,7 +118,7 @@ impl<'a> Section<'a> {
 
     /// Takes in a line; one with an unknown key is reported.
     pub(super) fn fill(&mut self, line: Line<'a>, report: &mut Report) {
-        let here = |row: &&Row| row.sections.contains(&self.kind);
+        let here = |row: &&SectionKey| row.sections.contains(&self.kind);
         match KEYS.iter().filter(here).find(|row| line.is(row.key)) {
             Some(row) => (row.fill)(self, line, report),
             None => {
@@ -160,15 +138,15 @@ fn s_norm(line: Line, report: &mut Report) -> Option<SNormKind> {
     line.choice(|class| norms::of_class(S_NORMS, class), norms::classes(S_NORMS), report)
 }
 
-fn aggregation<'a>(section: &mut Section<'a>, line: Line<'a>, report: &mut Report) {
+fn aggregation<'a>(section: &mut FllSection<'a>, line: Line<'a>, report: &mut Report) {
     section.aggregation = s_norm(line, report);
 }
 
-fn lock_previous<'a>(section: &mut Section<'a>, line: Line<'a>, report: &mut Report) {
+fn lock_previous<'a>(section: &mut FllSection<'a>, line: Line<'a>, report: &mut Report) {
     section.lock_previous = line.boolean(report).unwrap_or(false);
 }
 
-fn default<'a>(section: &mut Section<'a>, line: Line<'a>, report: &mut Report) {
+fn default<'a>(section: &mut FllSection<'a>, line: Line<'a>, report: &mut Report) {
     match line.word(report) {
         Some(word) if !word.is("nan") => {
             section.default = term::finite(word, report).map_or(f64::NAN, |number| number.value);
@@ -198,7 +176,7 @@ fn range(line: Line, report: &mut Report) -> Option<Universe> {
 }
 
 /// Before version 6 the key named what is now the implication.
-fn activation<'a>(section: &mut Section<'a>, line: Line<'a>, report: &mut Report) {
+fn activation<'a>(section: &mut FllSection<'a>, line: Line<'a>, report: &mut Report) {
     if let Some(norm) = norms::of_class(T_NORMS, line.text()) {
         report.note(line.value.place(), "an activation that is a norm is read as the implication");
         section.implication = Some(norm);

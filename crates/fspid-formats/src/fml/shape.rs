@@ -9,7 +9,7 @@ use super::document::{Context, Element};
 use crate::vocabulary::known;
 
 /// An element and how its `param1`, `param2`, … become a shape.
-struct Row {
+struct ShapeElement {
     name: &'static str,
     count: usize,
     shape: fn(&[f64]) -> (ShapeKind, Vec<f64>),
@@ -31,20 +31,20 @@ fn left_gaussian(params: &[f64]) -> (ShapeKind, Vec<f64>) {
     (ShapeKind::GaussianProduct, params.first_chunk().map(sided).unwrap_or_default())
 }
 
-const ROWS: &[Row] = &[
-    Row { name: "triangularShape", count: 3, shape: |p| same(ShapeKind::Triangle, p) },
-    Row { name: "trapezoidShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
-    Row { name: "trapezoidalShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
-    Row { name: "gaussianShape", count: 2, shape: |p| same(ShapeKind::Gaussian, p) },
-    Row { name: "rightGaussianShape", count: 2, shape: right_gaussian },
-    Row { name: "leftGaussianShape", count: 2, shape: left_gaussian },
-    Row { name: "rightLinearShape", count: 2, shape: |p| same(ShapeKind::LinearS, p) },
-    Row { name: "leftLinearShape", count: 2, shape: |p| same(ShapeKind::LinearZ, p) },
-    Row { name: "piShape", count: 4, shape: |p| same(ShapeKind::Pi, p) },
-    Row { name: "sShape", count: 2, shape: |p| same(ShapeKind::SmoothS, p) },
-    Row { name: "zShape", count: 2, shape: |p| same(ShapeKind::SmoothZ, p) },
-    Row { name: "rectangularShape", count: 2, shape: |p| same(ShapeKind::Rectangle, p) },
-    Row { name: "singletonShape", count: 1, shape: |p| same(ShapeKind::Singleton, p) },
+const ROWS: &[ShapeElement] = &[
+    ShapeElement { name: "triangularShape", count: 3, shape: |p| same(ShapeKind::Triangle, p) },
+    ShapeElement { name: "trapezoidShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
+    ShapeElement { name: "trapezoidalShape", count: 4, shape: |p| same(ShapeKind::Trapezoid, p) },
+    ShapeElement { name: "gaussianShape", count: 2, shape: |p| same(ShapeKind::Gaussian, p) },
+    ShapeElement { name: "rightGaussianShape", count: 2, shape: right_gaussian },
+    ShapeElement { name: "leftGaussianShape", count: 2, shape: left_gaussian },
+    ShapeElement { name: "rightLinearShape", count: 2, shape: |p| same(ShapeKind::LinearS, p) },
+    ShapeElement { name: "leftLinearShape", count: 2, shape: |p| same(ShapeKind::LinearZ, p) },
+    ShapeElement { name: "piShape", count: 4, shape: |p| same(ShapeKind::Pi, p) },
+    ShapeElement { name: "sShape", count: 2, shape: |p| same(ShapeKind::SmoothS, p) },
+    ShapeElement { name: "zShape", count: 2, shape: |p| same(ShapeKind::SmoothZ, p) },
+    ShapeElement { name: "rectangularShape", count: 2, shape: |p| same(ShapeKind::Rectangle, p) },
+    ShapeElement { name: "singletonShape", count: 1, shape: |p| same(ShapeKind::Singleton, p) },
 ];
 
 /// Elements that are no row.
@@ -92,7 +92,8 @@ pub(super) fn read(term: Element<'_, '_>, context: &mut Context<'_>) -> Option<M
         context.problem(shape.start(), shape.name(), message, row.count.to_string());
         return None;
     }
-    checked(shape, (row.shape)(&params), context)
+    let (kind, params) = (row.shape)(&params);
+    checked(shape, kind, params, context)
 }
 
 fn names() -> impl Iterator<Item = &'static str> + Clone {
@@ -111,7 +112,7 @@ fn refuse(shape: Element<'_, '_>, context: &mut Context<'_>) {
 }
 
 /// Says which way a set with one side is read, for descriptions of the language differ.
-fn sided(shape: Element<'_, '_>, row: &Row, before: bool, context: &mut Context<'_>) {
+fn sided(shape: Element<'_, '_>, row: &ShapeElement, before: bool, context: &mut Context<'_>) {
     let way = match row.name {
         "rightLinearShape" | "rightGaussianShape" => "rises to 1 and stays there",
         "leftLinearShape" | "leftGaussianShape" => "begins with 1 and falls",
@@ -144,7 +145,7 @@ fn pi(shape: Element<'_, '_>, params: &[f64], context: &mut Context<'_>) -> Opti
         "`piShape` with two numbers is read as centre and width: 0 at one width from the centre";
     context.note_once(shape.start(), message);
     let sides = vec![centre - width, centre, centre, centre + width];
-    checked(shape, (ShapeKind::Pi, sides), context)
+    checked(shape, ShapeKind::Pi, sides, context)
 }
 
 fn points(shape: Element<'_, '_>, context: &mut Context<'_>) -> Option<Membership> {
@@ -170,13 +171,14 @@ fn points(shape: Element<'_, '_>, context: &mut Context<'_>) -> Option<Membershi
             params.push(context.number(point, name)?);
         }
     }
-    checked(shape, (ShapeKind::Points, params), context)
+    checked(shape, ShapeKind::Points, params, context)
 }
 
 /// The set, unless its parameters are refused; then at the one that is wrong.
 fn checked(
     shape: Element<'_, '_>,
-    (kind, params): (ShapeKind, Vec<f64>),
+    kind: ShapeKind,
+    params: Vec<f64>,
     context: &mut Context<'_>,
 ) -> Option<Membership> {
     let (kind, params) = narrow(kind, params);

@@ -3,18 +3,18 @@
 use fspid_fuzzy::{SNormKind, TNormKind};
 
 /// A norm, its fuzzylite class, and its words in FCL; the first is the one that is written.
-pub(crate) struct Row<K: 'static> {
+pub(crate) struct NormWords<K: 'static> {
     pub(crate) kind: K,
     pub(crate) class: &'static str,
     words: &'static [&'static str],
 }
 
-const fn row<K>(kind: K, class: &'static str, words: &'static [&'static str]) -> Row<K> {
-    Row { kind, class, words }
+const fn row<K>(kind: K, class: &'static str, words: &'static [&'static str]) -> NormWords<K> {
+    NormWords { kind, class, words }
 }
 
 /// *And* and implications (`AND`, `ACT`; `conjunction`, `implication`).
-pub(crate) const T_NORMS: &[Row<TNormKind>] = &[
+pub(crate) const T_NORMS: &[NormWords<TNormKind>] = &[
     row(TNormKind::Minimum, "Minimum", &["MIN"]),
     row(TNormKind::AlgebraicProduct, "AlgebraicProduct", &["PROD"]),
     row(TNormKind::BoundedDifference, "BoundedDifference", &["BDIF"]),
@@ -25,7 +25,7 @@ pub(crate) const T_NORMS: &[Row<TNormKind>] = &[
 ];
 
 /// *Or* (`OR`; `disjunction`) and aggregations (`ACCU`; `aggregation`).
-pub(crate) const S_NORMS: &[Row<SNormKind>] = &[
+pub(crate) const S_NORMS: &[NormWords<SNormKind>] = &[
     row(SNormKind::Maximum, "Maximum", &["MAX"]),
     row(SNormKind::AlgebraicSum, "AlgebraicSum", &["ASUM", "PROBOR"]),
     row(SNormKind::BoundedSum, "BoundedSum", &["BSUM"]),
@@ -50,22 +50,26 @@ pub(crate) const STANDARD_OR: [SNormKind; 3] =
 pub(crate) const STANDARD_ACT: [TNormKind; 2] = [TNormKind::Minimum, TNormKind::AlgebraicProduct];
 
 /// The norm of a fuzzylite class, in any case.
-pub(crate) fn of_class<K: Copy>(rows: &[Row<K>], class: &str) -> Option<K> {
+pub(crate) fn of_class<K: Copy>(rows: &[NormWords<K>], class: &str) -> Option<K> {
     rows.iter().find(|row| row.class.eq_ignore_ascii_case(class)).map(|row| row.kind)
 }
 
 /// The norm of a word of FCL or a fuzzylite class, in any case.
-pub(crate) fn of_word<K: Copy>(rows: &[Row<K>], word: &str) -> Option<K> {
-    let named = |row: &&Row<K>| row.words.iter().any(|known| known.eq_ignore_ascii_case(word));
+pub(crate) fn of_word<K: Copy>(rows: &[NormWords<K>], word: &str) -> Option<K> {
+    let named =
+        |row: &&NormWords<K>| row.words.iter().any(|known| known.eq_ignore_ascii_case(word));
     rows.iter().find(named).map(|row| row.kind).or_else(|| of_class(rows, word))
 }
 
 /// The row of a norm.
-pub(crate) fn row_of<K: PartialEq>(rows: &'static [Row<K>], kind: &K) -> Option<&'static Row<K>> {
+pub(crate) fn row_of<K: PartialEq>(
+    rows: &'static [NormWords<K>],
+    kind: &K,
+) -> Option<&'static NormWords<K>> {
     rows.iter().find(|row| row.kind == *kind)
 }
 
-impl<K> Row<K> {
+impl<K> NormWords<K> {
     /// The word that is written in FCL.
     pub(crate) fn word(&self) -> &'static str {
         self.words.first().copied().unwrap_or(self.class)
@@ -73,12 +77,16 @@ impl<K> Row<K> {
 }
 
 /// Words for a message.
-pub(crate) fn words<K>(rows: &'static [Row<K>]) -> impl Iterator<Item = &'static str> + Clone {
+pub(crate) fn words<K>(
+    rows: &'static [NormWords<K>],
+) -> impl Iterator<Item = &'static str> + Clone {
     rows.iter().map(|row| row.words.first().copied().unwrap_or_default())
 }
 
 /// Classes for a message.
-pub(crate) fn classes<K>(rows: &'static [Row<K>]) -> impl Iterator<Item = &'static str> + Clone {
+pub(crate) fn classes<K>(
+    rows: &'static [NormWords<K>],
+) -> impl Iterator<Item = &'static str> + Clone {
     rows.iter().map(|row| row.class)
 }
 

@@ -17,21 +17,21 @@ enum Order {
 
 /// A membership function in a tool.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
+pub(crate) struct ToolShape {
     pub(crate) kind: ShapeKind,
     pub(crate) word: &'static str,
     order: Order,
 }
 
-const fn row(kind: ShapeKind, word: &'static str, order: Order) -> Row {
-    Row { kind, word, order }
+const fn row(kind: ShapeKind, word: &'static str, order: Order) -> ToolShape {
+    ToolShape { kind, word, order }
 }
 
 /// Classes of fuzzylite.
 ///
 /// # Source
 /// Documentation of fuzzylite's terms: parameters in the order of their description.
-pub(crate) const FUZZYLITE: &[Row] = &[
+pub(crate) const FUZZYLITE: &[ToolShape] = &[
     row(ShapeKind::Arc, "Arc", Order::Same),
     row(ShapeKind::Bell, "Bell", Order::Same),
     row(ShapeKind::Step, "Binary", Order::Direction),
@@ -56,7 +56,7 @@ pub(crate) const FUZZYLITE: &[Row] = &[
 ];
 
 /// Words of jFuzzyLogic.
-pub(crate) const JFUZZYLOGIC: &[Row] = &[
+pub(crate) const JFUZZYLOGIC: &[ToolShape] = &[
     row(ShapeKind::Triangle, "TRIAN", Order::Same),
     row(ShapeKind::Trapezoid, "TRAPE", Order::Same),
     row(ShapeKind::Gaussian, "GAUSS", Order::Same),
@@ -70,19 +70,19 @@ pub(crate) const JFUZZYLOGIC: &[Row] = &[
 ];
 
 /// A list of points, in every dialect of FCL.
-pub(crate) const POINTS: Row = row(ShapeKind::Points, "points", Order::Same);
+pub(crate) const POINTS: ToolShape = row(ShapeKind::Points, "points", Order::Same);
 
 /// The row of a word, in any case.
-pub(crate) fn of_word(rows: &'static [Row], word: &str) -> Option<&'static Row> {
+pub(crate) fn of_word(rows: &'static [ToolShape], word: &str) -> Option<&'static ToolShape> {
     rows.iter().find(|row| row.word.eq_ignore_ascii_case(word))
 }
 
 /// The row of a shape.
-pub(crate) fn of_kind(rows: &'static [Row], kind: ShapeKind) -> Option<&'static Row> {
+pub(crate) fn of_kind(rows: &'static [ToolShape], kind: ShapeKind) -> Option<&'static ToolShape> {
     rows.iter().find(|row| row.kind == kind)
 }
 
-impl Row {
+impl ToolShape {
     /// Our parameters from the tool's. Too few or too many stay so, for the check to find.
     pub(crate) fn ours(&self, theirs: Vec<f64>) -> Vec<f64> {
         match self.order {

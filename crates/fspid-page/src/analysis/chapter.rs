@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::context;
 use crate::html::render;
-use crate::page::{Cell, Figure, Table};
+use crate::page::{Cell, Figure, PageTable};
 use fspid_plot::Svg;
 
 /// A chapter of a page.
@@ -109,9 +109,9 @@ impl Datum {
 }
 
 impl DataTable {
-    pub(crate) fn shown(&self) -> Table {
+    pub(crate) fn shown(&self) -> PageTable {
         let head: Vec<&str> = self.head.iter().map(String::as_str).collect();
-        let mut table = Table::new(&self.caption, &head);
+        let mut table = PageTable::new(&self.caption, &head);
         table.cards = self.cards;
         for row in &self.rows {
             table.push(row.iter().map(Datum::cell).collect::<Vec<Cell>>());
@@ -136,14 +136,29 @@ struct Shown {
     body: String,
     lines: Vec<String>,
     figures: Vec<Figure>,
-    table: Option<Table>,
+    table: Option<PageTable>,
+}
+
+/// A section as the page shows it.
+#[derive(Serialize)]
+pub(crate) struct ShownSection {
+    pub(crate) id: String,
+    pub(crate) title: String,
+    pub(crate) body: String,
+}
+
+impl ShownSection {
+    /// A section with an id like that one.
+    pub(crate) fn of(wanted: &str, title: &str, body: String, ids: &mut Ids) -> Self {
+        Self { id: ids.take(wanted), title: title.to_owned(), body }
+    }
 }
 
 impl Chapter {
-    /// The id that the chapter got, and its markup.
-    pub(crate) fn render(&self, ids: &mut Ids) -> (String, String) {
+    pub(crate) fn shown(&self, ids: &mut Ids) -> ShownSection {
+        // Its own id before those of what is in it.
         let id = ids.take(&self.id);
-        (id, markup(&self.items, ids))
+        ShownSection { id, title: self.title.clone(), body: markup(&self.items, ids) }
     }
 }
 

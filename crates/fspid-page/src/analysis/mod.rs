@@ -9,7 +9,7 @@ mod chapter;
 mod tests;
 
 pub use chapter::{Chapter, DataTable, Datum, Item, Picture};
-pub(crate) use chapter::{Ids, markup};
+pub(crate) use chapter::{Ids, ShownSection, markup};
 
 use serde::Serialize;
 
@@ -103,24 +103,13 @@ pub(crate) struct Shown<'a> {
     detail: &'a str,
 }
 
-/// A section as the page shows it.
-#[derive(Serialize)]
-struct Section {
-    id: String,
-    title: String,
-    body: String,
-}
-
 impl AnalysisPage {
     /// The page as one HTML file without any outside reference.
     #[must_use]
     pub fn render(&self) -> String {
         let mut ids = Ids::default();
         let mut sections = vec![self.verdict_section(&mut ids)];
-        for chapter in &self.chapters {
-            let (id, body) = chapter.render(&mut ids);
-            sections.push(Section { id, title: chapter.title.clone(), body });
-        }
+        sections.extend(self.chapters.iter().map(|chapter| chapter.shown(&mut ids)));
         sections.push(self.provenance_section(&mut ids));
         let context = context! {
             title => self.title,
@@ -134,7 +123,7 @@ impl AnalysisPage {
         render("page", context)
     }
 
-    fn verdict_section(&self, ids: &mut Ids) -> Section {
+    fn verdict_section(&self, ids: &mut Ids) -> ShownSection {
         let verdicts: Vec<Shown<'_>> = self.verdicts.iter().map(Verdict::shown).collect();
         let context = context! {
             part => "verdicts",
@@ -144,11 +133,10 @@ impl AnalysisPage {
             requirements => self.requirements.as_ref().map(|(table, _)| table.shown()),
             met => self.requirements.as_ref().is_some_and(|(_, met)| *met),
         };
-        let body = render("analysis", context);
-        Section { id: ids.take("verdict"), title: "Verdict".to_owned(), body }
+        ShownSection::of("verdict", "Verdict", render("analysis", context), ids)
     }
 
-    fn provenance_section(&self, ids: &mut Ids) -> Section {
+    fn provenance_section(&self, ids: &mut Ids) -> ShownSection {
         let Provenance { command, digest, further } = &self.provenance;
         let context = context! {
             part => "provenance",
@@ -157,8 +145,7 @@ impl AnalysisPage {
             digest,
             further,
         };
-        let body = render("analysis", context);
-        Section { id: ids.take("provenance"), title: "Provenance".to_owned(), body }
+        ShownSection::of("provenance", "Provenance", render("analysis", context), ids)
     }
 }
 

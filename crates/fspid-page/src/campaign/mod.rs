@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::analysis::{Chapter, Ids, Item, Verdict, markup};
+use super::analysis::{Chapter, Ids, Item, ShownSection, Verdict, markup};
 use super::page;
 use crate::context;
 use crate::html::render;
@@ -34,24 +34,13 @@ pub struct CampaignPage {
     pub chapters: Vec<Chapter>,
 }
 
-/// A section as the page shows it.
-#[derive(serde::Serialize)]
-struct Section {
-    id: String,
-    title: String,
-    body: String,
-}
-
 impl CampaignPage {
     /// The page as one HTML file without any outside reference.
     #[must_use]
     pub fn render(&self) -> String {
         let mut ids = Ids::default();
         let mut sections = vec![self.answer_section(&mut ids)];
-        for chapter in &self.chapters {
-            let (id, body) = chapter.render(&mut ids);
-            sections.push(Section { id, title: chapter.title.clone(), body });
-        }
+        sections.extend(self.chapters.iter().map(|chapter| chapter.shown(&mut ids)));
         let lead = context! {
             part => "lead",
             lead => self.lead,
@@ -70,7 +59,7 @@ impl CampaignPage {
         render("page", context)
     }
 
-    fn answer_section(&self, ids: &mut Ids) -> Section {
+    fn answer_section(&self, ids: &mut Ids) -> ShownSection {
         let id = ids.take("answer");
         let verdicts: Vec<_> = self.verdicts.iter().map(Verdict::shown).collect();
         let context = context! {
@@ -79,7 +68,6 @@ impl CampaignPage {
             answer => markup(&self.answer, ids),
             notes => self.notes,
         };
-        let body = render("campaign", context);
-        Section { id, title: "Answer".to_owned(), body }
+        ShownSection { id, title: "Answer".to_owned(), body: render("campaign", context) }
     }
 }

@@ -18,7 +18,7 @@ use self::problem::{Bench, FigureProblem, PROBLEMS, Weighing, scales};
 use self::staged::{Effort, SeedResult, Set};
 use super::figures::{FIGURES, Fit, Library, Stored};
 use super::model::{Command, FULL_MODEL, SHORT_PERIOD, Scales};
-use fspid_optimise::{Budget, Parameter, Scale, Space, search};
+use fspid_optimise::{Budget, Parameter, Scale, Space, Start, search};
 use fspid_scenario::file;
 
 /// Two upward and two downward steps are shown of a square wave.
@@ -51,16 +51,9 @@ pub struct Identified {
 }
 
 /// Why no identification could begin: a shipped plant or table is missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the program carries no {0}")]
 pub struct Missing(&'static str);
-
-impl std::fmt::Display for Missing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the program carries no {}", self.0)
-    }
-}
-
-impl std::error::Error for Missing {}
 
 /// Finds everything anew. `progress` is told a line after each search.
 ///
@@ -135,7 +128,7 @@ impl Session<'_> {
             .seeds()
             .map(|seed| {
                 let budget = Budget { seed, population: 20, global: 1_500, polish: 500 };
-                let found = search(&space, budget, None, 1e-12, |point| {
+                let found = search(&space, budget, Start::Anywhere, 1e-12, |point| {
                     let mut model = figure.flight(&[], None, Some([point[0], point[1]]));
                     model.controllers.retain(|controller| controller.name == "PC");
                     self.bench.cost(figure.id, &model, Weighing::Centre).total()

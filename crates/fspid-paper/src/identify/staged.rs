@@ -2,7 +2,7 @@
 //! together, tried again with other random numbers until the claims are met or the attempts used up.
 
 use super::problem::{Bench, Cost, FigureProblem, HALF_PERIOD, Weighing, scale_parameters, scales};
-use fspid_optimise::{Budget, Found, Space, polish, search};
+use fspid_optimise::{Budget, Found, Space, Start, polish, search};
 
 /// A cost below this is as good as nothing: every number of the fit rounds to the printed digits.
 pub(super) const ACCEPTED: f64 = 0.02;
@@ -120,7 +120,7 @@ impl Set<'_> {
     fn nominal(&self, bench: &Bench, figure: &FigureProblem, seed: u64) -> Found {
         let space = Space::new(figure.parameters());
         let budget = Budget { seed, population: 30, global: self.effort.nominal, polish: 0 };
-        search(&space, budget, None, ENOUGH, |point| {
+        search(&space, budget, Start::Anywhere, ENOUGH, |point| {
             let gyro = Some(self.proportional).filter(|_| figure.gyro);
             let mut model = figure.flight(point, None, gyro);
             model.controllers.retain(|controller| controller.name != "PC");
@@ -141,7 +141,7 @@ impl Set<'_> {
         let space = self.scale_space();
         let global = self.effort.scales;
         let budget = Budget { seed: seed + 10, population: 40, global, polish: 0 };
-        let found = search(&space, budget, None, ENOUGH, |point| {
+        let found = search(&space, budget, Start::Anywhere, ENOUGH, |point| {
             self.cost(bench, &join(point)).total() + prior(&space, point)
         });
         let joint = self.joint(bench, seed, &join(&found.point), STAGED_SPREAD);
@@ -153,7 +153,7 @@ impl Set<'_> {
         let space = self.space();
         let global = self.effort.joint;
         let budget = Budget { seed: seed + 20, population: 40, global, polish: 0 };
-        let found = search(&space, budget, Some((begin, spread)), ENOUGH, |point| {
+        let found = search(&space, budget, Start::About(begin, spread), ENOUGH, |point| {
             self.cost(bench, point).total() + prior(&space, point)
         });
         // A half period jumps from sample to sample; a simplex would only stumble over it.

@@ -4,13 +4,13 @@
 use fspid_sim::signal::{Disturbance, Entry, Shape};
 use fspid_sim::{NamedController, Scenario, simulate};
 
-use super::super::disturbance::{ENTRIES, SHAPES, START_S, flight_cost, scenario_name};
+use super::super::disturbance::{SHAPES, START_S, flight_cost, scenario_name};
 use super::super::figures::{DISTURBED, Stored, WEAKENED};
 use super::super::model::{Command, ControllerModel, FlightModel, SHORT_PERIOD, Scales};
 use super::Session;
 use super::problem::{Bench, scales};
 use super::staged::{SeedResult, Set};
-use fspid_optimise::{Budget, Found, Parameter, Scale, Space, search};
+use fspid_optimise::{Budget, Found, Parameter, Scale, Space, Start, search};
 use fspid_scenario::units::radians;
 
 /// Length of a disturbed flight, s.
@@ -133,35 +133,30 @@ impl Session<'_> {
     pub(super) fn disturbances(&mut self, base: &Base) -> Vec<Stored> {
         let mut files = Vec::new();
         for shape_name in SHAPES {
-            for (entry_name, entry) in ENTRIES.into_iter().zip(Entry::ALL) {
-                let fixed = self.tune(base, shape_name, (entry_name, entry), false);
-                let fuzzy = self.tune(base, shape_name, (entry_name, entry), true);
+            for entry in Entry::ALL {
+                let fixed = self.tune(base, shape_name, entry, false);
+                let fuzzy = self.tune(base, shape_name, entry, true);
                 let mut controllers = base.pair();
+                let at = entry.name();
                 controllers.push(controller("CPID tuned", gains(&fixed.point), None));
                 let tuned_scales = fuzzy.point.get(3..).map(scales);
                 controllers.push(controller("FSPID tuned", gains(&fuzzy.point), tuned_scales));
-                let name = format!("Fig. 7: {shape_name} disturbance at the {entry_name}");
+                let name = format!("Fig. 7: {shape_name} disturbance at the {at}");
                 let model = at_rest(name, controllers);
                 let what = format!(
-                    "Fig. 7, {shape_name} disturbance at the {entry_name}: CPID and FSPID as shared \
+                    "Fig. 7, {shape_name} disturbance at the {at}: CPID and FSPID as shared \
                      by Figs 8 and 9 (gains of Fig. 8b), and both tuned with {} evaluations each.",
                     BUDGET.global + BUDGET.polish
                 );
                 let heading = self.heading(&what, &base.found, DISTURBED);
-                let text = model.toml(&heading) + &disturbance_toml(shape_name, entry_name);
-                files.push(Stored { name: scenario_name(shape_name, entry_name), text });
+                let text = model.toml(&heading) + &disturbance_toml(shape_name, at);
+                files.push(Stored { name: scenario_name(shape_name, at), text });
             }
         }
         files
     }
 
-    fn tune(
-        &mut self,
-        base: &Base,
-        shape_name: &str,
-        (entry_name, entry): (&str, Entry),
-        fuzzy: bool,
-    ) -> Found {
+    fn tune(&mut self, base: &Base, shape_name: &str, entry: Entry, fuzzy: bool) -> Found {
         let log = |name, lower, upper| Parameter { name, lower, upper, scale: Scale::Logarithmic };
         let mut parameters =
             vec![log("kp", 0.05, 10.0), log("ki", 1e-3, 10.0), log("kd", 1e-3, 3.0)];
@@ -182,12 +177,12 @@ impl Session<'_> {
         let space = Space::new(parameters);
         let budget = Budget { seed: self.options.seed, ..BUDGET };
         // Both begin from what was identified, spread over much of the box.
-        let found = search(&space, budget, Some((&about, 0.3)), 0.0, |point| {
+        let found = search(&space, budget, Start::About(&about, 0.3), 0.0, |point| {
             let tuned_scales = point.get(3..).filter(|rest| !rest.is_empty()).map(scales);
             cost(self.bench, controller("", gains(point), tuned_scales), shape_name, entry)
         });
         let kind = if fuzzy { "FSPID" } else { "CPID" };
-        let name = format!("Fig. 7, {kind} tuned, {shape_name} at the {entry_name}");
+        let name = format!("Fig. 7, {kind} tuned, {shape_name} at the {}", entry.name());
         let run = SeedResult {
             seed: budget.seed,
             attempts: 1,

@@ -5,22 +5,22 @@ use crate::report::templates::render;
 use crate::{JudgedClaim, JudgedStatement};
 use fspid_page::context;
 use fspid_page::number::fixed;
-use fspid_page::page::{Cell, Row, Section, Table};
+use fspid_page::page::{Cell, PageSection, PageTable, TableRow};
 
 /// The tables of claims.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let context = context! {
         numbers => numbers(&paper.reproduction.claims),
         statements => statements(&paper.reproduction.statements),
     };
-    Section::of("claims", "Claims", render("claims", context))
+    PageSection::of("claims", "Claims", render("claims", context))
 }
 
-fn numbers(claims: &[JudgedClaim]) -> Table {
+fn numbers(claims: &[JudgedClaim]) -> PageTable {
     let head = [
         "id", "quantity", "unit", "paper", "value", "status", "value", "status", "rests on", "note",
     ];
-    let mut table = Table::new("Every number of the paper's results.", &head)
+    let mut table = PageTable::new("Every number of the paper's results.", &head)
         .grouped(&[("", 4), ("own fit", 2), ("shared supervisor", 2), ("", 2)])
         .in_cards();
     for judged in claims {
@@ -31,7 +31,7 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
             Ok(value) => Cell::number(fixed(value, decimals)),
             Err(reason) => Cell { class: "absent", ..Cell::text(reason.to_string()) },
         };
-        table.push(Row {
+        table.push(TableRow {
             id: judged.claim.id.to_owned(),
             class: "",
             cells: vec![
@@ -51,11 +51,12 @@ fn numbers(claims: &[JudgedClaim]) -> Table {
     table
 }
 
-fn statements(statements: &[JudgedStatement]) -> Table {
+fn statements(statements: &[JudgedStatement]) -> PageTable {
     let head = ["id", "the paper says", "we find", "status", "rests on", "how it is judged"];
-    let mut table = Table::new("Every claim in words that a flight can answer.", &head).in_cards();
+    let mut table =
+        PageTable::new("Every claim in words that a flight can answer.", &head).in_cards();
     for judged in statements {
-        table.push(Row {
+        table.push(TableRow {
             id: judged.id.to_owned(),
             class: "",
             cells: vec![

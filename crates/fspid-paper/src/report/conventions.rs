@@ -3,11 +3,11 @@
 use crate::report::Paper;
 use crate::report::templates::render;
 use fspid_page::context;
-use fspid_page::page::{Figure, Section};
+use fspid_page::page::{Figure, PageSection};
 use fspid_plot::diagrams;
 
 /// Figs 1 to 3 of the paper, redrawn with the signs that hold here.
-pub(super) fn section(_: &Paper<'_>) -> Section {
+pub(super) fn section(_: &Paper<'_>) -> PageSection {
     let figures = vec![
         Figure::new(
             "figure-1-axes",
@@ -31,6 +31,10 @@ pub(super) fn section(_: &Paper<'_>) -> Section {
         )
         .resting_on(&["A2", "A3", "A10"]),
     ];
-    Section::of("conventions", "Axes, signs and loops", render("conventions", context! { figures }))
-        .with_figures(figures)
+    PageSection::of(
+        "conventions",
+        "Axes, signs and loops",
+        render("conventions", context! { figures }),
+    )
+    .with_figures(figures)
 }

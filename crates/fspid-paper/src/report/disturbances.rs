@@ -12,7 +12,7 @@ use crate::disturbance::{
 use crate::report::Paper;
 use fspid_page::context;
 use fspid_page::number::{capital, exact, fixed, significant};
-use fspid_page::page::{Cell, Figure, Row, Section, Table};
+use fspid_page::page::{Cell, Figure, PageSection, PageTable, TableRow};
 use fspid_plot::{RatioFigure, Series, SeriesStyle};
 use fspid_scenario::file::Study;
 use fspid_study::report::settings;
@@ -49,8 +49,16 @@ impl Match {
     }
 }
 
-/// The disturbance scenarios at their stored size, with the names of their traces.
-pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simulation)> {
+/// The flight of a disturbance scenario at its stored size.
+pub(in crate::report) struct StoredFlight {
+    /// Name of its traces.
+    pub(in crate::report) name: String,
+    study: Study,
+    pub(in crate::report) simulation: Simulation,
+}
+
+/// The disturbance scenarios at their stored size.
+pub(in crate::report) fn flights(library: &Library) -> Vec<StoredFlight> {
     let mut flights = Vec::new();
     for shape in SHAPES {
         for entry in ENTRIES {
@@ -58,7 +66,8 @@ pub(in crate::report) fn flights(library: &Library) -> Vec<(String, Study, Simul
                 Simulation::of_window(&study).ok().map(|simulation| (study, simulation))
             });
             if let Some((study, simulation)) = flown {
-                flights.push((format!("disturbance-{shape}-{entry}"), study, simulation));
+                let name = format!("disturbance-{shape}-{entry}");
+                flights.push(StoredFlight { name, study, simulation });
             }
         }
     }
@@ -76,7 +85,7 @@ struct Shape {
 }
 
 /// Fig. 7.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let sweeps = &paper.reproduction.sweeps;
     let flights = flights(paper.library);
     let shapes: Vec<Shape> = SHAPES
@@ -105,16 +114,16 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         cases => SIZES_DEG.len() * ENTRIES.len(),
         budget => budget(paper),
     };
-    Section::of("disturbances", "Figure 7: disturbances", render("disturbances", context))
+    PageSection::of("disturbances", "Figure 7: disturbances", render("disturbances", context))
         .with_figures(figures)
 }
 
 /// The form of a shape as its scenario has it.
-fn form(shape: &str, flights: &[(String, Study, Simulation)]) -> String {
+fn form(shape: &str, flights: &[StoredFlight]) -> String {
     let named =
-        flights.iter().find(|(name, ..)| name.starts_with(&format!("disturbance-{shape}-")));
-    named.map_or_else(String::new, |(_, study, _)| {
-        settings::disturbance_forms(&study.settings).join(" and ")
+        flights.iter().find(|flown| flown.name.starts_with(&format!("disturbance-{shape}-")));
+    named.map_or_else(String::new, |flown| {
+        settings::disturbance_forms(&flown.study.settings).join(" and ")
     })
 }
 
@@ -169,7 +178,7 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
 
 fn response(
     shape: &str,
-    (name, study, simulation): &(String, Study, Simulation),
+    StoredFlight { name, study, simulation }: &StoredFlight,
 ) -> Option<Figure> {
     if *name != format!("disturbance-{shape}-{SHOWN_AT}") {
         return None;
@@ -188,28 +197,28 @@ fn response(
 }
 
 /// Every comparison in numbers.
-fn outcome(sweeps: &[Sweep]) -> Table {
+fn outcome(sweeps: &[Sweep]) -> PageTable {
     let caption = "Ratios of cost over all sizes and places of entry; below 1 the FSPID is better. The mean is geometric.";
     let head = ["disturbance", "comparison", "FSPID better in", "lowest", "mean", "highest"];
-    let mut table = Table::new(caption, &head).in_cards();
+    let mut table = PageTable::new(caption, &head).in_cards();
     for shape in SHAPES {
         for of in &MATCHES {
             let Contest { won, cases, lowest, mean, highest } = of.contest(sweeps, shape);
             let mut cells = vec![Cell::text(shape), Cell::text(of.name)];
             cells.push(Cell::number(format!("{won} of {cases}")));
             cells.extend([lowest, mean, highest].map(|ratio| Cell::number(fixed(ratio, 3))));
-            table.push(Row::from(cells));
+            table.push(TableRow::from(cells));
         }
     }
     table
 }
 
 /// The gains that are compared: the first two are the same everywhere.
-fn gains(flights: &[(String, Study, Simulation)]) -> Table {
+fn gains(flights: &[StoredFlight]) -> PageTable {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
-    let mut table = Table::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
-    for (index, (name, study, _)) in flights.iter().enumerate() {
+    let mut table = PageTable::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
+    for (index, StoredFlight { name, study, .. }) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");
             if index > 0 && !tuned {

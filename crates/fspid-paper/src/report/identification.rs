@@ -7,7 +7,7 @@ use crate::identify::{ProblemRecord, SeedRecord};
 use crate::report::Paper;
 use fspid_page::context;
 use fspid_page::number::significant;
-use fspid_page::page::{Cell, Section, Table};
+use fspid_page::page::{Cell, PageSection, PageTable};
 
 /// A parameter that moves by more than this between seeds of nearly equal cost is not determined.
 const DETERMINED: f64 = 0.1;
@@ -16,33 +16,33 @@ const NEARLY_EQUAL: f64 = 1.05;
 const AS_GOOD_AS_ZERO: f64 = 1e-6;
 
 #[derive(Serialize)]
-struct Problem {
+struct FitView {
     name: String,
-    runs: Table,
-    parameters: Table,
+    runs: PageTable,
+    parameters: PageTable,
     seeds: usize,
     loose: Vec<String>,
 }
 
 /// The record of the searches.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let record = &paper.reproduction.record;
-    let fits: Vec<Problem> =
+    let fits: Vec<FitView> =
         record.problems.iter().filter(|p| !p.name.contains("tuned")).map(problem).collect();
     let tuned = record.problems.iter().filter(|p| p.name.contains("tuned"));
     let several = record.problems.iter().any(|problem| problem.runs.len() > 1);
     let context =
         context! { command => record.command, fits, tuned => tuned_table(tuned), several };
-    Section::of(
+    PageSection::of(
         "identification",
         "How the parameters were found",
         render("identification", context),
     )
 }
 
-fn problem(of: &ProblemRecord) -> Problem {
+fn problem(of: &ProblemRecord) -> FitView {
     let mut runs =
-        Table::new(format!("{}: seeds.", of.name), &["seed", "cost", "evaluations", "kept"]);
+        PageTable::new(format!("{}: seeds.", of.name), &["seed", "cost", "evaluations", "kept"]);
     for run in &of.runs {
         runs.push(vec![
             Cell::text(run.seed.to_string()),
@@ -51,7 +51,7 @@ fn problem(of: &ProblemRecord) -> Problem {
             Cell::text(if run.seed == of.kept { "\u{2713} kept" } else { "" }),
         ]);
     }
-    Problem {
+    FitView {
         parameters: parameters(of),
         name: of.name.clone(),
         runs,
@@ -61,7 +61,7 @@ fn problem(of: &ProblemRecord) -> Problem {
 }
 
 /// The kept parameters with their units, and their spread where there are several seeds.
-fn parameters(of: &ProblemRecord) -> Table {
+fn parameters(of: &ProblemRecord) -> PageTable {
     let several = of.runs.len() > 1;
     let (caption, head) = if several {
         (
@@ -71,7 +71,7 @@ fn parameters(of: &ProblemRecord) -> Table {
     } else {
         ("the kept parameters", &["parameter", "kept", "unit"][..])
     };
-    let mut table = Table::new(format!("{}: {caption}.", of.name), head);
+    let mut table = PageTable::new(format!("{}: {caption}.", of.name), head);
     let kept = of.runs.iter().find(|run| run.seed == of.kept);
     for (index, (name, (low, high))) in of.parameters.iter().zip(of.spread()).enumerate() {
         let value = kept.and_then(|run| run.point.get(index)).copied().unwrap_or(f64::NAN);
@@ -130,11 +130,11 @@ fn loose(of: &ProblemRecord) -> Vec<String> {
     names.map(|(_, name)| name.clone()).collect()
 }
 
-fn tuned_table<'a>(problems: impl Iterator<Item = &'a ProblemRecord>) -> Table {
+fn tuned_table<'a>(problems: impl Iterator<Item = &'a ProblemRecord>) -> PageTable {
     let head =
         ["search", "seeds", "lowest cost", "highest cost", "evaluations in all", "kept seed"];
     let mut table =
-        Table::new("Controllers tuned against the disturbances of Fig. 7.", &head).in_cards();
+        PageTable::new("Controllers tuned against the disturbances of Fig. 7.", &head).in_cards();
     for problem in problems {
         let costs = || problem.runs.iter().map(|run| run.cost);
         let spent: usize = problem.runs.iter().map(|run| run.evaluations).sum();

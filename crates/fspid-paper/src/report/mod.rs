@@ -16,7 +16,7 @@ mod variants;
 use self::templates::render;
 use crate::{Library, Reproduction, Status, Stored};
 use fspid_page::context;
-use fspid_page::page::{self, Cell, Section};
+use fspid_page::page::{self, Cell, PageSection};
 
 /// What the report is about.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ struct Paper<'a> {
 /// The page.
 fn report(paper: &Paper<'_>) -> String {
     let title = "A fuzzy self-tuning PID pitch autopilot, flown again";
-    let sections: Vec<Section> = ALL.iter().map(|of| of(paper)).collect();
+    let sections: Vec<PageSection> = ALL.iter().map(|of| of(paper)).collect();
     let context = context! {
         title,
         heading => title,
@@ -55,7 +55,7 @@ fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
         let name = format!("traces/figure-{}-{}.csv", flown.figure.id, flown.fit.name());
         files.push((name, flown.simulation.csv()));
     }
-    for (name, _, simulation) in disturbances::flights(library) {
+    for disturbances::StoredFlight { name, simulation, .. } in disturbances::flights(library) {
         files.push((format!("traces/{name}.csv"), simulation.csv()));
     }
     files.push(("traces/long-term-change.csv".to_owned(), reproduction.long_term.csv()));
@@ -66,7 +66,7 @@ fn files(paper: &Paper<'_>) -> Vec<(String, String)> {
 }
 
 /// The sections that draw figures, which are files of their own beside the report.
-const DRAWING: &[fn(&Paper<'_>) -> Section] = &[
+const DRAWING: &[fn(&Paper<'_>) -> PageSection] = &[
     summary::section,
     conventions::section,
     rules::section,
@@ -78,7 +78,7 @@ const DRAWING: &[fn(&Paper<'_>) -> Section] = &[
 ];
 
 /// The sections in their order.
-const ALL: &[fn(&Paper<'_>) -> Section] = &[
+const ALL: &[fn(&Paper<'_>) -> PageSection] = &[
     summary::section,
     conventions::section,
     rules::section,

@@ -3,10 +3,10 @@
 use crate::report::Paper;
 use crate::report::templates::render;
 use fspid_page::context;
-use fspid_page::page::Section;
+use fspid_page::page::PageSection;
 
 /// Versions, digests, commands.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let reproduction = paper.reproduction;
     let mut seeds: Vec<u64> = reproduction
         .record
@@ -35,5 +35,5 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         scenarios => paper.library.scenarios().len(),
         figures,
     };
-    Section::of("provenance", "Provenance", render("provenance", context))
+    PageSection::of("provenance", "Provenance", render("provenance", context))
 }

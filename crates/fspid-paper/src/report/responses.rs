@@ -7,7 +7,7 @@ use crate::report::Paper;
 use crate::{FIGURES, Fit, FlownFigure, JudgedClaim, Status};
 use fspid_page::context;
 use fspid_page::number::exact;
-use fspid_page::page::{Figure, Section, Table};
+use fspid_page::page::{Figure, PageSection, PageTable};
 use fspid_study::metrics::short;
 use fspid_study::report::measures;
 use fspid_study::report::traces::Drawing;
@@ -18,7 +18,7 @@ struct Part {
     title: &'static str,
     own: Figure,
     shared: Figure,
-    measures: Table,
+    measures: PageTable,
     claims: Vec<Standing>,
     square: bool,
 }
@@ -32,10 +32,10 @@ struct Standing {
 }
 
 /// The time responses of the paper.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let parts: Vec<Part> = FIGURES.iter().filter_map(|figure| part(paper, figure.id)).collect();
     let figures = parts.iter().flat_map(|part| [part.own.clone(), part.shared.clone()]).collect();
-    Section::of("responses", "Figures 5, 6, 8 and 9", render("responses", context! { parts }))
+    PageSection::of("responses", "Figures 5, 6, 8 and 9", render("responses", context! { parts }))
         .with_figures(figures)
 }
 

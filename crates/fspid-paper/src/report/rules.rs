@@ -6,7 +6,7 @@ use fspid_fuzzy::{Output, RuleTable};
 use crate::report::Paper;
 use fspid_page::context;
 use fspid_page::number::{significant, with_sign};
-use fspid_page::page::{Cell, Figure, Row, Section, Table};
+use fspid_page::page::{Cell, Figure, PageSection, PageTable, TableRow};
 use fspid_plot::SurfaceKind;
 use fspid_scenario::file;
 use fspid_study::report::supervisor::{self, Marks, OddCell};
@@ -18,12 +18,16 @@ const RANGES: [f64; 2] = [5.0, 40.0];
 const TABLES: [&str; 2] = ["printed", "mirrored"];
 
 /// The supervisor.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let (Some(printed), Some(mirrored)) =
         (file::rule_table("printed"), file::rule_table("mirrored"))
     else {
         // Both are part of the program.
-        return Section::of("supervisor", "The fuzzy supervisor", render("failed", context! {}));
+        return PageSection::of(
+            "supervisor",
+            "The fuzzy supervisor",
+            render("failed", context! {}),
+        );
     };
     let (sets, maps, views, mirrored_maps) = pictures(&printed, &mirrored);
     let tables = supervisor::rule_tables("table-3", "printed table", &printed, Marks::Paper);
@@ -40,7 +44,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         at_rest => at_rest(),
         in_flight => in_flight(paper),
     };
-    Section::of("supervisor", "The fuzzy supervisor", render("supervisor", context))
+    PageSection::of("supervisor", "The fuzzy supervisor", render("supervisor", context))
         .with_figures(figures)
 }
 
@@ -63,11 +67,11 @@ fn pictures(printed: &RuleTable, mirrored: &RuleTable) -> Pictures {
 }
 
 /// Cells of the printed table without their counterpart, one line each.
-fn odd(printed: &RuleTable) -> Table {
+fn odd(printed: &RuleTable) -> PageTable {
     let caption = "Cells of the printed table that break the symmetry of their gain. For kp and ki, opposite inputs \
                    should have opposite labels; for kd, opposite changes should have the same label.";
     let mut table =
-        Table::new(caption, &["gain", "cell (e, ec)", "holds", "counterpart (e, ec)", "holds"]);
+        PageTable::new(caption, &["gain", "cell (e, ec)", "holds", "counterpart (e, ec)", "holds"]);
     for OddCell { output, at, found, opposite, there } in supervisor::odd_cells(printed) {
         // Both of a pair are odd: one line for the two.
         if (at.0.index(), at.1.index()) > (opposite.0.index(), opposite.1.index()) {
@@ -90,10 +94,10 @@ fn odd(printed: &RuleTable) -> Table {
 }
 
 /// What each supervisor adds at zero error and no change.
-fn at_rest() -> Table {
+fn at_rest() -> PageTable {
     let caption = "What the supervisor answers at rest (error and change zero), in supervisor units: exact centroid.";
     let mut table =
-        Table::new(caption, &["rule table, half range", "\u{394}kp", "\u{394}ki", "\u{394}kd"]);
+        PageTable::new(caption, &["rule table, half range", "\u{394}kp", "\u{394}ki", "\u{394}kd"]);
     for name in TABLES {
         for range in RANGES {
             let answer = file::rule_table(name)
@@ -110,12 +114,13 @@ fn at_rest() -> Table {
 }
 
 /// Nominal gains of every flown FSPID, and its gains at rest.
-fn in_flight(paper: &Paper<'_>) -> Table {
+fn in_flight(paper: &Paper<'_>) -> PageTable {
     let caption = "Gains of every flown FSPID: nominal, and at rest after the output factors and the floor at zero \
                    (A12). kp has no unit, ki is in 1/s, kd in s.";
     let head = ["figure, fit, controller", "kp", "ki", "kd", "kp", "ki", "kd"];
-    let mut table =
-        Table::new(caption, &head).grouped(&[("", 1), ("nominal", 3), ("at rest", 3)]).in_cards();
+    let mut table = PageTable::new(caption, &head)
+        .grouped(&[("", 1), ("nominal", 3), ("at rest", 3)])
+        .in_cards();
     for flown in &paper.reproduction.figures {
         for named in &flown.study.scenario.controllers {
             let fspid_sim::Controller::SelfTuning(fspid) = &named.controller else {
@@ -126,7 +131,7 @@ fn in_flight(paper: &Paper<'_>) -> Table {
             let mut cells = vec![Cell::text(name)];
             let gains = [nominal.kp, nominal.ki, nominal.kd, rest.kp, rest.ki, rest.kd];
             cells.extend(gains.map(|gain| Cell::number(significant(gain, 4))));
-            table.push(Row::from(cells));
+            table.push(TableRow::from(cells));
         }
     }
     table

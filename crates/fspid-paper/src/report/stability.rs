@@ -7,7 +7,7 @@ use crate::report::Paper;
 use crate::{FIGURES, Fit};
 use fspid_page::context;
 use fspid_page::number::fixed;
-use fspid_page::page::{Cell, Section, Table};
+use fspid_page::page::{Cell, PageSection, PageTable};
 use fspid_scenario::file::Study;
 use fspid_study::analysis::{AnalysedLoop, Analysis, Margins, Question, flown_inputs};
 use fspid_study::certify::{Certification, Certified, scope_in_short};
@@ -18,7 +18,7 @@ fn effort() -> Effort {
 }
 
 /// Margins and verdicts of every figure.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let head = [
         "loop",
         "gain margin at rest [dB]",
@@ -28,7 +28,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         "inputs of the flight [supervisor units]",
     ];
     let table = |caption: &str, fit: Fit| {
-        let mut table = Table::new(caption, &head).in_cards();
+        let mut table = PageTable::new(caption, &head).in_cards();
         for figure in FIGURES {
             let study = paper.library.figure(fit, figure.id).ok();
             for row in study.iter().flat_map(|study| rows(figure.id, study)) {
@@ -41,7 +41,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         own => table("Loops with parameters of their own for each figure.", Fit::Own),
         shared => table("Loops with one set of scale factors for all figures of a range.", Fit::Shared),
     };
-    Section::of("stability", "Stability while the gains move", render("stability", context))
+    PageSection::of("stability", "Stability while the gains move", render("stability", context))
 }
 
 fn rows(figure: &str, study: &Study) -> Vec<Vec<Cell>> {
@@ -52,14 +52,10 @@ fn rows(figure: &str, study: &Study) -> Vec<Vec<Cell>> {
         return Vec::new();
     };
     let found = analysis.loops.iter().zip(&certification.results);
-    found.map(|(analysed, certified)| row(figure, study, (analysed, certified))).collect()
+    found.map(|(analysed, certified)| row(figure, study, analysed, certified)).collect()
 }
 
-fn row(
-    figure: &str,
-    study: &Study,
-    (analysed, certified): (&AnalysedLoop, &Certified),
-) -> Vec<Cell> {
+fn row(figure: &str, study: &Study, analysed: &AnalysedLoop, certified: &Certified) -> Vec<Cell> {
     let margin = |of: &dyn Fn(&Margins) -> f64, decimals, least| match analysed.margins() {
         Ok(margins) if of(&margins) < least => {
             Cell { class: "number unmet", ..Cell::number(fixed(of(&margins), decimals)) }

@@ -10,7 +10,7 @@ use crate::report::Paper;
 use crate::{Fit, Reproduction, Status};
 use fspid_page::context;
 use fspid_page::number::{fixed, measured, significant};
-use fspid_page::page::{Cell, Section, Table};
+use fspid_page::page::{Cell, PageSection, PageTable};
 use fspid_study::metrics::{Measured, StepMetrics};
 use fspid_study::simulation::Simulation;
 
@@ -18,7 +18,7 @@ use fspid_study::simulation::Simulation;
 const EXAMPLE: (&str, &str) = ("8a", "FSPID");
 
 /// The summary.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let reproduction = paper.reproduction;
     let context = context! {
         numbers => reproduction.claims.len(),
@@ -30,14 +30,14 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
         memory => memory(paper),
         failed => failed(reproduction),
     };
-    Section::of("summary", "Summary", render("summary", context))
+    PageSection::of("summary", "Summary", render("summary", context))
 }
 
-fn statuses(reproduction: &Reproduction) -> Table {
+fn statuses(reproduction: &Reproduction) -> PageTable {
     let mut head = vec!["claims".to_owned()];
     head.extend(Status::ALL.map(|status| super::status(status).text));
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut table = Table::new("How many claims stand how.", &head).in_cards();
+    let mut table = PageTable::new("How many claims stand how.", &head).in_cards();
     let own = reproduction.claims.iter().map(|judged| judged.status).collect();
     let shared = reproduction.claims.iter().map(|judged| judged.shared_status).collect();
     let words = reproduction.statements.iter().map(|judged| judged.status).collect();

@@ -7,7 +7,7 @@ use crate::report::Paper;
 use crate::{FIGURES, Fit, FlownFigure};
 use fspid_page::context;
 use fspid_page::number::fixed;
-use fspid_page::page::{Figure, Section, Table};
+use fspid_page::page::{Figure, PageSection, PageTable};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
 use fspid_scenario::units::degrees;
 use fspid_study::report::measures;
@@ -28,7 +28,7 @@ struct Pair<'a> {
 }
 
 /// What depends on the rule table and on the centroid.
-pub(super) fn section(paper: &Paper<'_>) -> Section {
+pub(super) fn section(paper: &Paper<'_>) -> PageSection {
     let mirrored = pairs(paper, MIRRORED);
     let sampled = pairs(paper, SAMPLED);
     let figures: Vec<Figure> = mirrored
@@ -47,7 +47,7 @@ pub(super) fn section(paper: &Paper<'_>) -> Section {
             &sampled,
         ),
     };
-    Section::of("variants", "Other rule table, other centroid", render("variants", context))
+    PageSection::of("variants", "Other rule table, other centroid", render("variants", context))
         .with_figures(figures)
 }
 
@@ -109,8 +109,8 @@ fn most(pairs: &[Pair<'_>]) -> Option<String> {
 }
 
 /// All figures in one table, the figure named with the controller.
-fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> Table {
-    let mut all = Table::default();
+fn table(caption: &str, changed: &str, pairs: &[Pair<'_>]) -> PageTable {
+    let mut all = PageTable::default();
     for pair in pairs {
         let variants = [("as stored", &pair.stored.simulation), (changed, &pair.changed)];
         let mut one = measures::side_by_side(caption, &variants, &pair.tuned);

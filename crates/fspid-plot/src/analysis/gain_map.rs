@@ -164,6 +164,14 @@ impl GainMap {
     }
 }
 
+/// A node of the map and where it is drawn.
+struct Tile {
+    place: Rect,
+    cell: MapCell,
+    row: usize,
+    column: usize,
+}
+
 struct Drawing<'a> {
     map: &'a GainMap,
     area: Rect,
@@ -184,7 +192,8 @@ impl Drawing<'_> {
         self.divide(canvas, &tiles);
         canvas.end();
         self.flown(canvas);
-        let room = tiles.iter().map(|tile| tile.0.width.min(tile.0.height)).reduce(f64::min);
+        let room =
+            tiles.iter().map(|tile| tile.place.width.min(tile.place.height)).reduce(f64::min);
         self.points(canvas, room.unwrap_or(0.0).min(60.0));
         map_axes(canvas, self.area, &self.axes[0], &self.axes[1]);
         self.labels(canvas);
@@ -195,7 +204,7 @@ impl Drawing<'_> {
     }
 
     /// Place and cell of each node.
-    fn tiles(&self) -> Vec<(Rect, MapCell, usize, usize)> {
+    fn tiles(&self) -> Vec<Tile> {
         let (xs, ys) = (edges(&self.map.xs), edges(&self.map.ys));
         let mut tiles = Vec::new();
         for (i, y) in ys.windows(2).enumerate() {
@@ -205,7 +214,7 @@ impl Drawing<'_> {
                 if [west, north, east, south].iter().all(|edge| edge.is_finite()) {
                     let place =
                         Rect { x: west, y: north, width: east - west, height: south - north };
-                    tiles.push((place, self.map.cell(i, j), i, j));
+                    tiles.push(Tile { place, cell: self.map.cell(i, j), row: i, column: j });
                 }
             }
         }
@@ -221,10 +230,10 @@ impl Drawing<'_> {
     }
 
     /// One path per colour: a map of many nodes stays a small file.
-    fn faces(&self, canvas: &mut Canvas, tiles: &[(Rect, MapCell, usize, usize)]) {
+    fn faces(&self, canvas: &mut Canvas, tiles: &[Tile]) {
         let mut by_colour: std::collections::BTreeMap<[u8; 3], String> = Default::default();
         let mut unknown = String::new();
-        for (place, cell, ..) in tiles {
+        for Tile { place, cell, .. } in tiles {
             match self.grading.colour(*cell) {
                 Some(colour) => by_colour.entry(colour).or_default().push_str(&outline(*place)),
                 None if *cell == MapCell::Unknown => unknown.push_str(&outline(*place)),
@@ -242,14 +251,14 @@ impl Drawing<'_> {
         }
     }
 
-    fn numbered(&self, tiles: &[(Rect, MapCell, usize, usize)]) -> bool {
-        tiles.first().is_some_and(|(place, ..)| place.width >= 24.0 && place.height >= 15.0)
+    fn numbered(&self, tiles: &[Tile]) -> bool {
+        tiles.first().is_some_and(|tile| tile.place.width >= 24.0 && tile.place.height >= 15.0)
     }
 
     /// Numbers in the tiles, crosses in unstable ones.
-    fn signs(&self, canvas: &mut Canvas, tiles: &[(Rect, MapCell, usize, usize)]) {
+    fn signs(&self, canvas: &mut Canvas, tiles: &[Tile]) {
         let numbered = self.numbered(tiles);
-        for (place, cell, ..) in tiles {
+        for Tile { place, cell, .. } in tiles {
             let middle = (place.x + place.width / 2.0, place.y + place.height / 2.0);
             let text = match cell {
                 MapCell::Value(value) => self.grading.number(*value),
@@ -273,17 +282,17 @@ impl Drawing<'_> {
     }
 
     /// A thick line between tiles that meet the requirement and those that do not.
-    fn divide(&self, canvas: &mut Canvas, tiles: &[(Rect, MapCell, usize, usize)]) {
+    fn divide(&self, canvas: &mut Canvas, tiles: &[Tile]) {
         let Some((required, _)) = self.map.required.as_ref() else { return };
         let meets = |i: usize, j: usize| self.map.cell(i, j).meets(*required);
         let differ = |a: Option<bool>, b: Option<bool>| a.zip(b).is_some_and(|(a, b)| a != b);
         let mut d = String::new();
-        for (place, _, i, j) in tiles {
+        for Tile { place, row, column, .. } in tiles {
             let (east, north) = (place.x + place.width, place.y);
-            if differ(meets(*i, *j), meets(*i, j + 1)) {
+            if differ(meets(*row, *column), meets(*row, column + 1)) {
                 d.push_str(&polyline_data(&[(east, north), (east, north + place.height)], false));
             }
-            if differ(meets(*i, *j), meets(i + 1, *j)) {
+            if differ(meets(*row, *column), meets(row + 1, *column)) {
                 d.push_str(&polyline_data(&[(place.x, north), (east, north)], false));
             }
         }

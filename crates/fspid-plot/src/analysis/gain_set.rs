@@ -80,7 +80,7 @@ impl GainSet {
         page::title(&mut canvas, &self.title);
         let panels = [((0, 1), left, top), ((2, 1), second, top), ((0, 2), left, lower)];
         for (pair, x, y) in panels {
-            self.panel(&mut canvas, (pair, &axes), (x, y));
+            self.panel(&mut canvas, pair, &axes, (x, y));
         }
         notes.draw(&mut canvas, second - 40.0, lower + 6.0);
         canvas.finish(&self.title, &self.describe())
@@ -93,7 +93,7 @@ impl GainSet {
         extent(boxes.chain(points.chain(single).map(|gains| gains[n])))
     }
 
-    fn panel(&self, canvas: &mut Canvas, ((x, y), axes): (Pair, &[Axis; 3]), corner: Point) {
+    fn panel(&self, canvas: &mut Canvas, (x, y): Pair, axes: &[Axis; 3], corner: Point) {
         let area = Rect { x: corner.0, y: corner.1, width: SIDE, height: SIDE };
         let frame = Frame { area, x: axes[x], y: axes[y], x_labels: true };
         let mut chart = Chart::new(frame);

@@ -174,7 +174,7 @@ pub(super) fn signs(canvas: &mut Canvas, chart: &mut Chart, groups: &[(&[Point],
         for (at, count) in gathered(points) {
             let seen = chart.sign(canvas, at, sign, role);
             if !seen && whole {
-                beyond(canvas, chart, at, (sign, role));
+                beyond(canvas, chart, at, sign, role);
             } else if count > 1 {
                 multiple.push((at, count));
             }
@@ -187,7 +187,7 @@ pub(super) fn signs(canvas: &mut Canvas, chart: &mut Chart, groups: &[(&[Point],
 }
 
 /// A sign at the edge of the whole plane and an arrow to where its point is.
-fn beyond(canvas: &mut Canvas, chart: &mut Chart, (x, y): Point, (sign, role): (Sign, Role)) {
+fn beyond(canvas: &mut Canvas, chart: &mut Chart, (x, y): Point, sign: Sign, role: Role) {
     let reach = chart.frame.x.hi;
     let largest = x.abs().max(y.abs());
     if !(largest > reach && largest < 1e100) {

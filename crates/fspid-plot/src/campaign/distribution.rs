@@ -26,7 +26,7 @@ pub struct DistributionFigure {
 /// The histogram of one controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionRow {
-    /// Whose it is.
+    /// Name of the controller.
     pub name: String,
     /// What is said of it, right of the name; may be empty.
     pub words: String,
@@ -205,7 +205,7 @@ impl DistributionRow {
             canvas.text(area.x - 7.0, bottom + TICK_PX * 0.36, "0", font);
         }
         canvas.line((area.x, area.y), (area.x, bottom), &Paint::line(Role::Ink, 1.0));
-        self.strip(canvas, (area, bottom + STRIP / 2.0 - 1.0), axis);
+        self.strip(canvas, area, bottom + STRIP / 2.0 - 1.0, axis);
     }
 
     /// The upper edge of the bins, from the floor to the floor.
@@ -231,7 +231,7 @@ impl DistributionRow {
     }
 
     /// Percentiles below the bins: a thin bar, a thick one, a stroke at the median.
-    fn strip(&self, canvas: &mut Canvas, (area, y): (Rect, f64), axis: &Axis) {
+    fn strip(&self, canvas: &mut Canvas, area: Rect, y: f64, axis: &Axis) {
         let Some(quantiles) = self.quantiles else { return };
         let place = |value: f64| area.x + axis.fraction(value).clamp(0.0, 1.0) * area.width;
         let [low, quarter, median, upper, high] = quantiles.map(place);

@@ -30,7 +30,7 @@ pub struct EnvelopeFigure {
 /// bands and lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopePanel {
-    /// Whose they are.
+    /// Name of the controller.
     pub name: String,
     /// How they are coloured.
     pub style: SeriesStyle,

@@ -48,7 +48,7 @@ pub struct IntervalRow {
 pub struct IntervalMark {
     /// Position of its column.
     pub column: usize,
-    /// Whose it is.
+    /// Colour and sign of the controller.
     pub style: SeriesStyle,
     /// The estimate.
     pub value: f64,
@@ -151,7 +151,10 @@ impl IntervalFigure {
             let first = top + (row.height() - marks.len() as f64 * MARK) / 2.0;
             for (n, mark) in marks.into_iter().enumerate() {
                 let y = first + (n as f64 + 0.5) * MARK;
-                mark.draw(canvas, *area, axis, (y, stems));
+                if stems {
+                    mark.stem(canvas, *area, axis, y);
+                }
+                mark.draw(canvas, *area, axis, y);
             }
         }
     }
@@ -183,15 +186,18 @@ impl IntervalRow {
 }
 
 impl IntervalMark {
-    fn draw(&self, canvas: &mut Canvas, area: Rect, axis: &Axis, (y, stems): (f64, bool)) {
-        let place = |value: f64| {
-            let part = axis.fraction(value);
-            part.is_finite().then(|| area.x + part.clamp(0.0, 1.0) * area.width)
-        };
-        let role = self.style.role();
-        if let (true, Some(zero), Some(at)) = (stems, place(0.0), place(self.value)) {
-            canvas.line((zero, y), (at, y), &Paint::line(role, 5.0).opacity(0.35));
+    /// A broad line from zero to the value.
+    fn stem(&self, canvas: &mut Canvas, area: Rect, axis: &Axis, y: f64) {
+        let ends = (place(area, axis, 0.0), place(area, axis, self.value));
+        if let (Some(zero), Some(at)) = ends {
+            let paint = Paint::line(self.style.role(), 5.0).opacity(0.35);
+            canvas.line((zero, y), (at, y), &paint);
         }
+    }
+
+    fn draw(&self, canvas: &mut Canvas, area: Rect, axis: &Axis, y: f64) {
+        let place = |value: f64| place(area, axis, value);
+        let role = self.style.role();
         if let (Some(lower), Some(upper)) = (place(self.lower), place(self.upper)) {
             let paint = Paint::line(role, 1.6);
             canvas.line((lower, y), (upper, y), &paint);
@@ -208,6 +214,12 @@ impl IntervalMark {
             }
         }
     }
+}
+
+/// Where a value lies across an area; none for one that is not finite.
+fn place(area: Rect, axis: &Axis, value: f64) -> Option<f64> {
+    let part = axis.fraction(value);
+    part.is_finite().then(|| area.x + part.clamp(0.0, 1.0) * area.width)
 }
 
 /// An upright line at zero where the axis has both signs.

@@ -18,7 +18,16 @@ pub fn is_positive(p: &Matrix) -> Result<(), NotProved> {
     prove_named("Lyapunov matrix", &symmetric("Lyapunov matrix", p)?)
 }
 
-/// Proves that V falls by the factor `rate`² at least with every step, for every M inside `matrix`:
+/// What the S-procedure takes off: τ Q, so that only states with $z^T Q z \ge 0$ are asked about.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxation<'a> {
+    /// τ, 0 or above.
+    pub weight: f64,
+    /// Q, symmetric.
+    pub matrix: &'a IntervalMatrix,
+}
+
+/// Proves that V decreases by the factor `rate`² at least with every step, for every M inside `matrix`:
 ///
 /// $$ \rho^2 P - M^T P M - \tau Q \succ 0 $$
 ///
@@ -36,10 +45,10 @@ pub fn decreases(
     p: &Matrix,
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &IntervalMatrix)>,
+    relaxation: Option<Relaxation<'_>>,
 ) -> Result<(), NotProved> {
     let own = symmetric("Lyapunov matrix", p)?;
-    prove_fall([&own, &own], rate, matrix, relaxation)
+    prove_decrease([&own, &own], rate, matrix, relaxation)
 }
 
 /// Proves that $z^T P_{\text{next}} z$ after a step is below `rate`² times $z^T P_{\text{now}} z$ before it:
@@ -56,21 +65,21 @@ pub fn decreases_between(
     p_next: &Matrix,
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &IntervalMatrix)>,
+    relaxation: Option<Relaxation<'_>>,
 ) -> Result<(), NotProved> {
     let now = symmetric("Lyapunov matrix", p_now)?;
     let next = symmetric("next Lyapunov matrix", p_next)?;
-    prove_fall([&now, &next], rate, matrix, relaxation)
+    prove_decrease([&now, &next], rate, matrix, relaxation)
 }
 
 /// All is computed in the basis X in which the present form is about the identity, with M X before
 /// anything else: what is uncertain in M is then weighed with the root of the condition number of P,
 /// and not with the number itself.
-fn prove_fall(
+fn prove_decrease(
     [now, next]: [&IntervalMatrix; 2],
     rate: f64,
     matrix: &IntervalMatrix,
-    relaxation: Option<(f64, &IntervalMatrix)>,
+    relaxation: Option<Relaxation<'_>>,
 ) -> Result<(), NotProved> {
     const WHAT: &str = "fall of the Lyapunov function";
     let size = now.rows();
@@ -85,17 +94,18 @@ fn prove_fall(
     dominant("Lyapunov matrix", &present)?;
     let before = present.scaled(rate * rate);
     let after = form(next, &matrix.product(&basis)?)?;
-    let mut fall = before.difference(&after)?;
-    if let Some((tau, q)) = relaxation {
-        let q = weighed(tau, q, size)?;
-        fall = fall.difference(&form(&q, &basis)?)?;
+    let mut decrease = before.difference(&after)?;
+    if let Some(relaxation) = relaxation {
+        let q = weighed(relaxation, size)?;
+        decrease = decrease.difference(&form(&q, &basis)?)?;
     }
-    prove_named(WHAT, &fall)
+    prove_named(WHAT, &decrease)
 }
 
 /// $\tau Q$ with τ ≥ 0 and a Q whose bounds are symmetric; of the matrices inside it the symmetric ones
 /// are meant.
-fn weighed(tau: f64, q: &IntervalMatrix, size: usize) -> Result<IntervalMatrix, NotProved> {
+fn weighed(relaxation: Relaxation<'_>, size: usize) -> Result<IntervalMatrix, NotProved> {
+    let Relaxation { weight: tau, matrix: q } = relaxation;
     if !(tau >= 0.0 && tau.is_finite()) {
         let allowed = "a finite number, 0 or above";
         return Err(NotProved::Number { what: "weight of the relaxation", found: tau, allowed });

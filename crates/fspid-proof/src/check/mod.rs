@@ -27,7 +27,9 @@ pub use definite::prove_positive_definite;
 pub use error::NotProved;
 pub use exponential::{exponential, held};
 pub use growth::{prove_growth, prove_unstable};
-pub use lyapunov::{decreases, decreases_between, inside_limit, inside_limits, is_positive, reach};
+pub use lyapunov::{
+    Relaxation, decreases, decreases_between, inside_limit, inside_limits, is_positive, reach,
+};
 pub use matrix::IntervalMatrix;
 pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
 pub use plant::{ActuatorLag, PrintedPlant, printed};

@@ -5,7 +5,7 @@
 //!
 //! $$ M(\kappa) = \sum_a \kappa_a M_a, \quad P(\kappa) = \sum_a \kappa_a P_a $$
 //!
-//! In a cell of the box the fall is a polynomial of degree 3 in each gain, and so a mean, with weights
+//! In a cell of the box the decrease is a polynomial of degree 3 in each gain, and so a mean, with weights
 //! that are not negative, of $4^g$ symmetric matrices, its Bernstein coefficients. A cell in which not
 //! all of them are positive definite is halved. That P is positive definite is proved at the corners of
 //! each cell; between them it is a mean.
@@ -28,7 +28,7 @@ const GAINS: usize = 3;
 /// Ends of cells are multiples of one over this, $2^{12}$, so that what [`weights`] computes of them is
 /// exact.
 const GRID: f64 = 4096.0;
-/// A cell that is no wider, in half widths of the box, is not halved any more: the form does not fall there.
+/// A cell that is no wider, in half widths of the box, is not halved any more: the form does not decrease there.
 const NARROWEST: f64 = 1.0 / 64.0;
 /// Cells looked at before giving up; fewer where the loop is large, so that work has a bound.
 const MOST_CELLS: u64 = 20_000;
@@ -61,7 +61,7 @@ pub struct MovingProof {
     pub inequalities: usize,
 }
 
-/// Gains at which a moving form was not proved to fall.
+/// Gains at which a moving form was not proved to decrease.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotProvedAt {
     /// The middle of the cell in question, in half widths; empty where it is not about gains.
@@ -82,7 +82,7 @@ impl From<LtiError> for NotProvedAt {
     }
 }
 
-/// Proves that V falls by the factor `rate`² at least with every sample, for all gains of a set and
+/// Proves that V decreases by the factor `rate`² at least with every sample, for all gains of a set and
 /// every motion within it in which no gain changes by more than is allowed:
 ///
 /// $$ \rho^2 P(\kappa) - M(\kappa)^T P(\kappa^+) M(\kappa) \succ 0, \quad P(\kappa) \succ 0, \quad
@@ -90,10 +90,10 @@ impl From<LtiError> for NotProvedAt {
 ///
 /// for all matrices inside `loops`. The set is told by `part`, which answers for a cell of the box a cell
 /// that holds all of the set that is in it, or nothing where there is none of it. Asked is a little more
-/// than needed, that the form falls for $\kappa^+$ up to $d_j$ outside of the set.
+/// than needed, that the form decreases for $\kappa^+$ up to $d_j$ outside of the set.
 ///
 /// # Errors
-/// [`NotProvedAt`] where shapes do not fit, an entry is not finite, a number is not allowed, or the fall
+/// [`NotProvedAt`] where shapes do not fit, an entry is not finite, a number is not allowed, or the decrease
 /// could not be shown.
 pub fn falls_while_moving(
     moving: &Moving<'_>,
@@ -126,7 +126,7 @@ pub fn falls_while_moving(
     Ok(proof)
 }
 
-/// Cells that may be looked at: each takes a factor of as many matrices as its fall has coefficients.
+/// Cells that may be looked at: each takes a factor of as many matrices as its decrease has coefficients.
 fn most_cells(gains: usize, size: usize) -> u64 {
     let coefficients = (ALONG as u64).saturating_pow(u32::try_from(gains).unwrap_or(u32::MAX));
     let work = coefficients.saturating_mul((size as u64).saturating_pow(3)).max(1);
@@ -167,7 +167,7 @@ struct Term {
     matrix: Packed,
 }
 
-/// The fall in the basis in which the form at the centre is about the identity.
+/// The decrease in the basis in which the form at the centre is about the identity.
 ///
 /// $$ F = \sum_t \kappa^{p_t} C_t - \sum_j o_j \sum_t \kappa^{q_{jt}} D_{jt}, \quad
 /// \kappa_j^+ = f_j \kappa_j + o_j $$
@@ -266,7 +266,7 @@ impl Parts {
         Packed::sum(parts.map(|(part, form)| (factor(part), form)))
     }
 
-    /// Proves the fall at a point; where it does not fall there is no need to halve the cell around.
+    /// Proves the decrease at a point; where it does not decrease there is no need to halve the cell around.
     fn prove_at(&self, at: &[f64]) -> Result<(), NotProved> {
         self.definite(&|powers: &[usize; GAINS]| {
             let along = at.iter().zip(powers);

@@ -87,7 +87,7 @@ fn middles(left: &IntervalMatrix, right: &IntervalMatrix, start: Option<&[f64]>)
     let columns = right.columns;
     let right_parts = Parts::of(&right.middle);
     let mut result = IntervalMatrix::zeros(left.rows, columns);
-    let mut row = Row::new(columns);
+    let mut row = ProductRow::new(columns);
     let share = rounding_share(left.columns + 1);
     for i in 0..left.rows {
         row.begin(start.map(|values| &values[i * columns..(i + 1) * columns]));
@@ -131,14 +131,14 @@ fn split(value: f64) -> (f64, f64) {
 }
 
 /// One row of a product while it is summed up.
-struct Row {
+struct ProductRow {
     sum: Vec<f64>,
     rest: Vec<f64>,
     /// Sum of the absolute products.
     absolute: Vec<f64>,
 }
 
-impl Row {
+impl ProductRow {
     fn new(columns: usize) -> Self {
         let zeros = || vec![0.0; columns];
         Self { sum: zeros(), rest: zeros(), absolute: zeros() }

@@ -92,7 +92,7 @@ impl GainSet {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(NoSlopes::Remembered);
         }
-        let over = Held::of(self, fspid, (factor, held), known)?;
+        let over = Held::of(self, fspid, factor, held, known)?;
         let mut set = self.clone();
         let mut remains = 0.0_f64;
         for cell in &mut set.cells {
@@ -124,7 +124,8 @@ impl<'a> Held<'a> {
     fn of(
         set: &GainSet,
         fspid: &'a Fspid<f64>,
-        (factor, held): (f64, HeldCommand),
+        factor: f64,
+        held: HeldCommand,
         known: &KnownSlopes,
     ) -> Result<Self, NoSlopes> {
         let tuner = fspid.tuner();

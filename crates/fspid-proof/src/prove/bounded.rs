@@ -99,7 +99,7 @@ impl Prover<'_> {
     ) -> Option<(Certificate, Rechecked)> {
         let claim = self.moving_form(set, changes)?;
         let found = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
-        let regional = self.regional(set, factor, (claim, found.1.kept));
+        let regional = self.regional(set, factor, claim, found.1.kept);
         Some(regional.unwrap_or(found))
     }
 
@@ -108,7 +108,8 @@ impl Prover<'_> {
         &self,
         set: &GainSet,
         factor: f64,
-        (claim, kept): (BoundedRate, Option<Kept>),
+        claim: BoundedRate,
+        kept: Option<Kept>,
     ) -> Option<(Certificate, Rechecked)> {
         let covers_limits = self.covers_limits() && !self.description.limits().is_empty();
         let region = Region::of(self, set, factor, &claim)?;

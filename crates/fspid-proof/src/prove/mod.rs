@@ -307,8 +307,8 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn level(&self, corners: &[HeldGains], of: (&Matrix, &Rest)) -> Option<f64> {
-        limits::level(self.description, &self.model, corners, of)
+    fn level(&self, corners: &[HeldGains], form: &Matrix, rest: &Rest) -> Option<f64> {
+        limits::level(self.description, &self.model, corners, form, rest)
     }
 
     /// Closed loops at some gains, if each of them is stable on its own.

@@ -53,9 +53,9 @@ impl<'a> Region<'a> {
             Recheck::with(&certificate, prover.enclosed.clone(), set.clone(), &prover.slopes)
                 .ok()?;
         let rest = prover.rest(set).ok()?;
-        let fall = recheck.moving_fall(claim).ok()?;
+        let decrease = recheck.moving_decrease(claim).ok()?;
         let inputs = input_rows(&prover.model, fspid);
-        let corners = fall.corners(claim).ok()?;
+        let corners = decrease.corners(claim).ok()?;
         let reach = |corner: &crate::recheck::Corner| {
             let gains = corner.gains_middle();
             let moved = moved_inputs(&inputs, &prover.model.closed(gains));
@@ -86,7 +86,7 @@ impl<'a> Region<'a> {
         let reaches = corners.iter().map(reach).collect::<Option<Vec<Reach>>>()?;
         let scale = fspid.tuner().settings().output_scale;
         let scales = [scale.kp, scale.ki, scale.kd].map(|scale| (factor * scale).abs());
-        let allowed = fall.allowed(claim).into_iter();
+        let allowed = decrease.allowed(claim).into_iter();
         let allowed = allowed.filter(|(gain, _)| scales[*gain] > 0.0);
         let allowed = allowed.map(|(gain, most)| (gain, scales[gain], most.lower())).collect();
         Some(Self { tuner: fspid.tuner(), reaches, allowed })

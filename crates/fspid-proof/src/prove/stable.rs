@@ -1,4 +1,4 @@
-//! Forms that fall however fast the gains move, and forms that fall as the error ties the gains.
+//! Forms that decrease however fast the gains move, and forms that decrease as the error ties the gains.
 
 use fspid_core::{Fspid, Law};
 use fspid_lti::Matrix;
@@ -7,7 +7,7 @@ use super::Prover;
 use crate::certificate::{Certificate, Claim};
 use crate::gain_set::GainSet;
 use crate::recheck::{Rechecked, cone_form};
-use crate::solve::{self, Condition, Problem};
+use crate::solve::{self, Condition, LyapunovProblem};
 
 /// Corners may lie outside of those that are solved for by this share of half the set's extent: the form
 /// found lies inside of the set of forms, and the re-check asks all corners.
@@ -25,10 +25,10 @@ impl Prover<'_> {
         let matrices = self.matrices(&corners)?;
         let conditions: Vec<Condition<'_>> =
             matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-        let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let form = solution.p;
-            let level = self.level(&corners, (&form, &rest));
+            let level = self.level(&corners, &form, &rest);
             (Claim::CommonQuadratic { form, rate }, level)
         })
     }
@@ -66,10 +66,10 @@ impl Prover<'_> {
         }
         let conditions: Vec<Condition<'_>> =
             matrices.iter().map(|(cone, matrix)| Condition { matrix, cone: Some(*cone) }).collect();
-        let problem = Problem { conditions: &conditions, cones: &forms, rate: 1.0 };
+        let problem = LyapunovProblem { conditions: &conditions, cones: &forms, rate: 1.0 };
         self.settled(&problem, factor, best_rate, |solution, rate| {
             let solve::Solution { p: form, multipliers, .. } = solution;
-            let level = self.level(&corners, (&form, &rest));
+            let level = self.level(&corners, &form, &rest);
             (Claim::SProcedure { form, rate, multipliers }, level)
         })
     }
@@ -77,7 +77,7 @@ impl Prover<'_> {
     /// Solves, and re-checks what was found: at the best rate first, then for stability alone.
     pub(super) fn settled(
         &self,
-        problem: &Problem<'_>,
+        problem: &LyapunovProblem<'_>,
         factor: f64,
         best_rate: bool,
         claim: impl Fn(solve::Solution, f64) -> (Claim, Option<f64>),

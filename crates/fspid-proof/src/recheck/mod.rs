@@ -3,8 +3,6 @@
 mod moving;
 mod remains;
 
-use core::fmt;
-
 use fspid_core::{Change, Fspid, Gains, Law};
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::{Base, Interval};
@@ -12,7 +10,7 @@ use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
-use crate::check::{IntervalMatrix, NotProved, decreases, is_positive, prove_growth};
+use crate::check::{IntervalMatrix, NotProved, Relaxation, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
@@ -43,7 +41,7 @@ pub struct Rechecked {
     pub any_load: bool,
     /// How far rest may be from the set-point, rad: without an integral an error stays.
     pub rest_error_rad: f64,
-    /// How far from rest the pitch angle may stay, rad; 0 where every deviation falls for ever.
+    /// How far from rest the pitch angle may stay, rad; 0 where every deviation decreases for ever.
     pub remains_rad: f64,
 }
 
@@ -66,11 +64,13 @@ struct Proved {
 }
 
 /// Why a certificate is not believed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecheckError {
     /// The loop is not one that a proof can speak of.
-    NotProvable(NotProvable),
+    #[error(transparent)]
+    NotProvable(#[from] NotProvable),
     /// An inequality does not hold, or not with certainty.
+    #[error("{}{reason}", at(.gains))]
     Inequality {
         /// Which gains; none where the inequality is not about gains.
         gains: Option<Gains<f64>>,
@@ -78,63 +78,36 @@ pub enum RecheckError {
         reason: NotProved,
     },
     /// The certificate is too large, or its parts do not fit the loop; nothing was computed.
+    #[error("{0}")]
     Sizes(WrongSizes),
     /// Nothing is known of rest for these set-points and loads.
-    Rest(NoRest),
+    #[error(transparent)]
+    Rest(#[from] NoRest),
     /// Nothing bounds what the gains make of the command that holds set-points and loads.
-    Held(NoSlopes),
+    #[error(
+        "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {0}"
+    )]
+    Held(#[from] NoSlopes),
     /// Every inequality holds, and what they leave is no statement about the flight.
+    #[error("{0}")]
     Remains(Remains),
     /// The certificate does not fit together.
+    #[error("{what}")]
     Malformed {
         /// What is wrong.
         what: &'static str,
     },
 }
 
-impl fmt::Display for RecheckError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotProvable(reason) => reason.fmt(f),
-            Self::Inequality { gains: Some(gains), reason } => {
-                write!(f, "at kp {:?}, ki {:?}, kd {:?}: {reason}", gains.kp, gains.ki, gains.kd)
-            }
-            Self::Inequality { gains: None, reason } => reason.fmt(f),
-            Self::Sizes(wrong) => wrong.fmt(f),
-            Self::Rest(reason) => reason.fmt(f),
-            Self::Held(reason) => write!(
-                f,
-                "gains that move make something of the command that holds a set-point or a load, and nothing bounds it: {reason}"
-            ),
-            Self::Remains(remains) => remains.fmt(f),
-            Self::Malformed { what } => f.write_str(what),
-        }
-    }
+/// At which gains, if at some.
+fn at(gains: &Option<Gains<f64>>) -> String {
+    let words = |Gains { kp, ki, kd }| format!("at kp {kp:?}, ki {ki:?}, kd {kd:?}: ");
+    gains.map_or_else(String::new, words)
 }
-
-impl core::error::Error for RecheckError {}
 
 impl From<WrongSizes> for RecheckError {
     fn from(wrong: WrongSizes) -> Self {
         Self::Sizes(wrong)
-    }
-}
-
-impl From<NotProvable> for RecheckError {
-    fn from(reason: NotProvable) -> Self {
-        Self::NotProvable(reason)
-    }
-}
-
-impl From<NoRest> for RecheckError {
-    fn from(reason: NoRest) -> Self {
-        Self::Rest(reason)
-    }
-}
-
-impl From<NoSlopes> for RecheckError {
-    fn from(reason: NoSlopes) -> Self {
-        Self::Held(reason)
     }
 }
 
@@ -255,18 +228,18 @@ impl<'a> Recheck<'a> {
         match &self.certificate.claim {
             Claim::CommonQuadratic { form, rate } => {
                 let proved = self.common_quadratic(form, *rate)?;
-                self.with_pitch(proved, (form, *rate))
+                self.with_pitch(proved, form, *rate)
             }
             Claim::SProcedure { form, rate, multipliers } => {
                 let proved = self.s_procedure(form, *rate, multipliers)?;
-                self.with_pitch(proved, (form, *rate))
+                self.with_pitch(proved, form, *rate)
             }
             Claim::BoundedRate(claim) => self.bounded_rate(claim),
             Claim::FrozenGrowth { input, factor, form, direction } => {
-                self.growth(&[*input], *factor, (form, direction)).map(only)
+                self.growth(&[*input], *factor, form, direction).map(only)
             }
             Claim::SequenceGrowth { inputs, factor, form, direction } => {
-                self.growth(inputs, *factor, (form, direction)).map(only)
+                self.growth(inputs, *factor, form, direction).map(only)
             }
         }
     }
@@ -274,7 +247,8 @@ impl<'a> Recheck<'a> {
     fn with_pitch(
         &self,
         inequalities: usize,
-        (form, rate): (&Matrix, f64),
+        form: &Matrix,
+        rate: f64,
     ) -> Result<Proved, RecheckError> {
         let level = self.certificate.level;
         let within = |level| limits::pitch_within(&self.model, form, level);
@@ -297,26 +271,27 @@ impl<'a> Recheck<'a> {
         Ok(is_positive(form)?)
     }
 
-    /// Proves at gains that the form falls, and that no limit acts within the level.
+    /// Proves at gains that the form decreases, and that no limit acts within the level.
     fn holds(
         &self,
         HeldGains { gains, change_gain }: HeldGains,
-        (form, rate): (&Matrix, f64),
-        region: Option<(f64, &IntervalMatrix)>,
+        form: &Matrix,
+        rate: f64,
+        relaxation: Option<Relaxation<'_>>,
     ) -> Result<usize, RecheckError> {
         let doubt = |reason| RecheckError::Inequality { gains: Some(gains), reason };
         let at = points(gains);
         let model = self.model.with_change_gain(Interval::point(change_gain));
-        decreases(form, rate, &closed(&model, at)?, region).map_err(doubt)?;
+        decreases(form, rate, &closed(&model, at)?, relaxation).map_err(doubt)?;
         let Some(level) = self.certificate.level else { return Ok(1) };
         let description = &self.certificate.description;
-        let limits = limits::prove(description, &model, at, (form, level, &self.rest));
-        Ok(1 + limits.map_err(doubt)?)
+        let limits = limits::rows(description, &model, at, &self.rest);
+        Ok(1 + limits::prove(&limits, form, level).map_err(doubt)?)
     }
 
     fn common_quadratic(&self, form: &Matrix, rate: f64) -> Result<usize, RecheckError> {
         self.form(form, rate)?;
-        let holds = |(_, gains)| self.holds(gains, (form, rate), None);
+        let holds = |(_, gains)| self.holds(gains, form, rate, None);
         let proved = self.held.held_corners().map(holds).sum::<Result<usize, RecheckError>>()?;
         Ok(1 + proved)
     }
@@ -349,9 +324,10 @@ impl<'a> Recheck<'a> {
         let mut proved = 1;
         for (cone, tau) in self.set.cones(multipliers.len()).iter().zip(multipliers) {
             let region = cone_form(&self.model, fspid, cone);
+            let relaxation = Relaxation { weight: *tau, matrix: &region };
             let inside = corners.iter().filter(|(cell, _)| cone.cells.contains(cell));
             for (_, gains) in inside {
-                proved += self.holds(*gains, (form, rate), Some((*tau, &region)))?;
+                proved += self.holds(*gains, form, rate, Some(relaxation))?;
             }
         }
         Ok(proved)
@@ -362,7 +338,8 @@ impl<'a> Recheck<'a> {
         &self,
         inputs: &[[f64; 2]],
         factor: f64,
-        (form, direction): (&Matrix, &[f64]),
+        form: &Matrix,
+        direction: &[f64],
     ) -> Result<usize, RecheckError> {
         if !(factor >= 1.0 && factor.is_finite()) {
             return Err(malformed("the factor of the growth is below 1"));

@@ -106,8 +106,8 @@ impl GainBox {
 
 type Closed<'a> = dyn Fn([Interval; 3]) -> Result<IntervalMatrix, RecheckError> + 'a;
 
-/// A moving form that was proved to fall.
-pub(crate) struct Fall {
+/// A moving form that was proved to decrease.
+pub(crate) struct Decrease {
     gain_box: GainBox,
     proof: MovingProof,
 }
@@ -124,7 +124,7 @@ impl Corner {
     }
 }
 
-impl Fall {
+impl Decrease {
     /// The corners of all cells: what is affine in the gains and holds there holds for the whole set.
     pub(crate) fn corners(&self, claim: &BoundedRate) -> Result<Vec<Corner>, RecheckError> {
         let moving = &self.gain_box.moving;
@@ -179,15 +179,15 @@ impl Recheck<'_> {
         if self.is_blurred() {
             return Err(malformed("a claim about gains of bounded rate covers no resolution"));
         }
-        let fall = self.moving_fall(claim)?;
-        let mut proved = Proved { inequalities: fall.proof.inequalities, ..Proved::default() };
-        if self.keeps_everywhere(claim, &fall) {
+        let decrease = self.moving_decrease(claim)?;
+        let mut proved = Proved { inequalities: decrease.proof.inequalities, ..Proved::default() };
+        if self.keeps_everywhere(claim, &decrease) {
             proved.kept = Some(Kept::Everywhere);
         }
         let Some(level) = self.certificate.level else { return Ok(proved) };
-        let corners = fall.corners(claim)?;
+        let corners = decrease.corners(claim)?;
         if proved.kept.is_none() {
-            proved.inequalities += self.keeps_within(claim, &fall, &corners, level)?;
+            proved.inequalities += self.keeps_within(claim, &decrease, &corners, level)?;
             proved.kept = Some(Kept::WithinLevel);
         }
         if limits::not_covered(&self.certificate.description).is_none() {
@@ -198,8 +198,8 @@ impl Recheck<'_> {
         Ok(proved)
     }
 
-    /// Proves the fall for every gain of the set and every motion that is as slow as claimed.
-    pub(crate) fn moving_fall(&self, claim: &BoundedRate) -> Result<Fall, RecheckError> {
+    /// Proves the decrease for every gain of the set and every motion that is as slow as claimed.
+    pub(crate) fn moving_decrease(&self, claim: &BoundedRate) -> Result<Decrease, RecheckError> {
         allowed_rate(claim.rate)?;
         let size = self.model.size();
         if claim.forms.iter().any(|form| (form.rows(), form.columns()) != (size, size)) {
@@ -215,12 +215,12 @@ impl Recheck<'_> {
         let cells = gain_box.counted(&self.set);
         let proof = falls_while_moving(&moving, |cell| part_in(&cells, cell))
             .map_err(|failed| doubt(&gain_box, failed))?;
-        Ok(Fall { gain_box, proof })
+        Ok(Decrease { gain_box, proof })
     }
 
     /// Whether the law itself keeps the gains to the rate, whatever the flight.
-    fn keeps_everywhere(&self, claim: &BoundedRate, fall: &Fall) -> bool {
-        let allowed = fall.allowed(claim);
+    fn keeps_everywhere(&self, claim: &BoundedRate, decrease: &Decrease) -> bool {
+        let allowed = decrease.allowed(claim);
         let dt_s = Interval::point(self.model.settings().config.dt_s);
         let Some(rates) = self.set.rate_per_s else { return allowed.is_empty() };
         let keeps = |&(gain, most): &(usize, Interval)| {
@@ -230,14 +230,14 @@ impl Recheck<'_> {
     }
 
     /// Proves that gains tied to error and change keep to the rate as long as $z^T P(\kappa) z$ is within
-    /// a level, which as it falls is for ever.
+    /// a level, which as it decreases is for ever.
     ///
     /// With the rows $r_x$ of the supervisor's inputs, they move by $r_x (M(\kappa) - I) z$ in a sample, and
     /// each gain by no more than its slopes times that.
     fn keeps_within(
         &self,
         claim: &BoundedRate,
-        fall: &Fall,
+        decrease: &Decrease,
         corners: &[Corner],
         level: f64,
     ) -> Result<usize, RecheckError> {
@@ -252,7 +252,7 @@ impl Recheck<'_> {
         let factor = Interval::point(self.certificate.output_factor);
         let scales = fspid.tuner().settings().output_scale;
         let scales = [scales.kp, scales.ki, scales.kd].map(|s| factor * Interval::point(s.abs()));
-        let allowed: Vec<(usize, f64)> = fall
+        let allowed: Vec<(usize, f64)> = decrease
             .allowed(claim)
             .into_iter()
             .filter(|(gain, _)| scales[*gain].upper() > 0.0)

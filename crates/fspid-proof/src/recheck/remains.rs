@@ -175,7 +175,7 @@ impl Ripple {
     /// A bound of $\sum_\ell |c M^\ell b|$, with c for the pitch angle.
     ///
     /// The states $x_\ell \approx M^\ell b$ are computed in ordinary arithmetic. What that leaves, $M x_\ell -
-    /// x_{\ell + 1}$, is enclosed, and the form falls along with it; so it does along with all later samples.
+    /// x_{\ell + 1}$, is enclosed, and the form decreases along with it; so it does along with all later samples.
     fn of(&self, entry: &[Interval]) -> Result<Interval, NotProved> {
         let mut state: Vec<f64> = entry.iter().map(|value| value.midpoint()).collect();
         let mut off = self.norm.of(&beside(entry, &state))?;

@@ -1,4 +1,4 @@
-//! Whether a moving form falls everywhere in a box of gains, from finitely many matrices.
+//! Whether a moving form decreases everywhere in a box of gains, from finitely many matrices.
 //!
 //! In a cell $\kappa = c + \sum_j s_j h_j e_j$, $s \in [-1, 1]^g$, the difference is a polynomial of degree 3 in
 //! each $s_j$,
@@ -23,11 +23,11 @@ const FROM_POWERS: [[f64; POWERS]; POWERS] = [
     [1.0, 1.0 / 3.0, -1.0 / 3.0, -1.0],
     [1.0, 1.0, 1.0, 1.0],
 ];
-/// A cell that is no wider, in half widths of the box, counts as one where the form does not fall.
+/// A cell that is no wider, in half widths of the box, counts as one where the form does not decrease.
 const NARROWEST: f64 = 1.0 / 16.0;
 /// Cells looked at before giving up.
 const CELLS_MAX: usize = 3000;
-/// Places reported where the form does not fall.
+/// Places reported where the form does not decrease.
 const FAILURES_MAX: usize = 32;
 
 /// Where the gains may be one sample later.
@@ -74,7 +74,7 @@ impl Motion {
 pub(super) struct Survey {
     /// Cells that were needed, or looked at.
     pub(super) cells: usize,
-    /// Gains and motions where the form does not fall, or may not; empty when it falls everywhere.
+    /// Gains and motions where the form does not decrease, or may not; empty when it decreases everywhere.
     pub(super) failures: Vec<(Vec<f64>, Motion)>,
 }
 
@@ -183,10 +183,10 @@ impl<'a> Products<'a> {
 
     /// Whether the difference is positive definite at the centre of the cell.
     fn falls_at_centre(&self, motion: &Motion, level: f64) -> bool {
-        let mut fall = combination(self.forms, &self.cell.centre).scaled(level);
+        let mut decrease = combination(self.forms, &self.cell.centre).scaled(level);
         let after = combination(&self.triples[0][0], &motion.next(&self.cell.centre));
-        fall.add(-1.0, &after);
-        fall.cholesky().is_some()
+        decrease.add(-1.0, &after);
+        decrease.cholesky().is_some()
     }
 
     /// Whether all Bernstein coefficients of the difference are positive definite.

@@ -46,9 +46,9 @@ pub(super) trait Chart {
 /// How low the level should go.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Goal {
-    /// This level, then as well inside as possible.
+    /// Down to this level, and then to the centre of the set, where rounding harms least.
     Below(f64),
-    /// As low as possible, then a little back.
+    /// As low as possible, then a little back up, where the inequalities hold with room for rounding.
     Lowest,
 }
 

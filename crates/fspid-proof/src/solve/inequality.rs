@@ -6,7 +6,7 @@
 //! $$ F_i(x) = \sum_f s_f U_f \Bigl( \sum_j w_{fj} X_j \Bigr) U_f^T + \sum_g \tau_g A_g \succ 0 $$
 //!
 //! with symmetric $X_j$, all of one size, and numbers $\tau_g$ as unknowns. The factor $s_f$ is the level
-//! $\lambda = \rho^2$ for a rated term and 1 otherwise: the level says how fast the form must fall.
+//! $\lambda = \rho^2$ for a rated term and 1 otherwise: the level says how fast the form must decrease.
 
 use core::ops::Range;
 
@@ -75,7 +75,7 @@ impl Inequality {
     }
 
     /// $\lambda \sum_j w_j X_j - M^T \bigl( \sum_j v_j X_j \bigr) M \succ 0$.
-    pub(super) fn fall(matrix: &Dense, now: Weights, next: &[(usize, f64)]) -> Self {
+    pub(super) fn decrease(matrix: &Dense, now: Weights, next: &[(usize, f64)]) -> Self {
         let negative = next.iter().map(|&(unknown, weight)| (unknown, -weight)).collect();
         let after = Factor::Matrix(matrix.transpose());
         let forms = vec![

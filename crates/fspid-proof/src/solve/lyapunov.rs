@@ -1,4 +1,4 @@
-//! One quadratic form that falls under every matrix of a set.
+//! One quadratic form that decreases under every matrix of a set.
 
 use fspid_lti::{Matrix, spectral_radius};
 use fspid_numeric::matrix::balance;
@@ -17,12 +17,12 @@ const START_LOSS: f64 = 1.01;
 /// First multiplier of a cone, beside the form.
 const START_MULTIPLIER: f64 = 0.01;
 
-/// A matrix under which the form must fall, everywhere or inside a cone.
+/// A matrix under which the form must decrease, everywhere or inside a cone.
 #[derive(Debug, Clone, Copy)]
 pub struct Condition<'a> {
     /// One sample of the loop: $x_{k+1} = M x_k$.
     pub matrix: &'a Matrix,
-    /// Number of the cone in which the fall is asked for; `None` for everywhere.
+    /// Number of the cone in which the decrease is asked for; `None` for everywhere.
     pub cone: Option<usize>,
 }
 
@@ -30,10 +30,10 @@ pub struct Condition<'a> {
 ///
 /// $$ P \succ 0, \quad \tau_g > 0, \quad \rho^2 P - M_i^T P M_i - \tau_{g(i)} Q_{g(i)} \succ 0 $$
 ///
-/// A cone is the set of x with $x^T Q_g x \ge 0$; there the form falls by $\rho^2$ at least. All conditions
+/// A cone is the set of x with $x^T Q_g x \ge 0$; there the form decreases by $\rho^2$ at least. All conditions
 /// of one cone share its multiplier.
 #[derive(Debug, Clone, Copy)]
-pub struct Problem<'a> {
+pub struct LyapunovProblem<'a> {
     /// Matrices, each with its cone.
     pub conditions: &'a [Condition<'a>],
     /// Symmetric matrices $Q_g$ of the cones.
@@ -77,11 +77,11 @@ pub struct BestRate {
     pub solution: Solution,
 }
 
-/// Looks for a form that falls under all conditions at the problem's rate.
+/// Looks for a form that decreases under all conditions at the problem's rate.
 ///
 /// The form returned lies inside the set of all such forms, near its analytic centre and not on its edge.
 #[must_use]
-pub fn common_lyapunov(problem: &Problem, effort: &Effort) -> Verdict {
+pub fn common_lyapunov(problem: &LyapunovProblem, effort: &Effort) -> Verdict {
     let missing = Verdict::NotFound { best_margin: f64::NEG_INFINITY };
     let level = problem.rate * problem.rate;
     let Some(mut search) = Search::start(problem) else { return missing };
@@ -93,12 +93,12 @@ pub fn common_lyapunov(problem: &Problem, effort: &Effort) -> Verdict {
     }
 }
 
-/// Looks for the fastest fall that one form can show, whatever rate the problem names.
+/// Looks for the fastest decrease that one form can show, whatever rate the problem names.
 ///
-/// The rate may come out above 1: then no form was found that falls at all. `None` for a problem that is
+/// The rate may come out above 1: then no form was found that decreases at all. `None` for a problem that is
 /// empty, or whose matrices do not fit each other or are not finite.
 #[must_use]
-pub fn best_rate(problem: &Problem, effort: &Effort) -> Option<BestRate> {
+pub fn best_rate(problem: &LyapunovProblem, effort: &Effort) -> Option<BestRate> {
     let mut search = Search::start(problem)?;
     let descent = descend(&mut search, Goal::Lowest, effort.newton_steps)?;
     let level = settled_level(descent);
@@ -112,11 +112,11 @@ fn settled_level(descent: Descent) -> f64 {
     descent.bound + (0.05 * decay).max(1e3 * MARGIN_MIN)
 }
 
-/// The form the search ended with, whether it falls or not; for the search for growth.
+/// The form the search ended with, whether it decreases or not; for the search for growth.
 pub(super) fn closest_form(matrices: &[Matrix], effort: &Effort) -> Option<Dense> {
     let conditions: Vec<Condition> =
         matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-    let problem = Problem { conditions: &conditions, cones: &[], rate: 1.0 };
+    let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
     let mut search = Search::start(&problem)?;
     descend(&mut search, Goal::Below(1.0), effort.newton_steps)?;
     Some(search.form())
@@ -134,7 +134,7 @@ struct Search {
 
 impl Search {
     /// `None` when the problem is empty or does not fit together.
-    fn start(problem: &Problem) -> Option<Self> {
+    fn start(problem: &LyapunovProblem) -> Option<Self> {
         let matrices: Vec<Dense> =
             problem.conditions.iter().map(|condition| Dense::from(condition.matrix)).collect();
         let cones: Vec<Dense> =
@@ -171,7 +171,7 @@ impl Search {
         self.scaled_form().0
     }
 
-    fn solution(&self, problem: &Problem, level: f64, steps: usize) -> Option<Solution> {
+    fn solution(&self, problem: &LyapunovProblem, level: f64, steps: usize) -> Option<Solution> {
         let (p, size) = self.scaled_form();
         let multipliers: Vec<f64> = self.multipliers.iter().map(|value| value / size).collect();
         let margin = margin(&p, &multipliers, problem, level)?;
@@ -180,24 +180,24 @@ impl Search {
 }
 
 /// Smallest eigenvalue of all differences relative to P, from the numbers that are handed out.
-fn margin(p: &Dense, multipliers: &[f64], problem: &Problem, level: f64) -> Option<f64> {
+fn margin(p: &Dense, multipliers: &[f64], problem: &LyapunovProblem, level: f64) -> Option<f64> {
     let lower = p.cholesky()?;
     let (inverse, upper) = (lower.lower_inverse().transpose(), lower.transpose());
     let mut least = f64::INFINITY;
     for condition in problem.conditions {
         let matrix = upper.times(&Dense::from(condition.matrix)).times(&inverse);
-        let mut fall = Dense::identity(p.rows).scaled(level);
-        fall.add(-1.0, &matrix.transpose_times(&matrix));
+        let mut decrease = Dense::identity(p.rows).scaled(level);
+        decrease.add(-1.0, &matrix.transpose_times(&matrix));
         if let Some(group) = condition.cone {
             let cone = Dense::from(problem.cones.get(group)?).symmetric();
-            fall.add(-*multipliers.get(group)?, &cone.congruence(&inverse));
+            decrease.add(-*multipliers.get(group)?, &cone.congruence(&inverse));
         }
-        least = least.min(Spectrum::of(&fall).smallest());
+        least = least.min(Spectrum::of(&decrease).smallest());
     }
     Some(least)
 }
 
-/// Coordinates in which the form is the identity that the mean of the matrices makes fall.
+/// Coordinates in which the form is the identity that the mean of the matrices makes decrease.
 fn starting_coordinates(matrices: &[Dense]) -> Option<(Dense, Dense)> {
     let size = matrices.first()?.rows;
     let scales = balancing_scales(matrices);
@@ -250,10 +250,10 @@ impl Chart for Search {
         inequalities.extend((0..self.cones.len()).map(positive_multiplier));
         for (matrix, group) in self.matrices.iter().zip(&self.groups) {
             let matrix = self.inverse.times(matrix).times(&self.transform);
-            let mut fall = Inequality::fall(&matrix, only(), &only());
+            let mut decrease = Inequality::decrease(&matrix, only(), &only());
             let cone = |group: usize| self.cones[group].congruence(&self.transform).scaled(-1.0);
-            fall.multipliers = group.map(|group| (group, cone(group))).into_iter().collect();
-            inequalities.push(fall);
+            decrease.multipliers = group.map(|group| (group, cone(group))).into_iter().collect();
+            inequalities.push(decrease);
         }
         let multiplicity = self.matrices.len() as f64;
         System {

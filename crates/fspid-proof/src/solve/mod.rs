@@ -24,7 +24,9 @@ pub use cells::Part;
 pub use gain_family::GainFamily;
 pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};
-pub use lyapunov::{BestRate, Condition, Problem, Solution, Verdict, best_rate, common_lyapunov};
+pub use lyapunov::{
+    BestRate, Condition, LyapunovProblem, Solution, Verdict, best_rate, common_lyapunov,
+};
 pub use parameter_dependent::{
     MovingForm, MovingProblem, MovingVerdict, moving_form, moving_form_over,
 };

@@ -16,7 +16,7 @@
 //! $\kappa$: the corners of the box say nothing about its inside. What is enough is a partition of the box
 //! into cells in each of which all Bernstein coefficients of F are positive definite: $4^g$ matrices per
 //! cell and motion. The search ends with such a partition in rounded arithmetic and says how many cells it took.
-//! Then $V = x^T P(\kappa) x$ falls by the factor $\rho^2$ at least in every sample. The gains one sample later may lie
+//! Then $V = x^T P(\kappa) x$ decreases by the factor $\rho^2$ at least in every sample. The gains one sample later may lie
 //! outside the box by $d_j$ in this condition; that asks for a little more than needed.
 //!
 //! A slack matrix G makes the condition affine in the gains (M. C. de Oliveira, J. Bernussou and J. C. Geromel,
@@ -39,7 +39,7 @@ use super::symmetric::{Spectrum, pack, packed_len, unpack};
 
 /// Smallest margin that counts: below it rounding in the differences decides.
 const MARGIN_MIN: f64 = 1e-12;
-/// Times that conditions are added where the form was seen not to fall.
+/// Times that conditions are added where the form was seen not to decrease.
 const ROUNDS_MAX: usize = 10;
 
 /// A moving form that was found. Nothing here is proved: the numbers are rounded.
@@ -50,7 +50,7 @@ pub struct MovingForm {
     /// Smallest eigenvalue of the differences at the gains looked at, in coordinates in which $P(\kappa)$ is
     /// the identity.
     pub margin: f64,
-    /// Cells of the box of gains that were enough to see the form fall in all of it.
+    /// Cells of the box of gains that were enough to see the form decrease in all of it.
     pub cells: usize,
     /// Newton steps taken.
     pub steps: usize,
@@ -59,7 +59,7 @@ pub struct MovingForm {
 /// Whether a moving form was found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MovingVerdict {
-    /// The form falls in the whole box, as far as rounded arithmetic can tell.
+    /// The form decreases in the whole box, as far as rounded arithmetic can tell.
     Found(MovingForm),
     /// The search ended without one, which proves nothing.
     NotFound {
@@ -69,7 +69,7 @@ pub enum MovingVerdict {
     },
 }
 
-/// What is asked for: a form that moves with the gains and whose root falls by the factor `rate` in every
+/// What is asked for: a form that moves with the gains and whose root decreases by the factor `rate` in every
 /// sample.
 #[derive(Clone, Copy)]
 pub struct MovingProblem<'a> {
@@ -132,7 +132,7 @@ pub fn moving_form_over(problem: &MovingProblem<'_>, effort: &Effort) -> MovingV
 struct Search {
     family: GainFamily,
     motions: Vec<Motion>,
-    /// Gains and motions at which the form must fall.
+    /// Gains and motions at which the form must decrease.
     places: Vec<(Vec<f64>, Motion)>,
     transform: Dense,
     inverse: Dense,
@@ -182,7 +182,7 @@ impl Search {
         let forms: Vec<Dense> = self.forms.iter().map(back).collect();
         let mut margin = f64::INFINITY;
         for (now, motion) in &self.places {
-            margin = margin.min(margin_at(&self.family, &forms, (now, motion), level)?);
+            margin = margin.min(margin_at(&self.family, &forms, now, motion, level)?);
         }
         let forms = forms.iter().map(Dense::to_matrix).collect::<Option<_>>()?;
         Some(MovingForm { forms, margin, cells, steps })
@@ -199,15 +199,16 @@ fn mean(points: &[Vec<f64>]) -> Vec<f64> {
 fn margin_at(
     family: &GainFamily,
     forms: &[Dense],
-    (now, motion): (&[f64], &Motion),
+    now: &[f64],
+    motion: &Motion,
     level: f64,
 ) -> Option<f64> {
     let lower = combination(forms, now).cholesky()?;
     let inverse = lower.lower_inverse().transpose();
     let after = combination(forms, &motion.next(now)).congruence(&family.at(now));
-    let mut fall = Dense::identity(lower.rows).scaled(level);
-    fall.add(-1.0, &after.congruence(&inverse));
-    Some(Spectrum::of(&fall).smallest())
+    let mut decrease = Dense::identity(lower.rows).scaled(level);
+    decrease.add(-1.0, &after.congruence(&inverse));
+    Some(Spectrum::of(&decrease).smallest())
 }
 
 /// 1 for the form at rest and the gain for each of those that move.
@@ -227,7 +228,7 @@ impl Chart for Search {
                 inequalities.push(Inequality::positive(size, weights(now)));
             }
             let next = weights(&motion.next(now));
-            inequalities.push(Inequality::fall(&family.at(now), weights(now), &next));
+            inequalities.push(Inequality::decrease(&family.at(now), weights(now), &next));
             measures.push(Measure { weights: weights(now), multiplicity: 1.0 });
         }
         System { size, matrices: gains + 1, multipliers: 0, inequalities, measures }

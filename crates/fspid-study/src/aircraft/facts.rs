@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 
-use fspid_diagnostics::lines::line;
 use fspid_scenario::aircraft::number::{short, significant};
 use fspid_scenario::aircraft::units::{Kind, Units};
 
@@ -56,7 +55,7 @@ impl Facts {
         let mut out = String::new();
         for fact in &self.0 {
             let (name, value) = (&fact.name, fact.told(units));
-            line(&mut out, format_args!("  {name:width$}  {value}"));
+            out.push_str(&format!("  {name:width$}  {value}\n"));
         }
         out
     }

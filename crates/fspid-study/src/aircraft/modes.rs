@@ -3,7 +3,7 @@
 use fspid_aircraft::data::{AircraftData, ModelData};
 use fspid_aircraft::{AircraftMode, Growth, VelocityForm, lateral_modes, longitudinal_modes};
 use fspid_lti::{Complex, Mode, StateSpace, modulus};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::condition::Question;
 use super::table::table;
@@ -200,12 +200,12 @@ impl Modes {
     #[must_use]
     pub fn json(&self) -> Value {
         let list = |motions: &[Motion]| motions.iter().map(Motion::json).collect::<Vec<_>>();
-        let mut whole = Map::new();
-        whole.insert("aircraft".to_owned(), json!(self.data.name));
-        whole.insert("units".to_owned(), json!(self.units.name()));
-        whole.insert("trim".to_owned(), json!(self.trimmed.as_ref().map(Trimmed::json)));
-        whole.insert("longitudinal".to_owned(), json!(list(&self.longitudinal)));
-        whole.insert("lateral".to_owned(), json!(list(&self.lateral)));
-        Value::Object(whole)
+        json!({
+            "aircraft": self.data.name,
+            "units": self.units.name(),
+            "trim": self.trimmed.as_ref().map(Trimmed::json),
+            "longitudinal": list(&self.longitudinal),
+            "lateral": list(&self.lateral),
+        })
     }
 }

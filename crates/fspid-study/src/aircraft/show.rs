@@ -13,6 +13,7 @@ use super::list::kind;
 use super::load::load;
 use super::table::table;
 use super::{Question, polynomial, tables};
+use crate::json::{merged, present};
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::number::short;
 use fspid_scenario::aircraft::units::{Kind, Units};
@@ -203,29 +204,33 @@ impl Show {
     /// The aircraft for programs.
     #[must_use]
     pub fn json(&self) -> Value {
+        let units = self.units;
         let AircraftData { name, title, source, notes, model } = &self.data;
-        let mut whole = json!({
-            "name": name, "title": title, "source": source, "notes": notes,
-            "known_by": kind(model), "units": self.units.name(),
-        });
-        if let ModelData::Derivatives(data) = model {
-            whole["reference"] = reference(data).json(self.units);
-            whole["body"] = body(data).json(self.units);
-            whole["coefficients"] = coefficients_json(data);
-            whole["validity"] = validity(FROM_REFERENCE, &data.validity).json(self.units);
-            whole["travel"] = travel(AT_REFERENCE, &data.travel).json(self.units);
-        }
-        if let ModelData::Forces(data) = &self.data.model {
-            tables::json(data, self.units, &mut whole);
-        }
-        if let ModelData::Linear(data) = &self.data.model {
-            whole["condition"] = condition(data).json(self.units);
-            whole["elevator_sign"] = json!(format!("nose-{}-positive", positive_elevator(data)));
-        }
-        if let Some(linear) = &self.linear {
-            whole["longitudinal"] = linear.longitudinal.json(self.units);
-            whole["theta_over_elevator"] = polynomial::json(&linear.plant);
-        }
-        whole
+        let of_model = match model {
+            ModelData::Derivatives(data) => json!({
+                "reference": reference(data).json(units),
+                "body": body(data).json(units),
+                "coefficients": coefficients_json(data),
+                "validity": validity(FROM_REFERENCE, &data.validity).json(units),
+                "travel": travel(AT_REFERENCE, &data.travel).json(units),
+            }),
+            ModelData::Forces(data) => tables::json(data, units),
+            ModelData::Linear(data) => json!({
+                "condition": condition(data).json(units),
+                "elevator_sign": format!("nose-{}-positive", positive_elevator(data)),
+            }),
+        };
+        let linear = self.linear.as_ref();
+        merged([
+            json!({
+                "name": name, "title": title, "source": source, "notes": notes,
+                "known_by": kind(model), "units": units.name(),
+            }),
+            of_model,
+            present(json!({
+                "longitudinal": linear.map(|linear| linear.longitudinal.json(units)),
+                "theta_over_elevator": linear.map(|linear| polynomial::json(&linear.plant)),
+            })),
+        ])
     }
 }

@@ -1,29 +1,20 @@
 //! Columns under headings: words to the left, numbers to the right.
 
-use fspid_diagnostics::lines::line;
+use fspid_page::columns::{Align, Columns};
 
 /// A table for a terminal; the first column is text, and so is any with a word in it.
 pub(super) fn table(headings: &[&str], rows: &[Vec<String>]) -> String {
-    let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
-    let width = |column: usize| {
-        let cells = rows.iter().map(|row| cell(row, column).chars().count());
-        cells.chain([headings.get(column).map_or(0, |h| h.chars().count())]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..headings.len()).map(width).collect();
-    let is_text = |column: usize| {
+    let align = |column: usize| {
         let begins = |row: &Vec<String>| row.get(column)?.chars().next();
-        column == 0 || rows.iter().filter_map(begins).any(char::is_alphabetic)
+        match column == 0 || rows.iter().filter_map(begins).any(char::is_alphabetic) {
+            true => Align::Left,
+            false => Align::Right,
+        }
     };
-    let headings: Vec<String> = headings.iter().map(|&heading| heading.to_owned()).collect();
-    let mut out = String::new();
-    for row in std::iter::once(&headings).chain(rows) {
-        let cells = widths.iter().enumerate().map(|(column, &width)| match is_text(column) {
-            true => format!("{:width$}", cell(row, column)),
-            false => format!("{:>width$}", cell(row, column)),
-        });
-        line(&mut out, format_args!("  {}", cells.collect::<Vec<_>>().join("  ").trim_end()));
-    }
-    out
+    let headings = headings.iter().enumerate().map(|(column, text)| (*text, align(column)));
+    let mut columns = Columns::new(&headings.collect::<Vec<_>>());
+    rows.iter().for_each(|row| columns.row(row.clone()));
+    columns.to_string()
 }
 
 /// Width of a paragraph in characters.

@@ -1,7 +1,7 @@
 //! What is known about an aircraft that is made of tables.
 
 use fspid_aircraft::data::ForceData;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::facts::Facts;
 use super::limits::{travel, validity};
@@ -37,10 +37,8 @@ pub(super) fn text(data: &ForceData, units: Units) -> String {
     format!("body\n{body}\nwhat the tables cover\n{validity}\nhow far the controls go\n{travel}")
 }
 
-/// Adds the aircraft for programs; a limit that is not known is null.
-pub(super) fn json(data: &ForceData, units: Units, whole: &mut Value) {
+/// The aircraft for programs; a limit that is not known is null.
+pub(super) fn json(data: &ForceData, units: Units) -> Value {
     let [validity, travel] = limits(data).map(|facts| facts.json(units));
-    whole["body"] = body(data).json(units);
-    whole["validity"] = validity;
-    whole["travel"] = travel;
+    json!({ "body": body(data).json(units), "validity": validity, "travel": travel })
 }

@@ -87,15 +87,14 @@ impl AnalysedLoop {
         }
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
-            let found =
-                PlantLoop::of(scenario, (*from_s, plant), controller, (gains, question.point))?;
+            let found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
             let map = match controller {
                 Controller::SelfTuning(fspid) if question.map_points > 0 => {
                     FrozenMap::of(scenario, plant, fspid, question)?
                 }
                 _ => None,
             };
-            plants.push(PlantLoop { map, ..found });
+            plants.push(PlantLoop { from_s: *from_s, map, ..found });
         }
         Ok(Self { name, equilibrium, plants, absent: None, flights })
     }
@@ -157,7 +156,8 @@ impl RestLoop {
     /// The loops of a rest, one for each side of its kinks.
     fn all(
         scenario: &Scenario,
-        (plant, rest): (&LinearPlant, &Rest),
+        plant: &LinearPlant,
+        rest: &Rest,
         controller: &Controller,
         point: BreakPoint,
     ) -> Result<Vec<Self>, SimError> {
@@ -169,7 +169,7 @@ impl RestLoop {
         let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
         for side in &mut sides {
             if let Err(reason) = side.margins {
-                side.margins = Err(of_all_sides(reason, scenario, (plant, rest), controller)?);
+                side.margins = Err(of_all_sides(reason, scenario, plant, rest, controller)?);
             }
         }
         Ok(sides)
@@ -180,7 +180,8 @@ impl RestLoop {
 fn of_all_sides(
     reason: Absent,
     scenario: &Scenario,
-    (plant, rest): (&LinearPlant, &Rest),
+    plant: &LinearPlant,
+    rest: &Rest,
     controller: &Controller,
 ) -> Result<Absent, SimError> {
     let Absent::Unstable { .. } = reason else { return Ok(reason) };
@@ -192,15 +193,17 @@ fn of_all_sides(
 }
 
 impl PlantLoop {
+    /// The loop with a plant from the beginning on, without a map.
     fn of(
         scenario: &Scenario,
-        (from_s, plant): (f64, &LinearPlant),
+        plant: &LinearPlant,
         controller: &Controller,
-        (gains, point): (Gains<f64>, BreakPoint),
+        gains: Gains<f64>,
+        point: BreakPoint,
     ) -> Result<Self, SimError> {
         let mut found = Vec::new();
         for rest in Rest::all(scenario, plant, controller, gains) {
-            found.extend(RestLoop::all(scenario, (plant, &rest), controller, point)?);
+            found.extend(RestLoop::all(scenario, plant, &rest, controller, point)?);
         }
         found.sort_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)));
         let mut rests = found.into_iter();
@@ -211,7 +214,7 @@ impl PlantLoop {
                 (Ok(worst), Ok(other)) => Ok(worst.or_worse(&other)),
                 (reason @ Err(_), _) | (Ok(_), reason) => reason,
             });
-        Ok(Self { from_s, worst, others, margins, map: None })
+        Ok(Self { from_s: 0.0, worst, others, margins, map: None })
     }
 
     /// Every rest, the worst first.
@@ -281,7 +284,7 @@ pub(crate) fn held_at_rest(
     let held = plants.iter().map(|(from_s, plant)| {
         let mut worst: Option<Held> = None;
         for rest in Rest::all(scenario, plant, controller, gains) {
-            let verdict = verdict_of(scenario, (plant, &rest), controller)?;
+            let verdict = verdict_of(scenario, plant, &rest, controller)?;
             let found = Held { from_s: *from_s, at: rest.at, verdict };
             if worst.is_none_or(|worst| found.rank() < worst.rank()) {
                 worst = Some(found);
@@ -295,13 +298,14 @@ pub(crate) fn held_at_rest(
 /// Whether a rest is stable on all its sides.
 fn verdict_of(
     scenario: &Scenario,
-    (plant, rest): (&LinearPlant, &Rest),
+    plant: &LinearPlant,
+    rest: &Rest,
     controller: &Controller,
 ) -> Result<Result<(), Absent>, SimError> {
     for side in &rest.sides {
         let model = side.model(scenario, plant, controller)?;
         if let Err(reason) = verdict(&model.open(side.gains, BreakPoint::default())?)? {
-            return of_all_sides(reason, scenario, (plant, rest), controller).map(Err);
+            return of_all_sides(reason, scenario, plant, rest, controller).map(Err);
         }
     }
     Ok(Ok(()))

@@ -4,7 +4,6 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
 use crate::metrics::Absent;
-use fspid_diagnostics::lines::line;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 
@@ -19,13 +18,13 @@ impl Analysis {
         let names = self.loops.iter().map(|found| found.name.chars().count());
         let width = names.max().unwrap_or(0).max(10);
         for found in &self.loops {
-            line(&mut out, format_args!("\n{:width$}  {}", found.name, verdict(found)));
+            out.push_str(&format!("\n{:width$}  {}\n", found.name, verdict(found)));
             push_loop(&mut out, found);
         }
         if !self.left_out.is_empty() {
             out.push_str("\nNot in these numbers:\n");
             for sentence in &self.left_out {
-                line(&mut out, format_args!("  {sentence}"));
+                out.push_str(&format!("  {sentence}\n"));
             }
         }
         out
@@ -73,7 +72,7 @@ pub(crate) fn held_where_worst(plant: &PlantLoop) -> String {
 fn push_loop(out: &mut String, found: &AnalysedLoop) {
     for plant in &found.plants {
         if found.plants.len() > 1 {
-            line(out, format_args!("  plant from {} s on", crate::metrics::short(plant.from_s)));
+            out.push_str(&format!("  plant from {} s on\n", crate::metrics::short(plant.from_s)));
         }
         push_plant(out, plant);
         if let Some(map) = &plant.map {
@@ -81,7 +80,7 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
         }
     }
     for (label, sentence) in found.flights.iter().flat_map(Flights::lines) {
-        line(out, format_args!("  {label:17}  {sentence}"));
+        out.push_str(&format!("  {label:17}  {sentence}\n"));
     }
 }
 
@@ -89,31 +88,25 @@ fn push_plant(out: &mut String, plant: &PlantLoop) {
     match &plant.margins {
         Ok(margins) => push_margins(out, margins),
         Err(reason @ (Absent::Undecided { .. } | Absent::OneSide | Absent::NotProved { .. })) => {
-            line(out, format_args!("  no margins         {reason}"));
+            out.push_str(&format!("  no margins         {reason}\n"));
         }
         Err(_) => push_unstable(out, plant),
     }
     if !plant.others.is_empty() {
         let Gains { kp, .. } = plant.worst.gains;
         let held = held_in_words(plant.worst.at);
-        line(
-            out,
-            format_args!(
-                "  gain on the error  {kp:.4} {held}: kp, and what the held command changes by as kp moves"
-            ),
-        );
+        out.push_str(&format!(
+            "  gain on the error  {kp:.4} {held}: kp, and what the held command changes by as kp moves\n"
+        ));
     }
     let oscillating = plant.worst.closed_poles.iter().filter(|pole| pole.im > 0.0);
     let modes = oscillating.map(|pole| mode(*pole, plant.worst.open.dt_s()));
     let least = modes.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
     if let Some(mode) = least {
-        line(
-            out,
-            format_args!(
-                "  least damped mode  damping {:.3} at {:.3} rad/s",
-                mode.damping_ratio, mode.natural_frequency_rad_s
-            ),
-        );
+        out.push_str(&format!(
+            "  least damped mode  damping {:.3} at {:.3} rad/s\n",
+            mode.damping_ratio, mode.natural_frequency_rad_s
+        ));
     }
 }
 
@@ -130,16 +123,13 @@ fn push_unstable(out: &mut String, plant: &PlantLoop) {
     {
         let sign = if pole.im > 0.0 { format!(" ± {:.6}j", pole.im) } else { String::new() };
         let mode = mode(*pole, plant.worst.open.dt_s());
-        line(
-            out,
-            format_args!(
-                "  unstable pole      z = {:.6}{sign}, modulus {:.6}: {:.3} rad/s, damping {:.3}",
-                pole.re,
-                modulus(*pole),
-                mode.natural_frequency_rad_s,
-                mode.damping_ratio
-            ),
-        );
+        out.push_str(&format!(
+            "  unstable pole      z = {:.6}{sign}, modulus {:.6}: {:.3} rad/s, damping {:.3}\n",
+            pole.re,
+            modulus(*pole),
+            mode.natural_frequency_rad_s,
+            mode.damping_ratio
+        ));
     }
     out.push_str("  no margins         an unstable loop has none\n");
 }
@@ -147,49 +137,34 @@ fn push_unstable(out: &mut String, plant: &PlantLoop) {
 fn push_margins(out: &mut String, margins: &Margins) {
     let [low, high] = margins.gain_margin_db;
     let [low_at, high_at] = margins.phase_crossover_rad_s;
-    line(
-        out,
-        format_args!(
-            "  gain margin        {}; {}",
-            end(low, low_at, NO_LOWER_LIMIT),
-            end(high, high_at, NO_UPPER_LIMIT)
-        ),
-    );
+    out.push_str(&format!(
+        "  gain margin        {}; {}\n",
+        end(low, low_at, NO_LOWER_LIMIT),
+        end(high, high_at, NO_UPPER_LIMIT)
+    ));
     match margins.gain_crossover_rad_s {
-        Some(omega) => line(
-            out,
-            format_args!(
-                "  phase margin       {:.2} deg at {omega:.3} rad/s; delay margin {:.4} s",
-                margins.phase_margin_deg, margins.delay_margin_s
-            ),
-        ),
-        None => line(out, format_args!("  phase margin       without end: {NO_CROSSOVER}")),
+        Some(omega) => out.push_str(&format!(
+            "  phase margin       {:.2} deg at {omega:.3} rad/s; delay margin {:.4} s\n",
+            margins.phase_margin_deg, margins.delay_margin_s
+        )),
+        None => out.push_str(&format!("  phase margin       without end: {NO_CROSSOVER}\n")),
     }
     let [disk_low, disk_high] = margins.disk_gain_db;
-    line(
-        out,
-        format_args!(
-            "  disk margin        {:.4} at {:.3} rad/s: gain {disk_low:+.2} to {disk_high:+.2} dB, phase {:.2} deg",
-            margins.disk_margin, margins.disk_rad_s, margins.disk_phase_deg
-        ),
-    );
-    line(
-        out,
-        format_args!(
-            "  sensitivity        peak {:.4} at {:.3} rad/s; complementary peak {:.4}",
-            margins.sensitivity_peak, margins.sensitivity_peak_rad_s, margins.complementary_peak
-        ),
-    );
+    out.push_str(&format!(
+        "  disk margin        {:.4} at {:.3} rad/s: gain {disk_low:+.2} to {disk_high:+.2} dB, phase {:.2} deg\n",
+        margins.disk_margin, margins.disk_rad_s, margins.disk_phase_deg
+    ));
+    out.push_str(&format!(
+        "  sensitivity        peak {:.4} at {:.3} rad/s; complementary peak {:.4}\n",
+        margins.sensitivity_peak, margins.sensitivity_peak_rad_s, margins.complementary_peak
+    ));
     for (name, bracket) in margins.open_brackets() {
-        line(
-            out,
-            format_args!(
-                "  proved only        {} between {:.4} and {:.4}; the worse end stands above",
-                name.replace('_', " "),
-                bracket.at_least,
-                bracket.at_most
-            ),
-        );
+        out.push_str(&format!(
+            "  proved only        {} between {:.4} and {:.4}; the worse end stands above\n",
+            name.replace('_', " "),
+            bracket.at_least,
+            bracket.at_most
+        ));
     }
 }
 
@@ -209,23 +184,17 @@ fn push_map(out: &mut String, map: &FrozenMap) {
         triple(worst.gains)
     );
     match &worst.margins {
-        Ok(margins) => line(
-            out,
-            format_args!(
-                "  frozen gains       all {} hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}",
-                all_of(map),
-                margins.disk_margin,
-                margins.smaller_gain_margin_db(),
-                margins.phase_margin_deg
-            ),
-        ),
-        Err(reason) => line(
-            out,
-            format_args!(
-                "  frozen gains       {}; the worst: {reason}\n                     at {at}",
-                not_holding(map)
-            ),
-        ),
+        Ok(margins) => out.push_str(&format!(
+            "  frozen gains       all {} hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}\n",
+            all_of(map),
+            margins.disk_margin,
+            margins.smaller_gain_margin_db(),
+            margins.phase_margin_deg
+        )),
+        Err(reason) => out.push_str(&format!(
+            "  frozen gains       {}; the worst: {reason}\n                     at {at}\n",
+            not_holding(map)
+        )),
     }
 }
 

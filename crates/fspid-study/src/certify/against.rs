@@ -2,6 +2,7 @@
 
 use fspid_proof::{Asked, LoopDescription};
 use fspid_sim::SimError;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::asked;
@@ -27,7 +28,7 @@ pub struct Comparison {
 }
 
 /// A field that differs.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
     /// Its path in the certificate.
     pub path: String,

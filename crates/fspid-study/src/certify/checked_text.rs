@@ -7,7 +7,6 @@ use super::checked::{Answer, CheckedFile};
 use super::file::Seal;
 use super::scope::Told;
 use super::text::{push_claim, push_rechecked, range, refuted, sentence};
-use fspid_diagnostics::lines::line;
 
 impl CheckedFile {
     /// The answer of `certify --check`.
@@ -21,12 +20,12 @@ impl CheckedFile {
             sentence(certificate)
         );
         let dt_s = certificate.description.controller.config().dt_s;
-        push_claim(&mut out, (certificate, self.result.as_ref().ok()), dt_s);
+        push_claim(&mut out, certificate, self.result.as_ref().ok(), dt_s);
         if let Ok(rechecked) = &self.result {
             push_rechecked(&mut out, rechecked);
             push_kept(&mut out, certificate, rechecked);
             let [kp, ki, kd] = rechecked.bounds.map(range);
-            line(&mut out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
+            out.push_str(&format!("  gains              kp {kp}, ki {ki}, kd {kd}\n"));
             Told::of(certificate, rechecked).push(&mut out);
         }
         push_seal(&mut out, &self.seal);
@@ -44,10 +43,10 @@ impl CheckedFile {
                 Some(_) => out.push_str("HOLDS, AND IS WHAT FLIES\n"),
             },
             (Answer::Refutes(bearing), _) => {
-                line(out, format_args!("{}: {bearing}", refuted(bearing)));
+                out.push_str(&format!("{}: {bearing}\n", refuted(bearing)));
             }
             (Answer::SaysNothing(bearing), _) => {
-                line(out, format_args!("NO PROOF OF THE FLOWN LOOP: {bearing}"));
+                out.push_str(&format!("NO PROOF OF THE FLOWN LOOP: {bearing}\n"));
             }
             (Answer::Edited, _) => {
                 out.push_str("DOES NOT HOLD: the certificate is not as it was written\n");
@@ -58,7 +57,7 @@ impl CheckedFile {
                 );
             }
             (Answer::NotProved, Err(doubt)) => {
-                line(out, format_args!("DOES NOT HOLD: {doubt}"));
+                out.push_str(&format!("DOES NOT HOLD: {doubt}\n"));
             }
             (Answer::NotProved, Ok(_)) => out.push_str("DOES NOT HOLD\n"),
         }
@@ -75,7 +74,7 @@ fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked)
         Some(Kept::WithinLevel) => "in flights that begin near enough to rest",
         None => "not shown",
     };
-    line(out, format_args!("  law keeps to this  {kept}"));
+    out.push_str(&format!("  law keeps to this  {kept}\n"));
 }
 
 fn push_seal(out: &mut String, seal: &Seal) {
@@ -83,12 +82,9 @@ fn push_seal(out: &mut String, seal: &Seal) {
         Seal::Whole => {}
         Seal::Missing => out.push_str("  edited             it has no content_digest\n"),
         Seal::Broken { stated, content } => {
-            line(
-                out,
-                format_args!(
-                    "  edited             content_digest is {stated}, and its content gives {content}"
-                ),
-            );
+            out.push_str(&format!(
+                "  edited             content_digest is {stated}, and its content gives {content}\n"
+            ));
         }
     }
 }
@@ -96,22 +92,18 @@ fn push_seal(out: &mut String, seal: &Seal) {
 fn push_against(out: &mut String, against: &Comparison) {
     let Comparison { scenario, differences, other_text } = against;
     match differences.len() {
-        0 => line(
-            out,
-            format_args!("  against \"{scenario}\": every field of the loop is what flies"),
-        ),
-        1 => line(out, format_args!("  against \"{scenario}\": 1 field differs")),
-        count => line(out, format_args!("  against \"{scenario}\": {count} fields differ")),
+        0 => out.push_str(&format!(
+            "  against \"{scenario}\": every field of the loop is what flies\n"
+        )),
+        1 => out.push_str(&format!("  against \"{scenario}\": 1 field differs\n")),
+        count => out.push_str(&format!("  against \"{scenario}\": {count} fields differ\n")),
     }
     for it in differences {
-        line(out, format_args!("    {}: certified {}, flown {}", it.path, it.certified, it.flown));
+        out.push_str(&format!("    {}: certified {}, flown {}\n", it.path, it.certified, it.flown));
     }
     if let Some([certified, now]) = other_text {
-        line(
-            out,
-            format_args!(
-                "  the scenario's text has changed: digest certified {certified}, now {now}"
-            ),
-        );
+        out.push_str(&format!(
+            "  the scenario's text has changed: digest certified {certified}, now {now}\n"
+        ));
     }
 }

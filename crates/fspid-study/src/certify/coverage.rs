@@ -31,7 +31,7 @@ impl Treatment {
 
 /// A row of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct KeyCoverage {
     /// Path of a key, or of a table with `.*` for all that is in it.
     pub keys: &'static str,
     /// What becomes of it.
@@ -40,8 +40,8 @@ pub struct Row {
     pub how: &'static str,
 }
 
-const fn row(keys: &'static str, treatment: Treatment, how: &'static str) -> Row {
-    Row { keys, treatment, how }
+const fn row(keys: &'static str, treatment: Treatment, how: &'static str) -> KeyCoverage {
+    KeyCoverage { keys, treatment, how }
 }
 
 use Treatment::{Beside, Bounded, Covered, NoPart, Refused};
@@ -58,7 +58,7 @@ const STEPS: &str = "a disturbance of half a step; what it leaves is stated, and
 const AIM: &str = "asked of flights, not of the loop";
 
 /// Every key of a scenario.
-pub const COVERAGE: &[Row] = &[
+pub const COVERAGE: &[KeyCoverage] = &[
     row("schema", NoPart, "version of the format"),
     row("name", NoPart, "a name"),
     row("set", Covered, "changes are made before anything is read"),
@@ -309,7 +309,7 @@ pub const COVERAGE: &[Row] = &[
 #[must_use]
 pub fn coverage_table() -> String {
     let mut out = String::from("| key | in a certificate | how |\n| --- | --- | --- |\n");
-    for Row { keys, treatment, how } in COVERAGE {
+    for KeyCoverage { keys, treatment, how } in COVERAGE {
         out.push_str(&format!("| `{keys}` | {} | {how} |\n", treatment.word()));
     }
     out
@@ -321,7 +321,7 @@ mod tests {
 
     use super::*;
 
-    fn matches(row: &Row, path: &str) -> bool {
+    fn matches(row: &KeyCoverage, path: &str) -> bool {
         match row.keys.strip_suffix('*') {
             Some(before) => path.starts_with(before),
             None => row.keys == path,

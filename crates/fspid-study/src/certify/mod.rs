@@ -31,7 +31,7 @@ pub use fspid_proof::Effort;
 
 pub use against::{Comparison, Difference};
 pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
-pub use coverage::{COVERAGE, Row, Treatment, coverage_table};
+pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
 pub use file::{Origin, Seal, from_text, to_text};
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;

@@ -4,8 +4,8 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope};
 use serde_json::{Value, json};
 
+use crate::json::merged;
 use crate::metrics::short;
-use fspid_diagnostics::lines::line;
 use fspid_scenario::units::degrees;
 
 /// The scope of a claim, ready to be told.
@@ -43,16 +43,16 @@ impl Told {
 
     pub(super) fn push(&self, out: &mut String) {
         for (about, sentence) in self.sentences() {
-            line(out, format_args!("  {about:<18} {sentence}"));
+            out.push_str(&format!("  {about:<18} {sentence}\n"));
         }
     }
 
     pub(super) fn json(&self) -> Value {
-        let mut told = json!({
+        let told = json!({
             "not_in_this_claim": self.left_out.iter().map(|one| one.name()).collect::<Vec<_>>(),
             "sentences": self.sentences().into_iter().map(|(_, it)| it).collect::<Vec<_>>(),
         });
-        if let Some(scope) = &self.stable {
+        let stable = |scope: &Scope| {
             let Scope {
                 range,
                 any_setpoint,
@@ -64,17 +64,19 @@ impl Told {
                 limits_left_out,
                 left_out: _,
             } = scope;
-            told["rest_error_deg"] = json!(told_deg(*rest_error_rad));
-            told["setpoint_within_deg"] = json!(told_deg(range.setpoint_rad));
-            told["any_setpoint"] = json!(any_setpoint);
-            told["load_within_deg"] = json!(told_deg(range.load_rad));
-            told["any_load"] = json!(any_load);
-            told["remains_deg"] = json!(told_deg(*remains_rad));
-            told["limits"] = json!(limits);
-            told["pitch_within_deg"] = json!(pitch_within_rad.map(told_deg));
-            told["limits_left_out"] = json!(limits_left_out);
-        }
-        told
+            json!({
+                "rest_error_deg": told_deg(*rest_error_rad),
+                "setpoint_within_deg": told_deg(range.setpoint_rad),
+                "any_setpoint": any_setpoint,
+                "load_within_deg": told_deg(range.load_rad),
+                "any_load": any_load,
+                "remains_deg": told_deg(*remains_rad),
+                "limits": limits,
+                "pitch_within_deg": pitch_within_rad.map(told_deg),
+                "limits_left_out": limits_left_out,
+            })
+        };
+        merged([told, self.stable.as_ref().map_or_else(|| json!({}), stable)])
     }
 }
 

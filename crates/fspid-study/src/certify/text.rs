@@ -7,7 +7,6 @@ use fspid_sim::Controller;
 use super::scope::{Told, asked_in_words};
 use super::{Certification, Certified};
 use crate::metrics::short;
-use fspid_diagnostics::lines::line;
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -28,9 +27,9 @@ fn push(out: &mut String, certified: &Certified) {
     };
     let name = format!("{}{plant}", certified.controller);
     match &certified.outcome {
-        Err(reason) => line(out, format_args!("\n{name}\n  NOT PROVABLE: {reason}")),
+        Err(reason) => out.push_str(&format!("\n{name}\n  NOT PROVABLE: {reason}\n")),
         Ok(outcome) => {
-            line(out, format_args!("\n{name}\n  {}", headline(outcome)));
+            out.push_str(&format!("\n{name}\n  {}\n", headline(outcome)));
             push_outcome(out, certified, outcome);
         }
     }
@@ -116,16 +115,16 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
 
 fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
     if let Some(reason) = &outcome.open_because {
-        line(out, format_args!("  open because       {reason}"));
+        out.push_str(&format!("  open because       {reason}\n"));
     }
     let [kp, ki, kd] = outcome.bounds.map(range);
-    line(out, format_args!("  gains              kp {kp}, ki {ki}, kd {kd}"));
+    out.push_str(&format!("  gains              kp {kp}, ki {ki}, kd {kd}\n"));
     let dt_s = match certified.certificate() {
         Some(certificate) => certificate.description.controller.config().dt_s,
         None => f64::NAN,
     };
     if let Some((certificate, rechecked)) = found(outcome) {
-        push_claim(out, (certificate, Some(rechecked)), dt_s);
+        push_claim(out, certificate, Some(rechecked), dt_s);
         push_rechecked(out, rechecked);
     }
     push_largest(out, outcome);
@@ -144,13 +143,14 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
         format!("{:.4} /s", change * 0.5 * (upper - lower) / dt_s)
     };
     let [kp, ki, kd] = [speed(0), speed(1), speed(2)];
-    line(out, format_args!("  gains move         at most kp {kp}, ki {ki}, kd {kd}"));
+    out.push_str(&format!("  gains move         at most kp {kp}, ki {ki}, kd {kd}\n"));
 }
 
 /// What is claimed, with what its re-check found where it holds.
 pub(super) fn push_claim(
     out: &mut String,
-    (certificate, rechecked): (&Certificate, Option<&Rechecked>),
+    certificate: &Certificate,
+    rechecked: Option<&Rechecked>,
     dt_s: f64,
 ) {
     let remains = rechecked.is_some_and(|rechecked| rechecked.remains_rad > 0.0);
@@ -163,18 +163,14 @@ pub(super) fn push_claim(
             push_speed(out, claim, dt_s);
         }
         Claim::FrozenGrowth { factor, .. } => {
-            line(
-                out,
-                format_args!("  growth             by a factor of at least {factor:.6} a sample"),
-            );
+            out.push_str(&format!(
+                "  growth             by a factor of at least {factor:.6} a sample\n"
+            ));
         }
         Claim::SequenceGrowth { factor, .. } => {
-            line(
-                out,
-                format_args!(
-                    "  growth             by a factor of at least {factor:.6} each time the sequence is repeated"
-                ),
-            );
+            out.push_str(&format!(
+                "  growth             by a factor of at least {factor:.6} each time the sequence is repeated\n"
+            ));
         }
     }
 }
@@ -183,25 +179,19 @@ fn push_rate(out: &mut String, rate: f64, dt_s: f64, remains: bool) {
     if rate < 1.0 {
         let time_s = -dt_s / libm::log(rate);
         let down = if remains { ", down to what remains," } else { "" };
-        line(
-            out,
-            format_args!(
-                "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s:.2} s ({rate:.8} a sample)"
-            ),
-        );
+        out.push_str(&format!(
+            "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s:.2} s ({rate:.8} a sample)\n"
+        ));
     } else {
         out.push_str("  decay              proved without a rate\n");
     }
 }
 
 pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
-    line(
-        out,
-        format_args!(
-            "  re-check           {} inequalities over {} boxes of gains, in interval arithmetic",
-            rechecked.inequalities, rechecked.cells
-        ),
-    );
+    out.push_str(&format!(
+        "  re-check           {} inequalities over {} boxes of gains, in interval arithmetic\n",
+        rechecked.inequalities, rechecked.cells
+    ));
 }
 
 fn push_largest(out: &mut String, outcome: &Outcome) {
@@ -223,7 +213,7 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
         (_, Some(above)) => format!("{asked}is not proved even for {} of it", short(above)),
         _ => return,
     };
-    line(out, format_args!("  output scale       {text}"));
+    out.push_str(&format!("  output scale       {text}\n"));
 }
 
 pub(super) fn range(bounds: Interval) -> String {

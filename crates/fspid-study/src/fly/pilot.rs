@@ -19,14 +19,16 @@ const NO_SAMPLE: Sample<f64> =
 const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
 
 /// Why no controller was chosen.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChoiceError {
     /// There are several, and none was named.
+    #[error("several controllers; choose one with --controller: {}", known.join(", "))]
     Several {
         /// Their names.
         known: Vec<String>,
     },
     /// There is none of that name.
+    #[error("there is no controller `{name}`{}", known_words(name, &names(known)))]
     Unknown {
         /// The name.
         name: String,
@@ -35,21 +37,9 @@ pub enum ChoiceError {
     },
 }
 
-impl fmt::Display for ChoiceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Several { known } => {
-                write!(f, "several controllers; choose one with --controller: {}", known.join(", "))
-            }
-            Self::Unknown { name, known } => {
-                let names: Vec<&str> = known.iter().map(String::as_str).collect();
-                write!(f, "there is no controller `{name}`{}", known_words(name, &names))
-            }
-        }
-    }
+fn names(known: &[String]) -> Vec<&str> {
+    known.iter().map(String::as_str).collect()
 }
-
-impl std::error::Error for ChoiceError {}
 
 /// A line out.
 #[derive(Clone, Copy, Debug, PartialEq)]

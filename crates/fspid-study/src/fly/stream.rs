@@ -1,6 +1,5 @@
 //! The conversation itself, over any pair of streams.
 
-use std::fmt;
 use std::io::{self, BufRead, Write};
 
 use super::line::LONGEST_LINE;
@@ -8,24 +7,15 @@ use super::pilot::Pilot;
 use fspid_diagnostics::lines;
 
 /// Why a conversation ended before its input.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum StreamError {
     /// No more lines could be read.
+    #[error("cannot be read: {0}")]
     Reading(io::Error),
     /// The answers could not be written.
+    #[error("cannot be written: {0}")]
     Writing(io::Error),
 }
-
-impl fmt::Display for StreamError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Reading(error) => write!(f, "cannot be read: {error}"),
-            Self::Writing(error) => write!(f, "cannot be written: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for StreamError {}
 
 /// Answers every line as it comes until the input ends. An answer is on its way before anything is
 /// told about it, and before the next line is waited for. Memory does not grow with the input.

@@ -3,6 +3,7 @@
 use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
 use serde_json::{Map, Value, json};
 
+use crate::json::{merged, present};
 use fspid_diagnostics::known_words;
 use fspid_scenario::supervisor::Refused;
 
@@ -181,31 +182,35 @@ impl<'a> Asked<'a> {
         let inputs = self.system.parts().inputs.iter().zip(self.workspace.inputs());
         let inputs: Map<String, Value> =
             inputs.map(|(input, value)| (input.name.clone(), json!(value))).collect();
-        let outputs: Map<String, Value> = self
-            .answers()
-            .enumerate()
+        let answers = self.answers().enumerate();
+        let outputs: Map<String, Value> = answers
             .map(|(index, (output, answer))| {
-                let interval = self.workspace.interval(index);
-                let mut found = answer_json(output, answer, interval);
-                if answer.source != Source::Rules {
-                    found["reason"] = json!(self.reason(index, output));
-                }
-                (output.name.clone(), found)
+                (output.name.clone(), self.answer(index, output, answer))
             })
             .collect();
-        let names = |clamped: bool| -> Vec<&str> {
-            self.outside().filter(|found| found.1 == clamped).map(|found| found.0).collect()
+        let names = |clamped: bool| -> Option<Vec<&str>> {
+            let names = self.outside().filter(|found| found.1 == clamped).map(|found| found.0);
+            Some(names.collect::<Vec<_>>()).filter(|names| !names.is_empty())
         };
-        let mut whole = json!({
-            "system": self.system.parts().name, "inputs": inputs, "outputs": outputs,
-        });
-        if !names(true).is_empty() {
-            whole["clamped"] = json!(names(true));
-        }
-        if !names(false).is_empty() {
-            whole["outside"] = json!(names(false));
-        }
-        whole
+        present(json!({
+            "system": self.system.parts().name,
+            "inputs": inputs,
+            "outputs": outputs,
+            "clamped": names(true),
+            "outside": names(false),
+        }))
+    }
+
+    fn answer(&self, index: usize, output: &Output, answer: &Answer) -> Value {
+        let is_of_rules = answer.source == Source::Rules;
+        merged([
+            json!({ "value": answer.value, "rule": rule(output), "source": source(answer.source) }),
+            present(json!({
+                "error_bound": Some(answer.error_bound).filter(|bound| *bound > 0.0),
+                "interval": self.workspace.interval(index),
+                "reason": (!is_of_rules).then(|| self.reason(index, output)),
+            })),
+        ])
     }
 
     /// The answers for people.
@@ -235,19 +240,6 @@ impl<'a> Asked<'a> {
         }
         out
     }
-}
-
-fn answer_json(output: &Output, answer: &Answer, interval: Option<[f64; 2]>) -> Value {
-    let mut found = json!({
-        "value": answer.value, "rule": rule(output), "source": source(answer.source),
-    });
-    if answer.error_bound > 0.0 {
-        found["error_bound"] = json!(answer.error_bound);
-    }
-    if let Some(interval) = interval {
-        found["interval"] = json!(interval);
-    }
-    found
 }
 
 /// The rule of an answer, and its error bound.

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{System, Workspace};
 
 use super::answer::{check, evaluate};
-use crate::rows::Table;
+use crate::rows::RowAnswers;
 use fspid_diagnostics::lines::add;
 
 /// A general system with its memory.
@@ -24,7 +24,7 @@ impl<'a> SystemTable<'a> {
     }
 }
 
-impl Table for SystemTable<'_> {
+impl RowAnswers for SystemTable<'_> {
     fn inputs(&self) -> Vec<&str> {
         self.system.parts().inputs.iter().map(|input| input.name.as_str()).collect()
     }

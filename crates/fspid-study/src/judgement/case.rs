@@ -4,14 +4,16 @@ use std::fmt;
 
 use fspid_core::Gains;
 use fspid_sim::RestPoint;
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::analysis::held_in_words;
+use crate::json::present;
 use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::units::degrees;
 
 /// A step of the command.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StepAt {
     /// Which, counted from 1.
     pub number: usize,
@@ -24,7 +26,7 @@ pub struct StepAt {
 }
 
 /// One of the plants of a flight whose plant changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlantAt {
     /// 0 for the first, otherwise the change after which it is the plant.
     pub index: usize,
@@ -43,7 +45,7 @@ pub struct FrozenAt {
 
 /// Where a value was found, as far as there is a choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct CasePlace {
     /// The step.
     pub step: Option<StepAt>,
     /// The time, s.
@@ -66,10 +68,10 @@ pub struct Case {
     /// The value, in the unit of the measure; infinite for a margin without an end.
     pub value: f64,
     /// Where.
-    pub place: Place,
+    pub place: CasePlace,
 }
 
-impl Place {
+impl CasePlace {
     /// True where there is nothing to say.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -79,43 +81,33 @@ impl Place {
     /// For programs; only what there is.
     #[must_use]
     pub fn json(&self) -> Value {
-        let mut whole = Map::new();
-        let mut put = |key: &str, value: Option<Value>| {
-            if let Some(value) = value {
-                whole.insert(key.to_owned(), value);
-            }
-        };
-        put(
-            "step",
-            self.step.map(|step| {
-                json!({ "number": step.number, "at_s": step.at_s, "from_deg": step.from_deg, "to_deg": step.to_deg })
-            }),
-        );
-        put("at_s", self.at_s.map(|at_s| json!(at_s)));
-        put(
-            "plant",
-            self.plant.map(|plant| json!({ "index": plant.index, "from_s": plant.from_s })),
-        );
-        put("setpoint_deg", self.rest.map(|at| json!(degrees(at.setpoint_rad))));
-        put("load_deg", self.rest.map(|at| json!(degrees(at.load_rad))));
-        put("frozen_gains", self.frozen.map(|frozen| frozen_json(&frozen)));
-        put("frequency_rad_s", self.frequency_rad_s.map(|omega| json!(omega)));
-        put("spectral_radius", self.spectral_radius.map(|radius| json!(radius)));
-        Value::Object(whole)
+        present(json!({
+            "step": self.step,
+            "at_s": self.at_s,
+            "plant": self.plant,
+            "setpoint_deg": self.rest.map(|at| degrees(at.setpoint_rad)),
+            "load_deg": self.rest.map(|at| degrees(at.load_rad)),
+            "frozen_gains": self.frozen.map(|frozen| frozen.json()),
+            "frequency_rad_s": self.frequency_rad_s,
+            "spectral_radius": self.spectral_radius,
+        }))
     }
 }
 
-fn frozen_json(frozen: &FrozenAt) -> Value {
-    let Gains { kp, ki, kd } = frozen.gains;
-    let mut value = json!({ "kp": kp, "ki": ki, "kd": kd });
-    if let Some([error, change]) = frozen.inputs {
-        value["supervisor_error"] = json!(error);
-        value["supervisor_change"] = json!(change);
+impl FrozenAt {
+    fn json(&self) -> Value {
+        let Gains { kp, ki, kd } = self.gains;
+        present(json!({
+            "kp": kp,
+            "ki": ki,
+            "kd": kd,
+            "supervisor_error": self.inputs.map(|[error, _]| error),
+            "supervisor_change": self.inputs.map(|[_, change]| change),
+        }))
     }
-    value
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for CasePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut parts = Vec::new();
         if let Some(step) = self.step {
@@ -162,18 +154,18 @@ mod tests {
 
     #[test]
     fn a_place_is_told_in_words_and_only_as_far_as_there_is_one() {
-        assert_eq!(Place::default().to_string(), "");
+        assert_eq!(CasePlace::default().to_string(), "");
         let step = StepAt { number: 2, at_s: 5.0, from_deg: 1.0, to_deg: -1.0 };
-        let place = Place { step: Some(step), ..Place::default() };
+        let place = CasePlace { step: Some(step), ..CasePlace::default() };
         assert_eq!(place.to_string(), "step 2 at 5 s, 1 to -1 deg");
         let frozen =
             FrozenAt { gains: Gains { kp: 1.25, ki: 0.5, kd: 0.1 }, inputs: Some([4.0, -0.2]) };
         let plant = PlantAt { index: 1, from_s: 20.0 };
-        let place = Place {
+        let place = CasePlace {
             plant: Some(plant),
             frozen: Some(frozen),
             frequency_rad_s: Some(2.5),
-            ..Place::default()
+            ..CasePlace::default()
         };
         assert_eq!(
             place.to_string(),

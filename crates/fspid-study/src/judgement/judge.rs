@@ -1,6 +1,6 @@
 //! Whether requirements are met.
 
-use super::{Case, Evidence, NotEvaluated, Place};
+use super::{Case, CasePlace, Evidence, NotEvaluated};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
 use fspid_diagnostics::digits;
@@ -42,7 +42,7 @@ impl Judgement {
             && requirement.measure.is_yes_or_no()
         {
             // Stable everywhere: no place is worse than another.
-            case.place = Place::default();
+            case.place = CasePlace::default();
         }
         let controller = match is_of_aircraft(requirement) {
             true => AIRCRAFT.to_owned(),
@@ -59,7 +59,7 @@ impl Judgement {
 
     /// Where the worst case is.
     #[must_use]
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> CasePlace {
         match &self.found {
             Ok(case) => case.place,
             Err(reason) => reason.place(),
@@ -149,7 +149,7 @@ mod tests {
 
     fn worst_of(requirement: &Requirement, values: &[f64]) -> f64 {
         let cases: Vec<Case> =
-            values.iter().map(|&value| Case { value, place: Place::default() }).collect();
+            values.iter().map(|&value| Case { value, place: CasePlace::default() }).collect();
         worst(requirement, &cases).expect("there are cases").value
     }
 
@@ -176,7 +176,7 @@ mod tests {
         let judgement = |value: f64| {
             let requirement = requirement(Some(0.3), None);
             let met = requirement.is_met_by(value);
-            let found = Ok(Case { value, place: Place::default() });
+            let found = Ok(Case { value, place: CasePlace::default() });
             let (controller, own_step_deg) = ("c".to_owned(), None);
             Judgement { controller, requirement, found, met, own_step_deg }.value_in_words()
         };

@@ -10,7 +10,7 @@ mod judge;
 mod own_flight;
 mod reason;
 
-pub use case::{Case, FrozenAt, Place, PlantAt, StepAt};
+pub use case::{Case, CasePlace, FrozenAt, PlantAt, StepAt};
 pub use evidence::Evidence;
 pub(crate) use judge::is_of_aircraft;
 pub use judge::{AIRCRAFT, Judgement, judge};

@@ -168,7 +168,7 @@ impl FlightMetrics {
         let quiet = timing.first_sample_at(first_push_s);
         let away =
             edges.first().is_some_and(|edge| moves_away(trace, edge, failed.is_some(), quiet));
-        let edges = edge_metrics((trace, edges), timing, absence, pushes_s);
+        let edges = edge_metrics(trace, edges, timing, absence, pushes_s);
         let restarts: Vec<usize> =
             edges.iter().map(|edge| timing.first_sample_at(edge.at_s)).collect();
         let errors = trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| r - y);
@@ -228,7 +228,8 @@ fn moves_away(trace: &Trace, edge: &Edge, lost: bool, quiet: usize) -> bool {
 }
 
 fn edge_metrics(
-    (trace, edges): (&Trace, &[Edge]),
+    trace: &Trace,
+    edges: &[Edge],
     timing: Timing,
     absence: Option<Absent>,
     pushes_s: &[f64],

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::fuzzy_system::{Audit, Chapter, Mark, SliceQuestion, slice};
 use crate::report::templates::render;
 use fspid_page::context;
-use fspid_page::page::{self, Cell, Figure, Section, Table};
+use fspid_page::page::{self, Cell, Figure, PageSection, PageTable};
 
 /// What stands about an output beside its findings.
 #[derive(Serialize)]
@@ -38,8 +38,8 @@ pub(super) fn report(audit: &Audit<'_>) -> String {
 }
 
 /// How many findings of each kind, and those that are probably not meant.
-fn summary(chapters: &[Chapter]) -> Section {
-    let marks = [Mark::Holds, Mark::Worth, Mark::Broken, Mark::Open];
+fn summary(chapters: &[Chapter]) -> PageSection {
+    let marks = [Mark::Holds, Mark::Worth, Mark::NotMeant, Mark::Open];
     let head = [
         "about",
         "\u{2713} holds",
@@ -47,7 +47,7 @@ fn summary(chapters: &[Chapter]) -> Section {
         "\u{2717} probably not meant",
         "? open",
     ];
-    let mut table = Table::new("Findings by kind.", &head);
+    let mut table = PageTable::new("Findings by kind.", &head);
     for chapter in chapters {
         let of = |mark| chapter.findings.iter().filter(|found| found.mark == mark).count();
         let mut row = vec![Cell::text(&chapter.title)];
@@ -57,7 +57,7 @@ fn summary(chapters: &[Chapter]) -> Section {
     let worst: Vec<Line> = chapters
         .iter()
         .flat_map(|chapter| {
-            let broken = chapter.findings.iter().filter(|found| found.mark == Mark::Broken);
+            let broken = chapter.findings.iter().filter(|found| found.mark == Mark::NotMeant);
             broken.map(|found| Line {
                 class: class(found.mark),
                 sign: found.mark.sign(),
@@ -66,18 +66,22 @@ fn summary(chapters: &[Chapter]) -> Section {
             })
         })
         .collect();
-    Section::of("summary", "Summary", render("audit", context! { part => "summary", table, worst }))
+    PageSection::of(
+        "summary",
+        "Summary",
+        render("audit", context! { part => "summary", table, worst }),
+    )
 }
 
 const fn class(mark: Mark) -> &'static str {
     match mark {
         Mark::Holds => "good",
         Mark::Worth | Mark::Open => "fair",
-        Mark::Broken => "bad",
+        Mark::NotMeant => "bad",
     }
 }
 
-fn section(audit: &Audit<'_>, index: usize, chapter: &Chapter) -> Section {
+fn section(audit: &Audit<'_>, index: usize, chapter: &Chapter) -> PageSection {
     let lines: Vec<Line> = chapter
         .findings
         .iter()
@@ -90,7 +94,11 @@ fn section(audit: &Audit<'_>, index: usize, chapter: &Chapter) -> Section {
         .collect();
     let figure = index.checked_sub(1).and_then(|_| drawing(audit, index, &chapter.title));
     let title = if index == 0 { "Rules as written".to_owned() } else { chapter.title.clone() };
-    Section::of(id(index), &title, render("audit", context! { part => "findings", lines, figure }))
+    PageSection::of(
+        id(index),
+        &title,
+        render("audit", context! { part => "findings", lines, figure }),
+    )
 }
 
 /// Ids of sections, which the page needs as constants; further outputs share the last.

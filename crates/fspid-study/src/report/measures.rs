@@ -5,7 +5,7 @@ use crate::metrics::{EdgeMetrics, FlightMetrics, Measured, StepMetrics};
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_diagnostics::digits::without_zeros;
 use fspid_page::number;
-use fspid_page::page::{Cell, Row, Table};
+use fspid_page::page::{Cell, PageTable, TableRow};
 use fspid_scenario::units::degrees;
 
 /// A column: its heading with the unit, decimals, and the measure.
@@ -38,7 +38,7 @@ pub fn step_name(index: usize, edge: &EdgeMetrics) -> String {
 }
 
 /// Rows of a flight: one a step, or one that says why there is none.
-fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
+fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<TableRow> {
     let measures = |step: &StepMetrics| {
         columns
             .iter()
@@ -50,36 +50,40 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<Row> {
         let reason = format!("\u{2717} {}: no measures", metrics.verdict);
         let cells =
             vec![Cell::text(&result.name), Cell::text("all"), Cell::failing(reason, columns.len())];
-        return vec![Row { class: "first", ..Row::from(cells) }];
+        return vec![TableRow { class: "first", ..TableRow::from(cells) }];
     }
     if metrics.edges.is_empty() {
         let mut cells = vec![Cell::text(&result.name), Cell::text("no step in the command")];
         cells.extend(measures(&metrics.first_step()));
-        return vec![Row { class: "first", ..Row::from(cells) }];
+        return vec![TableRow { class: "first", ..TableRow::from(cells) }];
     }
     let row = |(index, edge): (usize, &EdgeMetrics)| {
         let mut cells = vec![Cell::text(&result.name), Cell::text(step_name(index, edge))];
         cells.extend(measures(&edge.step));
-        Row { class: if index == 0 { "first" } else { "" }, ..Row::from(cells) }
+        TableRow { class: if index == 0 { "first" } else { "" }, ..TableRow::from(cells) }
     };
     let shown = metrics.edges.iter().enumerate().take(MOST_STEPS);
-    let mut rows: Vec<Row> = shown.map(row).collect();
+    let mut rows: Vec<TableRow> = shown.map(row).collect();
     let left_out = metrics.edges.len().saturating_sub(MOST_STEPS);
     if left_out > 0 {
         let reason =
             format!("{left_out} more steps: `fspid simulate --format json` lists them all");
         let name = Cell::text(&result.name);
-        rows.push(Row::from(vec![name, Cell::text("and"), Cell::left_out(reason, columns.len())]));
+        rows.push(TableRow::from(vec![
+            name,
+            Cell::text("and"),
+            Cell::left_out(reason, columns.len()),
+        ]));
     }
     rows
 }
 
 /// Every step measure of every controller.
-pub fn table(caption: &str, simulation: &Simulation) -> Table {
+pub fn table(caption: &str, simulation: &Simulation) -> PageTable {
     let columns: Vec<&Column> = COLUMNS.iter().collect();
     let mut head = vec!["controller", "step of the command"];
     head.extend(columns.iter().map(|column| column.0));
-    let mut table = Table::new(caption, &head).in_cards();
+    let mut table = PageTable::new(caption, &head).in_cards();
     for result in &simulation.results {
         table.rows.extend(rows(result, &columns));
     }
@@ -88,7 +92,7 @@ pub fn table(caption: &str, simulation: &Simulation) -> Table {
 
 /// What the paper measures, under two fits or variants side by side; both fly the same controllers
 /// and steps.
-pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&str]) -> Table {
+pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&str]) -> PageTable {
     let columns: Vec<&Column> =
         OF_THE_PAPER.iter().filter_map(|index| COLUMNS.get(*index)).collect();
     let mut head = vec!["controller", "step of the command"];
@@ -97,7 +101,7 @@ pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&st
         head.extend(columns.iter().map(|column| column.0));
         groups.push((name, columns.len()));
     }
-    let mut table = Table::new(caption, &head).grouped(&groups).in_cards();
+    let mut table = PageTable::new(caption, &head).grouped(&groups).in_cards();
     let Some((_, first)) = variants.first() else {
         return table;
     };
@@ -122,7 +126,7 @@ pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&st
 }
 
 /// Integrals and effort of whole flights.
-pub fn integrals(caption: &str, simulation: &Simulation) -> Table {
+pub fn integrals(caption: &str, simulation: &Simulation) -> PageTable {
     let head = [
         "controller",
         "IAE, deg s",
@@ -135,7 +139,7 @@ pub fn integrals(caption: &str, simulation: &Simulation) -> Table {
         "samples cut by limits",
         "faults",
     ];
-    let mut table = Table::new(caption, &head).in_cards();
+    let mut table = PageTable::new(caption, &head).in_cards();
     for result in &simulation.results {
         let FlightMetrics { integrals, effort, .. } = &result.metrics;
         let mut cells = vec![Cell::text(&result.name)];

@@ -1,20 +1,20 @@
 //! Every setting that a flight had, whether its file gave it or a default filled it in.
 
 use fspid_page::number::significant;
-use fspid_page::page::{Cell, Table};
+use fspid_page::page::{Cell, PageTable};
 use fspid_scenario::file::{DerivedGains, Setting};
 
 /// Tables whose settings stand in a table of their own.
 const CONTROLLERS: &str = "controller";
 
 /// The settings of everything but the controllers.
-pub fn of_flight(settings: &[Setting]) -> Table {
+pub fn of_flight(settings: &[Setting]) -> PageTable {
     let settings = settings.iter().filter(|setting| !is_of_controller(setting));
     table("Aircraft, servo, samples, command, disturbances and requirements.", "", settings)
 }
 
 /// The settings of each controller.
-pub fn of_controllers(settings: &[Setting]) -> Vec<Table> {
+pub fn of_controllers(settings: &[Setting]) -> Vec<PageTable> {
     let settings: Vec<&Setting> = settings.iter().filter(|s| is_of_controller(s)).collect();
     let one = |settings: &[&Setting]| {
         let name = settings.first().map_or("", |setting| setting.table.as_str());
@@ -24,10 +24,10 @@ pub fn of_controllers(settings: &[Setting]) -> Vec<Table> {
 }
 
 /// The gains that fly where no setting states them; none without such a controller.
-pub fn derived(gains: &[DerivedGains]) -> Option<Table> {
+pub fn derived(gains: &[DerivedGains]) -> Option<PageTable> {
     let caption = "Gains that fly, where a schedule or a design makes them.";
     let head = ["controller", "kp", "ki, 1/s", "kd, s", "rate gain, s", "from"];
-    let mut table = Table::new(caption, &head).in_cards();
+    let mut table = PageTable::new(caption, &head).in_cards();
     for DerivedGains { controller, gains, rate_gain_s, source } in gains {
         let mut row = vec![Cell::text(controller)];
         let numbers = [gains.kp, gains.ki, gains.kd, *rate_gain_s];
@@ -44,8 +44,12 @@ fn is_of_controller(setting: &Setting) -> bool {
 }
 
 /// Settings as rows, their paths relative to the table that they share.
-fn table<'a>(caption: &str, shared: &str, settings: impl Iterator<Item = &'a Setting>) -> Table {
-    let mut table = Table::new(caption, &["setting", "value", "unit", "from"]).in_cards();
+fn table<'a>(
+    caption: &str,
+    shared: &str,
+    settings: impl Iterator<Item = &'a Setting>,
+) -> PageTable {
+    let mut table = PageTable::new(caption, &["setting", "value", "unit", "from"]).in_cards();
     for Setting { path, value, unit, given, .. } in settings {
         let path = path.strip_prefix(shared).unwrap_or(path).trim_start_matches('.');
         let from = if *given {
@@ -93,8 +97,8 @@ mod tests {
         file::parse(text, "test.toml", None, &[]).expect("the scenario is right").settings
     }
 
-    fn rows(table: &Table) -> Vec<String> {
-        let text = |row: &fspid_page::page::Row| {
+    fn rows(table: &PageTable) -> Vec<String> {
+        let text = |row: &fspid_page::page::TableRow| {
             let cells: Vec<&str> = row.cells.iter().map(|cell| cell.text.as_str()).collect();
             cells.join(" | ")
         };

@@ -12,7 +12,7 @@ use crate::report::templates::render;
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_page::context;
 use fspid_page::number::{capital, fixed, measured, sentence, significant, with_sign};
-use fspid_page::page::{self, Cell, Figure, Section, Table};
+use fspid_page::page::{self, Cell, Figure, PageSection, PageTable};
 use fspid_plot::SurfaceKind;
 use fspid_scenario::file::{Setting, Study};
 
@@ -102,7 +102,7 @@ fn with_unit(value: crate::metrics::Measured, decimals: usize, unit: &str) -> St
 }
 
 impl User<'_> {
-    fn verdicts(self) -> Section {
+    fn verdicts(self) -> PageSection {
         let outcomes: Vec<Outcome> = self.simulation.results.iter().map(outcome).collect();
         let met = self.simulation.requirements_met();
         let context = context! {
@@ -113,7 +113,7 @@ impl User<'_> {
             requirements => (!self.simulation.judgements.is_empty()).then(|| self.requirements()),
             met,
         };
-        Section::of("verdict", "Verdict", render("user", context))
+        PageSection::of("verdict", "Verdict", render("user", context))
     }
 
     /// Those of the file, and what may be wrong with flights beside their verdicts.
@@ -137,9 +137,9 @@ impl User<'_> {
         gains.chain(note).collect()
     }
 
-    fn requirements(self) -> Table {
+    fn requirements(self) -> PageTable {
         let head = ["controller", "requirement", "worst value", "verdict"];
-        let mut table = Table::new("Requirements: the worst case counts.", &head).in_cards();
+        let mut table = PageTable::new("Requirements: the worst case counts.", &head).in_cards();
         for judgement in &self.simulation.judgements {
             let requirement = &judgement.requirement;
             let verdict =
@@ -161,7 +161,7 @@ impl User<'_> {
         table
     }
 
-    fn responses(self) -> Section {
+    fn responses(self) -> PageSection {
         let drawing = Drawing {
             title: &self.simulation.scenario,
             scenario: &self.study.scenario,
@@ -180,14 +180,14 @@ impl User<'_> {
         };
         let caption = format!("{caption}{aircraft}{}", drawing.spikes());
         let figure = Figure::new("responses-figure", drawing.render(), caption);
-        Section::of(
+        PageSection::of(
             "responses",
             "Time responses",
             render("user", context! { part => "responses", figure, leaving, ended }),
         )
     }
 
-    fn measures(self) -> Section {
+    fn measures(self) -> PageSection {
         let has_steps = self.simulation.results.iter().any(|it| !it.metrics.edges.is_empty());
         let failed = self.simulation.results.iter().any(fails);
         let steps =
@@ -197,16 +197,16 @@ impl User<'_> {
             steps => (has_steps || failed).then(steps),
             integrals => measures::integrals("Whole flights: integrals of the error, and effort.", self.simulation),
         };
-        Section::of("measures", "Measures", render("user", context))
+        PageSection::of("measures", "Measures", render("user", context))
     }
 
     /// One part for each self-tuning controller; no section without one.
-    fn tuning(self) -> Option<Section> {
+    fn tuning(self) -> Option<PageSection> {
         let controllers = &self.study.scenario.controllers;
         let parts: Vec<Tuning> =
             controllers.iter().enumerate().filter_map(|(n, c)| tuning(n, c)).collect();
         (!parts.is_empty()).then(|| {
-            Section::of(
+            PageSection::of(
                 "tuning",
                 "Self-tuning",
                 render("user", context! { part => "tuning", parts }),
@@ -214,7 +214,7 @@ impl User<'_> {
         })
     }
 
-    fn settings(self) -> Section {
+    fn settings(self) -> PageSection {
         let settings = &self.study.settings;
         let is_plant = |setting: &Setting| setting.table == "plant";
         let context = context! {
@@ -224,16 +224,16 @@ impl User<'_> {
             controllers => settings::of_controllers(settings),
             derived => settings::derived(&self.study.derived_gains),
         };
-        Section::of("settings", "Settings", render("user", context))
+        PageSection::of("settings", "Settings", render("user", context))
     }
 
-    fn provenance(self) -> Section {
+    fn provenance(self) -> PageSection {
         let context = context! {
             part => "provenance",
             version => env!("CARGO_PKG_VERSION"),
             digest => self.study.digest,
         };
-        Section::of("provenance", "Provenance", render("user", context))
+        PageSection::of("provenance", "Provenance", render("user", context))
     }
 }
 
@@ -247,7 +247,7 @@ struct Tuning {
     sets: Vec<Figure>,
     tables: Vec<Figure>,
     maps: Vec<Figure>,
-    at_rest: Table,
+    at_rest: PageTable,
 }
 
 fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
@@ -313,11 +313,11 @@ fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
     sentences
 }
 
-fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> Table {
+fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> PageTable {
     let caption = "At rest, with error and change zero. The last column is what the gains become after one second \
                    under an accumulating law, and at once under a memoryless one.";
     let head = ["gain", "rules add, supervisor units", "nominal gain", "gain at rest"];
-    let mut table = Table::new(caption, &head);
+    let mut table = PageTable::new(caption, &head);
     let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
     let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);
     let rows = [

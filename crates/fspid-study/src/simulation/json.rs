@@ -1,10 +1,12 @@
 //! The answer as JSON: angles in degrees, every absent measure with its reason.
 
 use fspid_core::Gains;
+use fspid_sim::load::ConstantLoad;
 use serde_json::{Map, Value, json};
 
 use super::{ControllerResult, FailedFlight, Judgement, Simulation};
 use crate::analysis::AtRest;
+use crate::json::{finite, present, unless_empty};
 use crate::metrics::{EdgeMetrics, Measured, StepMetrics, Verdict};
 use fspid_scenario::units::degrees;
 
@@ -18,22 +20,14 @@ impl Simulation {
     /// hold for the whole answer.
     #[must_use]
     pub fn json(&self) -> Value {
-        let mut answer = json!({
+        present(json!({
             "schema": SCHEMA,
             "scenario": self.scenario,
             "controllers": self.results.iter().map(controller).collect::<Vec<_>>(),
-        });
-        if let Some(note) = self.range_rule.note() {
-            answer["notes"] = json!([note]);
-        }
-        if !self.failed_own_flights.is_empty() {
-            answer["failed_own_flights"] =
-                self.failed_own_flights.iter().map(FailedFlight::json).collect();
-        }
-        if !self.judgements.is_empty() {
-            answer["requirements"] = self.judgements.iter().map(judgement).collect();
-        }
-        answer
+            "notes": self.range_rule.note().map(|note| [note]),
+            "failed_own_flights": unless_empty(&self.failed_own_flights, FailedFlight::json),
+            "requirements": unless_empty(&self.judgements, judgement),
+        }))
     }
 }
 
@@ -50,73 +44,76 @@ fn controller(result: &ControllerResult) -> Value {
         ("command_max_deg", metrics.effort.map(|e| degrees(e.largest_rad))),
     ]);
     let (values, absent) = split(&measures);
-    let mut answer = json!({
+    let failures = result.failures();
+    present(json!({
         "name": result.name,
         "verdict": result.verdict().to_string(),
         "outcome": outcome(result.verdict()),
-        "failed": !result.failures().is_empty(),
+        "failed": !failures.is_empty(),
         "metrics": values,
         "absent": absent,
         "edges": metrics.edges.iter().map(edge).collect::<Vec<_>>(),
         "saturated_samples": result.trace.saturated_samples,
         "faults": result.trace.faults.to_string(),
-    });
-    answer["gains"] = gains(&result.at_rest);
-    if let Some(load) = result.at_rest.load {
-        answer["constant_load"] = json!({
-            "largest_deg_per_deg": finite(load.largest),
-            "at_end_deg_per_deg": finite(load.at_end),
-            "for_good_deg_per_deg": finite(load.for_good),
-            "removed": load.is_removed(),
-            "half_gone": load.is_half_gone(),
-        });
-    }
-    if result.metrics.wrong_way {
-        answer["moves_the_wrong_way"] = json!(true);
-    }
-    if let Some(exit) = result.trace.exit {
-        answer["left_validity"] = json!({
+        "gains": gains(&result.at_rest),
+        "constant_load": result.at_rest.load.map(constant_load),
+        "moves_the_wrong_way": result.metrics.wrong_way.then_some(true),
+        "left_validity": result.trace.exit.map(|exit| json!({
             "at_s": exit.at_s,
             "outside_s": exit.outside_s,
             "limit": exit.departure.quantity.name(),
             "fails": result.ending().failing_exit().is_some(),
-        });
-    }
-    let failures = result.failures();
-    if !failures.is_empty() {
-        answer["failures"] = json!(failures);
-    }
-    answer
+        })),
+        "failures": (!failures.is_empty()).then_some(failures),
+    }))
+}
+
+fn constant_load(load: ConstantLoad) -> Value {
+    json!({
+        "largest_deg_per_deg": finite(load.largest),
+        "at_end_deg_per_deg": finite(load.at_end),
+        "for_good_deg_per_deg": finite(load.for_good),
+        "removed": load.is_removed(),
+        "half_gone": load.is_half_gone(),
+    })
 }
 
 /// A verdict for programs: its kind and its numbers.
 fn outcome(verdict: Verdict) -> Value {
-    let mut answer = json!({ "kind": verdict.kind() });
+    let kind = verdict.kind();
     match verdict {
-        Verdict::Settled | Verdict::Flown => {}
-        Verdict::NotSettled { window_s } => answer["window_s"] = finite(window_s),
-        Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => answer["at_s"] = finite(at_s),
-        Verdict::Unstable { spectral_radius, doubling_s } => {
-            answer["spectral_radius"] = finite(spectral_radius);
-            answer["doubling_s"] = finite(doubling_s);
+        Verdict::Settled | Verdict::Flown => json!({ "kind": kind }),
+        Verdict::NotSettled { window_s } => json!({ "kind": kind, "window_s": finite(window_s) }),
+        Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => {
+            json!({ "kind": kind, "at_s": finite(at_s) })
         }
-        Verdict::LeftRange(exit) => {
-            answer["at_s"] = finite(exit.at_s);
-            answer["outside_s"] = finite(exit.outside_s);
-            answer["limit"] = json!(exit.departure.quantity.name());
-        }
+        Verdict::Unstable { spectral_radius, doubling_s } => json!({
+            "kind": kind,
+            "spectral_radius": finite(spectral_radius),
+            "doubling_s": finite(doubling_s),
+        }),
+        Verdict::LeftRange(exit) => json!({
+            "kind": kind,
+            "at_s": finite(exit.at_s),
+            "outside_s": finite(exit.outside_s),
+            "limit": exit.departure.quantity.name(),
+        }),
     }
-    answer
+}
+
+/// The step of a flight that a ready set was judged on, where it is not the scenario's.
+pub(crate) fn own_flight(step_deg: Option<f64>) -> Option<Value> {
+    step_deg.map(|step_deg| json!({ "step_deg": step_deg }))
 }
 
 impl FailedFlight {
     /// `{"controller": "…", "failures": ["…"], "own_flight": {"step_deg": 5.0}}`, the last where it is one.
     pub(crate) fn json(&self) -> Value {
-        let mut answer = json!({ "controller": self.controller, "failures": self.failures });
-        if let Some(step_deg) = self.own_step_deg {
-            answer["own_flight"] = json!({ "step_deg": step_deg });
-        }
-        answer
+        present(json!({
+            "controller": self.controller,
+            "failures": self.failures,
+            "own_flight": own_flight(self.own_step_deg),
+        }))
     }
 }
 
@@ -131,17 +128,14 @@ fn gains(at_rest: &AtRest) -> Value {
 
 fn edge(edge: &EdgeMetrics) -> Value {
     let (values, absent) = split(&step_measures(&edge.step));
-    let mut answer = json!({
+    present(json!({
         "at_s": edge.at_s,
         "from_deg": degrees(edge.from_rad),
         "to_deg": degrees(edge.to_rad),
         "metrics": values,
         "absent": absent,
-    });
-    if let Some(from_s) = edge.disturbed_from_s {
-        answer["disturbed_from_s"] = json!(from_s);
-    }
-    answer
+        "disturbed_from_s": edge.disturbed_from_s,
+    }))
 }
 
 fn step_measures(step: &StepMetrics) -> Vec<(&'static str, Measured)> {
@@ -175,25 +169,14 @@ fn split(measures: &[(&'static str, Measured)]) -> (Map<String, Value>, Map<Stri
 
 fn judgement(judgement: &Judgement) -> Value {
     let requirement = &judgement.requirement;
-    let mut answer = json!({
+    present(json!({
         "id": requirement.id,
         "controller": judgement.controller,
         "measure": requirement.measure.name(),
         "met": judgement.met,
-    });
-    for (key, limit) in [("least", requirement.least), ("most", requirement.most)] {
-        if let Some(limit) = limit {
-            answer[key] = json!(limit);
-        }
-    }
-    match &judgement.found {
-        Ok(case) => answer["value"] = finite(case.value),
-        Err(reason) => answer["absent"] = json!(reason.to_string()),
-    }
-    answer
-}
-
-/// A number, or in words which of the numbers that JSON does not have.
-pub(crate) fn finite(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { json!(format!("{value}")) }
+        "least": requirement.least,
+        "most": requirement.most,
+        "value": judgement.found.as_ref().ok().map(|case| finite(case.value)),
+        "absent": judgement.found.as_ref().err().map(ToString::to_string),
+    }))
 }

@@ -8,7 +8,7 @@ mod words;
 
 pub(crate) use ending::on_its_own;
 pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
-pub(crate) use json::finite;
+pub(crate) use json::own_flight;
 pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;

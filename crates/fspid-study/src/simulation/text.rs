@@ -2,7 +2,6 @@
 
 use super::{ControllerResult, Judgement, Simulation, on_its_own};
 use crate::metrics::{Absent, Measured, StepMetrics};
-use fspid_diagnostics::lines::line;
 use fspid_scenario::units::degrees;
 
 impl Simulation {
@@ -13,11 +12,11 @@ impl Simulation {
         let mut out = format!("{}\n", self.scenario);
         let width = self.results.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(10);
         for result in &self.results {
-            line(&mut out, format_args!("\n{:width$}  {}", result.name, result.verdict()));
+            out.push_str(&format!("\n{:width$}  {}\n", result.name, result.verdict()));
             push_measures(&mut out, result);
         }
         if let Some(note) = self.range_rule.note() {
-            line(&mut out, format_args!("\nnote: {note}"));
+            out.push_str(&format!("\nnote: {note}\n"));
         }
         if !self.judgements.is_empty() || !self.failed_flights().is_empty() {
             out.push('\n');
@@ -27,7 +26,7 @@ impl Simulation {
         }
         for failed in self.failed_flights() {
             let failures = failed.failures.join("; ");
-            line(&mut out, format_args!("FAILED FLIGHT: {}: {failures}", failed.who()));
+            out.push_str(&format!("FAILED FLIGHT: {}: {failures}\n", failed.who()));
         }
         out
     }
@@ -37,29 +36,23 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
     let metrics = &result.metrics;
     for (edge, number) in metrics.edges.iter().zip(1..) {
         let (from_deg, to_deg) = (degrees(edge.from_rad), degrees(edge.to_rad));
-        line(
-            out,
-            format_args!(
-                "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}{}",
-                edge.at_s,
-                step(&edge.step),
-                edge.disturbed_in_words(),
-            ),
-        );
+        out.push_str(&format!(
+            "  step {number} at {:.2} s, {from_deg:+.3} to {to_deg:+.3} deg: {}{}\n",
+            edge.at_s,
+            step(&edge.step),
+            edge.disturbed_in_words()
+        ));
     }
     if let (Ok(integrals), Ok(effort)) = (metrics.integrals, metrics.effort) {
-        line(
-            out,
-            format_args!(
-                "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, \
-             largest command {:.3} deg",
-                degrees(integrals.iae_rad_s),
-                degrees(integrals.itae_rad_s2),
-                degrees(degrees(integrals.ise_rad2_s)),
-                degrees(effort.variation_rad),
-                degrees(effort.largest_rad),
-            ),
-        );
+        out.push_str(&format!(
+            "  IAE {:.4} deg s, ITAE {:.4} deg s², ISE {:.4} deg² s, command variation {:.3} deg, \
+            largest command {:.3} deg\n",
+            degrees(integrals.iae_rad_s),
+            degrees(integrals.itae_rad_s2),
+            degrees(degrees(integrals.ise_rad2_s)),
+            degrees(effort.variation_rad),
+            degrees(effort.largest_rad)
+        ));
     }
     push_beside(out, result);
 }
@@ -67,13 +60,13 @@ fn push_measures(out: &mut String, result: &ControllerResult) {
 /// What is said beside the measures: the gains at rest, notes, faults.
 fn push_beside(out: &mut String, result: &ControllerResult) {
     if let Some(words) = result.at_rest.gains_in_words() {
-        line(out, format_args!("  {words}"));
+        out.push_str(&format!("  {words}\n"));
     }
     for words in result.notes() {
-        line(out, format_args!("  note: {words}"));
+        out.push_str(&format!("  note: {words}\n"));
     }
     if !result.trace.faults.is_empty() {
-        line(out, format_args!("  faults: {}", result.trace.faults));
+        out.push_str(&format!("  faults: {}\n", result.trace.faults));
     }
 }
 
@@ -87,7 +80,7 @@ fn push_judgement(out: &mut String, judgement: &Judgement) {
         id => format!(" ({id})"),
     };
     let own = on_its_own(judgement.own_step_deg);
-    line(out, format_args!("{met}: {controller} {name} {value}, {limits}{id}{own}"));
+    out.push_str(&format!("{met}: {controller} {name} {value}, {limits}{id}{own}\n"));
 }
 
 fn step(step: &StepMetrics) -> String {

@@ -2,9 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
+use fspid_scenario::requirement::{Conditions, Confidence};
+
 use super::Verification;
+use crate::json::{by_name, finite, present, unless_empty};
 use crate::judgement::Judgement;
-use crate::simulation::{FailedFlight, finite};
+use crate::simulation::{FailedFlight, own_flight};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
@@ -43,7 +46,7 @@ impl Verification {
                 line(judgement, replays.and_then(|replays| replays.get(index)))
             })
             .collect();
-        let mut answer = json!({
+        present(json!({
             "schema": SCHEMA,
             "scenario": self.study.scenario.name,
             "file": self.path,
@@ -53,62 +56,40 @@ impl Verification {
             "not_met": self.unmet(),
             "not_evaluated": unevaluated.count(),
             "requirements": requirements,
-        });
-        let failed: Vec<Value> = self.failed_flights.iter().map(FailedFlight::json).collect();
-        if !failed.is_empty() {
-            answer["failed_flights"] = json!(failed);
-        }
-        if !self.at_rest.is_empty() {
-            answer["at_rest"] = json!(self.at_rest);
-        }
-        answer
+            "failed_flights": unless_empty(&self.failed_flights, FailedFlight::json),
+            "at_rest": unless_empty(&self.at_rest, |sentence| json!(sentence)),
+        }))
     }
 }
 
 fn line(judgement: &Judgement, replay: Option<&String>) -> Value {
     let requirement = &judgement.requirement;
     let origin = &requirement.origin;
-    let mut whole = Map::new();
-    let mut put = |key: &str, value: Option<Value>| {
-        if let Some(value) = value {
-            whole.insert(key.to_owned(), value);
-        }
-    };
-    let word = |text: &Option<String>| text.as_ref().map(|text| json!(text));
-    put("id", Some(json!(requirement.id)));
-    put("controller", Some(json!(judgement.controller)));
-    put("measure", Some(json!(requirement.measure.name())));
-    put("unit", Some(json!(requirement.measure.unit())));
-    match &judgement.found {
-        Ok(case) => put("value", Some(finite(case.value))),
-        Err(reason) => put("reason", Some(json!(reason.to_string()))),
-    }
-    put("least", requirement.least.map(|least| json!(least)));
-    put("most", requirement.most.map(|most| json!(most)));
-    put("met", Some(json!(judgement.met)));
-    put("clause", word(&origin.clause));
-    put("source", word(&origin.source));
-    put("confidence", origin.confidence.map(|confidence| json!(confidence.name())));
-    put("set", word(&origin.set));
-    put("note", word(&origin.note));
-    put("conditions", conditions(judgement));
     let place = judgement.place();
-    put("worst_case", (!place.is_empty()).then(|| place.json()));
-    put("own_flight", judgement.own_step_deg.map(|step_deg| json!({ "step_deg": step_deg })));
-    put("replay", replay.map(|replay| json!(replay)));
-    Value::Object(whole)
+    present(json!({
+        "id": requirement.id,
+        "controller": judgement.controller,
+        "measure": requirement.measure.name(),
+        "unit": requirement.measure.unit(),
+        "value": judgement.found.as_ref().ok().map(|case| finite(case.value)),
+        "reason": judgement.found.as_ref().err().map(ToString::to_string),
+        "least": requirement.least,
+        "most": requirement.most,
+        "met": judgement.met,
+        "clause": origin.clause,
+        "source": origin.source,
+        "confidence": origin.confidence.map(Confidence::name),
+        "set": origin.set,
+        "note": origin.note,
+        "conditions": conditions(&requirement.conditions),
+        "worst_case": (!place.is_empty()).then(|| place.json()),
+        "own_flight": own_flight(judgement.own_step_deg),
+        "replay": replay,
+    }))
 }
 
-fn conditions(judgement: &Judgement) -> Option<Value> {
-    let conditions = &judgement.requirement.conditions;
-    let mut whole = Map::new();
-    for (key, number) in conditions.numbers() {
-        if let Some(number) = number {
-            whole.insert(key.to_owned(), json!(number));
-        }
-    }
-    if let Some(air) = conditions.air {
-        whole.insert("air".to_owned(), json!(air.name()));
-    }
-    (!whole.is_empty()).then_some(Value::Object(whole))
+fn conditions(conditions: &Conditions) -> Option<Map<String, Value>> {
+    let numbers = conditions.numbers().into_iter();
+    let numbers = numbers.filter_map(|(key, number)| Some((key.to_owned(), json!(number?))));
+    by_name(numbers.chain(conditions.air.map(|air| ("air".to_owned(), json!(air.name())))))
 }

@@ -7,7 +7,6 @@ mod junit;
 mod replay;
 mod text;
 
-use std::fmt;
 use std::path::Path;
 
 use fspid_sim::SimError;
@@ -51,11 +50,13 @@ pub struct Verification {
 }
 
 /// Why nothing was verified.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum VerifyError {
     /// The scenario could not be read, or it or what is asked of it is wrong.
+    #[error(transparent)]
     Load(LoadError),
     /// Nothing is required.
+    #[error("{path}: nothing is required of it{}", way_out(*in_cases))]
     NothingRequired {
         /// Path of the scenario.
         path: String,
@@ -63,31 +64,17 @@ pub enum VerifyError {
         in_cases: usize,
     },
     /// The scenario cannot be flown.
-    Simulation(SimError),
+    #[error(transparent)]
+    Simulation(#[from] SimError),
 }
 
-impl fmt::Display for VerifyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Load(error) => error.fmt(f),
-            Self::Simulation(error) => error.fmt(f),
-            Self::NothingRequired { path, in_cases } if *in_cases > 0 => write!(
-                f,
-                "{path}: nothing is required of it as it is written: `only_in` limits all its {in_cases} requirements to cases of tuning or contest\n    leave `only_in` out, or judge a case by `--set` with its changes and requirements of a file\n"
-            ),
-            Self::NothingRequired { path, .. } => write!(
-                f,
-                "{path}: nothing is required of it\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for VerifyError {}
-
-impl From<SimError> for VerifyError {
-    fn from(error: SimError) -> Self {
-        Self::Simulation(error)
+/// What can be done where nothing is required.
+fn way_out(in_cases: usize) -> String {
+    match in_cases {
+        0 => "\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n".to_owned(),
+        _ => format!(
+            " as it is written: `only_in` limits all its {in_cases} requirements to cases of tuning or contest\n    leave `only_in` out, or judge a case by `--set` with its changes and requirements of a file\n"
+        ),
     }
 }
 

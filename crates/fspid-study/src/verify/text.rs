@@ -7,7 +7,6 @@ use crate::analysis::not_in_the_linear_loop;
 use crate::judgement::Judgement;
 use crate::shell;
 use fspid_diagnostics::digits::to_digits;
-use fspid_diagnostics::lines::line;
 use fspid_page::number::capital;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Origin, set};
@@ -237,7 +236,7 @@ fn section(out: &mut String, heading: &str, lines: &[String]) {
 }
 
 fn push(out: &mut String, text: &str) {
-    line(out, format_args!("{}", text.trim_end()));
+    out.push_str(&format!("{}\n", text.trim_end()));
 }
 
 /// Control characters would move the cursor of a terminal.

@@ -54,7 +54,7 @@ fn curved_sets_are_shared_on_a_grid_and_sums_belong_to_nobody() {
     let summed = TIP.replace("fallback = \"middle\"", "aggregation = \"algebraic-sum\"");
     let system = parse(&summed, "tip.toml").expect("good");
     let found = explain(&system, &values(&["service=3", "food=4"]), None).expect("good");
-    assert_eq!((found.shares[0].basis, found.shares[0].list.len()), (Basis::Joined, 0));
+    assert_eq!((found.shares[0].basis, found.shares[0].list.len()), (Basis::Aggregated, 0));
 }
 
 #[test]

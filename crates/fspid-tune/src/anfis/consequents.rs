@@ -4,7 +4,7 @@ use fspid_fuzzy::system::{
     Conclusion, Defuzzifier, Output, Parameter, Parts, Source, System, Workspace,
 };
 
-use super::data::{Data, Row};
+use super::data::{Data, DataRow};
 use super::error::AnfisError;
 use super::squares::Triangle;
 
@@ -75,7 +75,7 @@ impl Consequents {
             let unknowns = self.outputs.iter().zip(&mut triangles).zip(row.outputs);
             for (index, ((unknowns, triangle), &target)) in unknowns.enumerate() {
                 unknowns
-                    .fill(&mut line, (&system, index), &mut workspace)
+                    .fill(&mut line, &system, index, &mut workspace)
                     .ok_or(AnfisError::NotCovered { row: row.number })?;
                 triangle.add(&mut line, target);
             }
@@ -100,7 +100,8 @@ impl Unknowns {
     fn fill(
         &self,
         line: &mut Vec<f64>,
-        (system, index): (&System, usize),
+        system: &System,
+        index: usize,
         workspace: &mut Workspace,
     ) -> Option<()> {
         let fired = system.contributions(index, workspace);
@@ -143,7 +144,11 @@ pub(super) fn squared_error(system: &System, data: &Data) -> Result<f64, AnfisEr
     Ok(sum)
 }
 
-fn row_error(system: &System, row: Row<'_>, workspace: &mut Workspace) -> Result<f64, AnfisError> {
+fn row_error(
+    system: &System,
+    row: DataRow<'_>,
+    workspace: &mut Workspace,
+) -> Result<f64, AnfisError> {
     let refused = |reason| AnfisError::Input { row: row.number, reason };
     let answers = system.evaluate(row.inputs, workspace).map_err(refused)?;
     let mut sum = 0.0;

@@ -7,7 +7,7 @@ use std::path::Path;
 use fspid_campaign::sample::{Cube, Sampling};
 use fspid_fuzzy::system::{Parts, System};
 use fspid_scenario::file::unread_in_words;
-use fspid_study::rows::{self, RowsError, Table};
+use fspid_study::rows::{self, RowAnswers, RowsError};
 
 use super::error::AnfisError;
 
@@ -27,7 +27,7 @@ pub struct Data {
 
 /// A row of the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row<'d> {
+pub struct DataRow<'d> {
     /// Its number in the data as they were given, counted from 1.
     pub number: usize,
     /// The inputs.
@@ -87,11 +87,11 @@ impl Data {
     }
 
     /// The rows in order.
-    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+    pub fn rows(&self) -> impl Iterator<Item = DataRow<'_>> {
         let rows = self.values.chunks_exact((self.inputs + self.outputs).max(1));
         rows.zip(&self.numbers).map(|(row, &number)| {
             let (inputs, outputs) = row.split_at(self.inputs);
-            Row { number, inputs, outputs }
+            DataRow { number, inputs, outputs }
         })
     }
 
@@ -201,7 +201,7 @@ struct Collector<'p> {
     data: Data,
 }
 
-impl Table for Collector<'_> {
+impl RowAnswers for Collector<'_> {
     fn inputs(&self) -> Vec<&str> {
         self.columns.clone()
     }

@@ -40,9 +40,10 @@ mod start;
 use std::fmt;
 
 use fspid_fuzzy::system::{Parts, System};
+use serde::Serialize;
 
 use consequents::{Consequents, squared_error};
-pub use data::{Data, Row};
+pub use data::{Data, DataRow};
 pub use error::AnfisError;
 use pace::Pace;
 use premises::Premises;
@@ -121,11 +122,12 @@ impl Plan {
 }
 
 /// Errors after the forward pass of an epoch: roots of the mean square over rows and outputs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Epoch {
     /// Over the rows that are learned from.
     pub training: f64,
     /// Over the rows that judge only.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<f64>,
     /// Length of the step that the sets make after it.
     pub step: f64,

@@ -119,12 +119,12 @@ impl Premises {
         for (index, movers) in self.inputs.iter().enumerate() {
             let steps: Vec<f64> =
                 movers.iter().zip(&mut slopes).map(|(mover, g)| factor * g * mover.size).collect();
-            self.move_input(&mut moved, parts, (index, &steps));
+            self.move_input(&mut moved, parts, index, &steps);
         }
         moved
     }
 
-    fn move_input(&self, moved: &mut Parts, from: &Parts, (index, steps): (usize, &[f64])) {
+    fn move_input(&self, moved: &mut Parts, from: &Parts, index: usize, steps: &[f64]) {
         let Some(movers) = self.inputs.get(index) else { return };
         let mut share = 1.0;
         for _ in 0..HALVINGS {

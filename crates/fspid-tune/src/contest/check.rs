@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use super::{Contest, Entrant, Options, flight};
 use crate::error::TuneError;
 use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
-use crate::problem::{Problem, marks_of};
+use crate::problem::{TuningProblem, marks_of};
 use crate::search::Effort;
 use crate::source::Source;
 use crate::space::Space;
@@ -32,7 +32,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     let cases = templates(source, &rules, &mut problems);
     let mut entrants = Vec::new();
     for name in &names {
-        match entrant(source, study, (name, &cases), &rules) {
+        match entrant(source, study, name, &cases, &rules) {
             Ok(entrant) => entrants.push(entrant),
             Err(error) => problems.push(in_lines(&format!("controller \"{name}\": {error}"))),
         }
@@ -138,13 +138,14 @@ fn templates(source: &Source, rules: &Rules, problems: &mut Vec<String>) -> Vec<
 fn entrant(
     source: &Source,
     study: &Study,
-    (name, cases): (&str, &[Template]),
+    name: &str,
+    cases: &[Template],
     rules: &Rules,
 ) -> Result<Entrant, TuneError> {
     let marks = marks_of(study, name);
     let problem = match marks.is_empty() {
         true => None,
-        false => Some(Problem::new(source, Some(name))?),
+        false => Some(TuningProblem::new(source, Some(name))?),
     };
     let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
     let flown = cases

@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use serde::Serialize;
+
 use super::judged::{Contestant, Judged, Quantity};
 use super::signed_rank::SignedRank;
 use super::two_way::{TwoWay, holm, mean};
@@ -53,9 +55,10 @@ pub(crate) fn barred(judged: &Judged, one: &Contestant, other: &Contestant) -> O
 }
 
 /// A mean ratio over cases and designs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
     /// The geometric mean of the ratios of the cases that neither lost; none where there are no such cases.
+    #[serde(rename = "ratio")]
     pub mean: Option<f64>,
     /// Its interval; none for fewer than three cases.
     pub interval: Option<[f64; 2]>,
@@ -95,7 +98,7 @@ pub struct Comparison {
 }
 
 /// Whether one of two controllers loses more flights.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Lost {
     /// Cases of which one loses a larger share than the other.
     pub cases: usize,
@@ -117,7 +120,7 @@ pub(crate) fn compared(judged: &Judged, quantity: Quantity) -> Option<Vec<Compar
     let together = 1.0 - (1.0 - CONFIDENCE) / count as f64;
     let pair = Pair { judged, quantity, theirs: reference };
     let mut all: Vec<Comparison> =
-        others.map(|(place, mine)| pair.comparison((place, mine), together)).collect();
+        others.map(|(place, mine)| pair.comparison(place, mine, together)).collect();
     let adjusted = holm(&all.iter().map(|it| it.p).collect::<Vec<_>>());
     let adjusted_lost = holm(&all.iter().map(|it| it.lost.p).collect::<Vec<_>>());
     for (it, (p, p_lost)) in all.iter_mut().zip(adjusted.into_iter().zip(adjusted_lost)) {
@@ -144,13 +147,13 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    fn comparison(&self, (place, mine): (usize, &Contestant), together: f64) -> Comparison {
+    fn comparison(&self, place: usize, mine: &Contestant, together: f64) -> Comparison {
         let all = self.judged.all();
         let cases: Vec<f64> = all.iter().map(|case| self.case(mine, *case)).collect();
         let typical = SignedRank::of(&cases, CONFIDENCE);
         let (over, ratio) = self.ratio(mine, &all, together);
         let groups = self.judged.groups();
-        let groups = groups.iter().map(|(_, cases)| self.ratio(mine, cases, CONFIDENCE).1);
+        let groups = groups.iter().map(|it| self.ratio(mine, &it.cases, CONFIDENCE).1);
         let p = match (over, typical) {
             // Two tests that point in different directions have found nothing.
             (Some(over), Some(typical)) if over.estimate * typical.estimate >= 0.0 => {

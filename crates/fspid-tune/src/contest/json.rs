@@ -1,9 +1,10 @@
 //! The outcome for programs.
 
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::compare::{CONFIDENCE, Comparison, Lost, Ratio, Standing};
-use super::judged::{Contestant, Count, Design, Quantity};
+use super::compare::{CONFIDENCE, Comparison, Ratio, Standing};
+use super::judged::{CaseGroup, Contestant, Design, Quantity};
 use super::outcome::{First, Outcome};
 use super::summary::{Spread, Summary};
 use super::words::{Headline, headline};
@@ -28,10 +29,11 @@ pub(super) fn json(outcome: &Outcome) -> Value {
         })
     });
     let controllers = judged.contestants.iter().zip(&outcome.summaries).enumerate();
-    let groups = judged.groups().into_iter().enumerate().map(|(place, (group, cases))| {
-        let first = outcome.first_of_group(place);
-        json!({ "name": group, "cases": cases.len(), "ranking": ranking(outcome, &first) })
-    });
+    let groups =
+        judged.groups().into_iter().enumerate().map(|(place, CaseGroup { name, cases })| {
+            let first = outcome.first_of_group(place);
+            json!({ "name": name, "cases": cases.len(), "ranking": ranking(outcome, &first) })
+        });
     json!({
         "schema": SCHEMA,
         "scenario": setting.scenario,
@@ -43,7 +45,7 @@ pub(super) fn json(outcome: &Outcome) -> Value {
         "ranking": ranking(outcome, &outcome.first()),
         "groups": groups.collect::<Vec<_>>(),
         "cases": cases(outcome),
-        "controllers": controllers.map(|(place, it)| controller(outcome, place, it)).collect::<Vec<_>>(),
+        "controllers": controllers.map(|(place, (it, summary))| controller(outcome, place, it, summary)).collect::<Vec<_>>(),
     })
 }
 
@@ -65,7 +67,7 @@ fn cases(outcome: &Outcome) -> Vec<Value> {
         let errors: Map<String, Value> = errors
             .map(|(it, summary)| {
                 let part = &summary.cases[place];
-                (it.name.clone(), spread(part.spread(Quantity::ERROR)))
+                (it.name.clone(), json!(part.spread(Quantity::ERROR)))
             })
             .collect();
         json!({
@@ -83,17 +85,18 @@ fn cases(outcome: &Outcome) -> Vec<Value> {
 fn controller(
     outcome: &Outcome,
     place: usize,
-    (contestant, summary): (&Contestant, &Summary),
+    contestant: &Contestant,
+    summary: &Summary,
 ) -> Value {
     let groups = outcome.judged.groups().into_iter().zip(&summary.groups);
     let groups: Vec<Value> = groups
-        .map(|((name, _), it)| json!({ "name": name, "measures": measures(&it.spreads), "flights": count(it.count) }))
+        .map(|(group, it)| json!({ "name": group.name, "measures": measures(&it.spreads), "flights": it.count }))
         .collect();
     let mirror = summary.mirror.map(|it| {
         json!({
-            "largest_relative_difference": finite(it.error),
+            "largest_relative_difference": it.error,
             "lost_on_one_side": it.error.is_infinite(),
-            "largest_overshoot_difference_pct": it.overshoot_pct.and_then(finite),
+            "largest_overshoot_difference_pct": it.overshoot_pct,
             "case": outcome.judged.cases[it.case].name,
         })
     });
@@ -114,7 +117,7 @@ fn controller(
         "tuned": contestant.is_tuned,
         "measures": measures(&summary.whole.spreads),
         "measures_where_nobody_lost": measures(&summary.whole.kept),
-        "flights": count(summary.whole.count),
+        "flights": summary.whole.count,
         "lost_interval": summary.lost,
         "failed_interval": summary.failed,
         "groups": groups,
@@ -139,6 +142,7 @@ fn design(design: &Design) -> Value {
     }
 }
 
+/// JSON has no infinity: a ratio with lost flights is null, and the flights are counted beside it.
 fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
     let standing = match (found.standing, found.is_sure) {
         (Standing::Better, true) => "better",
@@ -148,22 +152,16 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
         (Standing::Open, _) => "not significant",
         (Standing::Barred, _) => "barred by failures",
     };
-    let Lost { cases: lost_cases, p: lost_p, p_adjusted: lost_p_adjusted } = found.lost;
-    let names = outcome.judged.groups().into_iter().zip(&found.groups);
-    let groups: Vec<Value> = names
-        .map(|((name, _), it)| {
-            let mut value = ratio(it);
-            value["name"] = json!(name);
-            value
-        })
-        .collect();
+    let names = outcome.judged.groups();
+    let groups = names.iter().zip(&found.groups);
+    let groups = groups.map(|(group, ratio)| GroupRatio { ratio, name: &group.name });
     let cases = outcome.judged.cases.iter().zip(&found.cases);
     let cases: Map<String, Value> =
-        cases.map(|(case, it)| (case.name.clone(), json!(finite(libm::exp(*it))))).collect();
+        cases.map(|(case, it)| (case.name.clone(), json!(libm::exp(*it)))).collect();
     let typical = found.typical.map(|it| {
-        let interval = [it.lower, it.upper].map(|end| finite(libm::exp(end)));
+        let interval = [it.lower, it.upper].map(libm::exp);
         json!({
-            "ratio": finite(libm::exp(it.estimate)),
+            "ratio": libm::exp(it.estimate),
             "interval": interval,
             "p": it.p,
         })
@@ -171,42 +169,26 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
     json!({
         "standing": standing,
         "by_lost_flights": found.by_flights,
-        "lost": { "cases": lost_cases, "p": lost_p, "p_adjusted": lost_p_adjusted },
-        "ratio_of_means": found.ratio_of_means.and_then(finite),
-        "mean_ratio": ratio(&found.ratio),
+        "lost": found.lost,
+        "ratio_of_means": found.ratio_of_means,
+        "mean_ratio": found.ratio,
         "typical": typical,
         "p": found.p,
         "p_adjusted": found.p_adjusted,
-        "groups": groups,
+        "groups": groups.collect::<Vec<_>>(),
         "case_ratios": cases,
     })
 }
 
-fn ratio(ratio: &Ratio) -> Value {
-    json!({ "ratio": ratio.mean, "interval": ratio.interval, "cases": ratio.cases })
+/// A group of cases with the mean ratio over them.
+#[derive(Serialize)]
+struct GroupRatio<'a> {
+    #[serde(flatten)]
+    ratio: &'a Ratio,
+    name: &'a str,
 }
 
 fn measures(spreads: &[Option<Spread>]) -> Map<String, Value> {
     let all = Quantity::all().zip(spreads);
-    all.map(|(quantity, it)| (quantity.name().to_owned(), spread(*it))).collect()
-}
-
-fn spread(found: Option<Spread>) -> Value {
-    let Some(found) = found else {
-        return Value::Null;
-    };
-    json!({
-        "lower_quartile": finite(found.lower),
-        "median": finite(found.median),
-        "upper_quartile": finite(found.upper),
-    })
-}
-
-fn count(count: Count) -> Value {
-    json!({ "lost": count.lost, "failed": count.failed, "unstable": count.unstable, "constant_load_left": count.load_left, "constant_load_stays": count.load_stays, "of": count.of })
-}
-
-/// JSON has no infinity: a mean with lost flights is null, and the flights are counted beside it.
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
+    all.map(|(quantity, it)| (quantity.name().to_owned(), json!(it))).collect()
 }

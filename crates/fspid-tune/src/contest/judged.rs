@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use serde::Serialize;
+
 use super::flight::{Flight, IAE, MEASURES, TRAVEL};
 use super::tuning::Found;
 
@@ -92,8 +94,17 @@ impl Quantity {
     }
 }
 
+/// Cases that are told together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CaseGroup {
+    /// Their name.
+    pub name: String,
+    /// Their places among all cases.
+    pub cases: Vec<usize>,
+}
+
 /// How many flights are lost or fail, and how many there are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Count {
     /// Flights that are lost.
     pub lost: u64,
@@ -102,8 +113,10 @@ pub struct Count {
     /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
     /// Flights of a loop that does not remove a constant load within the flight.
+    #[serde(rename = "constant_load_left")]
     pub load_left: u64,
     /// Those of them of which it stays for good.
+    #[serde(rename = "constant_load_stays")]
     pub load_stays: u64,
     /// All flights.
     pub of: u64,
@@ -147,14 +160,14 @@ impl Judged {
         self.contestants.iter().any(|it| it.is_tuned)
     }
 
-    /// Groups of cases in the order of their first case, with the places of their cases.
+    /// Groups of cases in the order of their first case.
     #[must_use]
-    pub fn groups(&self) -> Vec<(String, Vec<usize>)> {
-        let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    pub fn groups(&self) -> Vec<CaseGroup> {
+        let mut groups: Vec<CaseGroup> = Vec::new();
         for (index, case) in self.cases.iter().enumerate() {
-            match groups.iter_mut().find(|(name, _)| *name == case.group) {
-                Some((_, cases)) => cases.push(index),
-                None => groups.push((case.group.clone(), vec![index])),
+            match groups.iter_mut().find(|group| group.name == case.group) {
+                Some(group) => group.cases.push(index),
+                None => groups.push(CaseGroup { name: case.group.clone(), cases: vec![index] }),
             }
         }
         groups

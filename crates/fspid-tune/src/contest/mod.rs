@@ -46,7 +46,7 @@ use fspid_study::output;
 pub use crate::kept::Then;
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
-pub use judged::{Case, Contestant, Count, Design, Judged, Quantity};
+pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
 pub use summary::{Mirror, Part, Spread, Summary};
@@ -55,7 +55,7 @@ pub use two_way::{TwoWay, holm};
 
 use crate::error::TuneError;
 use crate::flights::{Flights, each_once};
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::search::Effort;
 use crate::source::Source;
 use tuning::Task;
@@ -74,7 +74,7 @@ pub struct Options {
 struct Entrant {
     name: String,
     /// How it is tuned; none for one without marks.
-    problem: Option<Problem>,
+    problem: Option<TuningProblem>,
     /// What it is judged on.
     flights: Flights,
 }
@@ -110,7 +110,7 @@ impl Contest {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let tuned = self.entrants.iter().filter_map(|entrant| entrant.problem.as_ref());
-        let tuned: Vec<String> = tuned.flat_map(Problem::warnings).collect();
+        let tuned: Vec<String> = tuned.flat_map(TuningProblem::warnings).collect();
         let judged = self.entrants.iter().flat_map(|entrant| entrant.flights.warnings());
         each_once(tuned.iter().chain(judged))
     }

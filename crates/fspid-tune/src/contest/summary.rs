@@ -1,19 +1,22 @@
 //! What one controller came to.
 
 use fspid_campaign::statistics::binomial::clopper_pearson;
+use serde::Serialize;
 
 use super::compare::CONFIDENCE;
 use super::flight::{IAE, OVERSHOOT};
 use super::judged::{Contestant, Count, Judged, Quantity};
 
 /// Median and quartiles over the designs; infinite where flights are lost.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// A quarter of the designs is below.
+    #[serde(rename = "lower_quartile")]
     pub lower: f64,
     /// Half of them is below.
     pub median: f64,
     /// Three quarters are below.
+    #[serde(rename = "upper_quartile")]
     pub upper: f64,
 }
 
@@ -83,7 +86,7 @@ impl Summary {
         Self {
             lost: interval(whole.count.lost),
             failed: interval(whole.count.failed),
-            groups: judged.groups().iter().map(|(_, cases)| part(cases)).collect(),
+            groups: judged.groups().iter().map(|group| part(&group.cases)).collect(),
             cases: judged.all().into_iter().map(|case| part(&[case])).collect(),
             mirror: mirror(judged, contestant),
             whole,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use fspid_campaign::table::{Cell, Column, Kind, MAX_TEXT_BYTES, Schema, Table, Writer};
+use fspid_campaign::table::{Cell, Column, ColumnTable, Kind, MAX_TEXT_BYTES, Schema, Writer};
 use fspid_study::output;
 
 use super::flight::{FAILED, Flight, LOST, MEASURES};
@@ -28,8 +28,8 @@ pub(super) fn write(path: &Path, judged: &Judged, digest: &str) -> Result<(), Tu
     })
 }
 
-fn table(judged: &Judged) -> Result<Table, TuneError> {
-    let mut table = Table::new(Arc::new(schema()?));
+fn table(judged: &Judged) -> Result<ColumnTable, TuneError> {
+    let mut table = ColumnTable::new(Arc::new(schema()?));
     for contestant in &judged.contestants {
         for design in &contestant.designs {
             let seed = design.found.as_ref().map(|found| found.effort.seed as i64);
@@ -50,7 +50,7 @@ fn table(judged: &Judged) -> Result<Table, TuneError> {
     Ok(table)
 }
 
-fn push(table: &mut Table, head: &[Cell<'_>], flight: &Flight) -> Result<(), TuneError> {
+fn push(table: &mut ColumnTable, head: &[Cell<'_>], flight: &Flight) -> Result<(), TuneError> {
     let number = |value: Option<f64>| value.map_or(Cell::Absent, Cell::Float);
     let reasons = flight.reasons.join("; ");
     let mut row = head.to_vec();

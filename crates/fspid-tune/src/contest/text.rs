@@ -1,5 +1,7 @@
 //! The outcome for people.
 
+use fspid_page::columns::{Align, Columns};
+
 use super::compare::Comparison;
 use super::judged::{Judged, Quantity};
 use super::outcome::Outcome;
@@ -63,17 +65,16 @@ pub(super) fn held(outcome: &Outcome) -> String {
 }
 
 fn table(outcome: &Outcome, out: &mut String) {
-    let head = [
-        "controller",
-        "IAE [deg s]",
-        "difference",
-        "elevator travel [deg]",
-        "difference",
-        "lost",
-        "failed",
-        "standing",
-    ];
-    let mut rows = vec![head.map(str::to_owned)];
+    let mut rows = Columns::new(&[
+        ("controller", Align::Left),
+        ("IAE [deg s]", Align::Right),
+        ("difference", Align::Right),
+        ("elevator travel [deg]", Align::Right),
+        ("difference", Align::Right),
+        ("lost", Align::Right),
+        ("failed", Align::Right),
+        ("standing", Align::Left),
+    ]);
     for place in outcome.first().ranking {
         let (it, summary) = (&outcome.judged.contestants[place], &outcome.summaries[place]);
         let of = |quantity| spread_of(outcome, place, quantity);
@@ -81,7 +82,7 @@ fn table(outcome: &Outcome, out: &mut String) {
         let difference = |found: Option<&Comparison>| {
             found.and_then(|it| it.ratio.mean).map_or("\u{2013}".to_owned(), signed)
         };
-        rows.push([
+        rows.row(vec![
             cut(&it.name, 40),
             of(Quantity::ERROR),
             difference(outcome.comparison(place)),
@@ -92,15 +93,7 @@ fn table(outcome: &Outcome, out: &mut String) {
             stands(outcome, place),
         ]);
     }
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: Vec<usize> = (0..head.len()).map(|column| width(column).unwrap_or(0)).collect();
-    for row in &rows {
-        let cells = row.iter().zip(&widths).enumerate().map(|(column, (text, width))| {
-            let is_word = column == 0 || column + 1 == head.len();
-            if is_word { format!("{text:<width$}") } else { format!("{text:>width$}") }
-        });
-        out.push_str(&format!("  {}\n", cells.collect::<Vec<_>>().join("  ").trim_end()));
-    }
+    out.push_str(&rows.to_string());
     out.push_str(&format!(
         "  Medians over the seeds (quartiles) of means over {}.\n",
         over_kept(outcome)

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::design;
 use crate::error::TuneError;
 use crate::kept::{Kept, Then, Unfit};
-use crate::problem::Problem;
+use crate::problem::TuningProblem;
 use crate::search::{Effort, stop_in_words};
 use crate::source::Source;
 use crate::tuned::{Number, Tuned};
@@ -63,7 +63,7 @@ pub struct Progress {
 /// A search that is asked for.
 pub(crate) struct Task<'a> {
     pub(crate) source: &'a Source,
-    pub(crate) problem: &'a Problem,
+    pub(crate) problem: &'a TuningProblem,
     pub(crate) effort: Effort,
     /// Where its files lie, and what their names begin with.
     pub(crate) folder: &'a Path,

@@ -6,7 +6,7 @@ use fspid_scenario::tuning::{Over, Tuning};
 
 use super::compare::{Bar, CONFIDENCE, Comparison, Standing, barred};
 use super::flight::{FAR, Flight};
-use super::judged::Quantity;
+use super::judged::{CaseGroup, Quantity};
 use super::outcome::Outcome;
 use super::summary::Spread;
 
@@ -435,7 +435,7 @@ pub(super) fn sentence(outcome: &Outcome, found: &Comparison) -> String {
 /// Who is first in each group of cases, a sentence each.
 pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
     let groups = outcome.judged.groups();
-    let sentence = |(place, (group_name, cases)): (usize, &(String, Vec<usize>))| {
+    let sentence = |(place, CaseGroup { name: group_name, cases }): (usize, &CaseGroup)| {
         let first = outcome.first_of_group(place);
         let whose = first.ranking.iter().map(|&it| {
             let change = match first.ratios[it] {

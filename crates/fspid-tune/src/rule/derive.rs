@@ -130,8 +130,8 @@ impl Work<'_> {
         let base = self.process.config;
         let own = base.derivative.filter_s;
         let filter_s = if own > 0.0 { own } else { PLACED_FILTER / omega };
-        let aim = (self.form, omega);
-        let (gains, poles) = place::placed(&self.process, self.options.poles, aim, filter_s)?;
+        let (gains, poles) =
+            place::placed(&self.process, self.options.poles, self.form, omega, filter_s)?;
         let filtered = self.form == Form::Pid && own == 0.0;
         let filter_s = if filtered { filter_s } else { own };
         let config = PidConfig {

@@ -1,9 +1,10 @@
 //! Gains as the rules give them: $u = K (e + \frac{1}{T_i} \int e \ dt + T_d \dot e)$.
 
 use fspid_core::{ConfigError, Gains};
+use serde::Serialize;
 
 /// Gains in the standard form.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Isa {
     /// Gain K, command per error.
     pub gain: f64,

@@ -9,8 +9,10 @@ use fspid_core::{Gains, IntegralForm, PidConfig};
 use fspid_lti::{Matrix, regulator};
 use fspid_optimise::{Parameter, Scale, Space, polish};
 use fspid_sim::loop_model::Memory;
+use serde::Serialize;
 
 use super::RuleError;
+use super::json::start_gains;
 use super::model::Model;
 use super::options::LqrOptions;
 use super::process::Process;
@@ -30,9 +32,10 @@ const CALM: [f64; 2] = [0.2, 0.02];
 const DAMPED: [f64; 10] = [0.03, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 
 /// How the least cost was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LqrSearch {
     /// Proportional gain, integral gain and rate gain that the search began with.
+    #[serde(serialize_with = "start_gains")]
     pub start: [f64; 3],
     /// Their cost, after a pitch error of 1 rad.
     pub start_cost: f64,
@@ -155,7 +158,7 @@ pub(super) fn least_cost(
     let (start, start_cost) = begun.ok_or(RuleError::NoStart)?;
     let (mut best, mut least, mut evaluations) = (start, start_cost, 0);
     for _ in 0..DESCENTS {
-        let (gains, found, spent) = descend(process, weights, (best, least));
+        let (gains, found, spent) = descend(process, weights, best, least);
         evaluations += spent;
         if found < least {
             (best, least) = (gains, found);
@@ -167,7 +170,8 @@ pub(super) fn least_cost(
 fn descend(
     process: &Process,
     weights: LqrOptions,
-    (from, known): ([f64; 3], f64),
+    from: [f64; 3],
+    known: f64,
 ) -> ([f64; 3], f64, usize) {
     // A gain of zero has no decades around it.
     let floor = from.iter().fold(0.0, |most: f64, gain| most.max(gain.abs())) / REACH;

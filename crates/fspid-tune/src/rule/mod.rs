@@ -32,12 +32,13 @@ use fspid_core::{Gains, Pid, PidConfig};
 use fspid_scenario::file::Study;
 use fspid_sim::{Controller, NamedController, Scenario};
 use fspid_study::analysis::{AnalysedLoop, Analysis, Question};
+use serde::Serialize;
 
 pub use error::RuleError;
 pub use isa::Isa;
 pub use kind::{Form, Rule};
 pub use lqr::LqrSearch;
-pub use model::{FittedModel, Model};
+pub use model::{FittedModel, Model, ModelParameter};
 pub use options::{LqrOptions, Options, PoleOptions, ProcessKind, RelayOptions};
 pub use outcome::Verdict;
 pub use place::PlacedPoles;
@@ -45,29 +46,34 @@ pub use relay::RelayExperiment;
 pub use ultimate::UltimatePoint;
 
 /// What a rule found out before it gave gains.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Identified {
     /// The exact limit of stability of the proportional loop, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub ultimate: Option<UltimatePoint>,
     /// The fitted model, where the rule uses one.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<FittedModel>,
     /// The relay experiment of `autotune-relay`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub relay: Option<RelayExperiment>,
     /// The poles of `pole-placement`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub poles: Option<PlacedPoles>,
     /// The search of `lqr`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub search: Option<LqrSearch>,
 }
 
 /// Which of the controller's settings beside the gains a rule gave.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Given {
-    /// The set-point weights.
-    pub setpoint_weights: bool,
-    /// The derivative filter.
-    pub derivative_filter: bool,
     /// The gain of the rate loop.
     pub rate_gain: bool,
+    /// The derivative filter.
+    pub derivative_filter: bool,
+    /// The set-point weights.
+    pub setpoint_weights: bool,
 }
 
 /// What a rule made of a loop.

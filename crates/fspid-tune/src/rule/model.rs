@@ -3,6 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use fspid_lti::{Complex, modulus, quotient};
+use serde::Serialize;
 
 use super::process::Process;
 use super::ultimate::UltimatePoint;
@@ -72,19 +73,25 @@ impl Model {
         }
     }
 
-    /// Names, values and units of its parameters.
+    /// Its parameters, as its equation names them.
     #[must_use]
-    pub fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
+    pub fn parameters(&self) -> Vec<ModelParameter> {
+        let one = |name, value, unit| ModelParameter { name, value, unit };
         match *self {
             Self::Lag { gain, time_s, dead_s } => {
-                vec![("K", gain, ""), ("T", time_s, "s"), ("L", dead_s, "s")]
+                vec![one("K", gain, ""), one("T", time_s, "s"), one("L", dead_s, "s")]
             }
-            Self::TwoLags { gain, time_s: [first, second], dead_s } => {
-                vec![("K", gain, ""), ("T1", first, "s"), ("T2", second, "s"), ("L", dead_s, "s")]
+            Self::TwoLags { gain, time_s: [first, second], dead_s } => vec![
+                one("K", gain, ""),
+                one("T1", first, "s"),
+                one("T2", second, "s"),
+                one("L", dead_s, "s"),
+            ],
+            Self::Integrator { slope, dead_s } => {
+                vec![one("K'", slope, "1/s"), one("L", dead_s, "s")]
             }
-            Self::Integrator { slope, dead_s } => vec![("K'", slope, "1/s"), ("L", dead_s, "s")],
             Self::IntegratorLag { slope, time_s, dead_s } => {
-                vec![("K'", slope, "1/s"), ("T2", time_s, "s"), ("L", dead_s, "s")]
+                vec![one("K'", slope, "1/s"), one("T2", time_s, "s"), one("L", dead_s, "s")]
             }
         }
     }
@@ -123,6 +130,17 @@ impl Model {
         let (sine, cosine) = libm::sincos(-omega_rad_s * self.dead_s());
         quotient(Complex::new(gain * cosine, gain * sine), below)
     }
+}
+
+/// A number in the equation of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ModelParameter {
+    /// Its letter in the equation.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its unit; empty where there is none.
+    pub unit: &'static str,
 }
 
 /// A model with what it was fitted to.

@@ -2,13 +2,14 @@
 
 use fspid_core::Gains;
 use fspid_lti::{Complex, Matrix, modulus, quotient};
+use serde::Serialize;
 
 use super::options::PoleOptions;
 use super::process::Process;
 use super::{Form, RuleError};
 
 /// Where the poles were put.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlacedPoles {
     /// Damping of the pair.
     pub damping: f64,
@@ -17,6 +18,7 @@ pub struct PlacedPoles {
     /// The third pole, 1/s; none for `pi`.
     pub third_per_s: Option<f64>,
     /// The pair in the z-plane, and the third pole.
+    #[serde(skip)]
     pub z: Vec<Complex>,
 }
 
@@ -29,7 +31,8 @@ pub struct PlacedPoles {
 pub(super) fn placed(
     process: &Process,
     options: PoleOptions,
-    (form, omega): (Form, f64),
+    form: Form,
+    omega: f64,
     filter_s: f64,
 ) -> Result<(Gains<f64>, PlacedPoles), RuleError> {
     let dt_s = process.open.dt_s();

@@ -21,7 +21,7 @@ fn cube(first: f64, count: u32) -> Data {
 
 /// Mean of the error over the answer, per cent.
 fn percentage_error(parts: &Parts, data: &Data) -> f64 {
-    let error = |row: fspid_tune::anfis::Row<'_>| {
+    let error = |row: fspid_tune::anfis::DataRow<'_>| {
         ((answer(parts, row.inputs) - row.outputs[0]) / row.outputs[0]).abs()
     };
     100.0 * data.rows().map(error).sum::<f64>() / data.len() as f64

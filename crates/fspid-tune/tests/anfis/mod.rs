@@ -8,7 +8,7 @@ mod rules_kept;
 mod stops;
 
 use fspid_fuzzy::system::{Parameter, Parts, System, Universe};
-use fspid_tune::anfis::{Axis, Curve, Data, Learned, Order, Plan, Row, grid, learn};
+use fspid_tune::anfis::{Axis, Curve, Data, DataRow, Learned, Order, Plan, grid, learn};
 
 fn axis(name: &str, lower: f64, upper: f64, terms: usize) -> Axis {
     Axis { name: name.to_owned(), universe: Universe { lower, upper }, terms }
@@ -50,7 +50,7 @@ fn answer(parts: &Parts, inputs: &[f64]) -> f64 {
 
 /// The error of an epoch, worked out from the answers themselves.
 fn root_mean_square(parts: &Parts, data: &Data) -> f64 {
-    let square = |row: Row<'_>| {
+    let square = |row: DataRow<'_>| {
         let error = answer(parts, row.inputs) - row.outputs[0];
         error * error
     };

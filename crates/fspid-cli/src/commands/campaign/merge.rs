@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::super::Format;
-use super::{Place, failure};
+use super::{PlannedFolder, failure};
 use crate::argument::{OutFile, written};
 use crate::exit::Failure;
 
@@ -12,7 +12,7 @@ use crate::exit::Failure;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    place: Place,
+    place: PlannedFolder,
     /// Where to; `campaign.parquet` in the folder if left out.
     #[arg(value_parser = written(&["parquet"]), long, value_name = "FILE.parquet")]
     to: Option<OutFile>,

@@ -178,13 +178,13 @@ impl Planned {
 
 /// The folder of a campaign that is planned.
 #[derive(Debug, Args)]
-struct Place {
+struct PlannedFolder {
     /// The campaign's folder.
     #[arg(long, value_name = "DIR")]
     out: argument::Folder,
 }
 
-impl Place {
+impl PlannedFolder {
     fn folder(&self) -> Folder {
         Folder::new(&self.out)
     }

@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::super::Format;
-use super::{Place, Planned};
+use super::{Planned, PlannedFolder};
 use crate::argument::InFile;
 use crate::exit::Failure;
 use fspid_diagnostics::digits::counted;
@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     planned: Planned,
     #[command(flatten)]
-    place: Place,
+    place: PlannedFolder,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,

@@ -4,8 +4,9 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use fspid_campaign::Progress;
+use fspid_diagnostics::digits::grouped;
 
-use super::super::progress::{Telling, answer_after, duration, grouped, tell};
+use super::super::progress::{Telling, answer_after, duration, tell};
 
 /// Works and tells how far it is on standard error.
 pub(super) fn told<T>(telling: Telling, runs: u64, work: impl FnOnce(&Progress) -> T) -> T {

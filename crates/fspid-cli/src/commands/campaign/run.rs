@@ -6,7 +6,7 @@ use serde_json::json;
 use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::progress::told;
-use super::{Place, Planned, failure, planned};
+use super::{Planned, PlannedFolder, failure, planned};
 use crate::argument::InFile;
 use crate::exit::Failure;
 use fspid_campaign::local;
@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     planned: Planned,
     #[command(flatten)]
-    place: Place,
+    place: PlannedFolder,
     /// Who flies. On a cluster: `campaign plan`, `campaign shard` and `campaign merge`.
     #[arg(long, value_enum, default_value_t = Engine::Local)]
     engine: Engine,

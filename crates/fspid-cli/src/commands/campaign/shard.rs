@@ -6,7 +6,7 @@ use serde_json::json;
 use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::progress::told;
-use super::{Place, failure};
+use super::{PlannedFolder, failure};
 use crate::exit::Failure;
 use fspid_campaign::shard::{self, Done};
 use fspid_campaign::{CampaignError, local};
@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// Number of the shard, from 0.
     number: u64,
     #[command(flatten)]
-    place: Place,
+    place: PlannedFolder,
     /// How many threads; 0 for as many as the machine has. The result is the same.
     #[arg(long, default_value_t = 0)]
     threads: usize,

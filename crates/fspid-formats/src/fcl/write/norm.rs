@@ -4,7 +4,7 @@ use fspid_fuzzy::system::{SNorm, TNorm};
 use fspid_fuzzy::{SNormKind, TNormKind};
 
 use super::text::Writer;
-use crate::vocabulary::norms::{self, Row, S_NORMS, T_NORMS};
+use crate::vocabulary::norms::{self, NormWords, S_NORMS, T_NORMS};
 
 impl Writer<'_> {
     /// The word of a norm; beside fuzzylite's dialect only those of the standard.
@@ -13,8 +13,8 @@ impl Writer<'_> {
             TNorm::Kind(kind) => norms::row_of(T_NORMS, kind),
             TNorm::Formula(_) => None,
         };
-        let fits = |row: &&Row<TNormKind>| self.extended() || standard.contains(&row.kind);
-        let word = row.filter(fits).map(Row::word);
+        let fits = |row: &&NormWords<TNormKind>| self.extended() || standard.contains(&row.kind);
+        let word = row.filter(fits).map(NormWords::word);
         self.word(name, word)
     }
 
@@ -23,8 +23,8 @@ impl Writer<'_> {
             SNorm::Kind(kind) => norms::row_of(S_NORMS, kind),
             SNorm::Formula(_) => None,
         };
-        let fits = |row: &&Row<SNormKind>| self.extended() || standard.contains(&row.kind);
-        let word = row.filter(fits).map(Row::word);
+        let fits = |row: &&NormWords<SNormKind>| self.extended() || standard.contains(&row.kind);
+        let word = row.filter(fits).map(NormWords::word);
         self.word(name, word)
     }
 

@@ -7,10 +7,10 @@ use crate::fcl::Dialect;
 use crate::fit;
 use crate::loss::Loss;
 use crate::number::written as number;
-use crate::vocabulary::shapes::{self, FUZZYLITE, JFUZZYLOGIC, Row};
+use crate::vocabulary::shapes::{self, FUZZYLITE, JFUZZYLOGIC, ToolShape};
 
 /// The words of a dialect.
-fn rows(dialect: Dialect) -> &'static [Row] {
+fn rows(dialect: Dialect) -> &'static [ToolShape] {
     match dialect {
         Dialect::Iec => &[],
         Dialect::Fuzzylite => FUZZYLITE,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::source::{Entry, Section};
+use super::source::{Entry, FisSection};
 use crate::report::{Report, one_of, wrong};
 use fspid_diagnostics::Problem;
 
@@ -57,7 +57,7 @@ pub(super) struct Keys<'a> {
 impl<'a> Keys<'a> {
     /// Sorts a section by keys and says what does not belong into it.
     pub(super) fn of(
-        section: &Section<'a>,
+        section: &FisSection<'a>,
         known: &'static [&'static str],
         report: &mut Report,
     ) -> Self {

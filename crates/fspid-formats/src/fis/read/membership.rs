@@ -7,7 +7,7 @@ use fspid_fuzzy::system::Membership;
 use super::source::Entry;
 use super::value::{Number, list, over, quoted, sign};
 use crate::cursor::Cursor;
-use crate::fis::shape::{Row, SHAPES, by_name};
+use crate::fis::shape::{SHAPES, ShapeWord, by_name};
 use crate::report::{Report, one_of, wrong};
 use fspid_diagnostics::{Place, Problem};
 
@@ -74,7 +74,7 @@ pub(super) fn set(
     Ok(Membership::Shape { kind, params, height })
 }
 
-fn known(written: &Written) -> Result<&'static Row, Problem> {
+fn known(written: &Written) -> Result<&'static ShapeWord, Problem> {
     let Written { name, place, .. } = written;
     by_name(name).ok_or_else(|| {
         let of_matlab = SHAPES.iter().filter(|row| row.matlab).map(|row| row.name);
@@ -95,7 +95,7 @@ fn height(number: &Number) -> Result<f64, Problem> {
 }
 
 /// Our parameters, and another kind where the named one has no such member.
-fn repaired(row: &Row, numbers: &[Number], report: &mut Report) -> (ShapeKind, Vec<f64>) {
+fn repaired(row: &ShapeWord, numbers: &[Number], report: &mut Report) -> (ShapeKind, Vec<f64>) {
     let values: Vec<f64> = numbers.iter().map(|number| number.value).collect();
     if let Some(other) = degenerate(row.kind, &values) {
         return other;
@@ -141,7 +141,12 @@ fn degenerate(kind: ShapeKind, values: &[f64]) -> Option<(ShapeKind, Vec<f64>)> 
 }
 
 /// Refuses parameters that no member has, at the one that is wrong.
-fn checked(row: &Row, kind: ShapeKind, params: &[f64], numbers: &[Number]) -> Result<(), Problem> {
+fn checked(
+    row: &ShapeWord,
+    kind: ShapeKind,
+    params: &[f64],
+    numbers: &[Number],
+) -> Result<(), Problem> {
     let Err(error) = kind.check(params) else { return Ok(()) };
     let at = match &error {
         FuzzyError::Parameter { name, found, .. } => culprit(row, kind, name, *found, numbers),
@@ -154,7 +159,7 @@ fn checked(row: &Row, kind: ShapeKind, params: &[f64], numbers: &[Number]) -> Re
 
 /// The number in the file that a parameter was read from.
 fn culprit<'n, 'a>(
-    row: &Row,
+    row: &ShapeWord,
     kind: ShapeKind,
     name: &str,
     found: f64,

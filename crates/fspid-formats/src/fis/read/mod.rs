@@ -19,7 +19,7 @@ use crate::cursor::Cursor;
 use crate::note::Reading;
 use crate::report::Report;
 use fspid_diagnostics::Problems;
-use source::{Section, Source};
+use source::{FisSection, Source};
 use system::Header;
 use variable::Variable;
 
@@ -68,7 +68,7 @@ fn parts(source: &Source, report: &mut Report) -> Parts {
 
 /// The variables of one kind in the order of their numbers, which must not have gaps.
 fn variables<'a>(
-    sections: &BTreeMap<usize, Section<'a>>,
+    sections: &BTreeMap<usize, FisSection<'a>>,
     word: &str,
     report: &mut Report,
 ) -> Vec<Variable<'a>> {

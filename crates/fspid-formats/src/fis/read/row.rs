@@ -20,7 +20,7 @@ pub(super) struct Index<'a> {
 
 /// A rule as it is written.
 #[derive(Debug)]
-pub(super) struct Row<'a> {
+pub(super) struct RuleRow<'a> {
     pub(super) place: Place,
     pub(super) inputs: Vec<Index<'a>>,
     pub(super) outputs: Vec<Index<'a>>,
@@ -30,7 +30,7 @@ pub(super) struct Row<'a> {
 }
 
 /// Takes a line apart.
-pub(super) fn row<'a>(mut line: Cursor<'a>) -> Result<Row<'a>, Problem> {
+pub(super) fn row<'a>(mut line: Cursor<'a>) -> Result<RuleRow<'a>, Problem> {
     let place = line.place();
     let inputs = indices(&mut line)?;
     sign(&mut line, ',', "between inputs and outputs")?;
@@ -41,7 +41,7 @@ pub(super) fn row<'a>(mut line: Cursor<'a>) -> Result<Row<'a>, Problem> {
     sign(&mut line, ':', "before the connective")?;
     let any = connective(&mut line)?;
     over(line)?;
-    Ok(Row { place, inputs, outputs, weight, any })
+    Ok(RuleRow { place, inputs, outputs, weight, any })
 }
 
 fn is_separator(next: char) -> bool {

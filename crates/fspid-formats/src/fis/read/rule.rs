@@ -7,7 +7,7 @@ use fspid_fuzzy::system::{
     Antecedent, Conclusion, Consequent, Input, Output, OutputTerm, Rule, Statement, Variable,
 };
 
-use super::row::{Index, Row, row};
+use super::row::{Index, RuleRow, row};
 use super::source::Source;
 use crate::fis::hedge::{Coded, NONE, of_code};
 use crate::hedged;
@@ -39,7 +39,7 @@ pub(super) fn rules(
 }
 
 fn rule(
-    row: &Row,
+    row: &RuleRow,
     inputs: &[Input],
     conclusions: &mut Conclusions,
     report: &mut Report,
@@ -78,7 +78,7 @@ fn counted(place: Place, found: usize, wanted: usize, what: &str) -> Result<(), 
     Err(wrong(place, "", message, format!("{wanted}, one index for each")))
 }
 
-fn antecedent(row: &Row, mut statements: Vec<Antecedent>, report: &mut Report) -> Antecedent {
+fn antecedent(row: &RuleRow, mut statements: Vec<Antecedent>, report: &mut Report) -> Antecedent {
     match (statements.len(), row.any) {
         (0, false) => {
             report.note(row.place, "a rule without a condition always fires");

@@ -17,7 +17,7 @@ pub(super) struct Entry<'a> {
 
 /// A section of keys and values.
 #[derive(Debug)]
-pub(super) struct Section<'a> {
+pub(super) struct FisSection<'a> {
     pub(super) place: Place,
     pub(super) entries: Vec<Entry<'a>>,
 }
@@ -25,9 +25,9 @@ pub(super) struct Section<'a> {
 /// A file.
 #[derive(Debug, Default)]
 pub(super) struct Source<'a> {
-    pub(super) system: BTreeMap<usize, Section<'a>>,
-    pub(super) inputs: BTreeMap<usize, Section<'a>>,
-    pub(super) outputs: BTreeMap<usize, Section<'a>>,
+    pub(super) system: BTreeMap<usize, FisSection<'a>>,
+    pub(super) inputs: BTreeMap<usize, FisSection<'a>>,
+    pub(super) outputs: BTreeMap<usize, FisSection<'a>>,
     /// Where `[Rules]` stands.
     pub(super) rules: Option<Place>,
     /// The lines of `[Rules]`.
@@ -72,7 +72,7 @@ impl<'a> Source<'a> {
         let found = header(line).and_then(|open| self.begin(open, line));
         let Some(open) = report.keep(found) else { return Open::Refused };
         if let Some((sections, number)) = self.family(open) {
-            sections.insert(number, Section { place, entries: Vec::new() });
+            sections.insert(number, FisSection { place, entries: Vec::new() });
         } else {
             self.rules = Some(place);
         }
@@ -94,7 +94,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    fn family(&mut self, open: Open) -> Option<(&mut BTreeMap<usize, Section<'a>>, usize)> {
+    fn family(&mut self, open: Open) -> Option<(&mut BTreeMap<usize, FisSection<'a>>, usize)> {
         match open {
             Open::System => Some((&mut self.system, 1)),
             Open::Input(number) => Some((&mut self.inputs, number)),

@@ -6,7 +6,7 @@ use fspid_fuzzy::system::{Input, Membership, Term, Universe};
 
 use super::keys::{Keys, Side, VARIABLE};
 use super::membership::{self, Written};
-use super::source::{Entry, Section};
+use super::source::{Entry, FisSection};
 use super::value;
 use crate::number;
 use crate::report::{Report, wrong};
@@ -35,7 +35,7 @@ pub(super) struct Set<'a> {
 impl<'a> Variable<'a> {
     /// Reads a section; `word` is what an unnamed one is called.
     pub(super) fn of(
-        section: &Section<'a>,
+        section: &FisSection<'a>,
         word: &str,
         number: usize,
         report: &mut Report,
@@ -107,7 +107,7 @@ fn switch(entry: &Entry, report: &mut Report) -> bool {
 }
 
 /// `Range=[lower upper]`; infinite ends stand for no range.
-fn range(keys: &Keys, section: &Section, report: &mut Report) -> Option<Universe> {
+fn range(keys: &Keys, section: &FisSection, report: &mut Report) -> Option<Universe> {
     let Some(entry) = keys.get("Range") else {
         report.problem(section.place, "", "has no range", "`Range=[lower upper]`");
         return None;

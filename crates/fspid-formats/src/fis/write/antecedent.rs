@@ -14,7 +14,7 @@ const MOST_ROWS: usize = 64;
 
 /// What a row asks of the inputs.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Row {
+pub(super) struct AntecedentRow {
     /// Statements about different inputs.
     pub(super) statements: Vec<Statement>,
     /// Whether they are joined by *or*.
@@ -35,18 +35,21 @@ enum Plain {
 ///
 /// # Errors
 /// Why there are none that say the same.
-pub(super) fn rows(antecedent: &Antecedent, methods: &Methods) -> Result<Vec<Row>, &'static str> {
+pub(super) fn rows(
+    antecedent: &Antecedent,
+    methods: &Methods,
+) -> Result<Vec<AntecedentRow>, &'static str> {
     let plain = plain(antecedent, false, methods)?;
     let flat = |any, parts: &[Plain]| {
         let statements = parts.iter().map(statement).collect::<Option<Vec<_>>>()?;
-        once(&statements).then(|| vec![Row { statements, any }])
+        once(&statements).then(|| vec![AntecedentRow { statements, any }])
     };
     let whole = match &plain {
         Plain::Any(parts) => flat(true, parts),
         Plain::All(parts) => flat(false, parts),
         Plain::Is(_) => flat(false, std::slice::from_ref(&plain)),
-        Plain::Always => Some(vec![Row { statements: Vec::new(), any: false }]),
-        Plain::Never => Some(vec![Row { statements: Vec::new(), any: true }]),
+        Plain::Always => Some(vec![AntecedentRow { statements: Vec::new(), any: false }]),
+        Plain::Never => Some(vec![AntecedentRow { statements: Vec::new(), any: true }]),
     };
     match whole {
         Some(rows) => Ok(rows),
@@ -72,9 +75,11 @@ pub(super) fn input(variable: Variable) -> Option<usize> {
 }
 
 /// One row for each alternative.
-fn split(plain: &Plain) -> Result<Vec<Row>, &'static str> {
-    let rows: Vec<_> =
-        alternatives(plain)?.into_iter().map(|statements| Row { statements, any: false }).collect();
+fn split(plain: &Plain) -> Result<Vec<AntecedentRow>, &'static str> {
+    let rows: Vec<_> = alternatives(plain)?
+        .into_iter()
+        .map(|statements| AntecedentRow { statements, any: false })
+        .collect();
     if rows.iter().all(|row| once(&row.statements)) {
         return Ok(rows);
     }

@@ -3,7 +3,7 @@
 use fspid_fuzzy::Hedge;
 use fspid_fuzzy::system::{Consequent, Parts, Rule, Statement};
 
-use super::antecedent::{Row, input, rows};
+use super::antecedent::{AntecedentRow, input, rows};
 use super::losses::Losses;
 use super::method::{Methods, acts};
 use crate::fis::hedge::{Coded, NONE, of_code, to_code};
@@ -32,7 +32,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn rule(&mut self, rule: &Rule, rows: &[Row]) {
+    fn rule(&mut self, rule: &Rule, rows: &[AntecedentRow]) {
         let place = &self.place;
         if rows.len() > 1 {
             let count = rows.len();
@@ -51,7 +51,7 @@ impl Writer<'_> {
         }
     }
 
-    fn inputs(&mut self, row: &Row) -> String {
+    fn inputs(&mut self, row: &AntecedentRow) -> String {
         let mut indices = vec![String::from("0"); self.parts.inputs.len()];
         for statement in &row.statements {
             let index = self.index(statement);

@@ -33,7 +33,7 @@ pub(super) fn input(number: usize, input: &Input, pair: bool, losses: &mut Losse
     });
     let sets: String = sets.collect();
     let name = label(&input.name, losses);
-    section(&format!("Input{number}"), &name, universe, (input.terms.len(), &sets))
+    section(&format!("Input{number}"), &name, universe, input.terms.len(), &sets)
 }
 
 /// The section of an output.
@@ -62,7 +62,7 @@ pub(super) fn output(number: usize, output: &Output, pair: bool, losses: &mut Lo
     });
     let sets: String = sets.collect();
     let name = label(&output.name, losses);
-    section(&format!("Output{number}"), &name, universe, (output.terms.len(), &sets))
+    section(&format!("Output{number}"), &name, universe, output.terms.len(), &sets)
 }
 
 /// In the file the answer without a firing rule is the middle of the range.
@@ -77,7 +77,7 @@ fn falls_back(place: &str, output: &Output, universe: Universe, losses: &mut Los
     }
 }
 
-fn section(heading: &str, name: &str, universe: Universe, (count, sets): (usize, &str)) -> String {
+fn section(heading: &str, name: &str, universe: Universe, count: usize, sets: &str) -> String {
     let range = written_all(&[universe.lower, universe.upper]);
     format!("[{heading}]\nName='{name}'\nRange=[{range}]\nNumMFs={count}\n{sets}\n")
 }

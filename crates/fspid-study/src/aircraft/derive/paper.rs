@@ -59,11 +59,11 @@ const NAVION_FT_S: f64 = 176.0;
 pub(super) struct Comparison {
     model: &'static str,
     how: String,
-    rows: Vec<Row>,
+    rows: Vec<ComparedNumber>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Row {
+struct ComparedNumber {
     place: &'static str,
     printed: f64,
     half_digit: f64,
@@ -72,7 +72,7 @@ struct Row {
     plain: f64,
 }
 
-impl Row {
+impl ComparedNumber {
     /// Distance from the printed number in units of half its last digit: up to 1 it is that number.
     fn off(&self) -> f64 {
         (self.derived - self.printed).abs() / self.half_digit
@@ -131,25 +131,25 @@ fn b747(data: &DerivativeData) -> Result<Comparison, AircraftError> {
     })
 }
 
-fn rows(printed: &[Printed], derived: &TransferFunction, plain: &TransferFunction) -> Vec<Row> {
+fn rows(
+    printed: &[Printed],
+    derived: &TransferFunction,
+    plain: &TransferFunction,
+) -> Vec<ComparedNumber> {
     let coefficients = |plant: &TransferFunction| -> Vec<f64> {
         let below = plant.denominator().coefficients().iter().skip(1);
         plant.numerator().coefficients().iter().chain(below).copied().collect()
     };
     let found = coefficients(derived).into_iter().zip(coefficients(plain));
-    let row = |(&(place, printed, half_digit), (derived, plain)): (&Printed, (f64, f64))| Row {
-        place,
-        printed,
-        half_digit,
-        derived,
-        plain,
+    let row = |(&(place, printed, half_digit), (derived, plain)): (&Printed, (f64, f64))| {
+        ComparedNumber { place, printed, half_digit, derived, plain }
     };
     printed.iter().zip(found).map(row).collect()
 }
 
 impl Comparison {
     fn worst(&self) -> f64 {
-        self.rows.iter().map(Row::off).fold(0.0, f64::max)
+        self.rows.iter().map(ComparedNumber::off).fold(0.0, f64::max)
     }
 
     fn verdict(&self) -> String {
@@ -161,7 +161,7 @@ impl Comparison {
     }
 
     pub(super) fn text(&self) -> String {
-        let cells = |row: &Row| {
+        let cells = |row: &ComparedNumber| {
             let [derived, plain] = [row.derived, row.plain].map(|x| significant(x, 8));
             let (printed, off) = (short(row.printed, 8), format!("{:.2}", row.off()));
             vec![row.place.to_owned(), printed, derived, off, plain]
@@ -177,7 +177,7 @@ impl Comparison {
     }
 
     pub(super) fn json(&self) -> Value {
-        let row = |row: &Row| {
+        let row = |row: &ComparedNumber| {
             json!({
                 "coefficient": row.place, "printed": row.printed, "derived": row.derived,
                 "off_half_digits": row.off(), "by_the_source": row.plain,

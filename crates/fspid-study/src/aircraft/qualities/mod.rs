@@ -9,7 +9,7 @@ use fspid_aircraft::qualities::{
 };
 use fspid_aircraft::{AircraftError, VelocityForm, lateral_modes};
 use fspid_lti::TransferFunction;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::condition::Question;
 use super::facts::Facts;
@@ -22,7 +22,7 @@ use fspid_scenario::aircraft::units::{Kind, TIMES, Units};
 use fspid_scenario::file::preset;
 use fspid_scenario::supervisor::Refused;
 
-/// Whose flying qualities, and behind what.
+/// Which aircraft is judged for its flying qualities, and behind which servo and delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QualitiesQuestion<'a> {
     /// The aircraft and its flight; a plant that the program carries does as well.
@@ -221,17 +221,16 @@ impl Judged {
                 "note": requirement.note,
             })
         };
-        let mut whole = Map::new();
-        whole.insert("aircraft".to_owned(), json!(self.name));
-        whole.insert("units".to_owned(), json!(self.units.name()));
-        whole.insert("category".to_owned(), json!(format!("{:?}", self.qualities.category)));
-        whole.insert("servo_rad_s".to_owned(), json!(self.servo_rad_s));
-        whole.insert("delay_s".to_owned(), json!(self.delay_s));
-        whole.insert("values".to_owned(), self.facts().json(self.units));
-        let levels: Vec<Value> = self.judgements().iter().map(level).collect();
-        whole.insert("levels".to_owned(), json!(levels));
-        whole.insert("absent".to_owned(), json!(self.reasons()));
-        Value::Object(whole)
+        json!({
+            "aircraft": self.name,
+            "units": self.units.name(),
+            "category": format!("{:?}", self.qualities.category),
+            "servo_rad_s": self.servo_rad_s,
+            "delay_s": self.delay_s,
+            "values": self.facts().json(self.units),
+            "levels": self.judgements().iter().map(level).collect::<Vec<_>>(),
+            "absent": self.reasons(),
+        })
     }
 }
 

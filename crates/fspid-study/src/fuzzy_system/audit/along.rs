@@ -10,7 +10,8 @@ pub(super) fn findings_of(
     audit: &Audit<'_>,
     input: usize,
     along: &AlongInput,
-    (meant, unit): (bool, f64),
+    meant: bool,
+    unit: f64,
 ) -> [Finding; 2] {
     let name = audit.input(input);
     let (mark, way) = direction(audit, along, meant);
@@ -48,7 +49,7 @@ fn direction(audit: &Audit<'_>, along: &AlongInput, meant: bool) -> (Mark, Strin
         "{way} for the most part, but {other} on {share} of the range, with a slope of up to {worst}; for example by {change} from {from} to {to}"
     );
     match meant {
-        true => (Mark::Broken, format!("{sentence}; the labels go one way without exception")),
+        true => (Mark::NotMeant, format!("{sentence}; the labels go one way without exception")),
         false => (Mark::Worth, sentence),
     }
 }

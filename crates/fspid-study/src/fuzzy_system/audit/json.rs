@@ -4,6 +4,7 @@ use fspid_fuzzy::audit::{AlongInput, Extreme, OutputSurface, Statement, Symmetry
 use serde_json::{Map, Value, json};
 
 use super::{Audit, Mark};
+use crate::json::{merged, present};
 
 impl Audit<'_> {
     /// The audit as JSON. Every pair of numbers is a proved lower and upper bound.
@@ -80,23 +81,26 @@ impl Audit<'_> {
 
     fn along(&self, along: &AlongInput) -> Value {
         let monotone = &along.monotone;
-        let mut value = json!({
-            "least_slope": along.least_slope.bounds,
-            "most_slope": along.most_slope.bounds,
-            "lipschitz": along.lipschitz,
-            "slope_at_rest": along.slope_at_rest,
-            "sector": [along.sector[0].bounds, along.sector[1].bounds],
-            "rises": monotone.rises,
-            "monotone": statement(&monotone.statement),
-            "wrong_share": monotone.wrong_share,
-            "wrong_slope": monotone.worst,
-        });
-        if let Statement::Refuted(found) = &monotone.statement {
-            value["counterexample"] = json!({
+        let counterexample = match &monotone.statement {
+            Statement::Refuted(found) => Some(json!({
                 "from": self.named(&found.from), "to": self.named(&found.to), "change": found.change,
-            });
-        }
-        value
+            })),
+            Statement::Proved | Statement::Open => None,
+        };
+        merged([
+            json!({
+                "least_slope": along.least_slope.bounds,
+                "most_slope": along.most_slope.bounds,
+                "lipschitz": along.lipschitz,
+                "slope_at_rest": along.slope_at_rest,
+                "sector": [along.sector[0].bounds, along.sector[1].bounds],
+                "rises": monotone.rises,
+                "monotone": statement(&monotone.statement),
+                "wrong_share": monotone.wrong_share,
+                "wrong_slope": monotone.worst,
+            }),
+            present(json!({ "counterexample": counterexample })),
+        ])
     }
 }
 
@@ -104,7 +108,7 @@ const fn mark(mark: Mark) -> &'static str {
     match mark {
         Mark::Holds => "holds",
         Mark::Worth => "worth-knowing",
-        Mark::Broken => "not-meant",
+        Mark::NotMeant => "not-meant",
         Mark::Open => "open",
     }
 }

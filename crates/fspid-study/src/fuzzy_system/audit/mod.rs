@@ -41,12 +41,12 @@ pub struct Audit<'a> {
 /// How a finding is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// As one would wish, and proved.
+    /// A property that rule tables should have, proved.
     Holds,
     /// Worth knowing.
     Worth,
     /// Probably not meant.
-    Broken,
+    NotMeant,
     /// Neither proved nor refuted within the budget.
     Open,
 }
@@ -58,7 +58,7 @@ impl Mark {
         match self {
             Self::Holds => "\u{2713}",
             Self::Worth => "\u{2248}",
-            Self::Broken => "\u{2717}",
+            Self::NotMeant => "\u{2717}",
             Self::Open => "?",
         }
     }

@@ -13,8 +13,8 @@ pub(super) fn findings(audit: &Audit<'_>, index: usize) -> Vec<Finding> {
         let unit = (surface.most.bounds[1] - surface.least.bounds[0]).abs();
         all.push(at_rest(audit, surface, unit));
         for (input, found) in surface.along.iter().enumerate() {
-            let meant = (labels_go_one_way(audit, index, input), unit);
-            all.extend(along::findings_of(audit, input, found, meant));
+            let meant = labels_go_one_way(audit, index, input);
+            all.extend(along::findings_of(audit, input, found, meant, unit));
         }
         all.push(symmetry(audit, surface));
     }
@@ -55,10 +55,10 @@ fn coverage(audit: &Audit<'_>, surface: &OutputSurface) -> Finding {
                 audit.point(&least.at)
             ),
         ),
-        Statement::Refuted(at) => (Mark::Broken, format!("no rule fires at {}", audit.point(at))),
+        Statement::Refuted(at) => (Mark::NotMeant, format!("no rule fires at {}", audit.point(at))),
         Statement::Open => (Mark::Open, "not proved whether some rule fires everywhere".to_owned()),
     };
-    let fallback = if surface.may_fall_back && mark != Mark::Broken {
+    let fallback = if surface.may_fall_back && mark != Mark::NotMeant {
         "; the fallback may answer in places"
     } else {
         ""
@@ -109,7 +109,11 @@ fn cells(audit: &Audit<'_>, grid: &GridAudit) -> Finding {
     let list = |cells: &[Vec<usize>]| first_few(cells.iter().map(|cell| audit.cell(cell)));
     if !grid.holes.is_empty() {
         let of = format!("{} of {} cells", grid.holes.len(), grid.cells);
-        return finding(Mark::Broken, "table", format!("{of} have no rule: {}", list(&grid.holes)));
+        return finding(
+            Mark::NotMeant,
+            "table",
+            format!("{of} have no rule: {}", list(&grid.holes)),
+        );
     }
     if !grid.ambiguous.is_empty() {
         let of = format!("{} of {} cells", grid.ambiguous.len(), grid.cells);

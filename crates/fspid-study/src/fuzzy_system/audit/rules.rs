@@ -31,7 +31,7 @@ fn contradictions(audit: &Audit<'_>) -> Finding {
         let [a, b] = found.terms.map(|term| audit.output_term(found.output, term).to_owned());
         format!("{} conclude {a} and {b}", pair(audit, found.rules))
     });
-    finding(Mark::Broken, "contradictions", format!("from the same condition {}", first_few(one)))
+    finding(Mark::NotMeant, "contradictions", format!("from the same condition {}", first_few(one)))
 }
 
 fn duplicates(audit: &Audit<'_>) -> Finding {
@@ -119,5 +119,5 @@ fn unreached(audit: &Audit<'_>) -> Option<Finding> {
         .map(|(input, term)| format!("{} of {}", audit.input_term(input, term), audit.input(input)))
         .collect();
     let few = (!none.is_empty()).then(|| first_few(none.into_iter()))?;
-    Some(finding(Mark::Broken, "unreached terms", format!("no value of the range reaches {few}")))
+    Some(finding(Mark::NotMeant, "unreached terms", format!("no value of the range reaches {few}")))
 }

@@ -1,7 +1,6 @@
 //! An audit for people.
 
 use super::{Audit, Mark};
-use fspid_diagnostics::lines::line;
 
 /// Longest line, in characters, where words allow it.
 const WIDTH: usize = 110;
@@ -14,31 +13,29 @@ impl Audit<'_> {
         let mut out = String::new();
         for chapter in self.chapters() {
             let gap = if out.is_empty() { "" } else { "\n" };
-            line(&mut out, format_args!("{gap}{}", chapter.title));
+            out.push_str(&format!("{gap}{}\n", chapter.title));
             let width = chapter.findings.iter().map(|f| f.about.chars().count()).max().unwrap_or(0);
             for found in &chapter.findings {
                 let lines = wrapped(&found.sentence, WIDTH.saturating_sub(width + 6));
                 let indent = " ".repeat(width + 6);
                 let sentence = lines.join(&format!("\n{indent}"));
-                line(
-                    &mut out,
-                    format_args!("  {} {:width$}  {sentence}", found.mark.sign(), found.about),
-                );
+                out.push_str(&format!(
+                    "  {} {:width$}  {sentence}\n",
+                    found.mark.sign(),
+                    found.about
+                ));
             }
         }
-        line(
-            &mut out,
-            format_args!(
-                "\n{} holds, {} worth knowing, {} probably not meant, {} not proved within the budget\n\
-             {} rules, {} boxes",
-                Mark::Holds.sign(),
-                Mark::Worth.sign(),
-                Mark::Broken.sign(),
-                Mark::Open.sign(),
-                parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
-                self.surface.boxes
-            ),
-        );
+        out.push_str(&format!(
+            "\n{} holds, {} worth knowing, {} probably not meant, {} not proved within the budget\n\
+            {} rules, {} boxes\n",
+            Mark::Holds.sign(),
+            Mark::Worth.sign(),
+            Mark::NotMeant.sign(),
+            Mark::Open.sign(),
+            parts.blocks.iter().map(|block| block.rules.len()).sum::<usize>(),
+            self.surface.boxes
+        ));
         out
     }
 }

@@ -6,41 +6,39 @@ use super::Explanation;
 use super::share::{Basis, Share, Shares};
 use super::why_not::{Lack, WhyNot};
 use crate::fuzzy_system::words;
+use crate::json::{merged, present};
 
 impl Explanation<'_> {
     /// The answers, the rules by strength, and the share of each in every output. Blocks and rules
     /// are numbered from 1.
     #[must_use]
     pub fn json(&self) -> Value {
-        let mut whole = self.asked.json();
         let rules = self.rules.iter().map(|firing| {
-            let mut rule = self.rule_json([firing.block, firing.rule]);
-            rule["strength"] = json!(firing.strength);
-            rule["acting"] = json!(firing.acting);
-            rule
+            let degrees = json!({ "strength": firing.strength, "acting": firing.acting });
+            merged([self.rule_json([firing.block, firing.rule]), degrees])
         });
-        whole["rules"] = rules.collect();
         let outputs = self.system().parts().outputs.iter().zip(&self.shares).enumerate();
         let shares: Map<String, Value> = outputs
             .map(|(index, (output, shares))| (output.name.clone(), self.shares_json(index, shares)))
             .collect();
-        whole["shares"] = Value::Object(shares);
-        if let Some(why_not) = &self.why_not {
-            whole["why_not"] = self.why_not_json(why_not);
-        }
-        whole
+        let why_not = self.why_not.as_ref().map(|why_not| self.why_not_json(why_not));
+        merged([
+            self.asked.json(),
+            json!({ "rules": rules.collect::<Vec<_>>(), "shares": shares }),
+            present(json!({ "why_not": why_not })),
+        ])
     }
 
     fn rule_json(&self, [block, rule]: [usize; 2]) -> Value {
         let parts = self.system().parts();
         let found = parts.blocks.get(block).and_then(|block| block.rules.get(rule));
-        let text = found.map_or(String::new(), |rule| words::rule(rule, parts));
-        let name = found.map_or("", |rule| rule.name.as_str());
-        let mut value = json!({ "block": block + 1, "rule": rule + 1, "text": text });
-        if !name.is_empty() {
-            value["name"] = json!(name);
-        }
-        value
+        let name = found.map(|rule| rule.name.as_str());
+        present(json!({
+            "block": block + 1,
+            "rule": rule + 1,
+            "text": found.map_or(String::new(), |rule| words::rule(rule, parts)),
+            "name": name.filter(|name| !name.is_empty()),
+        }))
     }
 
     fn term(&self, output: usize, term: usize) -> &str {
@@ -53,7 +51,7 @@ impl Explanation<'_> {
             Basis::Outline => "outline",
             Basis::Grid(_) => "grid",
             Basis::Weights => "weights",
-            Basis::Joined => "joined",
+            Basis::Aggregated => "joined",
         };
         let one = |share: &Share| {
             let [block, rule, _] = share.of.origin;
@@ -67,14 +65,15 @@ impl Explanation<'_> {
             [0, 1].map(|end: usize| [piece.x.get(end).copied(), piece.grade.get(end).copied()])
         });
         let list: Vec<Value> = shares.list.iter().map(one).collect();
-        let mut value = json!({ "basis": basis, "sum": shares.sum, "rules": list });
-        if self.asked.workspace().interval(output).is_some() {
-            value["of"] = json!("upper sets");
-        }
-        if shares.basis == Basis::Outline {
-            value["polygon"] = json!(polygon.collect::<Vec<_>>());
-        }
-        value
+        let interval = self.asked.workspace().interval(output);
+        let is_outline = shares.basis == Basis::Outline;
+        merged([
+            json!({ "basis": basis, "sum": shares.sum, "rules": list }),
+            present(json!({
+                "of": interval.map(|_| "upper sets"),
+                "polygon": is_outline.then(|| polygon.collect::<Vec<_>>()),
+            })),
+        ])
     }
 
     fn why_not_json(&self, why_not: &WhyNot) -> Value {
@@ -84,12 +83,13 @@ impl Explanation<'_> {
                 let text = words::statement(found, parts);
                 json!({ "text": text, "grade": grade, "limits": lack.limit == Some(index) })
             });
-            let mut rule = self.rule_json(lack.rule);
-            rule["enabled"] = json!(lack.enabled);
-            rule["strength"] = json!(lack.strength);
-            rule["acting"] = json!(lack.acting);
-            rule["statements"] = statements.collect();
-            rule
+            let degrees = json!({
+                "enabled": lack.enabled,
+                "strength": lack.strength,
+                "acting": lack.acting,
+                "statements": statements.collect::<Vec<_>>(),
+            });
+            merged([self.rule_json(lack.rule), degrees])
         };
         json!({
             "output": parts.outputs.get(why_not.output).map(|output| &output.name),

@@ -32,7 +32,7 @@ pub enum Basis {
     Weights,
     /// Nothing: the conclusions are added up or joined by another norm than maximum, so that no
     /// part of the area belongs to one of them alone.
-    Joined,
+    Aggregated,
 }
 
 /// The shares of one output.
@@ -44,7 +44,7 @@ pub struct Shares {
     pub list: Vec<Share>,
     /// What the contributions sum to: the centre of gravity or the weighted average.
     pub sum: Option<f64>,
-    /// The joined set from left to right.
+    /// The aggregated set from left to right.
     pub pieces: Vec<Piece>,
 }
 
@@ -52,7 +52,7 @@ pub struct Shares {
 pub(super) fn shares(system: &System, output: usize, workspace: &mut Workspace) -> Shares {
     let contributions = system.contributions(output, workspace);
     let Some(part) = system.parts().outputs.get(output) else {
-        return finish(Basis::Joined, Vec::new(), Vec::new());
+        return finish(Basis::Aggregated, Vec::new(), Vec::new());
     };
     if part.defuzzifier.sampling().is_none() {
         return finish(Basis::Weights, weights(&contributions, part.defuzzifier), Vec::new());
@@ -63,7 +63,7 @@ pub(super) fn shares(system: &System, output: usize, workspace: &mut Workspace) 
         None => (Basis::Grid(CELLS), grid(system, part, &contributions, workspace)),
     };
     if pieces.iter().any(|piece| piece.conclusion.is_none()) {
-        return finish(Basis::Joined, Vec::new(), pieces);
+        return finish(Basis::Aggregated, Vec::new(), pieces);
     }
     finish(basis, areas(&contributions, &pieces, reference), pieces)
 }
@@ -109,7 +109,7 @@ fn areas(contributions: &[Contribution], pieces: &[Piece], reference: f64) -> Ve
     contributions.iter().filter(|c| c.degree > 0.0).map(share).collect()
 }
 
-/// The joined set as level pieces on a grid; each belongs to the highest conclusion there.
+/// The aggregated set as level pieces on a grid; each belongs to the highest conclusion there.
 fn grid(
     system: &System,
     output: &Output,

@@ -4,7 +4,6 @@ use super::Explanation;
 use super::share::{Basis, Shares};
 use super::why_not::{Lack, WhyNot};
 use crate::fuzzy_system::{answer, words};
-use fspid_diagnostics::lines::line;
 
 /// Most rules that are listed.
 const MOST: usize = 20;
@@ -49,18 +48,18 @@ impl Explanation<'_> {
             let idle =
                 if firing.acting > 0.0 { "" } else { "  (left out by the block's activation)" };
             let strength = grade(firing.strength);
-            line(out, format_args!("  {strength}  {name}: {text}{idle}"));
+            out.push_str(&format!("  {strength}  {name}: {text}{idle}\n"));
         }
         let more = self.rules.len().saturating_sub(MOST);
         if more > 0 {
-            line(out, format_args!("  and {more} more"));
+            out.push_str(&format!("  and {more} more\n"));
         }
     }
 
     fn shares_in_words(&self, index: usize, shares: &Shares, out: &mut String) {
         let Some(output) = self.system().parts().outputs.get(index) else { return };
         let (name, what) = (&output.name, kind_of(shares.basis));
-        line(out, format_args!("\nshares in {name}{what}"));
+        out.push_str(&format!("\nshares in {name}{what}\n"));
         let shown = |part: f64| part.abs() >= SMALL;
         for share in shares.list.iter().filter(|share| shown(share.part)) {
             let [block, rule, _] = share.of.origin;
@@ -69,14 +68,14 @@ impl Explanation<'_> {
             let rule = self.rule_name(block, rule);
             let contribution =
                 contribution.map_or("no number".to_owned(), |it| format!("{it:+.6}"));
-            line(out, format_args!("  {part:6.2} %  {contribution:>9}  {rule}: {term}"));
+            out.push_str(&format!("  {part:6.2} %  {contribution:>9}  {rule}: {term}\n"));
         }
         let small = shares.list.iter().filter(|share| !shown(share.part)).count();
         if small > 0 {
-            line(out, format_args!("  and {small} that fire without a part of at least 0.005 %"));
+            out.push_str(&format!("  and {small} that fire without a part of at least 0.005 %\n"));
         }
         if let Some(sum) = shares.sum {
-            line(out, format_args!("  100.00 %  {sum:+.6}  together"));
+            out.push_str(&format!("  100.00 %  {sum:+.6}  together\n"));
             self.difference(index, sum, out);
         }
     }
@@ -97,7 +96,7 @@ impl Explanation<'_> {
             }
             None => format!("is computed by {}", answer::rule(output)),
         };
-        line(out, format_args!("  the answer, {value:.6}, {why}"));
+        out.push_str(&format!("  the answer, {value:.6}, {why}\n"));
     }
 
     fn why_not_in_words(&self, why_not: &WhyNot, out: &mut String) {
@@ -105,32 +104,32 @@ impl Explanation<'_> {
         let term = output.and_then(|output| output.terms.get(why_not.term));
         let (output, term) =
             (output.map_or("", |output| &output.name), term.map_or("", |term| &term.name));
-        line(out, format_args!("\nwhy not {output} = {term}"));
+        out.push_str(&format!("\nwhy not {output} = {term}\n"));
         if why_not.rules.is_empty() {
-            line(out, format_args!("  no rule concludes it"));
+            out.push_str("  no rule concludes it\n");
         }
         for lack in why_not.rules.iter().take(MOST) {
             self.lack_in_words(lack, out);
         }
         let more = why_not.rules.len().saturating_sub(MOST);
         if more > 0 {
-            line(out, format_args!("  and {more} weaker rules"));
+            out.push_str(&format!("  and {more} weaker rules\n"));
         }
     }
 
     fn lack_in_words(&self, lack: &Lack, out: &mut String) {
         let [block, rule] = lack.rule;
         let (name, text) = (self.rule_name(block, rule), self.rule(block, rule));
-        line(out, format_args!("  {}  {name}: {text}", grade(lack.strength)));
+        out.push_str(&format!("  {}  {name}: {text}\n", grade(lack.strength)));
         if !lack.enabled {
-            line(out, format_args!("            it is switched off"));
+            out.push_str("            it is switched off\n");
         } else if lack.acting <= 0.0 && lack.strength > 0.0 {
-            line(out, format_args!("            the block's activation leaves it out"));
+            out.push_str("            the block's activation leaves it out\n");
         }
         for (index, (statement, found)) in lack.statements.iter().enumerate() {
             let text = words::statement(statement, self.system().parts());
             let limit = if lack.limit == Some(index) { "  <- holds it down" } else { "" };
-            line(out, format_args!("            {}  {text}{limit}", grade(*found)));
+            out.push_str(&format!("            {}  {text}{limit}\n", grade(*found)));
         }
     }
 }
@@ -151,7 +150,7 @@ fn kind_of(basis: Basis) -> String {
             )
         }
         Basis::Weights => ": part of the weight, and what it adds to the answer".to_owned(),
-        Basis::Joined => {
+        Basis::Aggregated => {
             ": the conclusions are joined so that no part belongs to one rule alone".to_owned()
         }
     }

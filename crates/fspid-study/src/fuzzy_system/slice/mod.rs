@@ -6,7 +6,6 @@ use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
-use fspid_diagnostics::lines::line;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use fspid_scenario::supervisor::Refused;
 
@@ -133,7 +132,7 @@ impl Slice<'_> {
                 };
                 surface.render(SurfaceKind::Relief)
             }
-            axes => curve(title, name, (axes, self), values),
+            axes => curve(title, name, axes, self, values),
         }
     }
 
@@ -171,7 +170,7 @@ impl Slice<'_> {
                     cell.filter(|x| !x.is_nan()).map_or(String::new(), |x| format!("{x:?}"))
                 })
                 .collect();
-            line(&mut csv, format_args!("{}", cells.join(",")));
+            csv.push_str(&format!("{}\n", cells.join(",")));
         }
         csv
     }
@@ -180,7 +179,8 @@ impl Slice<'_> {
 fn curve(
     title: String,
     name: &str,
-    (axes, slice): (&[(usize, Vec<f64>)], &Slice<'_>),
+    axes: &[(usize, Vec<f64>)],
+    slice: &Slice<'_>,
     values: &[f64],
 ) -> Svg {
     let (input, xs) = axes.first().map_or((0, [].as_slice()), |(n, xs)| (*n, xs.as_slice()));

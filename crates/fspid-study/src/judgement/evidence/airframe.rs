@@ -6,7 +6,7 @@ use fspid_aircraft::qualities::{
 };
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
-use crate::judgement::{Case, NotEvaluated, Place, PlantAt};
+use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use fspid_scenario::file::{Airframe, Study};
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
@@ -19,7 +19,7 @@ pub(super) fn cases(study: &Study, requirement: &Requirement) -> Result<Vec<Case
     let mut cases = Vec::new();
     for ((at, plant), airframe) in plants(scenario)?.into_iter().zip(&study.airframes) {
         let value = value(requirement.measure, &plant, airframe, &path)?;
-        let place = Place { plant: several.then_some(at), ..Place::default() };
+        let place = CasePlace { plant: several.then_some(at), ..CasePlace::default() };
         cases.push(Case { value, place });
     }
     Ok(cases)

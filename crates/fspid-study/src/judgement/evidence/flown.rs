@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use fspid_sim::air::WindKind;
 use fspid_sim::{Timing, Trace};
 
-use crate::judgement::{Case, NotEvaluated, Place, StepAt};
+use crate::judgement::{Case, CasePlace, NotEvaluated, StepAt};
 use crate::metrics::{Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics};
 use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
@@ -116,7 +116,7 @@ impl Flown<'_> {
         // A command that never moves is held from the start to the end.
         if self.metrics.edges.is_empty() && conditions.step_deg.is_none() {
             let value = degrees(self.errors_rad(last..=last).first().map_or(f64::NAN, |e| e.abs()));
-            let place = Place { at_s: Some(self.timing.time_s(last)), ..Place::default() };
+            let place = CasePlace { at_s: Some(self.timing.time_s(last)), ..CasePlace::default() };
             return Ok(vec![Case { value, place }]);
         }
         let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
@@ -158,7 +158,7 @@ impl Flown<'_> {
     fn recovery(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {
         let within_deg = conditions.within_deg.unwrap_or(0.0);
         if let Some(from_s) = conditions.from_s {
-            let place = Place { at_s: Some(from_s), ..Place::default() };
+            let place = CasePlace { at_s: Some(from_s), ..CasePlace::default() };
             let errors = self.errors_rad(self.time(conditions)?).into_iter().map(degrees);
             let errors: Vec<f64> = errors.collect();
             return Ok(vec![self.recovered(&errors, within_deg, place)?]);
@@ -176,7 +176,7 @@ impl Flown<'_> {
         &self,
         errors_deg: &[f64],
         within_deg: f64,
-        place: Place,
+        place: CasePlace,
     ) -> Result<Case, NotEvaluated> {
         // Written so that NaN is outside.
         let is_outside = |error: &f64| !(error.abs() <= within_deg);
@@ -208,7 +208,7 @@ impl Flown<'_> {
         let integral = |of: fn(&ErrorIntegrals) -> f64| {
             self.metrics.integrals.map(|found| of(&found)).map_err(NotEvaluated::from)
         };
-        let nowhere = |value: f64| Case { value, place: Place::default() };
+        let nowhere = |value: f64| Case { value, place: CasePlace::default() };
         match requirement.measure {
             Measure::RmsError => Ok(nowhere(self.rms_deg(time))),
             Measure::LargestError => Ok(self.largest_error(time)),
@@ -242,12 +242,13 @@ impl Flown<'_> {
 
     fn largest_error(&self, time: RangeInclusive<usize>) -> Case {
         let first = *time.start();
-        let mut largest = Case { value: 0.0, place: Place::default() };
+        let mut largest = Case { value: 0.0, place: CasePlace::default() };
         for (sample, error_rad) in (first..).zip(self.errors_rad(time)) {
             let value = degrees(error_rad.abs());
             // Written so that NaN is the largest.
             if !(value <= largest.value) {
-                let place = Place { at_s: Some(self.timing.time_s(sample)), ..Place::default() };
+                let place =
+                    CasePlace { at_s: Some(self.timing.time_s(sample)), ..CasePlace::default() };
                 largest = Case { value, place };
             }
         }
@@ -255,6 +256,6 @@ impl Flown<'_> {
     }
 }
 
-fn at_step(step: StepAt) -> Place {
-    Place { step: Some(step), ..Place::default() }
+fn at_step(step: StepAt) -> CasePlace {
+    CasePlace { step: Some(step), ..CasePlace::default() }
 }

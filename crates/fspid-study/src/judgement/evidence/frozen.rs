@@ -6,7 +6,7 @@ use fspid_sim::Controller;
 
 use super::linear::{PlantEvidence, of_margins, with_place};
 use crate::analysis::{FrozenMap, FrozenPoint, Margins};
-use crate::judgement::{Case, FrozenAt, NotEvaluated, Place};
+use crate::judgement::{Case, CasePlace, FrozenAt, NotEvaluated};
 use crate::metrics::Absent;
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
@@ -62,26 +62,26 @@ fn mapped(
     least.ok_or(NotEvaluated::Absent(Absent::NotFinite))
 }
 
-fn place(plant: &PlantEvidence, point: &FrozenPoint) -> Place {
+fn place(plant: &PlantEvidence, point: &FrozenPoint) -> CasePlace {
     let frozen = FrozenAt { gains: point.gains, inputs: Some(point.input) };
-    Place { frozen: Some(frozen), ..plant.place() }
+    CasePlace { frozen: Some(frozen), ..plant.place() }
 }
 
 fn case(
     margins: Result<Margins, Absent>,
     requirement: &Requirement,
-    place: Place,
+    place: CasePlace,
 ) -> Result<Case, NotEvaluated> {
     match margins {
         Ok(_) if requirement.measure == Measure::FrozenStable => Ok(Case { value: 1.0, place }),
         Ok(margins) => {
             let (value, frequency_rad_s) = of_margins(requirement.measure, &margins);
-            Ok(Case { value, place: Place { frequency_rad_s, ..place } })
+            Ok(Case { value, place: CasePlace { frequency_rad_s, ..place } })
         }
         Err(Absent::Unstable { spectral_radius })
             if requirement.measure == Measure::FrozenStable =>
         {
-            let place = Place { spectral_radius: Some(spectral_radius), ..place };
+            let place = CasePlace { spectral_radius: Some(spectral_radius), ..place };
             Ok(Case { value: 0.0, place })
         }
         Err(reason) => Err(with_place(reason, place)),

@@ -4,7 +4,7 @@ use fspid_lti::Mode;
 use fspid_sim::{NamedController, RestPoint, Scenario, SimError};
 
 use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
-use crate::judgement::{Case, NotEvaluated, Place, PlantAt};
+use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
 use fspid_scenario::measure::Measure;
@@ -21,21 +21,21 @@ pub(super) struct PlantEvidence {
 }
 
 impl PlantEvidence {
-    pub(super) fn place(&self) -> Place {
-        Place { plant: self.at, ..Place::default() }
+    pub(super) fn place(&self) -> CasePlace {
+        CasePlace { plant: self.at, ..CasePlace::default() }
     }
 
     /// The loops of all rests, each with its place.
-    fn rests(&self) -> impl Iterator<Item = (&RestLoop, Place)> {
+    fn rests(&self) -> impl Iterator<Item = (&RestLoop, CasePlace)> {
         let several = !self.at_rest.others.is_empty();
         self.at_rest
             .rests()
-            .map(move |rest| (rest, Place { rest: several.then_some(rest.at), ..self.place() }))
+            .map(move |rest| (rest, CasePlace { rest: several.then_some(rest.at), ..self.place() }))
     }
 }
 
 /// Why there are no margins, and where.
-pub(super) fn with_place(reason: Absent, place: Place) -> NotEvaluated {
+pub(super) fn with_place(reason: Absent, place: CasePlace) -> NotEvaluated {
     match reason {
         Absent::Unstable { spectral_radius } => {
             NotEvaluated::Unstable { place: Box::new(place), spectral_radius }
@@ -61,7 +61,7 @@ pub(super) fn require_stability(
             Ok(()) | Err(Absent::OneSide) => {}
             Err(reason) => {
                 let rest = (held.at != RestPoint::TRIM).then_some(held.at);
-                return Err(with_place(reason, Place { plant, rest, ..Place::default() }));
+                return Err(with_place(reason, CasePlace { plant, rest, ..CasePlace::default() }));
             }
         }
     }
@@ -106,14 +106,18 @@ pub(super) fn cases(
 fn diverged(result: &ControllerResult) -> Option<Case> {
     match result.trace.outcome {
         fspid_sim::Outcome::Diverged { at_s } => {
-            Some(Case { value: 0.0, place: Place { at_s: Some(at_s), ..Place::default() } })
+            Some(Case { value: 0.0, place: CasePlace { at_s: Some(at_s), ..CasePlace::default() } })
         }
         // What hits the ground may be stable: the flight fails by itself.
         fspid_sim::Outcome::Completed | fspid_sim::Outcome::HitGround { .. } => None,
     }
 }
 
-fn of_rest(rest: &RestLoop, place: Place, requirement: &Requirement) -> Result<Case, NotEvaluated> {
+fn of_rest(
+    rest: &RestLoop,
+    place: CasePlace,
+    requirement: &Requirement,
+) -> Result<Case, NotEvaluated> {
     if requirement.measure == Measure::Stable {
         return stable(rest, place);
     }
@@ -126,7 +130,7 @@ fn of_rest(rest: &RestLoop, place: Place, requirement: &Requirement) -> Result<C
         Measure::GainMargin | Measure::GainMarginLow | Measure::GainMarginHigh
             if requirement.conditions.has_band() =>
         {
-            gain_margin_in_band((rest, place), &margins, requirement)
+            gain_margin_in_band(rest, place, &margins, requirement)
         }
         Measure::GainCrossover => {
             let value = margins.gain_crossover_rad_s.ok_or(NotEvaluated::NoCrossover)?;
@@ -134,17 +138,17 @@ fn of_rest(rest: &RestLoop, place: Place, requirement: &Requirement) -> Result<C
         }
         measure => {
             let (value, frequency_rad_s) = of_margins(measure, &margins);
-            Ok(Case { value, place: Place { frequency_rad_s, ..place } })
+            Ok(Case { value, place: CasePlace { frequency_rad_s, ..place } })
         }
     }
 }
 
-fn stable(rest: &RestLoop, place: Place) -> Result<Case, NotEvaluated> {
+fn stable(rest: &RestLoop, place: CasePlace) -> Result<Case, NotEvaluated> {
     match rest.margins {
         // Whether it is stable is known without margins.
         Ok(_) | Err(Absent::NotProved { .. }) => Ok(Case { value: 1.0, place }),
         Err(Absent::Unstable { spectral_radius }) => {
-            let place = Place { spectral_radius: Some(spectral_radius), ..place };
+            let place = CasePlace { spectral_radius: Some(spectral_radius), ..place };
             Ok(Case { value: 0.0, place })
         }
         Err(reason) => Err(NotEvaluated::Absent(reason)),
@@ -177,7 +181,7 @@ pub(super) fn of_margins(measure: Measure, margins: &Margins) -> (f64, Option<f6
 /// The least phase margin of the crossovers whose frequency counts; infinite where there is none.
 fn phase_margin_in_band(
     rest: &RestLoop,
-    place: Place,
+    place: CasePlace,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
     let found = rest.sampled.as_ref().ok_or(NotEvaluated::Absent(Absent::NotFinite))?;
@@ -185,7 +189,7 @@ fn phase_margin_in_band(
     let counted =
         found.crossovers.iter().filter(|at| requirement.conditions.in_band(at.omega_rad_s));
     let cases = counted.map(|at| {
-        let place = Place { frequency_rad_s: Some(at.omega_rad_s), ..place };
+        let place = CasePlace { frequency_rad_s: Some(at.omega_rad_s), ..place };
         Case { value: degrees(at.phase_margin_rad.abs()), place }
     });
     Ok(cases.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(without_end))
@@ -199,7 +203,8 @@ const SAME_FACTOR: f64 = 1e-9;
 ///
 /// Between the two ends of the gain margin poles may touch the limit of stability and turn back; these are no limits.
 fn gain_margin_in_band(
-    (rest, place): (&RestLoop, Place),
+    rest: &RestLoop,
+    place: CasePlace,
     margins: &Margins,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
@@ -219,7 +224,7 @@ fn gain_margin_in_band(
         };
         let is_less = factor_db.abs() < least.value;
         if counts && is_less && requirement.conditions.in_band(omega_rad_s) {
-            let place = Place { frequency_rad_s: Some(omega_rad_s), ..place };
+            let place = CasePlace { frequency_rad_s: Some(omega_rad_s), ..place };
             least = Case { value: factor_db.abs(), place };
         }
     }
@@ -229,7 +234,7 @@ fn gain_margin_in_band(
 /// Damping of the least damped mode whose frequency counts; poles at 0 die at once and are none.
 fn mode_damping(
     rest: &RestLoop,
-    place: Place,
+    place: CasePlace,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
     let dt_s = rest.open.dt_s();
@@ -239,5 +244,5 @@ fn mode_damping(
     let least = counted.min_by(|one, other| one.damping_ratio.total_cmp(&other.damping_ratio));
     let mode = least.ok_or(NotEvaluated::NoMode)?;
     let frequency_rad_s = Some(mode.natural_frequency_rad_s);
-    Ok(Case { value: mode.damping_ratio, place: Place { frequency_rad_s, ..place } })
+    Ok(Case { value: mode.damping_ratio, place: CasePlace { frequency_rad_s, ..place } })
 }

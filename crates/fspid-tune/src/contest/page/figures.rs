@@ -8,7 +8,7 @@ use fspid_plot::{
 use super::{chapter, picture, style, tables};
 use crate::contest::Outcome;
 use crate::contest::compare::{Comparison, Ratio};
-use crate::contest::judged::{Judged, Quantity};
+use crate::contest::judged::{CaseGroup, Judged, Quantity};
 use crate::contest::words::{counted, cut, group, name, per_cent};
 
 /// Intervals that reach farther than this many times the largest difference are cut at the edge, unless that is near.
@@ -50,7 +50,7 @@ fn differences(outcome: &Outcome) -> fspid_plot::Svg {
     }];
     let by_group = groups.iter().enumerate().take(MOST_GROUPS);
     if groups.len() > 1 {
-        rows.extend(by_group.map(|(place, (name, cases))| IntervalRow {
+        rows.extend(by_group.map(|(place, CaseGroup { name, cases })| IntervalRow {
             name: cut(group(name), 40),
             words: counted(cases.len(), "case", "cases"),
             marks: marks(outcome, |it| it.groups.get(place).copied()),

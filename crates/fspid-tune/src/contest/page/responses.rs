@@ -68,7 +68,7 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
     let (drawn, left) = ranking.split_at(ranking.len().min(SeriesStyle::COUNT));
     let flown = drawn.iter().map(|&place| {
         let it = &judged.contestants[place];
-        let curves = flown(contest, place, Judged::best(it), (outcome, case));
+        let curves = flown(contest, place, Judged::best(it), outcome, case);
         (place, cut(&it.name, 60), curves.unwrap_or_default())
     });
     let flown: Vec<(usize, String, Curves)> = flown.collect();
@@ -143,7 +143,8 @@ fn flown(
     contest: &Contest,
     place: usize,
     design: usize,
-    (outcome, case): (&Outcome, usize),
+    outcome: &Outcome,
+    case: usize,
 ) -> Option<Curves> {
     let flights = &contest.entrants.get(place)?.flights;
     let design = outcome.judged.contestants.get(place)?.designs.get(design)?;

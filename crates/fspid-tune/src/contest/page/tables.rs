@@ -6,7 +6,7 @@ use fspid_page::number::significant;
 use super::chapter;
 use crate::contest::compare::{Comparison, Standing};
 use crate::contest::flight::{FAILED, LOST};
-use crate::contest::judged::Quantity;
+use crate::contest::judged::{CaseGroup, Quantity};
 use crate::contest::words::{
     counted, cut, group, kept, kinds, name, number, over_kept, p_value, per_cent, signed,
     signed_interval, spread, spread_of,
@@ -208,7 +208,7 @@ fn reasons(outcome: &Outcome) -> Option<Vec<Item>> {
         .iter()
         .map(|contestant| {
             let mut row = vec![Datum::Text(cut(&contestant.name, 60))];
-            for (_, cases) in groups.iter().take(MOST_GROUPS) {
+            for CaseGroup { cases, .. } in groups.iter().take(MOST_GROUPS) {
                 let flights: Vec<&Flight> = contestant
                     .designs
                     .iter()
@@ -271,15 +271,11 @@ pub(super) fn by_group(outcome: &Outcome) -> Vec<Item> {
 }
 
 /// Tables of a column for each group, so many in one as a page has room for; the caption stands above the first.
-fn grouped_tables(
-    caption: String,
-    groups: &[(String, Vec<usize>)],
-    rows: &[Vec<Datum>],
-) -> Vec<Item> {
+fn grouped_tables(caption: String, groups: &[CaseGroup], rows: &[Vec<Datum>]) -> Vec<Item> {
     let heads: Vec<String> = groups
         .iter()
         .take(MOST_GROUPS)
-        .map(|(name, cases)| {
+        .map(|CaseGroup { name, cases }| {
             format!("{} ({})", cut(group(name), 40), counted(cases.len(), "case", "cases"))
         })
         .collect();

@@ -1,0 +1,36 @@
+//! What answers for programs have in common.
+
+use serde_json::{Map, Value, json};
+
+/// A number, or in words which of the numbers that JSON does not have.
+pub(crate) fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { json!(format!("{value}")) }
+}
+
+/// An object without its keys that have no value.
+pub(crate) fn present(mut object: Value) -> Value {
+    if let Some(keys) = object.as_object_mut() {
+        keys.retain(|_, value| !value.is_null());
+    }
+    object
+}
+
+/// A list, or nothing for one that has nothing in it.
+pub(crate) fn unless_empty<T>(list: &[T], one: fn(&T) -> Value) -> Option<Value> {
+    (!list.is_empty()).then(|| list.iter().map(one).collect())
+}
+
+/// The keys of several objects as one object, in their order.
+pub(crate) fn merged<const N: usize>(objects: [Value; N]) -> Value {
+    let maps = objects.into_iter().filter_map(|object| match object {
+        Value::Object(keys) => Some(keys),
+        _ => None,
+    });
+    Value::Object(maps.flatten().collect())
+}
+
+/// Values by their names, or nothing where there are none.
+pub(crate) fn by_name(values: impl Iterator<Item = (String, Value)>) -> Option<Map<String, Value>> {
+    let all: Map<_, _> = values.collect();
+    (!all.is_empty()).then_some(all)
+}
