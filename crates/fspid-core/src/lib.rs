@@ -43,6 +43,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod controller;
 pub mod equations;
 mod error;
 mod gains;
@@ -52,17 +53,19 @@ mod limits;
 pub mod paper;
 mod pid;
 mod pid_config;
+mod rounded;
 mod second_input;
 mod state;
 mod tuner;
 
+pub use controller::Controller;
 pub use error::ConfigError;
 pub use gains::{GainLimits, Gains};
 pub use guard::{Faults, Guard};
 pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
-pub use pid_config::{Derivative, PidConfig, SetpointWeights};
+pub use pid_config::{Derivative, PidConfig, SetpointWeights, largest_remembered};
 pub use second_input::{ModelState, ReferenceModel, SecondInput, SetCentres};
 pub use state::{Previous, Sample, State, Step};
 pub use tuner::{
