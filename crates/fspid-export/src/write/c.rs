@@ -1,9 +1,9 @@
 //! C99, freestanding: one header and one source, `stdint.h` alone.
 
+use super::dialect::{Block, Dialect, block};
 use super::{Page, decimal, wrapped};
 use crate::program::{
-    Argument, Expression, Function, Kind, Member, Operator, Parameter, Part, Place, Precision,
-    Program, Statement, Value,
+    Function, Kind, Member, Operator, Parameter, Part, Precision, Program, Value,
 };
 
 /// The text of both files.
@@ -43,13 +43,6 @@ impl Writer<'_> {
         match self.program.precision {
             Precision::Single => "float",
             Precision::Double => "double",
-        }
-    }
-
-    fn number(&self, value: f64) -> String {
-        match self.program.precision {
-            Precision::Single => format!("{}f", decimal(value, true)),
-            Precision::Double => decimal(value, false),
         }
     }
 
@@ -238,7 +231,7 @@ impl Writer<'_> {
         page.line("{");
         page.inside(|page| {
             let mut inside = Page { text: String::new(), depth: page.depth };
-            self.block(&mut inside, &function.body);
+            block(self, &mut inside, &function.body);
             for part in function.parts.iter().map(|part| part_name(*part)) {
                 if !inside.text.contains(part) {
                     page.line(&format!("(void){part};"));
@@ -278,132 +271,114 @@ impl Writer<'_> {
         });
         page.line("}");
     }
+}
 
-    fn block(&self, page: &mut Page, body: &[Statement]) {
-        for statement in body {
-            self.statement(page, statement);
+impl Dialect for Writer<'_> {
+    fn number(&self, value: f64) -> String {
+        match self.program.precision {
+            Precision::Single => format!("{}f", decimal(value, true)),
+            Precision::Double => decimal(value, false),
         }
     }
 
-    fn statement(&self, page: &mut Page, statement: &Statement) {
-        match statement {
-            Statement::Remark(text) => comment(page, text),
-            Statement::Let(name, kind, value) => {
-                page.line(&format!("{} {name} = {};", self.kind(*kind), self.outer(value)));
-            }
-            Statement::Array(name, count) => {
-                let zeros = vec![self.number(0.0); *count].join(", ");
-                page.line(&format!("{} {name}[{count}] = {{ {zeros} }};", self.real()));
-            }
-            Statement::Set(place, value) => {
-                page.line(&format!("{} = {};", self.place(place), self.outer(value)));
-            }
-            Statement::If(condition, then, otherwise) => {
-                page.line(&format!("if ({}) {{", self.outer(condition)));
-                page.inside(|page| self.block(page, then));
-                if !otherwise.is_empty() {
-                    page.line("} else {");
-                    page.inside(|page| self.block(page, otherwise));
-                }
-                page.line("}");
-            }
-            Statement::For(name, first, last, body) => {
-                page.line(&format!(
-                    "for (int32_t {name} = {first}; {name} <= {last}; ++{name}) {{"
-                ));
-                page.inside(|page| self.block(page, body));
-                page.line("}");
-            }
-            Statement::Call(function, arguments) => {
-                page.line(&format!("{};", self.call(function, arguments)));
-            }
-            Statement::Return(None) => page.line("return;"),
-            Statement::Return(Some(value)) => page.line(&format!("return {};", self.outer(value))),
+    fn byte(&self, value: u8) -> String {
+        format!("{value}U")
+    }
+
+    fn truth(&self, value: bool) -> String {
+        format!("{}U", u8::from(value))
+    }
+
+    fn sign(&self, operator: Operator) -> &'static str {
+        match operator {
+            Operator::Add => "+",
+            Operator::Subtract => "-",
+            Operator::Multiply => "*",
+            Operator::Divide => "/",
+            Operator::Less => "<",
+            Operator::LessOrEqual => "<=",
+            Operator::Equal => "==",
+            Operator::NotEqual => "!=",
+            Operator::And => "&&",
+            Operator::Or => "||",
+            Operator::BitOr => "|",
         }
     }
 
-    fn place(&self, place: &Place) -> String {
-        match place {
-            Place::Local(name) => name.clone(),
-            Place::Element(name, index) => format!("{name}[{}]", self.outer(index)),
-            Place::Member(part, name) => format!("{}->{name}", part_name(*part)),
-            Place::MemberElement(part, name, index) => {
-                format!("{}->{name}[{}]", part_name(*part), self.outer(index))
-            }
-        }
+    fn member(&self, part: Part, name: &str) -> String {
+        format!("{}->{name}", part_name(part))
     }
 
-    fn call(&self, name: &str, arguments: &[Argument]) -> String {
+    fn not(&self, value: &str) -> String {
+        format!("!{value}")
+    }
+
+    fn magnitude(&self, value: &str) -> String {
+        format!("{}_magnitude({value})", self.prefix)
+    }
+
+    fn bits(&self, left: &str, right: &str) -> String {
+        format!("(uint8_t)({left} | {right})")
+    }
+
+    fn select(&self, condition: &str, then: &str, otherwise: &str) -> String {
+        format!("({condition} ? {then} : {otherwise})")
+    }
+
+    fn to_real(&self, value: &str) -> String {
+        format!("({}){value}", self.real())
+    }
+
+    fn power_of_two(&self, exponent: &str) -> String {
+        format!("{}_power_of_two({exponent})", self.prefix)
+    }
+
+    fn call(&self, name: &str, given: Vec<String>) -> String {
         let parts = self.program.function(name).map_or(&[] as &[Part], |function| function.parts);
         let parts = parts.iter().map(|part| part_name(*part).to_owned());
-        let given = arguments.iter().map(|argument| match argument {
-            Argument::Value(value) => self.outer(value),
-            Argument::Array(name) => name.clone(),
-        });
         let all: Vec<String> = parts.chain(given).collect();
         format!("{}_{name}({})", self.prefix, all.join(", "))
     }
 
-    /// An expression that needs no brackets around it.
-    fn outer(&self, value: &Expression) -> String {
-        let text = self.expression(value);
-        match value {
-            // A cast stands before its brackets.
-            Expression::Binary(Operator::BitOr, ..) => text,
-            Expression::Binary(..) | Expression::Select(..) => text
-                .strip_prefix('(')
-                .and_then(|text| text.strip_suffix(')'))
-                .unwrap_or(&text)
-                .to_owned(),
-            _ => text,
-        }
+    fn remark(&self, page: &mut Page, text: &str) {
+        comment(page, text);
     }
 
-    fn expression(&self, value: &Expression) -> String {
-        match value {
-            Expression::Number(value) => self.number(*value),
-            Expression::Whole(value) => value.to_string(),
-            Expression::Byte(value) => format!("{value}U"),
-            Expression::Truth(value) => format!("{}U", u8::from(*value)),
-            Expression::Read(place) => self.place(place),
-            Expression::Negative(value) => format!("-{}", self.expression(value)),
-            Expression::Magnitude(value) => {
-                format!("{}_magnitude({})", self.prefix, self.outer(value))
-            }
-            Expression::Not(value) => format!("!{}", self.expression(value)),
-            Expression::Binary(operator, left, right) => {
-                let (left, right) = (self.expression(left), self.expression(right));
-                let text = format!("({left} {} {right})", sign(*operator));
-                if *operator == Operator::BitOr { format!("(uint8_t){text}") } else { text }
-            }
-            Expression::Select(condition, then, otherwise) => format!(
-                "({} ? {} : {})",
-                self.expression(condition),
-                self.expression(then),
-                self.expression(otherwise)
-            ),
-            Expression::ToReal(value) => format!("({}){}", self.real(), self.expression(value)),
-            Expression::PowerOfTwo(value) => {
-                format!("{}_power_of_two({})", self.prefix, self.outer(value))
-            }
-            Expression::Call(function, arguments) => self.call(function, arguments),
-        }
+    fn declare(&self, page: &mut Page, name: &str, kind: Kind, value: &str) {
+        page.line(&format!("{} {name} = {value};", self.kind(kind)));
     }
-}
 
-fn sign(operator: Operator) -> &'static str {
-    match operator {
-        Operator::Add => "+",
-        Operator::Subtract => "-",
-        Operator::Multiply => "*",
-        Operator::Divide => "/",
-        Operator::Less => "<",
-        Operator::LessOrEqual => "<=",
-        Operator::Equal => "==",
-        Operator::NotEqual => "!=",
-        Operator::And => "&&",
-        Operator::Or => "||",
-        Operator::BitOr => "|",
+    fn declare_array(&self, page: &mut Page, name: &str, count: usize) {
+        let zeros = vec![self.number(0.0); count].join(", ");
+        page.line(&format!("{} {name}[{count}] = {{ {zeros} }};", self.real()));
+    }
+
+    fn assign(&self, page: &mut Page, place: &str, value: &str) {
+        page.line(&format!("{place} = {value};"));
+    }
+
+    fn run(&self, page: &mut Page, call: &str) {
+        page.line(&format!("{call};"));
+    }
+
+    fn when(&self, condition: &str) -> String {
+        format!("if ({condition}) {{")
+    }
+
+    fn otherwise(&self) -> &'static str {
+        "} else {"
+    }
+
+    fn repeat(&self, name: &str, first: i32, last: i32) -> String {
+        format!("for (int32_t {name} = {first}; {name} <= {last}; ++{name}) {{")
+    }
+
+    fn end(&self, _: Block) -> &'static str {
+        "}"
+    }
+
+    fn answer(&self, value: Option<&str>) -> Vec<String> {
+        vec![value.map_or_else(|| "return;".to_owned(), |value| format!("return {value};"))]
     }
 }
 

@@ -2,9 +2,12 @@
 
 mod c;
 mod c_harness;
+mod dialect;
+mod lua;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
+pub use lua::{lua, lua_harness};
 
 /// Text with its indentation.
 #[derive(Debug, Default)]
