@@ -3,6 +3,7 @@
 //! Not here: scenarios and designs, which `fspid-scenario` reads; flights; the files' places.
 
 mod compose;
+mod export;
 pub mod interpret;
 pub mod program;
 mod trace;
@@ -10,4 +11,5 @@ pub mod vectors;
 pub mod write;
 
 pub use compose::{Angles, Refusal, precision_of, program};
+pub use export::{Export, ExportError, File, Request, Target, export, identifier};
 pub use fspid_core::Controller;

@@ -5,14 +5,15 @@ use std::process::Command;
 
 use fspid_core::Controller;
 use fspid_export::vectors::vectors;
-use fspid_export::write::{c, c_harness};
+use fspid_export::write::{Heading, c, c_harness};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
 use proptest::prelude::*;
 
 fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
     let program = program(controller, angles).expect("nothing here is refused");
-    let files = c(&program, "pitch");
+    let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
+    let files = c(&program, "pitch", &heading);
     let vectors = vectors(controller, angles, 1, 400);
     let harness = c_harness(&program, "pitch", &vectors);
     for (name, text) in

@@ -37,6 +37,7 @@ struct TunerStructure {
     out_of_range: OutOfRange,
 }
 
+/// Any structure.
 pub fn structure() -> impl Strategy<Value = Structure> {
     let integral = select(vec![IntegralForm::Bumpless, IntegralForm::Literal]);
     (integral, anti_windup(), option::weighted(0.8, tuner_structure()))

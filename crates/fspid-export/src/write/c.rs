@@ -1,7 +1,7 @@
 //! C99, freestanding: one header and one source, `stdint.h` alone.
 
 use super::dialect::{Block, Dialect, block};
-use super::{Page, decimal, wrapped};
+use super::{Heading, Page, decimal, wrapped};
 use crate::program::{
     Function, Kind, Member, Operator, Parameter, Part, Precision, Program, Value,
 };
@@ -19,9 +19,11 @@ const PARTS: [Part; 4] = [Part::Configuration, Part::State, Part::Sample, Part::
 
 /// The program in C; every name that others see begins with `prefix`.
 #[must_use]
-pub fn c(program: &Program, prefix: &str) -> CFiles {
+pub fn c(program: &Program, prefix: &str, heading: &Heading<'_>) -> CFiles {
     let writer = Writer { program, prefix };
-    CFiles { header: writer.header(), source: writer.source() }
+    let lines = heading.lines().join("\n * ");
+    let head = format!("/* {lines} */\n");
+    CFiles { header: head.clone() + &writer.header(), source: head + &writer.source() }
 }
 
 struct Writer<'a> {

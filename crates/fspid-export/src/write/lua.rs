@@ -3,18 +3,17 @@
 use fspid_numeric::Real;
 
 use super::dialect::{Block, Dialect, block};
-use super::{Page, decimal, wrapped};
-use crate::program::{
-    Function, Kind, Member, Operator, Part, Precision, Program, Value,
-};
+use super::{Heading, Page, decimal, wrapped};
+use crate::program::{Function, Kind, Member, Operator, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
 /// The program as a module that answers `{ design, new, step, hold }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
-pub fn lua(program: &Program) -> String {
+pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
     let writer = Writer { program };
     let mut page = Page::default();
+    heading.lines().iter().for_each(|line| page.line(&format!("-- {line}")));
     writer.head(&mut page);
     writer.table(&mut page, "design", Part::Configuration);
     for function in &program.functions {
@@ -65,7 +64,10 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
             vector.faults
         ));
     }
-    page.line(&format!("print(string.format(\"{} samples, %d different\", different))", vectors.len()));
+    page.line(&format!(
+        "print(string.format(\"{} samples, %d different\", different))",
+        vectors.len()
+    ));
     page.text
 }
 
@@ -91,7 +93,9 @@ impl Writer<'_> {
     fn any(&self, value: f64) -> String {
         match value {
             value if value.is_nan() => "0.0 / 0.0".to_owned(),
-            value if value.is_infinite() => format!("{}1.0 / 0.0", if value < 0.0 { "-" } else { "" }),
+            value if value.is_infinite() => {
+                format!("{}1.0 / 0.0", if value < 0.0 { "-" } else { "" })
+            }
             value => self.number(value),
         }
     }
@@ -101,16 +105,22 @@ impl Writer<'_> {
             Precision::Single => ("16777216.0", "32 bits (LUA_32BITS)"),
             Precision::Double => ("9007199254740992.0", "64 bits"),
         };
-        let more = if self.is_single() { format!("{one} + 1.0 ~= {one}") } else {
+        let more = if self.is_single() {
+            format!("{one} + 1.0 ~= {one}")
+        } else {
             format!("{one} + 1.0 ~= {one} or {} + 1.0 == {}", "16777216.0", "16777216.0")
         };
         comment(page, &format!("Written for numbers of {text}; others would round otherwise."));
         page.line(&format!("if {more} then"));
-        page.inside(|page| page.line(&format!("error(\"this controller needs numbers of {text}\")")));
+        page.inside(|page| {
+            page.line(&format!("error(\"this controller needs numbers of {text}\")"))
+        });
         page.line("end");
         page.line("");
         page.line("local function magnitude(number)");
-        page.inside(|page| page.line("if number > 0.0 then return number else return 0.0 - number end"));
+        page.inside(|page| {
+            page.line("if number > 0.0 then return number else return 0.0 - number end")
+        });
         page.line("end");
         page.line("");
         if self.program.function("exponential").is_some() {
@@ -136,7 +146,9 @@ impl Writer<'_> {
         };
         match value {
             Value::Real(value) => self.number(*value),
-            Value::Reals(values) => listed(values.iter().map(|value| self.number(*value)).collect()),
+            Value::Reals(values) => {
+                listed(values.iter().map(|value| self.number(*value)).collect())
+            }
             Value::Bytes(values) => listed(values.iter().map(u8::to_string).collect()),
             Value::Byte(value) => value.to_string(),
             Value::Truth(value) => value.to_string(),
@@ -303,6 +315,11 @@ impl Dialect for Writer<'_> {
     }
 
     fn answer(&self, value: Option<&str>) -> Vec<String> {
-        vec![value.map_or_else(|| "do return end".to_owned(), |value| format!("do return {value} end"))]
+        vec![
+            value.map_or_else(
+                || "do return end".to_owned(),
+                |value| format!("do return {value} end"),
+            ),
+        ]
     }
 }

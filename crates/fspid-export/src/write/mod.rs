@@ -2,11 +2,15 @@
 
 mod c;
 mod c_harness;
+mod csv;
 mod dialect;
+mod heading;
 mod lua;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
+pub use csv::csv;
+pub use heading::Heading;
 pub use lua::{lua, lua_harness};
 
 /// Text with its indentation.
