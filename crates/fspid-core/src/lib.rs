@@ -43,6 +43,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod controller;
 mod controller_setting;
 pub mod equations;
 mod error;
@@ -53,10 +54,12 @@ mod limits;
 pub mod paper;
 mod pid;
 mod pid_config;
+mod rounded;
 mod second_input;
 mod state;
 mod tuner;
 
+pub use controller::Controller;
 pub use controller_setting::ControllerSetting;
 pub use error::ConfigError;
 pub use gains::{GainLimits, Gains};
@@ -64,7 +67,7 @@ pub use guard::{Faults, Guard};
 pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
-pub use pid_config::{Derivative, PidConfig, SetpointWeights};
+pub use pid_config::{Derivative, PidConfig, SetpointWeights, largest_remembered};
 pub use second_input::{ModelState, ReferenceModel, SecondInput, SetCentres};
 pub use state::{Previous, Sample, State, Step};
 pub use tuner::{

@@ -42,6 +42,11 @@ fn leave<R: Real>(room: f64, values: [R; 2]) -> bool {
     values.iter().all(|value| value.abs() <= largest)
 }
 
+/// The largest rates and the largest integral with which a sample is answered and not held as an overflow.
+pub fn largest_remembered<R: Real>() -> [R; 2] {
+    [RATE_ROOM, INTEGRAL_ROOM].map(|room| R::from_f64(room) / R::MIN_POSITIVE)
+}
+
 impl<R: Real> Derivative<R> {
     /// From the ISA form: $T_f = T_d / N$; an infinite `n` means no filter. The gains that go with
     /// it are those of [`Gains::from_isa`].

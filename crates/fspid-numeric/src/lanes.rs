@@ -3,6 +3,7 @@
 use core::ops::{Add, Div, Mul, Sub};
 
 use crate::real::Real;
+use crate::real::sealed::Sealed as _;
 
 /// Some numbers, each operation done to every one of them by itself.
 ///
@@ -30,6 +31,12 @@ pub trait Lanes:
         zero: Self,
         function: impl Fn(&[Self::Number]) -> Self::Number,
     ) -> Self;
+}
+
+/// $e^x$ in each lane, as every inference has it.
+#[must_use]
+pub fn exp<L: Lanes>(x: L) -> L {
+    L::Number::exp_of(x)
 }
 
 /// Most numbers that [`Lanes::lane_by_lane`] takes.

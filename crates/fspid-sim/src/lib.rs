@@ -30,8 +30,6 @@ pub mod load;
 mod longitudinal;
 pub mod loop_model;
 mod math;
-#[cfg(test)]
-mod options;
 mod plant;
 mod propagation;
 mod propagator;

@@ -39,6 +39,7 @@
 //! | [`scenario`] | scenarios, fuzzy systems and requirements as text, and what is true of them |
 //! | [`study`] | measures, verdicts, margins, certificates, reports |
 //! | [`campaign`], [`tune`] | many flights; searches, classical rules, contests |
+//! | [`export`] | a controller in other languages, with the same bits |
 //! | [`optimise`], [`plot`], [`page`] | optimisers, figures as SVG, pages of HTML: free of flights |
 //! | [`lti`], [`aircraft`], [`proof`], [`numeric`] | linear systems, aircraft, proofs, numbers |
 //!
@@ -47,6 +48,7 @@
 pub use fspid_aircraft as aircraft;
 pub use fspid_campaign as campaign;
 pub use fspid_core as core;
+pub use fspid_export as export;
 pub use fspid_fuzzy as fuzzy;
 pub use fspid_lti as lti;
 pub use fspid_numeric as numeric;

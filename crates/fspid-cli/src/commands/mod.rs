@@ -11,6 +11,7 @@ pub(crate) mod contest;
 pub(crate) mod convert;
 mod drawings;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;

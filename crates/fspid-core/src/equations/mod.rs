@@ -44,6 +44,20 @@ macro_rules! numbers {
                 $name { $($field: number(&self.$field),)+ }
             }
 
+            /// The numbers as others, one by one, each with its name and what it is in a line.
+            pub fn map_named<T>(
+                &self,
+                mut number: impl FnMut(&'static str, &'static str, &S) -> T,
+            ) -> $name<T> {
+                $name {
+                    $($field: number(
+                        stringify!($field),
+                        concat!($(stringify!($field_doc)),+),
+                        &self.$field,
+                    ),)+
+                }
+            }
+
             /// Puts others into these, one by one.
             #[inline(always)]
             pub fn put<T>(&mut self, others: $name<T>, mut put: impl FnMut(&mut S, T)) {

@@ -6,11 +6,11 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::{Entrant, fly_many};
-use crate::options::{DT_S, controller, structure};
 use crate::signal::{Disturbance, Entry, Profile, Shape};
 use crate::{
     Controller, ElevatorSign, Instant, LinearPlant, Prepared, Scenario, Servo, Timing, fly,
 };
+use fspid_options::{DT_S, controller, structure};
 
 /// The Navion of the paper, whose sensor and set-point are noisy.
 fn prepared(seed: u64) -> Prepared {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
-use crate::options::any_controller;
+use fspid_options::any_controller;
 
 /// A state is moved by so much. Around rest the controller is linear, so that only rounding is left.
 const MOVED: f64 = 1e-6;

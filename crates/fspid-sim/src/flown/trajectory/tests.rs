@@ -9,7 +9,7 @@ use proptest::test_runner::RngSeed;
 use super::controller::{Done, Inputs, Places, Rows, Twin};
 use super::gains::{TunerSlopes, system_of};
 use crate::Controller;
-use crate::options::{any_controller, labels};
+use fspid_options::{any_controller, labels};
 
 /// Pitch, rate, integral, derivative, last sample, last command, three gains.
 const STATES: usize = 9;

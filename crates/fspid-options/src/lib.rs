@@ -1,26 +1,26 @@
-//! Controllers with every option, for tests that hold the uses of the control law against each other.
+#![doc = include_str!("../README.md")]
+//!
+//! Not here: anything that flies; no crate depends on this one but in its tests.
 //!
 //! Each struct of settings is written out field by field, never with `..`: an option that is added to the
 //! controller does not compile here until it is drawn, and then is drawn in all of these tests.
 
 use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
 use fspid_core::{
-    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
-    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
-    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
+    AntiWindup, Change, Controller, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid,
+    GainCoupling, GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid,
+    PidConfig, ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;
 
-use crate::Controller;
-
 /// Sample period of every controller here, s.
-pub(crate) const DT_S: f64 = 0.01;
+pub const DT_S: f64 = 0.01;
 
 /// What a group of flights side by side must share.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Structure {
+pub struct Structure {
     integral: IntegralForm,
     anti_windup: AntiWindup<f64>,
     /// Of a self-tuning controller.
@@ -37,7 +37,8 @@ struct TunerStructure {
     out_of_range: OutOfRange,
 }
 
-pub(crate) fn structure() -> impl Strategy<Value = Structure> {
+/// Any structure.
+pub fn structure() -> impl Strategy<Value = Structure> {
     let integral = select(vec![IntegralForm::Bumpless, IntegralForm::Literal]);
     (integral, anti_windup(), option::weighted(0.8, tuner_structure()))
         .prop_map(|(integral, anti_windup, tuner)| Structure { integral, anti_windup, tuner })
@@ -202,7 +203,7 @@ fn settings(
 }
 
 /// The paper's rules.
-pub(crate) fn labels(policy: OutOfRange) -> Supervisor<f64> {
+pub fn labels(policy: OutOfRange) -> Supervisor<f64> {
     Supervisor::new(&fspid_core::paper::rules(), 5.0, Defuzzifier::Exact, policy).expect("allowed")
 }
 
@@ -224,7 +225,7 @@ fn supervisor(structure: TunerStructure) -> BoxedStrategy<Supervisor<f64>> {
 }
 
 /// A controller of that structure, everything else drawn.
-pub(crate) fn controller(structure: Structure) -> BoxedStrategy<Controller> {
+pub fn controller(structure: Structure) -> BoxedStrategy<Controller<f64>> {
     let configs = config(structure);
     let Some(tuner) = structure.tuner else {
         return (gains(), configs)
@@ -246,6 +247,6 @@ pub(crate) fn controller(structure: Structure) -> BoxedStrategy<Controller> {
 }
 
 /// Any controller.
-pub(crate) fn any_controller() -> impl Strategy<Value = Controller> {
+pub fn any_controller() -> impl Strategy<Value = Controller<f64>> {
     structure().prop_flat_map(controller)
 }

@@ -1,0 +1,173 @@
+//! `fspid export`: a controller in another language.
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::{Format, json_text};
+use crate::argument::{Folder, InFile};
+use crate::exit::{Failure, note, print};
+use fspid_export::program::Precision;
+use fspid_export::{Angles, Export, Request, Target, export};
+use fspid_scenario::file::{self, Study};
+use fspid_scenario::tuning::Mark;
+use fspid_sim::NamedController;
+use fspid_study::output;
+
+/// Write a controller in another language: the same bits as the simulator, with vectors that show it.
+///
+/// The folder holds the code, `vectors.csv` with samples and answers of every option at work, and a program that asks
+/// the code for the answers and counts those with other bits.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
+)]
+pub(crate) struct Arguments {
+    /// The scenario or design file.
+    file: InFile,
+    /// The controller; may be left out where there is only one.
+    #[arg(long, value_name = "NAME")]
+    controller: Option<String>,
+    /// The language.
+    #[arg(long, value_name = "TARGET", value_parser = target)]
+    to: Target,
+    /// The folder to write into; a new or an empty one.
+    #[arg(long, value_name = "DIR")]
+    out: Folder,
+    /// Write into a folder that holds something, over files of the same names.
+    #[arg(long)]
+    force: bool,
+    /// The digits of the numbers.
+    #[arg(long, value_enum, default_value_t = Numbers::Single)]
+    numbers: Numbers,
+    /// The unit of the angles that go in and come out.
+    #[arg(long, value_enum, default_value_t = Unit::Radians)]
+    angles: Unit,
+    /// How many samples the vectors have.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    samples: u32,
+    /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// How it is told what was written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Numbers {
+    /// 32 bits.
+    Single,
+    /// 64 bits, as the simulator has them.
+    Double,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Unit {
+    Radians,
+    Degrees,
+}
+
+/// The target of that name.
+fn target(name: &str) -> Result<Target, String> {
+    Target::ALL.into_iter().find(|target| target.name() == name).ok_or_else(|| {
+        let known = Target::ALL.map(Target::name);
+        format!("unknown target{}", file::known_words(name, &known))
+    })
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let named = chosen(&study, arguments.controller.as_deref())?;
+    tuned(&study, &named.name)?;
+    let request = Request {
+        name: &named.name,
+        target: arguments.to,
+        precision: match arguments.numbers {
+            Numbers::Single => Precision::Single,
+            Numbers::Double => Precision::Double,
+        },
+        angles: match arguments.angles {
+            Unit::Radians => Angles::Radians,
+            Unit::Degrees => Angles::Degrees,
+        },
+        samples: arguments.samples as usize,
+        digest: &study.digest,
+    };
+    let exported = export(&named.controller, &request).map_err(Failure::input)?;
+    empty(&arguments.out, arguments.force)?;
+    write(&exported, &arguments.out)?;
+    match arguments.format {
+        Format::Text => {
+            exported.notes.iter().for_each(|it| note(format_args!("{it}")));
+            print(&told(&exported, &arguments.out))
+        }
+        Format::Json => print(&json_text(&json!({
+            "schema": 1,
+            "controller": named.name,
+            "target": arguments.to.name(),
+            "prefix": exported.prefix,
+            "folder": arguments.out.display().to_string(),
+            "files": exported.files.iter().map(|it| &it.name).collect::<Vec<_>>(),
+            "notes": exported.notes,
+        }))),
+    }
+}
+
+/// The controller that is meant.
+fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedController, Failure> {
+    let controllers = &study.scenario.controllers;
+    let names: Vec<&str> = controllers.iter().map(|named| named.name.as_str()).collect();
+    match (name, controllers.as_slice()) {
+        (None, [only]) => Ok(only),
+        (None, _) => Err(Failure::input(format_args!(
+            "--controller NAME is missing; the scenario flies {}",
+            names.join(", ")
+        ))),
+        (Some(name), all) => all.iter().find(|named| named.name == name).ok_or_else(|| {
+            let known = file::known_words(name, &names);
+            Failure::input(format_args!("there is no controller `{name}`{known}"))
+        }),
+    }
+}
+
+/// Refuses a controller that is not tuned yet.
+fn tuned(study: &Study, name: &str) -> Result<(), Failure> {
+    let free = |mark: &&Mark| mark.controller().is_none_or(|it| it == name);
+    match study.marks.iter().find(free) {
+        None => Ok(()),
+        Some(mark) => Err(Failure::input(format_args!(
+            "{} is marked for tuning; `fspid tune FILE --out design.toml` writes a design, which can be exported",
+            mark.path.text()
+        ))),
+    }
+}
+
+/// Refuses a folder with files in it.
+fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
+    let is_full = folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
+    if is_full && !force {
+        let folder = folder.display();
+        return Err(Failure::input(format_args!(
+            "{folder} is not empty; choose another folder, or --force to write into it"
+        )));
+    }
+    Ok(())
+}
+
+fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
+    output::make_folder(folder)?;
+    for file in &exported.files {
+        output::write(&folder.join(&file.name), &file.text)?;
+    }
+    Ok(())
+}
+
+fn told(exported: &Export, folder: &Path) -> String {
+    let line = |name: &String| format!("{}\n", folder.join(name).display());
+    exported.files.iter().map(|file| line(&file.name)).collect()
+}

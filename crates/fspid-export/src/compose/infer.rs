@@ -1,0 +1,141 @@
+//! The supervisor: from what it sees to the increments of the gains.
+
+mod centroid;
+mod labels;
+mod numbers;
+
+use fspid_core::SelfTuner;
+use fspid_core::fuzzy::OutOfRange;
+use fspid_numeric::Real;
+
+use super::members::Configuration;
+use super::{Refusal, exponential};
+use crate::program::{
+    Expression, Function, Kind, Parameter, Part, Statement, local, member, number,
+};
+
+/// Name of the gains, in the order of the increments.
+pub(super) const GAINS: [&str; 3] = ["kp", "ki", "kd"];
+/// Sets of an input.
+const SETS: i32 = 7;
+
+/// The bits of a fault, as the core has them.
+pub(super) const OUT_OF_RANGE: u8 = fspid_core::Faults::OUT_OF_RANGE.bits();
+pub(super) const UNDERFLOW: u8 = fspid_core::Faults::UNDERFLOW.bits();
+
+/// The function `infer` and those that it calls.
+pub(super) fn functions<R: Real>(
+    configuration: &mut Configuration,
+    tuner: &SelfTuner<R>,
+) -> Result<Vec<Function>, Refusal> {
+    let supervisor = tuner.supervisor();
+    let range = supervisor.range().to_f64();
+    configuration.real("range", "Half range of the inputs, in their units.", range);
+    let mut functions = Vec::new();
+    let policy = supervisor.out_of_range();
+    let mut body = match policy {
+        OutOfRange::Error => vec![Statement::when(
+            is_outside(),
+            vec![Statement::Return(Some(Expression::Byte(OUT_OF_RANGE)))],
+        )],
+        OutOfRange::Evaluate if supervisor.numbers().is_none() => Vec::new(),
+        OutOfRange::Clamp | OutOfRange::Evaluate => vec![Statement::when(is_outside(), clamped())],
+    };
+    match supervisor.numbers() {
+        Some(numbers) => {
+            functions.push(numbers::neighbour());
+            body.extend(numbers::body(configuration, supervisor, numbers));
+        }
+        None => {
+            functions.push(exponential::function::<R>());
+            functions.push(labels::grades(configuration, supervisor));
+            functions.push(centroid::function::<R>(supervisor.defuzzifier())?);
+            body.extend(labels::body(configuration, supervisor));
+        }
+    }
+    functions.push(Function {
+        name: "infer",
+        doc: "Increments of the three gains, in the units of the supervisor; answers a fault, 0 for none.",
+        parts: &[Part::Configuration],
+        parameters: vec![
+            Parameter { name: "error", kind: Kind::Real, written: false },
+            Parameter { name: "change", kind: Kind::Real, written: false },
+            increments(),
+        ],
+        answers: Some(Kind::Byte),
+        body: copied(body),
+    });
+    Ok(functions)
+}
+
+/// Parameters cannot be written to in every language, so that copies are.
+fn copied(body: Vec<Statement>) -> Vec<Statement> {
+    let copies = [("seen_error", "error"), ("seen_change", "change")];
+    let copies = copies.map(|(copy, of)| Statement::real(copy, local(of)));
+    copies.into_iter().chain(body).collect()
+}
+
+fn increments() -> Parameter {
+    Parameter { name: "increments", kind: Kind::Reals(3), written: true }
+}
+
+/// True where an input lies outside of the range.
+fn is_outside() -> Expression {
+    let within = |input: &str| local(input).magnitude().at_most(range());
+    within("seen_error").and(within("seen_change")).negated()
+}
+
+fn range() -> Expression {
+    member(Part::Configuration, "range")
+}
+
+/// Both inputs moved into the range.
+fn clamped() -> Vec<Statement> {
+    ["seen_error", "seen_change"]
+        .map(|input| Statement::set(input, limited(local(input), -range(), range())))
+        .into()
+}
+
+/// The number moved between two others; NaN stays NaN.
+fn limited(value: Expression, lower: Expression, upper: Expression) -> Expression {
+    let above = upper.clone().less(value.clone()).select(upper, value.clone());
+    value.less(lower.clone()).select(lower, above)
+}
+
+/// The function that moves an input so that the even sets see it, for [`fspid_core::SetCentres`].
+pub(super) fn warp_function<R: Real>() -> Function {
+    let third = number((R::ONE / R::from_f64(3.0)).to_f64());
+    let two_thirds = R::ONE / R::from_f64(3.0) + R::ONE / R::from_f64(3.0);
+    let (part, small, medium) = (|| local("part"), || local("small"), || local("medium"));
+    let warped = || local("warped");
+    let between = third.clone() + third.clone() * ((part() - small()) / (medium() - small()));
+    let outer = number(two_thirds.to_f64())
+        + third.clone() * ((part() - medium()) / (number(1.0) - medium()));
+    let real = |name| Parameter { name, kind: Kind::Real, written: false };
+    Function {
+        name: "warp",
+        doc: "An input as even sets see it: linear from 0 over the two centres to the range.",
+        parts: &[Part::Configuration],
+        parameters: vec![real("seen"), real("small"), real("medium")],
+        answers: Some(Kind::Real),
+        body: vec![
+            Statement::real("part", local("seen").magnitude() / range()),
+            Statement::real("warped", number(0.0)),
+            Statement::when(
+                part().less(number(1.0)).negated(),
+                vec![Statement::Return(Some(local("seen")))],
+            ),
+            Statement::If(
+                part().at_most(small()),
+                vec![Statement::set("warped", third * (part() / small()))],
+                vec![Statement::If(
+                    part().at_most(medium()),
+                    vec![Statement::set("warped", between)],
+                    vec![Statement::set("warped", outer)],
+                )],
+            ),
+            Statement::set("warped", warped().smaller(number(1.0)) * range()),
+            Statement::Return(Some(local("seen").less(number(0.0)).select(-warped(), warped()))),
+        ],
+    }
+}

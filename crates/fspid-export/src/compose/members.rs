@@ -1,0 +1,46 @@
+//! The configuration as it is collected.
+
+use crate::program::{Expression, Member, Part, Value, member};
+use crate::trace::Traced;
+
+/// Members of the configuration, each once.
+#[derive(Default)]
+pub(super) struct Configuration {
+    members: Vec<Member>,
+}
+
+impl Configuration {
+    /// The members in the order in which they were named.
+    pub(super) fn members(self) -> Vec<Member> {
+        self.members
+    }
+
+    /// A member of that name; another one with the same name must hold the same.
+    pub(super) fn add(&mut self, name: &str, doc: &str, value: Value) -> Expression {
+        match self.members.iter().find(|known| known.name == name) {
+            Some(known) => debug_assert_eq!(known.value, value, "two members are called {name}"),
+            None => self.members.push(Member { name: name.to_owned(), doc: doc.to_owned(), value }),
+        }
+        member(Part::Configuration, name)
+    }
+
+    /// A real.
+    pub(super) fn real(&mut self, name: &str, doc: &str, value: f64) -> Expression {
+        self.add(name, doc, Value::Real(value))
+    }
+
+    /// A number of an equation; an infinite one does nothing and is no member.
+    pub(super) fn traced(&mut self, name: &str, doc: &str, value: f64) -> Traced {
+        if value.is_infinite() {
+            return Traced::configured(value, Expression::Number(0.0));
+        }
+        let read = self.real(name, &plain(doc), value);
+        Traced::configured(value, read)
+    }
+}
+
+/// The text of a doc comment as the compiler hands it on.
+fn plain(doc: &str) -> String {
+    let text = doc.split_once('"').map_or(doc, |(_, text)| text);
+    text.trim_end_matches('"').replace('`', "").trim().to_owned()
+}

@@ -1,0 +1,62 @@
+//! From a controller to its program.
+
+mod exponential;
+mod infer;
+mod members;
+mod prune;
+mod step;
+
+use fspid_core::fuzzy::Defuzzifier;
+use fspid_numeric::Real;
+
+use crate::program::{Precision, Program};
+use fspid_core::Controller;
+
+/// The unit of the angles that go in and come out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Angles {
+    /// Radians.
+    #[default]
+    Radians,
+    /// Degrees.
+    Degrees,
+}
+
+/// What cannot be exported.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// A rule for the centre of gravity whose number of steps depends on the inputs.
+    #[error(
+        "the defuzzifier {0} cannot be exported; allowed are exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N"
+    )]
+    Defuzzifier(Defuzzifier),
+}
+
+/// The precision that a number type is.
+#[must_use]
+pub fn precision_of<R: Real>() -> Precision {
+    if R::MIN_POSITIVE.to_f64() > 1e-100 { Precision::Single } else { Precision::Double }
+}
+
+/// The program of a controller: the same answers to the same samples, bit for bit.
+///
+/// # Errors
+/// [`Refusal`] for what no program of a bounded number of steps can do.
+pub fn program<R: Real>(controller: &Controller<R>, angles: Angles) -> Result<Program, Refusal> {
+    let mut configuration = members::Configuration::default();
+    let mut functions = Vec::new();
+    if let Controller::SelfTuning(fspid) = controller {
+        functions.extend(infer::functions(&mut configuration, fspid.tuner())?);
+    }
+    functions.extend(step::functions(&mut configuration, controller, angles));
+    let mut program = Program {
+        precision: precision_of::<R>(),
+        configuration: configuration.members(),
+        state: step::state(controller),
+        sample: step::sample(controller, angles),
+        answer: step::answer(angles),
+        functions,
+    };
+    prune::prune(&mut program);
+    Ok(program)
+}

@@ -1,0 +1,173 @@
+//! Leaves out what nobody reads, and blocks that are none.
+
+use std::collections::BTreeSet;
+
+use crate::program::{Argument, Expression, Part, Place, Program, Statement};
+
+/// Removes values and members of configuration and state that are not read, with what is written into them.
+pub(super) fn prune(program: &mut Program) {
+    for function in &mut program.functions {
+        flatten(&mut function.body);
+    }
+    while remove_unread(program) {}
+}
+
+/// A block that is always done is no block.
+fn flatten(body: &mut Vec<Statement>) {
+    let mut flat = Vec::with_capacity(body.len());
+    for mut statement in std::mem::take(body) {
+        match &mut statement {
+            Statement::If(Expression::Truth(true), then, _) => {
+                flatten(then);
+                flat.append(then);
+                continue;
+            }
+            Statement::If(_, then, otherwise) => {
+                flatten(then);
+                flatten(otherwise);
+            }
+            Statement::For(.., inside) => flatten(inside),
+            _ => {}
+        }
+        flat.push(statement);
+    }
+    *body = flat;
+}
+
+fn size(program: &Program) -> usize {
+    fn statements(body: &[Statement]) -> usize {
+        let inside = |statement: &Statement| match statement {
+            Statement::If(_, then, otherwise) => statements(then) + statements(otherwise),
+            Statement::For(.., body) => statements(body),
+            _ => 0,
+        };
+        body.len() + body.iter().map(inside).sum::<usize>()
+    }
+    let functions: usize =
+        program.functions.iter().map(|function| statements(&function.body)).sum();
+    functions + program.configuration.len() + program.state.len()
+}
+
+/// True if something was removed, after which more may be unread.
+fn remove_unread(program: &mut Program) -> bool {
+    let before = size(program);
+    for function in &mut program.functions {
+        let mut reads = Reads::new();
+        function.body.iter().for_each(|statement| read_in(statement, &mut reads));
+        let arrays: Vec<&str> =
+            function.parameters.iter().map(|parameter| parameter.name).collect();
+        let is_read =
+            |name: &str| reads.contains(&(LOCAL, name.to_owned())) || arrays.contains(&name);
+        keep(&mut function.body, &|statement| match statement {
+            // A call may do more than answer.
+            Statement::Let(name, _, value) => {
+                is_read(name) || matches!(value, Expression::Call(..))
+            }
+            Statement::Set(Place::Local(name), _) => is_read(name),
+            _ => true,
+        });
+    }
+    remove_unread_members(program);
+    size(program) < before
+}
+
+fn remove_unread_members(program: &mut Program) {
+    let mut reads = BTreeSet::new();
+    for function in &program.functions {
+        function.body.iter().for_each(|statement| read_in(statement, &mut reads));
+    }
+    let is_read = |part: Part, name: &str| reads.contains(&(part as u8, name.to_owned()));
+    program.configuration.retain(|member| is_read(Part::Configuration, &member.name));
+    program.state.retain(|member| is_read(Part::State, &member.name));
+    for function in &mut program.functions {
+        keep(&mut function.body, &|statement| match statement {
+            Statement::Set(Place::Member(Part::State, name), _) => is_read(Part::State, name),
+            _ => true,
+        });
+    }
+}
+
+fn keep(body: &mut Vec<Statement>, is_kept: &impl Fn(&Statement) -> bool) {
+    body.retain_mut(|statement| {
+        match statement {
+            Statement::If(_, then, otherwise) => {
+                keep(then, is_kept);
+                keep(otherwise, is_kept);
+            }
+            Statement::For(.., body) => keep(body, is_kept),
+            _ => {}
+        }
+        is_kept(statement)
+    });
+}
+
+/// Values of the function among the parts.
+const LOCAL: u8 = u8::MAX;
+
+type Reads = BTreeSet<(u8, String)>;
+
+fn read_in(statement: &Statement, reads: &mut Reads) {
+    match statement {
+        Statement::Remark(_) | Statement::Array(..) | Statement::Return(None) => {}
+        Statement::Let(_, _, value) | Statement::Return(Some(value)) => value_in(value, reads),
+        Statement::Set(place, value) => {
+            if let Place::Element(_, index) | Place::MemberElement(_, _, index) = place {
+                value_in(index, reads);
+            }
+            value_in(value, reads);
+        }
+        Statement::If(condition, then, otherwise) => {
+            value_in(condition, reads);
+            then.iter().chain(otherwise).for_each(|statement| read_in(statement, reads));
+        }
+        Statement::For(.., body) => body.iter().for_each(|statement| read_in(statement, reads)),
+        Statement::Call(_, arguments) => arguments_in(arguments, reads),
+    }
+}
+
+fn arguments_in(arguments: &[Argument], reads: &mut Reads) {
+    for argument in arguments {
+        match argument {
+            Argument::Value(value) => value_in(value, reads),
+            Argument::Array(name) => {
+                reads.insert((LOCAL, name.clone()));
+            }
+        }
+    }
+}
+
+fn value_in(value: &Expression, reads: &mut Reads) {
+    match value {
+        Expression::Number(_)
+        | Expression::Whole(_)
+        | Expression::Byte(_)
+        | Expression::Truth(_) => {}
+        Expression::Read(Place::Local(name)) => {
+            reads.insert((LOCAL, name.clone()));
+        }
+        Expression::Read(Place::Member(part, name)) => {
+            reads.insert((*part as u8, name.clone()));
+        }
+        Expression::Read(Place::MemberElement(part, name, index)) => {
+            reads.insert((*part as u8, name.clone()));
+            value_in(index, reads);
+        }
+        Expression::Read(Place::Element(name, index)) => {
+            reads.insert((LOCAL, name.clone()));
+            value_in(index, reads);
+        }
+        Expression::Negative(value)
+        | Expression::Magnitude(value)
+        | Expression::Not(value)
+        | Expression::ToReal(value)
+        | Expression::PowerOfTwo(value) => value_in(value, reads),
+        Expression::Binary(_, left, right) => {
+            value_in(left, reads);
+            value_in(right, reads);
+        }
+        Expression::Select(condition, then, otherwise) => {
+            [condition, then, otherwise].into_iter().for_each(|value| value_in(value, reads));
+        }
+        Expression::Call(_, arguments) => arguments_in(arguments, reads),
+    }
+}

@@ -1,0 +1,585 @@
+//! The step of a controller: what is believed, the gains of the moment, the command, what is remembered.
+
+use fspid_core::equations::{
+    Free, GainNumbers, LawKind, Memory, PidEquations, SecondInputKind, TunerEquations,
+};
+use fspid_core::{Faults, Gains, InputSets, ModelState, Sample, SetCentres, largest_remembered};
+use fspid_numeric::Real;
+use fspid_numeric::scalar::Scalar as _;
+
+use super::infer::{self, GAINS};
+use super::members::Configuration;
+use super::{Angles, precision_of};
+use crate::program::{
+    Argument, Expression, Function, Kind, Member, Operator, Parameter, Part, Statement, Value,
+    element, local, member, number, whole,
+};
+use crate::trace::{Listing, Traced};
+use fspid_core::Controller;
+
+const NOT_FINITE: u8 = Faults::NOT_FINITE.bits();
+const IMPLAUSIBLE: u8 = Faults::IMPLAUSIBLE.bits();
+const OVERFLOW: u8 = Faults::OVERFLOW.bits();
+
+impl Angles {
+    /// The end of a name.
+    pub(crate) const fn unit(self) -> &'static str {
+        match self {
+            Self::Radians => "rad",
+            Self::Degrees => "deg",
+        }
+    }
+
+    /// Radians in a unit.
+    pub(crate) const fn radians(self) -> Option<f64> {
+        match self {
+            Self::Radians => None,
+            Self::Degrees => Some(core::f64::consts::PI / 180.0),
+        }
+    }
+
+    /// Units in a radian.
+    pub(crate) const fn per_radian(self) -> Option<f64> {
+        match self {
+            Self::Radians => None,
+            Self::Degrees => Some(180.0 / core::f64::consts::PI),
+        }
+    }
+}
+
+fn described(name: impl Into<String>, doc: &str, value: Value) -> Member {
+    Member { name: name.into(), doc: doc.to_owned(), value }
+}
+
+/// What a sample holds.
+pub(super) fn sample<R: Real>(controller: &Controller<R>, angles: Angles) -> Vec<Member> {
+    let unit = angles.unit();
+    let real = |name: String, doc| described(name, doc, Value::Real(0.0));
+    let mut members = vec![
+        real(format!("setpoint_{unit}"), "Commanded pitch; nose up is positive."),
+        real(format!("measurement_{unit}"), "Measured pitch; nose up is positive."),
+    ];
+    if controller.uses_rate() {
+        members.push(real(format!("rate_{unit}_s"), "Measured pitch rate; nose up is positive."));
+    }
+    members
+}
+
+/// What a step answers.
+pub(super) fn answer(angles: Angles) -> Vec<Member> {
+    let real = |name: &str, doc| described(name, doc, Value::Real(0.0));
+    vec![
+        real(&format!("command_{}", angles.unit()), "Command; nose up is positive."),
+        real("kp", "Proportional gain used, command per error."),
+        real("ki", "Integral gain used, 1/s."),
+        real("kd", "Derivative gain used, s."),
+        described("saturated", "The command was cut by a limit.", Value::Truth(false)),
+        described("faults", "Faults latched so far.", Value::Byte(0)),
+    ]
+}
+
+/// What is remembered, as it begins.
+pub(super) fn state<R: Real>(controller: &Controller<R>) -> Vec<Member> {
+    let real = |name: &str, doc, value: R| described(name, doc, Value::Real(value.to_f64()));
+    let Gains { kp, ki, kd } = controller.nominal();
+    vec![
+        real("command_rad", "The last command, rad.", R::ZERO),
+        real("integral", "The integral's memory.", R::ZERO),
+        real("derivative_rad_s", "The filtered derivative, rad/s.", R::ZERO),
+        real("error_rad", "The last error, rad.", R::ZERO),
+        real("derivative_input_rad", "What the derivative acted on, rad.", R::ZERO),
+        real("kp", "The last proportional gain.", kp),
+        real("ki", "The last integral gain.", ki),
+        real("kd", "The last derivative gain.", kd),
+        real("model_rad", "Pitch of the reference model at the next sample, rad.", R::ZERO),
+        real("model_rad_s", "Its rate, rad/s.", R::ZERO),
+        described("started", "There was a good sample.", Value::Truth(false)),
+        described("faults", "Faults latched so far.", Value::Byte(0)),
+    ]
+}
+
+/// The functions `hold` and `step`.
+pub(super) fn functions<R: Real>(
+    configuration: &mut Configuration,
+    controller: &Controller<R>,
+    angles: Angles,
+) -> Vec<Function> {
+    let mut functions = Vec::new();
+    if let Controller::SelfTuning(fspid) = controller
+        && !fspid.tuner().settings().input_sets.are_even()
+    {
+        functions.push(infer::warp_function::<R>());
+    }
+    functions.push(hold(configuration, controller, angles));
+    let step =
+        Composer { configuration, controller, angles, listing: Listing::new(precision_of::<R>()) };
+    functions.push(step.step());
+    functions
+}
+
+const PARTS: &[Part] = &[Part::Configuration, Part::State, Part::Sample, Part::Answer];
+
+/// The function that answers a sample which cannot be used.
+fn hold<R: Real>(
+    configuration: &mut Configuration,
+    controller: &Controller<R>,
+    angles: Angles,
+) -> Function {
+    let state = |name: &str| member(Part::State, name);
+    let faults = Expression::binary(Operator::BitOr, state("faults"), local("fault"));
+    let mut command = state("command_rad");
+    if let Some(limits) = controller.config().limits {
+        // Only a memory that the step has not written can lie outside.
+        let last = || state("command_rad");
+        let end = |configuration: &mut Configuration, name, doc, value: R| {
+            let value = value.to_f64();
+            value.is_finite().then(|| configuration.real(name, doc, value))
+        };
+        let upper =
+            end(configuration, "upper_rad", "Upper limit of the command, rad.", limits.upper());
+        let lower =
+            end(configuration, "lower_rad", "Lower limit of the command, rad.", limits.lower());
+        if let Some(upper) = upper {
+            command = upper.clone().less(last()).select(upper, command);
+        }
+        if let Some(lower) = lower {
+            command = last().less(lower.clone()).select(lower, command);
+        }
+    }
+    let mut body = vec![
+        Statement::set_member(Part::State, "faults", faults),
+        Statement::real("held_rad", command),
+    ];
+    body.extend(answered(angles, "held_rad", |gain| {
+        gain_of_state(configuration, controller, gain)
+    }));
+    body.extend([
+        Statement::set_member(Part::Answer, "saturated", Expression::Truth(false)),
+        Statement::set_member(Part::Answer, "faults", state("faults")),
+    ]);
+    Function {
+        name: "hold",
+        doc: "Answers the last command to a sample that cannot be used, and latches the fault.",
+        parts: &[Part::Configuration, Part::State, Part::Answer],
+        parameters: vec![Parameter { name: "fault", kind: Kind::Byte, written: false }],
+        answers: None,
+        body,
+    }
+}
+
+/// The last gain: constant where the gains are.
+fn gain_of_state<R: Real>(
+    configuration: &mut Configuration,
+    controller: &Controller<R>,
+    gain: usize,
+) -> Expression {
+    match controller {
+        Controller::Fixed(_) => nominal_gain(configuration, controller, gain),
+        Controller::SelfTuning(_) => member(Part::State, GAINS[gain]),
+    }
+}
+
+fn nominal_gain<R: Real>(
+    configuration: &mut Configuration,
+    controller: &Controller<R>,
+    gain: usize,
+) -> Expression {
+    let Gains { kp, ki, kd } = controller.nominal();
+    let value = [kp, ki, kd][gain].to_f64();
+    let doc = ["Proportional gain.", "Integral gain, 1/s.", "Derivative gain, s."][gain];
+    configuration.real(&format!("nominal_{}", GAINS[gain]), doc, value)
+}
+
+/// Command and gains of the answer.
+fn answered(
+    angles: Angles,
+    command: &str,
+    mut gain: impl FnMut(usize) -> Expression,
+) -> Vec<Statement> {
+    let mut command = local(command);
+    if let Some(factor) = angles.per_radian() {
+        command = command * number(factor);
+    }
+    let mut statements =
+        vec![Statement::set_member(Part::Answer, &format!("command_{}", angles.unit()), command)];
+    statements
+        .extend((0..3).map(|place| Statement::set_member(Part::Answer, GAINS[place], gain(place))));
+    statements
+}
+
+/// Puts the statements of a step together.
+struct Composer<'a, R> {
+    configuration: &'a mut Configuration,
+    controller: &'a Controller<R>,
+    angles: Angles,
+    listing: Listing,
+}
+
+fn read(name: &str) -> Traced {
+    Traced::read(local(name))
+}
+
+fn held(fault: u8) -> Vec<Statement> {
+    let fault = Argument::Value(Expression::Byte(fault));
+    vec![Statement::Call("hold", vec![fault]), Statement::Return(None)]
+}
+
+fn both(truths: impl IntoIterator<Item = Expression>) -> Expression {
+    let all = truths.into_iter().reduce(Expression::and);
+    all.unwrap_or(Expression::Truth(true))
+}
+
+impl<R: Real> Composer<'_, R> {
+    fn step(mut self) -> Function {
+        let mut body = self.believed();
+        let (pid, tuner) = self.equations();
+        let sample = Sample {
+            setpoint_rad: read("setpoint_rad"),
+            measurement_rad: read("measurement_rad"),
+            rate_rad_s: if self.controller.uses_rate() {
+                read("rate_rad_s")
+            } else {
+                Traced::zero()
+            },
+        };
+        let nominal: Vec<Traced> = (0..3)
+            .map(|gain| Traced::read(nominal_gain(self.configuration, self.controller, gain)))
+            .collect();
+        let nominal = Gains { kp: nominal[0], ki: nominal[1], kd: nominal[2] };
+        let memory = self.memory(&mut body, &pid, &sample, &nominal);
+        let (gains, model) = match &tuner {
+            None => (nominal, None),
+            Some(tuner) => self.gains(&mut body, tuner, &memory, &sample),
+        };
+        self.command(&mut body, &pid, &memory, &sample, &gains, model);
+        Function {
+            name: "step",
+            doc: "Answers one sample; to be called once every period.",
+            parts: PARTS,
+            parameters: Vec::new(),
+            answers: None,
+            body,
+        }
+    }
+
+    fn largest(&self) -> Expression {
+        number(precision_of::<R>().largest())
+    }
+
+    /// The sample in radians, and whether it is believed.
+    fn believed(&mut self) -> Vec<Statement> {
+        let unit = self.angles.unit();
+        let mut names = vec![
+            ("setpoint_rad", format!("setpoint_{unit}")),
+            ("measurement_rad", format!("measurement_{unit}")),
+        ];
+        if self.controller.uses_rate() {
+            names.push(("rate_rad_s", format!("rate_{unit}_s")));
+        }
+        let mut body = Vec::new();
+        for (name, given) in &names {
+            let given = member(Part::Sample, given);
+            let value = match self.angles.radians() {
+                Some(factor) => given * number(factor),
+                None => given,
+            };
+            body.push(Statement::real(name, value));
+        }
+        let limit = self.controller.config().guard.limit_rad().to_f64();
+        let doc = "Largest sample that is believed, rad and rad/s.";
+        let limit = self.configuration.real("guard_rad", doc, limit);
+        let within = |most: &Expression| {
+            both(names.iter().map(|(name, _)| local(name).magnitude().at_most(most.clone())))
+        };
+        body.push(Statement::Remark("A sample that cannot be believed holds the command.".into()));
+        body.push(Statement::when(within(&self.largest()).negated(), held(NOT_FINITE)));
+        body.push(Statement::when(within(&limit).negated(), held(IMPLAUSIBLE)));
+        body
+    }
+
+    /// The equations with their numbers in the configuration.
+    fn equations(&mut self) -> (PidEquations<Traced>, Option<TunerEquations<Traced>>) {
+        let configuration = &mut *self.configuration;
+        let mut pid = |equations: &PidEquations<R>| PidEquations {
+            structure: equations.structure,
+            numbers: equations
+                .numbers
+                .map_named(|name, doc, value| configuration.traced(name, doc, value.to_f64())),
+        };
+        match self.controller {
+            Controller::Fixed(fixed) => (pid(fixed.equations()), None),
+            Controller::SelfTuning(fspid) => {
+                let pid = pid(fspid.equations());
+                let tuner = fspid.tuner_equations();
+                let numbers = tuner
+                    .numbers
+                    .map_named(|name, doc, value| configuration.traced(name, doc, value.to_f64()));
+                let mut index = 0;
+                let gains = tuner.gains.map(|gain| {
+                    let of = GAINS[index];
+                    index += 1;
+                    gain.map_named(|name, doc, value| {
+                        let doc = format!("{} ({of})", doc.trim_end_matches(['.', '"']));
+                        configuration.traced(&format!("{name}_{of}"), &doc, value.to_f64())
+                    })
+                });
+                (pid, Some(TunerEquations { structure: tuner.structure, numbers, gains }))
+            }
+        }
+    }
+
+    /// What is remembered; at the first sample as if it had stood for ever.
+    fn memory(
+        &mut self,
+        body: &mut Vec<Statement>,
+        pid: &PidEquations<Traced>,
+        sample: &Sample<Traced>,
+        nominal: &Gains<Traced>,
+    ) -> Memory<Traced> {
+        let first = pid.at_first(sample, nominal);
+        let state = |name: &str| member(Part::State, name);
+        let started = state("started");
+        let mut chosen = Vec::new();
+        for (name, at_first) in [
+            ("last_error_rad", first.error_rad),
+            ("last_input_rad", first.derivative_input_rad),
+            ("model_rad", first.model_rad),
+        ] {
+            let of_state = match name {
+                "last_error_rad" => "error_rad",
+                "last_input_rad" => "derivative_input_rad",
+                other => other,
+            };
+            let at_first = self.listing.value(at_first);
+            let value = started.clone().select(state(of_state), at_first);
+            chosen.push(Statement::real(name, value));
+        }
+        // Only what this controller uses; the rest is left out where nothing reads it.
+        body.extend(chosen);
+        let kept = |name: &str| Traced::read(state(name));
+        Memory {
+            command_rad: kept("command_rad"),
+            integral: kept("integral"),
+            derivative_rad_s: kept("derivative_rad_s"),
+            error_rad: read("last_error_rad"),
+            derivative_input_rad: read("last_input_rad"),
+            kp: kept("kp"),
+            ki: kept("ki"),
+            kd: kept("kd"),
+            model_rad: read("model_rad"),
+            model_rad_s: kept("model_rad_s"),
+        }
+    }
+
+    /// The gains of the moment, and where the reference model is next.
+    fn gains(
+        &mut self,
+        body: &mut Vec<Statement>,
+        tuner: &TunerEquations<Traced>,
+        memory: &Memory<Traced>,
+        sample: &Sample<Traced>,
+    ) -> (Gains<Traced>, Option<ModelState<Traced>>) {
+        body.push(Statement::Remark("The gains of the moment.".into()));
+        let error = sample.setpoint_rad - sample.measurement_rad;
+        let second = tuner.second_rad(memory, sample);
+        body.extend(self.listing.values(&[("error_rad", error), ("second_rad", second)]));
+        body.push(Statement::Let("fault".to_owned(), Kind::Byte, Expression::Byte(0)));
+        let scaled = GAINS.map(|gain| format!("scaled_{gain}"));
+        body.extend(scaled.iter().map(|name| Statement::real(name, number(0.0))));
+        let inferred = self.inferred(tuner, &scaled);
+        body.extend(self.unless_silent(inferred));
+        let before = [memory.kp, memory.ki, memory.kd];
+        for (gain, last) in GAINS.into_iter().zip(before) {
+            body.push(Statement::real(gain, self.listing.value(last)));
+        }
+        let mut moved = Vec::new();
+        let mut free = Vec::new();
+        for ((gain, last), (numbers, scaled)) in
+            GAINS.into_iter().zip(before).zip(tuner.gains.iter().zip(&scaled))
+        {
+            let _ = gain;
+            free.push((numbers, tuner.free_gain(numbers, last, read(scaled))));
+        }
+        let names = GAINS.map(|gain| format!("free_{gain}"));
+        let values: Vec<(&str, Traced)> =
+            names.iter().map(String::as_str).zip(free.iter().map(|(_, free)| *free)).collect();
+        let mut inside = self.listing.values(&values);
+        let finite = both(names.iter().map(|name| local(name).magnitude().at_most(self.largest())));
+        inside.push(Statement::when(finite.negated(), held(OVERFLOW)));
+        for (gain, (numbers, free)) in GAINS.into_iter().zip(free) {
+            let limited: &GainNumbers<Traced> = numbers;
+            inside.push(Statement::set(gain, self.listing.value(limited.limited(free))));
+        }
+        self.listing.forget(&names);
+        moved.extend(inside);
+        let refused = Expression::binary(
+            Operator::Equal,
+            local("fault"),
+            Expression::Byte(infer::OUT_OF_RANGE),
+        );
+        body.push(match self.refuses() {
+            true => Statement::when(refused.negated(), moved),
+            false => Statement::when(Expression::Truth(true), moved),
+        });
+        let latched =
+            Expression::binary(Operator::BitOr, member(Part::State, "faults"), local("fault"));
+        body.push(Statement::set_member(Part::State, "faults", latched));
+        let model = (tuner.structure.second_input == SecondInputKind::ModelError)
+            .then(|| tuner.next_model(memory, sample));
+        let _ = LawKind::Memoryless;
+        (Gains { kp: read("kp"), ki: read("ki"), kd: read("kd") }, model)
+    }
+
+    fn refuses(&self) -> bool {
+        matches!(self.controller, Controller::SelfTuning(fspid)
+            if fspid.tuner().supervisor().out_of_range() == fspid_core::fuzzy::OutOfRange::Error)
+    }
+
+    /// What the supervisor adds, scaled.
+    fn inferred(&mut self, tuner: &TunerEquations<Traced>, scaled: &[String; 3]) -> Vec<Statement> {
+        let [error, change] = tuner.seen(read("error_rad"), read("second_rad"));
+        let mut body = self.listing.values(&[("seen_error", error), ("seen_change", change)]);
+        let finite = both(
+            ["seen_error", "seen_change"]
+                .map(|name| local(name).magnitude().at_most(self.largest())),
+        );
+        body.push(Statement::when(finite.negated(), held(OVERFLOW)));
+        body.push(Statement::Array("increments".to_owned(), 3));
+        let [error, change] = self.warped();
+        let arguments = vec![
+            Argument::Value(error),
+            Argument::Value(change),
+            Argument::Array("increments".to_owned()),
+        ];
+        body.push(Statement::set("fault", Expression::Call("infer", arguments)));
+        for ((name, numbers), place) in scaled.iter().zip(&tuner.gains).zip(0..) {
+            let scale = self.listing.value(numbers.scale);
+            body.push(Statement::set(name, scale * element("increments", whole(place))));
+        }
+        self.listing.forget(&["seen_error".to_owned(), "seen_change".to_owned()]);
+        body
+    }
+
+    /// Both inputs as the even sets see them.
+    fn warped(&mut self) -> [Expression; 2] {
+        let Controller::SelfTuning(fspid) = self.controller else {
+            return [local("seen_error"), local("seen_change")];
+        };
+        let InputSets { error, change } = fspid.tuner().settings().input_sets;
+        let configuration = &mut *self.configuration;
+        [("error", error), ("change", change)].map(|(input, centres)| {
+            let seen = local(&format!("seen_{input}"));
+            centres.map_or(seen.clone(), |centres: SetCentres<R>| {
+                let mut centre = |size: &str, value: R| {
+                    let doc = format!("Centre of the {size} sets of the {input}, of the range.");
+                    configuration.real(&format!("{size}_{input}"), &doc, value.to_f64())
+                };
+                let arguments =
+                    [seen, centre("small", centres.small()), centre("medium", centres.medium())];
+                Expression::Call("warp", arguments.map(Argument::Value).into())
+            })
+        })
+    }
+
+    /// Does something outside of the dead zone.
+    fn unless_silent(&mut self, body: Vec<Statement>) -> Vec<Statement> {
+        let Controller::SelfTuning(fspid) = self.controller else { return body };
+        let Some(zone) = fspid.tuner().settings().dead_zone else {
+            return vec![Statement::when(Expression::Truth(true), body)];
+        };
+        let mut within = |name: &str, doc: &str, value: R, input: &str| {
+            let most = self.configuration.real(name, doc, value.to_f64());
+            local(input).magnitude().at_most(most)
+        };
+        let error =
+            within("zone_error_rad", "Dead zone of the error, rad.", zone.error_rad, "error_rad");
+        let doc = "Dead zone of what is seen beside it.";
+        let second = within("zone_change_rad", doc, zone.change_rad, "second_rad");
+        vec![Statement::when(error.and(second).negated(), body)]
+    }
+
+    /// Command, what is remembered, and the answer.
+    fn command(
+        &mut self,
+        body: &mut Vec<Statement>,
+        pid: &PidEquations<Traced>,
+        memory: &Memory<Traced>,
+        sample: &Sample<Traced>,
+        gains: &Gains<Traced>,
+        model: Option<ModelState<Traced>>,
+    ) {
+        body.push(Statement::Remark("The command before and behind its limits.".into()));
+        let free = pid.free(memory, sample, gains);
+        let regulated = pid.regulated(memory, &free, gains.ki);
+        let Free { error_rad, derivative_input_rad, derivative_rad_s, wound, command_rad, .. } =
+            free;
+        let mut values = vec![
+            ("loop_error_rad", error_rad),
+            ("derivative_input_rad", derivative_input_rad),
+            ("derivative_rad_s", derivative_rad_s),
+            ("wound", wound),
+            ("free_rad", command_rad),
+            ("command_rad", regulated.command_rad),
+            ("excess_rad", regulated.excess_rad),
+            ("integral", regulated.integral),
+        ];
+        if let Some(model) = model {
+            values.push(("next_model_rad", model.pitch_rad));
+            values.push(("next_model_rad_s", model.rate_rad_s));
+        }
+        body.extend(self.listing.values(&values));
+        body.push(Statement::Remark(
+            "What overflows, or would at the next sample, is held; before that nothing is remembered.".into(),
+        ));
+        body.push(Statement::when(self.is_clear(model.is_some()).negated(), held(OVERFLOW)));
+        self.remembered(body, model.is_some());
+    }
+
+    /// True if the next sample has an answer, whatever it is.
+    fn is_clear(&self, has_model: bool) -> Expression {
+        let [rate, integral] = largest_remembered::<R>().map(|most| number(most.to_f64()));
+        let dt_s = || member(Part::Configuration, "dt_s");
+        let mut truths = vec![
+            (local("loop_error_rad") / dt_s()).magnitude().at_most(rate.clone()),
+            (local("derivative_input_rad") / dt_s()).magnitude().at_most(rate.clone()),
+            local("wound").magnitude().at_most(integral.clone()),
+            local("integral").magnitude().at_most(integral),
+        ];
+        if has_model {
+            truths.push(local("next_model_rad").magnitude().at_most(rate.clone()));
+            truths.push(local("next_model_rad_s").magnitude().at_most(rate));
+        }
+        truths.push(local("free_rad").magnitude().at_most(self.largest()));
+        both(truths)
+    }
+
+    fn remembered(&mut self, body: &mut Vec<Statement>, has_model: bool) {
+        let mut kept = vec![
+            ("command_rad", "command_rad"),
+            ("integral", "integral"),
+            ("derivative_rad_s", "derivative_rad_s"),
+            ("error_rad", "loop_error_rad"),
+            ("derivative_input_rad", "derivative_input_rad"),
+        ];
+        let self_tuning = matches!(self.controller, Controller::SelfTuning(_));
+        if self_tuning {
+            kept.extend(GAINS.map(|gain| (gain, gain)));
+        }
+        if has_model {
+            kept.extend([("model_rad", "next_model_rad"), ("model_rad_s", "next_model_rad_s")]);
+        }
+        let keep = |(member, value)| Statement::set_member(Part::State, member, local(value));
+        body.extend(kept.into_iter().map(keep));
+        body.push(Statement::set_member(Part::State, "started", Expression::Truth(true)));
+        let (configuration, controller) = (&mut *self.configuration, self.controller);
+        body.extend(answered(self.angles, "command_rad", |gain| match controller {
+            Controller::Fixed(_) => nominal_gain(configuration, controller, gain),
+            Controller::SelfTuning(_) => local(GAINS[gain]),
+        }));
+        let cut = Expression::binary(Operator::NotEqual, local("excess_rad"), number(0.0));
+        body.extend([
+            Statement::set_member(Part::Answer, "saturated", cut),
+            Statement::set_member(Part::Answer, "faults", member(Part::State, "faults")),
+        ]);
+    }
+}

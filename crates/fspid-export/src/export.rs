@@ -1,0 +1,210 @@
+//! The files of an export.
+
+use fspid_core::{ConfigError, Controller};
+use fspid_numeric::Real;
+
+use crate::compose::{Angles, Refusal, precision_of, program};
+use crate::program::{Precision, Program};
+use crate::vectors::{Vector, vectors};
+use crate::write::{self, Heading};
+
+/// A language that a controller can be written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// C99.
+    C,
+    /// Lua 5.3.
+    Lua,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::C, Self::Lua];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::C => "c",
+            Self::Lua => "lua",
+        }
+    }
+
+    /// What is written, in a line.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::C => "C99, freestanding: a header and a source",
+            Self::Lua => "a module for Lua 5.3",
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Request<'a> {
+    /// The controller's name in its scenario.
+    pub name: &'a str,
+    /// In which language.
+    pub target: Target,
+    /// With which digits.
+    pub precision: Precision,
+    /// In which unit angles go in and come out.
+    pub angles: Angles,
+    /// How many samples the vectors have.
+    pub samples: usize,
+    /// SHA-256 of the scenario, in hexadecimal digits.
+    pub digest: &'a str,
+}
+
+/// Why there is no export.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ExportError {
+    /// The controller has no program.
+    #[error("controller `{name}`: {reason}")]
+    Refused {
+        /// The controller.
+        name: String,
+        /// Why.
+        reason: Refusal,
+    },
+    /// A setting does not survive rounding.
+    #[error(
+        "controller `{name}` cannot fly with numbers of 32 bits: {reason}; --numbers double keeps them"
+    )]
+    Rounded {
+        /// The controller.
+        name: String,
+        /// Why.
+        reason: ConfigError,
+    },
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name in the folder.
+    pub name: String,
+    /// What is in it.
+    pub text: String,
+}
+
+/// A controller in another language.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Export {
+    /// What every name begins with.
+    pub prefix: String,
+    /// The files.
+    pub files: Vec<File>,
+    /// What was chosen, and why.
+    pub notes: Vec<String>,
+}
+
+/// Writes a controller in another language, with vectors that show that it answers alike.
+///
+/// # Errors
+/// [`ExportError`] names what cannot be exported and what would make it possible.
+pub fn export(controller: &Controller<f64>, request: &Request<'_>) -> Result<Export, ExportError> {
+    match request.precision {
+        Precision::Double => exported(controller, request),
+        Precision::Single => {
+            let rounded = controller
+                .rounded::<f32>()
+                .map_err(|reason| ExportError::Rounded { name: request.name.to_owned(), reason })?;
+            exported(&rounded, request)
+        }
+    }
+}
+
+fn exported<R: Real>(
+    controller: &Controller<R>,
+    request: &Request<'_>,
+) -> Result<Export, ExportError> {
+    let program = program(controller, request.angles)
+        .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
+    let prefix = identifier(request.name);
+    let vectors = vectors(controller, request.angles, SEED, request.samples);
+    let mut notes = Vec::new();
+    if prefix != request.name {
+        notes.push(format!("`{}` is called `{prefix}` in the code", request.name));
+    }
+    notes.extend(way(controller));
+    let heading = Heading {
+        name: request.name,
+        digest: request.digest,
+        precision: precision_of::<R>(),
+        angles: request.angles,
+    };
+    let mut files = match request.target {
+        Target::C => in_c(&program, &prefix, &heading, &vectors),
+        Target::Lua => in_lua(&program, &prefix, &heading, &vectors),
+    };
+    files.push(File { name: "vectors.csv".to_owned(), text: write::csv(&program, &vectors) });
+    Ok(Export { prefix, files, notes })
+}
+
+/// Of the vectors' samples.
+const SEED: u64 = 1;
+
+fn in_c<R: Real>(
+    program: &Program,
+    prefix: &str,
+    heading: &Heading<'_>,
+    vectors: &[Vector<R>],
+) -> Vec<File> {
+    let files = write::c(program, prefix, heading);
+    let file = |name: String, text| File { name, text };
+    vec![
+        file(format!("{prefix}.h"), files.header),
+        file(format!("{prefix}.c"), files.source),
+        file(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
+    ]
+}
+
+fn in_lua<R: Real>(
+    program: &Program,
+    prefix: &str,
+    heading: &Heading<'_>,
+    vectors: &[Vector<R>],
+) -> Vec<File> {
+    let file = |name: String, text| File { name, text };
+    vec![
+        file(format!("{prefix}.lua"), write::lua(program, heading)),
+        file(format!("{prefix}_check.lua"), write::lua_harness(program, prefix, vectors)),
+    ]
+}
+
+/// How the supervisor infers.
+fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
+    let Controller::SelfTuning(fspid) = controller else { return None };
+    let supervisor = fspid.tuner().supervisor();
+    let way = match (supervisor.numbers(), supervisor.defuzzifier()) {
+        (Some(_), _) => "rules that conclude numbers: bilinear interpolation".to_owned(),
+        (None, fspid_core::fuzzy::Defuzzifier::Exact) => {
+            "rules that conclude labels: centre of gravity in closed form".to_owned()
+        }
+        (None, sampled) => {
+            format!("rules that conclude labels: centre of gravity by samples, {sampled}")
+        }
+    };
+    Some(way)
+}
+
+/// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
+#[must_use]
+pub fn identifier(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars() {
+        match c.to_ascii_lowercase() {
+            c if c.is_ascii_alphanumeric() => text.push(c),
+            _ if !text.ends_with('_') => text.push('_'),
+            _ => {}
+        }
+    }
+    let text = text.trim_matches('_');
+    match text.chars().next() {
+        Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
+        Some(_) => format!("controller_{text}"),
+        None => "controller".to_owned(),
+    }
+}

@@ -1,0 +1,15 @@
+#![doc = include_str!("../README.md")]
+//!
+//! Not here: scenarios and designs, which `fspid-scenario` reads; flights; the files' places.
+
+mod compose;
+mod export;
+pub mod interpret;
+pub mod program;
+mod trace;
+pub mod vectors;
+pub mod write;
+
+pub use compose::{Angles, Refusal, precision_of, program};
+pub use export::{Export, ExportError, File, Request, Target, export, identifier};
+pub use fspid_core::Controller;

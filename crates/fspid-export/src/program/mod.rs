@@ -1,0 +1,124 @@
+//! What a controller does in a sample, as a small program that every language here can be written in.
+//!
+//! Numbers are reals of one precision, whole numbers that count, and truths; there are loops of a constant count, no
+//! recursion, no pointer and no heap. A [`Program`] is what the writers and the interpreter share, so that a
+//! language is a way of writing and knows no equation.
+
+mod expression;
+mod statement;
+
+pub use expression::{
+    Argument, Expression, Operator, Part, Place, element, local, member, member_element, number,
+    whole,
+};
+pub use statement::{Kind, Statement};
+
+/// How many digits a real has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 32 bits.
+    Single,
+    /// 64 bits.
+    Double,
+}
+
+impl Precision {
+    /// The largest finite number.
+    #[must_use]
+    pub const fn largest(self) -> f64 {
+        match self {
+            Self::Single => f32::MAX as f64,
+            Self::Double => f64::MAX,
+        }
+    }
+}
+
+/// A function of the program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    /// Its name, without a prefix.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub doc: &'static str,
+    /// Which parts it is given.
+    pub parts: &'static [Part],
+    /// What else it is given.
+    pub parameters: Vec<Parameter>,
+    /// What it answers.
+    pub answers: Option<Kind>,
+    /// What it does.
+    pub body: Vec<Statement>,
+}
+
+/// What a function is given by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// The function writes into it: an array of the caller.
+    pub written: bool,
+}
+
+/// A named value of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member {
+    /// Its name, the unit last.
+    pub name: String,
+    /// What it is, in a line.
+    pub doc: String,
+    /// What it holds, and what it begins with.
+    pub value: Value,
+}
+
+/// What a member holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A real.
+    Real(f64),
+    /// Reals side by side.
+    Reals(Vec<f64>),
+    /// Small whole numbers side by side, 0 to 255.
+    Bytes(Vec<u8>),
+    /// A small whole number whose bits count.
+    Byte(u8),
+    /// True or false.
+    Truth(bool),
+}
+
+/// A controller as a program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// How many digits its reals have.
+    pub precision: Precision,
+    /// What does not change while it flies.
+    pub configuration: Vec<Member>,
+    /// What it remembers.
+    pub state: Vec<Member>,
+    /// What it is given at a sample.
+    pub sample: Vec<Member>,
+    /// What it answers at a sample.
+    pub answer: Vec<Member>,
+    /// Its functions; one is called only below where it stands.
+    pub functions: Vec<Function>,
+}
+
+impl Program {
+    /// The members of a part.
+    #[must_use]
+    pub fn members(&self, part: Part) -> &[Member] {
+        match part {
+            Part::Configuration => &self.configuration,
+            Part::State => &self.state,
+            Part::Sample => &self.sample,
+            Part::Answer => &self.answer,
+        }
+    }
+
+    /// The function of that name.
+    #[must_use]
+    pub fn function(&self, name: &str) -> Option<&Function> {
+        self.functions.iter().find(|function| function.name == name)
+    }
+}

@@ -1,0 +1,410 @@
+//! C99, freestanding: one header and one source, `stdint.h` alone.
+
+use super::dialect::{Block, Dialect, block};
+use super::{Heading, Page, decimal, wrapped};
+use crate::program::{
+    Function, Kind, Member, Operator, Parameter, Part, Precision, Program, Value,
+};
+
+/// The text of both files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CFiles {
+    /// The header.
+    pub header: String,
+    /// The source.
+    pub source: String,
+}
+
+const PARTS: [Part; 4] = [Part::Configuration, Part::State, Part::Sample, Part::Answer];
+
+/// The program in C; every name that others see begins with `prefix`.
+#[must_use]
+pub fn c(program: &Program, prefix: &str, heading: &Heading<'_>) -> CFiles {
+    let writer = Writer { program, prefix };
+    let lines = heading.lines().join("\n * ");
+    let head = format!("/* {lines} */\n");
+    CFiles { header: head.clone() + &writer.header(), source: head + &writer.source() }
+}
+
+struct Writer<'a> {
+    program: &'a Program,
+    prefix: &'a str,
+}
+
+fn part_name(part: Part) -> &'static str {
+    match part {
+        Part::Configuration => "configuration",
+        Part::State => "state",
+        Part::Sample => "sample",
+        Part::Answer => "answer",
+    }
+}
+
+impl Writer<'_> {
+    fn real(&self) -> &'static str {
+        match self.program.precision {
+            Precision::Single => "float",
+            Precision::Double => "double",
+        }
+    }
+
+    fn header(&self) -> String {
+        let prefix = self.prefix;
+        let guard = format!("{}_H", prefix.to_uppercase());
+        let mut page = Page::default();
+        page.line(&format!("#ifndef {guard}"));
+        page.line(&format!("#define {guard}"));
+        page.line("");
+        page.line("#include <stdint.h>");
+        page.line("");
+        page.line("#ifdef __cplusplus");
+        page.line("extern \"C\" {");
+        page.line("#endif");
+        for part in PARTS {
+            page.line("");
+            self.structure(&mut page, part);
+        }
+        page.line("");
+        page.line("/* The design as it was tuned. */");
+        page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
+        page.line("");
+        page.line("/* Forgets everything: as before the first sample. */");
+        page.line(&format!("void {prefix}_reset(const {prefix}_configuration *configuration, {prefix}_state *state);"));
+        for function in self.program.functions.iter().filter(|function| is_public(function)) {
+            page.line("");
+            comment(&mut page, function.doc);
+            page.line(&format!("{};", self.signature(function)));
+        }
+        page.line("");
+        page.line("#ifdef __cplusplus");
+        page.line("}");
+        page.line("#endif");
+        page.line("");
+        page.line("#endif");
+        page.text
+    }
+
+    fn structure(&self, page: &mut Page, part: Part) {
+        page.line("typedef struct {");
+        page.inside(|page| {
+            for member in self.program.members(part) {
+                comment(page, &member.doc);
+                page.line(&format!("{};", self.declared(member)));
+            }
+        });
+        page.line(&format!("}} {}_{};", self.prefix, part_name(part)));
+    }
+
+    fn declared(&self, Member { name, value, .. }: &Member) -> String {
+        match value {
+            Value::Real(_) => format!("{} {name}", self.real()),
+            Value::Reals(values) => format!("{} {name}[{}]", self.real(), values.len()),
+            Value::Bytes(values) => format!("uint8_t {name}[{}]", values.len()),
+            Value::Byte(_) | Value::Truth(_) => format!("uint8_t {name}"),
+        }
+    }
+
+    fn source(&self) -> String {
+        let prefix = self.prefix;
+        let mut page = Page::default();
+        page.line(&format!("#include \"{prefix}.h\""));
+        page.line("");
+        page.line("#if defined(__FAST_MATH__)");
+        page.line("#error \"This controller needs the arithmetic of IEEE 754: build it without -ffast-math.\"");
+        page.line("#endif");
+        page.line(
+            "/* Products and sums are rounded one by one; for gcc build with -ffp-contract=off. */",
+        );
+        page.line("#if defined(__clang__) || !defined(__GNUC__)");
+        page.line("#pragma STDC FP_CONTRACT OFF");
+        page.line("#endif");
+        page.line("");
+        self.design(&mut page);
+        page.line("");
+        self.magnitude(&mut page);
+        if self.uses_power_of_two() {
+            page.line("");
+            self.power_of_two(&mut page);
+        }
+        for function in &self.program.functions {
+            page.line("");
+            self.function(&mut page, function);
+        }
+        page.line("");
+        self.reset(&mut page);
+        page.text
+    }
+
+    fn design(&self, page: &mut Page) {
+        page.line(&format!("const {0}_configuration {0}_design = {{", self.prefix));
+        page.inside(|page| {
+            for member in &self.program.configuration {
+                let value = match &member.value {
+                    Value::Real(value) => self.number(*value),
+                    Value::Byte(value) => value.to_string(),
+                    Value::Truth(value) => u8::from(*value).to_string(),
+                    Value::Reals(values) => {
+                        listed(values.iter().map(|value| self.number(*value)).collect())
+                    }
+                    Value::Bytes(values) => listed(values.iter().map(u8::to_string).collect()),
+                };
+                page.line(&format!("/* {} */", member.name));
+                for line in format!("{value},").lines() {
+                    page.line(line);
+                }
+            }
+        });
+        page.line("};");
+    }
+
+    fn magnitude(&self, page: &mut Page) {
+        let (real, zero) = (self.real(), self.number(0.0));
+        page.line(&format!("static {real} {}_magnitude({real} number)", self.prefix));
+        page.line("{");
+        page.inside(|page| {
+            page.line(&format!("return number > {zero} ? number : {zero} - number;"));
+        });
+        page.line("}");
+    }
+
+    fn uses_power_of_two(&self) -> bool {
+        self.program.function("exponential").is_some()
+    }
+
+    fn power_of_two(&self, page: &mut Page) {
+        let (real, bits, bias, shift) = match self.program.precision {
+            Precision::Single => ("float", "32", 127, 23),
+            Precision::Double => ("double", "64", 1023, 52),
+        };
+        page.line("/* 2 to the power of a whole number, by the bits of its exponent. */");
+        page.line(&format!("static {real} {}_power_of_two({real} exponent)", self.prefix));
+        page.line("{");
+        page.inside(|page| {
+            page.line(&format!("union {{ uint{bits}_t bits; {real} number; }} power;"));
+            page.line(&format!(
+                "power.bits = (uint{bits}_t)(uint32_t)((int32_t)exponent + {bias}) << {shift};"
+            ));
+            page.line("return power.number;");
+        });
+        page.line("}");
+    }
+
+    fn signature(&self, function: &Function) -> String {
+        let prefix = self.prefix;
+        let mut parameters: Vec<String> = function
+            .parts
+            .iter()
+            .map(|part| {
+                let name = part_name(*part);
+                let constant = match part {
+                    Part::Configuration | Part::Sample => "const ",
+                    Part::State | Part::Answer => "",
+                };
+                format!("{constant}{prefix}_{name} *{name}")
+            })
+            .collect();
+        parameters.extend(function.parameters.iter().map(|parameter| self.parameter(parameter)));
+        let answers = function.answers.map_or("void", |kind| self.kind(kind));
+        let hidden = if is_public(function) { "" } else { "static " };
+        format!("{hidden}{answers} {prefix}_{}({})", function.name, parameters.join(", "))
+    }
+
+    fn parameter(&self, Parameter { name, kind, written }: &Parameter) -> String {
+        let constant = if *written { "" } else { "const " };
+        match kind {
+            Kind::Reals(count) => format!("{constant}{} {name}[{count}]", self.real()),
+            kind => format!("{} {name}", self.kind(*kind)),
+        }
+    }
+
+    fn kind(&self, kind: Kind) -> &'static str {
+        match kind {
+            Kind::Real | Kind::Reals(_) => self.real(),
+            Kind::Whole => "int32_t",
+            Kind::Byte | Kind::Truth => "uint8_t",
+        }
+    }
+
+    fn function(&self, page: &mut Page, function: &Function) {
+        if !is_public(function) {
+            comment(page, function.doc);
+        }
+        page.line(&self.signature(function));
+        page.line("{");
+        page.inside(|page| {
+            let mut inside = Page { text: String::new(), depth: page.depth };
+            block(self, &mut inside, &function.body);
+            for part in function.parts.iter().map(|part| part_name(*part)) {
+                if !inside.text.contains(part) {
+                    page.line(&format!("(void){part};"));
+                }
+            }
+            page.text.push_str(&inside.text);
+        });
+        page.line("}");
+    }
+
+    fn reset(&self, page: &mut Page) {
+        page.line(&format!(
+            "void {0}_reset(const {0}_configuration *configuration, {0}_state *state)",
+            self.prefix
+        ));
+        page.line("{");
+        page.inside(|page| {
+            let is_configured = |gain: &str| {
+                let name = format!("nominal_{gain}");
+                self.program.configuration.iter().any(|member| member.name == name)
+            };
+            let mut uses_configuration = false;
+            for Member { name, value, .. } in &self.program.state {
+                let begun = match value {
+                    Value::Real(_) if is_configured(name) => {
+                        uses_configuration = true;
+                        format!("configuration->nominal_{name}")
+                    }
+                    Value::Real(value) => self.number(*value),
+                    _ => "0U".to_owned(),
+                };
+                page.line(&format!("state->{name} = {begun};"));
+            }
+            if !uses_configuration {
+                page.line("(void)configuration;");
+            }
+        });
+        page.line("}");
+    }
+}
+
+impl Dialect for Writer<'_> {
+    fn number(&self, value: f64) -> String {
+        match self.program.precision {
+            Precision::Single => format!("{}f", decimal(value, true)),
+            Precision::Double => decimal(value, false),
+        }
+    }
+
+    fn byte(&self, value: u8) -> String {
+        format!("{value}U")
+    }
+
+    fn truth(&self, value: bool) -> String {
+        format!("{}U", u8::from(value))
+    }
+
+    fn sign(&self, operator: Operator) -> &'static str {
+        match operator {
+            Operator::Add => "+",
+            Operator::Subtract => "-",
+            Operator::Multiply => "*",
+            Operator::Divide => "/",
+            Operator::Less => "<",
+            Operator::LessOrEqual => "<=",
+            Operator::Equal => "==",
+            Operator::NotEqual => "!=",
+            Operator::And => "&&",
+            Operator::Or => "||",
+            Operator::BitOr => "|",
+        }
+    }
+
+    fn member(&self, part: Part, name: &str) -> String {
+        format!("{}->{name}", part_name(part))
+    }
+
+    fn not(&self, value: &str) -> String {
+        format!("!{value}")
+    }
+
+    fn magnitude(&self, value: &str) -> String {
+        format!("{}_magnitude({value})", self.prefix)
+    }
+
+    fn bits(&self, left: &str, right: &str) -> String {
+        format!("(uint8_t)({left} | {right})")
+    }
+
+    fn select(&self, condition: &str, then: &str, otherwise: &str) -> String {
+        format!("({condition} ? {then} : {otherwise})")
+    }
+
+    fn to_real(&self, value: &str) -> String {
+        format!("({}){value}", self.real())
+    }
+
+    fn power_of_two(&self, exponent: &str) -> String {
+        format!("{}_power_of_two({exponent})", self.prefix)
+    }
+
+    fn call(&self, name: &str, given: Vec<String>) -> String {
+        let parts = self.program.function(name).map_or(&[] as &[Part], |function| function.parts);
+        let parts = parts.iter().map(|part| part_name(*part).to_owned());
+        let all: Vec<String> = parts.chain(given).collect();
+        format!("{}_{name}({})", self.prefix, all.join(", "))
+    }
+
+    fn remark(&self, page: &mut Page, text: &str) {
+        comment(page, text);
+    }
+
+    fn declare(&self, page: &mut Page, name: &str, kind: Kind, value: &str) {
+        page.line(&format!("{} {name} = {value};", self.kind(kind)));
+    }
+
+    fn declare_array(&self, page: &mut Page, name: &str, count: usize) {
+        let zeros = vec![self.number(0.0); count].join(", ");
+        page.line(&format!("{} {name}[{count}] = {{ {zeros} }};", self.real()));
+    }
+
+    fn assign(&self, page: &mut Page, place: &str, value: &str) {
+        page.line(&format!("{place} = {value};"));
+    }
+
+    fn run(&self, page: &mut Page, call: &str) {
+        page.line(&format!("{call};"));
+    }
+
+    fn when(&self, condition: &str) -> String {
+        format!("if ({condition}) {{")
+    }
+
+    fn otherwise(&self) -> &'static str {
+        "} else {"
+    }
+
+    fn repeat(&self, name: &str, first: i32, last: i32) -> String {
+        format!("for (int32_t {name} = {first}; {name} <= {last}; ++{name}) {{")
+    }
+
+    fn end(&self, _: Block) -> &'static str {
+        "}"
+    }
+
+    fn answer(&self, value: Option<&str>) -> Vec<String> {
+        vec![value.map_or_else(|| "return;".to_owned(), |value| format!("return {value};"))]
+    }
+}
+
+/// What others may call.
+fn is_public(function: &Function) -> bool {
+    matches!(function.name, "step" | "hold")
+}
+
+fn comment(page: &mut Page, text: &str) {
+    let lines = wrapped(text, 92);
+    match lines.as_slice() {
+        [line] => page.line(&format!("/* {line} */")),
+        lines => {
+            for (index, line) in lines.iter().enumerate() {
+                let begin = if index == 0 { "/* " } else { " * " };
+                let end = if index + 1 == lines.len() { " */" } else { "" };
+                page.line(&format!("{begin}{line}{end}"));
+            }
+        }
+    }
+}
+
+/// Values of an array, seven a line.
+fn listed(values: Vec<String>) -> String {
+    let rows: Vec<String> = values.chunks(7).map(|row| format!("    {}", row.join(", "))).collect();
+    format!("{{\n{}\n}}", rows.join(",\n"))
+}

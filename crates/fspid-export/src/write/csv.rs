@@ -1,0 +1,37 @@
+//! Vectors as a table for people and other tools.
+
+use fspid_numeric::Real;
+
+use super::decimal;
+use crate::program::{Part, Precision, Program};
+use crate::vectors::Vector;
+
+/// One line a sample, numbers with the digits that read back as the same bits.
+#[must_use]
+pub fn csv<R: Real>(program: &Program, vectors: &[Vector<R>]) -> String {
+    let is_single = program.precision == Precision::Single;
+    let names = |part| program.members(part).iter().map(|member| member.name.as_str());
+    let inputs = names(Part::Sample).count();
+    let header: Vec<&str> = names(Part::Sample).chain(names(Part::Answer)).collect();
+    let mut text = header.join(",");
+    text.push('\n');
+    for vector in vectors {
+        for value in vector.sample.iter().take(inputs).chain(&vector.answer) {
+            text.push_str(&any(value.to_f64(), is_single));
+            text.push(',');
+        }
+        let saturated = if vector.saturated { "1," } else { "0," };
+        text.push_str(saturated);
+        text.push_str(&vector.faults.to_string());
+        text.push('\n');
+    }
+    text
+}
+
+fn any(value: f64, is_single: bool) -> String {
+    match value {
+        value if value.is_nan() => "nan".to_owned(),
+        value if value.is_infinite() => if value < 0.0 { "-inf" } else { "inf" }.to_owned(),
+        value => decimal(value, is_single),
+    }
+}

@@ -1,0 +1,140 @@
+//! What languages have in common: expressions in brackets, statements in blocks.
+
+use super::Page;
+use crate::program::{Argument, Expression, Kind, Operator, Part, Place, Statement};
+
+/// What a block was opened by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Block {
+    If,
+    For,
+}
+
+/// How a language says things.
+pub(super) trait Dialect {
+    fn number(&self, value: f64) -> String;
+    fn byte(&self, value: u8) -> String;
+    fn truth(&self, value: bool) -> String;
+    fn sign(&self, operator: Operator) -> &'static str;
+    fn member(&self, part: Part, name: &str) -> String;
+    fn not(&self, value: &str) -> String;
+    fn magnitude(&self, value: &str) -> String;
+    /// The bits of two bytes together.
+    fn bits(&self, left: &str, right: &str) -> String;
+    fn select(&self, condition: &str, then: &str, otherwise: &str) -> String;
+    fn to_real(&self, value: &str) -> String;
+    fn power_of_two(&self, exponent: &str) -> String;
+    fn call(&self, name: &str, given: Vec<String>) -> String;
+    fn remark(&self, page: &mut Page, text: &str);
+    fn declare(&self, page: &mut Page, name: &str, kind: Kind, value: &str);
+    fn declare_array(&self, page: &mut Page, name: &str, count: usize);
+    fn assign(&self, page: &mut Page, place: &str, value: &str);
+    /// A call for what it does.
+    fn run(&self, page: &mut Page, call: &str);
+    fn when(&self, condition: &str) -> String;
+    fn otherwise(&self) -> &'static str;
+    fn repeat(&self, name: &str, first: i32, last: i32) -> String;
+    fn end(&self, block: Block) -> &'static str;
+    /// The lines that end a function.
+    fn answer(&self, value: Option<&str>) -> Vec<String>;
+
+    /// A value of the function, as it is called in this language.
+    fn local(&self, name: &str) -> String {
+        name.to_owned()
+    }
+}
+
+/// Writes statements.
+pub(super) fn block(dialect: &impl Dialect, page: &mut Page, body: &[Statement]) {
+    for statement in body {
+        write(dialect, page, statement);
+    }
+}
+
+fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
+    match statement {
+        Statement::Remark(text) => dialect.remark(page, text),
+        Statement::Let(name, kind, value) => {
+            dialect.declare(page, &dialect.local(name), *kind, &outer(dialect, value));
+        }
+        Statement::Array(name, count) => dialect.declare_array(page, &dialect.local(name), *count),
+        Statement::Set(at, value) => {
+            dialect.assign(page, &place(dialect, at), &outer(dialect, value));
+        }
+        Statement::If(condition, then, otherwise) => {
+            page.line(&dialect.when(&outer(dialect, condition)));
+            page.inside(|page| block(dialect, page, then));
+            if !otherwise.is_empty() {
+                page.line(dialect.otherwise());
+                page.inside(|page| block(dialect, page, otherwise));
+            }
+            page.line(dialect.end(Block::If));
+        }
+        Statement::For(name, first, last, body) => {
+            page.line(&dialect.repeat(&dialect.local(name), *first, *last));
+            page.inside(|page| block(dialect, page, body));
+            page.line(dialect.end(Block::For));
+        }
+        Statement::Call(name, arguments) => {
+            dialect.run(page, &dialect.call(name, given(dialect, arguments)));
+        }
+        Statement::Return(value) => {
+            let value = value.as_ref().map(|value| outer(dialect, value));
+            dialect.answer(value.as_deref()).iter().for_each(|line| page.line(line));
+        }
+    }
+}
+
+fn given(dialect: &impl Dialect, arguments: &[Argument]) -> Vec<String> {
+    let text = |argument: &Argument| match argument {
+        Argument::Value(value) => outer(dialect, value),
+        Argument::Array(name) => dialect.local(name),
+    };
+    arguments.iter().map(text).collect()
+}
+
+fn place(dialect: &impl Dialect, place: &Place) -> String {
+    match place {
+        Place::Local(name) => dialect.local(name),
+        Place::Element(name, index) => {
+            format!("{}[{}]", dialect.local(name), outer(dialect, index))
+        }
+        Place::Member(part, name) => dialect.member(*part, name),
+        Place::MemberElement(part, name, index) => {
+            format!("{}[{}]", dialect.member(*part, name), outer(dialect, index))
+        }
+    }
+}
+
+/// An expression that needs no brackets around it.
+fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+    match value {
+        Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
+            let (left, right) = (expression(dialect, left), expression(dialect, right));
+            format!("{left} {} {right}", dialect.sign(*operator))
+        }
+        value => expression(dialect, value),
+    }
+}
+
+fn expression(dialect: &impl Dialect, value: &Expression) -> String {
+    let of = |value: &Expression| expression(dialect, value);
+    match value {
+        Expression::Number(value) => dialect.number(*value),
+        Expression::Whole(value) => value.to_string(),
+        Expression::Byte(value) => dialect.byte(*value),
+        Expression::Truth(value) => dialect.truth(*value),
+        Expression::Read(at) => place(dialect, at),
+        Expression::Negative(value) => format!("-{}", of(value)),
+        Expression::Magnitude(value) => dialect.magnitude(&outer(dialect, value)),
+        Expression::Not(value) => dialect.not(&of(value)),
+        Expression::Binary(Operator::BitOr, left, right) => dialect.bits(&of(left), &of(right)),
+        Expression::Binary(..) => format!("({})", outer(dialect, value)),
+        Expression::Select(condition, then, otherwise) => {
+            dialect.select(&of(condition), &of(then), &of(otherwise))
+        }
+        Expression::ToReal(value) => dialect.to_real(&of(value)),
+        Expression::PowerOfTwo(value) => dialect.power_of_two(&outer(dialect, value)),
+        Expression::Call(name, arguments) => dialect.call(name, given(dialect, arguments)),
+    }
+}

@@ -1,0 +1,62 @@
+//! Programs as text in other languages.
+
+mod c;
+mod c_harness;
+mod csv;
+mod dialect;
+mod heading;
+mod lua;
+
+pub use c::{CFiles, c};
+pub use c_harness::c_harness;
+pub use csv::csv;
+pub use heading::Heading;
+pub use lua::{lua, lua_harness};
+
+/// Text with its indentation.
+#[derive(Debug, Default)]
+struct Page {
+    text: String,
+    depth: usize,
+}
+
+impl Page {
+    fn line(&mut self, line: &str) {
+        if !line.is_empty() {
+            self.text.push_str(&"    ".repeat(self.depth));
+            self.text.push_str(line);
+        }
+        self.text.push('\n');
+    }
+
+    fn inside(&mut self, write: impl FnOnce(&mut Self)) {
+        self.depth += 1;
+        write(self);
+        self.depth -= 1;
+    }
+}
+
+/// Lines of at most so many characters, broken between words.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.len() + word.len() < width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// A real as the shortest decimal number that reads back as itself, with a point and perhaps an exponent.
+fn decimal(value: f64, is_single: bool) -> String {
+    #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
+    let text = if is_single { format!("{:?}", value as f32) } else { format!("{value:?}") };
+    match text.split_once('e') {
+        Some((digits, exponent)) if !digits.contains('.') => format!("{digits}.0e{exponent}"),
+        _ => text,
+    }
+}
