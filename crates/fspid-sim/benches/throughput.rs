@@ -22,7 +22,7 @@ use fspid_core::{
 use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario, Servo,
+    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario,
     Surroundings, Timing, fly,
 };
 
@@ -162,7 +162,7 @@ fn scenario(seed: u64) -> Scenario {
         name: "throughput".to_owned(),
         plant: plant.expect("the paper's plant").into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, (SAMPLES - 1) as f64 * 0.01).expect("allowed"),
         setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed }).expect("allowed"),
         disturbances: Vec::new(),

@@ -113,7 +113,7 @@ pub(crate) fn responses(
 
 fn plant_air(propagation: &Propagation) -> Option<&PlantAir> {
     match propagation {
-        Propagation::Actuated(actuated) => Some(Actuated::air(actuated)),
+        Propagation::ByLegs(actuated) => Some(Actuated::air(actuated)),
         _ => None,
     }
 }

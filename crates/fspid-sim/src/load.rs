@@ -223,9 +223,9 @@ mod tests {
     use fspid_core::{Gains, PidConfig};
 
     use super::*;
+    use crate::actuator::Actuator;
     use crate::controller::Controller;
     use crate::plant::{ElevatorSign, Plant};
-    use crate::servo::Servo;
     use crate::signal::Profile;
     use crate::stability::growth_at_rest;
     use crate::timing::Timing;
@@ -239,7 +239,7 @@ mod tests {
             name: String::new(),
             plant: Plant::Linear(plant.expect("a plant")),
             plant_changes: Vec::new(),
-            servo: Servo::ideal(),
+            actuator: Actuator::ideal(),
             timing: Timing::new(DT_S, duration_s).expect("a timing"),
             setpoint: Profile::new(0.0, crate::signal::Shape::Step { at_s: 0.0 }).expect("a step"),
             disturbances: Vec::new(),

@@ -14,7 +14,7 @@ use fspid_sim::air::{
 use fspid_sim::aircraft::Forces;
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    AircraftPlant, Controller, Course, LinearPlant, NamedController, Plant, Scenario, Servo,
+    Actuator, AircraftPlant, Controller, Course, LinearPlant, NamedController, Plant, Scenario,
     Surroundings, Timing, Trace, Weather, simulate,
 };
 use support::{FOOT_M, derivative_data};
@@ -46,7 +46,7 @@ fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -
         name: "air".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(dt_s, end_s).expect("allowed"),
         setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),

@@ -80,7 +80,7 @@ impl Actuator {
 
     /// Moves an actuator without lag and rate limit to its command at once.
     pub(crate) fn settle(&self, state: &mut ActuatorState, command_rad: f64) {
-        if self.lag.order() == 0 && self.rate_limit_rad_s.is_none() {
+        if self.is_at_once() {
             state.position_rad = within(self.travel_rad, self.target_rad(command_rad));
             let (x, half_rad) = (state.position_rad, 0.5 * self.play_rad);
             state.surface_rad = state.surface_rad.clamp(x - half_rad, x + half_rad);

@@ -273,8 +273,8 @@ fn course(flight: usize, prepared: &Prepared) -> Result<Course<'_>, Refusal> {
     let mut stages = Vec::with_capacity(prepared.stages.len());
     for stage in &prepared.stages {
         match &stage.propagation {
-            Propagation::Servo(propagator) => stages.push(Stage { from: stage.from, propagator }),
-            Propagation::Actuated(_) => return Err(refused("an actuator or gusts")),
+            Propagation::AsOne(propagator) => stages.push(Stage { from: stage.from, propagator }),
+            Propagation::ByLegs(_) => return Err(refused("an actuator or gusts")),
             Propagation::Aircraft(_) => return Err(refused("a nonlinear aircraft")),
         }
     }

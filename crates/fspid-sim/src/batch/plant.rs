@@ -17,7 +17,8 @@ pub(super) struct Plants<const W: usize> {
     rate_output: Vec<Lanes<W>>,
     rate_feedthrough: Lanes<W>,
     elevator_per_command: Lanes<W>,
-    position_limit_rad: Lanes<W>,
+    command_least_rad: Lanes<W>,
+    command_most_rad: Lanes<W>,
     rate_limit_rad_s: Lanes<W>,
     time_constant_s: Lanes<W>,
     at_once: Mask<W>,
@@ -46,7 +47,8 @@ impl<const W: usize> Plants<W> {
             rate_output: zeros(order),
             rate_feedthrough: [0.0; W],
             elevator_per_command: [0.0; W],
-            position_limit_rad: [f64::INFINITY; W],
+            command_least_rad: [f64::NEG_INFINITY; W],
+            command_most_rad: [f64::INFINITY; W],
             rate_limit_rad_s: [f64::INFINITY; W],
             time_constant_s: [0.0; W],
             at_once: [NO; W],
@@ -58,18 +60,21 @@ impl<const W: usize> Plants<W> {
 
     /// Lets a lane go on with this plant from where it is.
     pub(super) fn load(&mut self, lane: usize, propagator: &Propagator) {
-        for (place, &entry) in self.rows.iter_mut().zip(&propagator.free_step) {
+        for (place, &entry) in self.rows.iter_mut().zip(&propagator.free.step) {
             place[lane] = entry;
         }
-        for (place, &entry) in self.rate_output.iter_mut().zip(&propagator.rate_output) {
+        for (place, &entry) in self.rate_output.iter_mut().zip(propagator.rate_output()) {
             place[lane] = entry;
         }
-        self.rate_feedthrough[lane] = propagator.rate_feedthrough;
+        self.rate_feedthrough[lane] = propagator.rate_feedthrough();
         self.elevator_per_command[lane] = propagator.elevator_per_command;
         let servo = &propagator.servo;
-        let [position, rate] = servo.limits().map(|limit| limit.unwrap_or(f64::INFINITY));
-        (self.position_limit_rad[lane], self.rate_limit_rad_s[lane]) = (position, rate);
-        self.time_constant_s[lane] = servo.time_constant_s();
+        let everything = (f64::NEG_INFINITY, f64::INFINITY);
+        (self.command_least_rad[lane], self.command_most_rad[lane]) =
+            servo.command_limits_rad().unwrap_or(everything);
+        let rate = servo.rate_limit_rad_s().unwrap_or(f64::INFINITY);
+        self.rate_limit_rad_s[lane] = rate;
+        self.time_constant_s[lane] = servo.lag().trailing_s();
         self.at_once[lane] = mask(servo.is_at_once());
         self.any_at_once |= servo.is_at_once();
         self.any_rate_limit |= rate < f64::INFINITY;
@@ -141,8 +146,8 @@ impl<const W: usize> Plants<W> {
     fn limited(&self, command_rad: &Lanes<W>) -> Lanes<W> {
         let mut inside_rad = *command_rad;
         for lane in 0..W {
-            let limit_rad = self.position_limit_rad[lane];
-            inside_rad[lane] = inside_rad[lane].limited(-limit_rad, limit_rad);
+            let (least_rad, most_rad) = (self.command_least_rad[lane], self.command_most_rad[lane]);
+            inside_rad[lane] = inside_rad[lane].limited(least_rad, most_rad);
         }
         inside_rad
     }
@@ -179,7 +184,7 @@ impl<const W: usize> Plants<W> {
         held
     }
 
-    /// As [`Servo::rate_limited_phase`](crate::Servo).
+    /// As [`Actuator::rate_limited_phase`](crate::Actuator).
     #[inline(always)]
     fn held(&self, command_rad: &Lanes<W>) -> Mask<W> {
         let mut held = [NO; W];

@@ -1,6 +1,8 @@
 //! Samples, and what depends on when they are taken.
 
-use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, Servo, SimError, Surroundings, Timing};
+use fspid_sim::actuator::Actuator;
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, SimError, Timing};
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
@@ -48,22 +50,19 @@ pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timin
     }
 }
 
+/// When samples are taken, and of what moves the plant.
+#[derive(Clone, Copy)]
+pub(super) struct Sampling {
+    pub(super) timing: Timing,
+    pub(super) actuator: Actuator,
+}
+
 /// Finds out whether the plant can be sampled at all: its coefficients may be too far apart.
-fn can_be_sampled(plant: &LinearPlant, (timing, servo): (Timing, Servo)) -> Result<(), SimError> {
-    let dt_s = timing.dt_s();
-    let setpoint =
-        fspid_sim::signal::Profile::new(0.0, fspid_sim::signal::Shape::Step { at_s: 0.0 })?;
-    let scenario = Scenario {
-        name: String::new(),
-        plant: plant.clone().into(),
-        plant_changes: Vec::new(),
-        servo,
-        timing: Timing::new(dt_s, dt_s)?,
-        setpoint,
-        disturbances: Vec::new(),
-        controllers: Vec::new(),
-        surroundings: Surroundings::default(),
-    };
+fn can_be_sampled(plant: &LinearPlant, sampling: Sampling) -> Result<(), SimError> {
+    let dt_s = sampling.timing.dt_s();
+    let still = Profile::new(0.0, Shape::Step { at_s: 0.0 })?;
+    let mut scenario = Scenario::new("", plant.clone(), Timing::new(dt_s, dt_s)?, still);
+    scenario.actuator = sampling.actuator;
     scenario.prepare().map(|_| ())
 }
 
@@ -71,12 +70,12 @@ pub(super) fn check_plant(
     report: &mut Report,
     section: &Section,
     plant: &LinearPlant,
-    loop_: (Timing, Servo),
+    sampling: Sampling,
 ) {
     let parts = ["plant", "aircraft"].map(|name| section.section(name));
     if let Some(part) = parts.into_iter().flatten().next() {
         let key = key_of(part);
-        judged(report, (part, key), can_be_sampled(plant, loop_));
+        judged(report, (part, key), can_be_sampled(plant, sampling));
     }
 }
 
@@ -91,7 +90,8 @@ pub(super) fn plant_changes(
     report: &mut Report,
     files: &mut Files<'_>,
     parts: &[Section],
-    (plant, timing, servo): (Option<&Plant>, Option<Timing>, Option<Servo>),
+    plant: Option<&Plant>,
+    sampling: Option<Sampling>,
 ) -> Vec<PlantChange> {
     if let Some(Plant::Aircraft(_)) = plant {
         parts.iter().for_each(|part| refuse_change(report, part));
@@ -127,10 +127,10 @@ pub(super) fn plant_changes(
             report.missing(part.at(key), &part.path(key), message, allowed);
             continue;
         }
-        if let (Some(timing), Some(servo)) = (timing, servo) {
-            let sampled = can_be_sampled(&target, (timing, servo));
+        if let Some(sampling) = sampling {
+            let sampled = can_be_sampled(&target, sampling);
             judged(report, (part, key_of(part)), sampled);
-            check_ramp(report, part, timing);
+            check_ramp(report, part, sampling.timing);
         }
         let change = PlantChange::new(at_s, part.number("ramp_s").unwrap_or(0.0), target);
         changes.extend(judged(report, (part, "at_s"), change));

@@ -45,7 +45,7 @@ pub struct SmallSignal {
 /// The states are those of [`LoopModel`](crate::loop_model::LoopModel) (pitch angle first), then the
 /// last command where a slew limit or a held sample needs it, then the three gains where they carry
 /// over from sample to sample. The plant is the one that flies then: its exact matrices, or, where a
-/// limit acts on servo or actuator, their differences; of a nonlinear aircraft the differences of its
+/// limit acts on the actuator, its differences; of a nonlinear aircraft the differences of its
 /// own motion in pitch angle, forward and downward speed, pitch rate, deflection and its rate, so that
 /// altitude, heading and everything lateral are left out. A sensor that has a clock of its own is
 /// taken at the largest age of its values.
