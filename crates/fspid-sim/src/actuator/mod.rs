@@ -299,11 +299,13 @@ impl Actuator {
         !limits && !widths && self.rate_limit_rad_s.is_none()
     }
 
-    /// True with nothing but command limits, a lag of at most first order, a rate limit and delay: while no rate limit
-    /// holds it, it is one linear system with its plant.
+    /// True with nothing but command limits that are equal to both sides, a lag of at most first order, a rate limit and
+    /// delay: while no rate limit holds it, it is one linear system with its plant.
     pub(crate) fn is_first_order_servo(&self) -> bool {
         let widths = self.deadband_rad > 0.0 || self.play_rad > 0.0;
-        self.lag.order() < 2 && self.travel_rad.is_none() && !widths && self.bias_rad == 0.0
+        let centred = self.command_limits_rad.is_none_or(|(least, most)| least + most == 0.0);
+        let unbiased = self.bias_rad == 0.0 && self.travel_rad.is_none();
+        self.lag.order() < 2 && centred && unbiased && !widths
     }
 
     /// True without lag and rate limit: the actuator is where it is told to be.

@@ -17,11 +17,13 @@ pub(super) struct Plants<const W: usize> {
     rate_output: Vec<Lanes<W>>,
     rate_feedthrough: Lanes<W>,
     elevator_per_command: Lanes<W>,
-    command_least_rad: Lanes<W>,
-    command_most_rad: Lanes<W>,
+    /// To both sides.
+    command_limit_rad: Lanes<W>,
     rate_limit_rad_s: Lanes<W>,
     time_constant_s: Lanes<W>,
     at_once: Mask<W>,
+    /// True if a lane has command limits.
+    any_command_limit: bool,
     /// True if a lane has a rate limit.
     any_rate_limit: bool,
     /// True if a lane has a servo without lag.
@@ -47,11 +49,11 @@ impl<const W: usize> Plants<W> {
             rate_output: zeros(order),
             rate_feedthrough: [0.0; W],
             elevator_per_command: [0.0; W],
-            command_least_rad: [f64::NEG_INFINITY; W],
-            command_most_rad: [f64::INFINITY; W],
+            command_limit_rad: [f64::INFINITY; W],
             rate_limit_rad_s: [f64::INFINITY; W],
             time_constant_s: [0.0; W],
             at_once: [NO; W],
+            any_command_limit: false,
             any_rate_limit: false,
             any_at_once: false,
             single: PlantState::at_rest(order),
@@ -69,14 +71,14 @@ impl<const W: usize> Plants<W> {
         self.rate_feedthrough[lane] = propagator.rate_feedthrough();
         self.elevator_per_command[lane] = propagator.elevator_per_command;
         let servo = &propagator.servo;
-        let everything = (f64::NEG_INFINITY, f64::INFINITY);
-        (self.command_least_rad[lane], self.command_most_rad[lane]) =
-            servo.command_limits_rad().unwrap_or(everything);
+        let limit_rad = servo.command_limits_rad().map_or(f64::INFINITY, |(_, most)| most);
+        self.command_limit_rad[lane] = limit_rad;
         let rate = servo.rate_limit_rad_s().unwrap_or(f64::INFINITY);
         self.rate_limit_rad_s[lane] = rate;
         self.time_constant_s[lane] = servo.lag().trailing_s();
         self.at_once[lane] = mask(servo.is_at_once());
         self.any_at_once |= servo.is_at_once();
+        self.any_command_limit |= limit_rad < f64::INFINITY;
         self.any_rate_limit |= rate < f64::INFINITY;
     }
 
@@ -145,9 +147,12 @@ impl<const W: usize> Plants<W> {
     #[inline(always)]
     fn limited(&self, command_rad: &Lanes<W>) -> Lanes<W> {
         let mut inside_rad = *command_rad;
+        if !self.any_command_limit {
+            return inside_rad;
+        }
         for lane in 0..W {
-            let (least_rad, most_rad) = (self.command_least_rad[lane], self.command_most_rad[lane]);
-            inside_rad[lane] = inside_rad[lane].limited(least_rad, most_rad);
+            let limit_rad = self.command_limit_rad[lane];
+            inside_rad[lane] = inside_rad[lane].limited(-limit_rad, limit_rad);
         }
         inside_rad
     }
