@@ -180,6 +180,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// Half range of inputs and outputs.
+    #[inline]
     pub fn range(&self) -> R {
         self.range
     }
@@ -214,6 +215,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// What happens to an input beyond the range.
+    #[inline]
     pub fn out_of_range(&self) -> OutOfRange {
         self.out_of_range
     }
@@ -244,6 +246,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// True for an input within the range.
+    #[inline]
     pub(crate) fn holds(&self, input: R) -> bool {
         input.abs() <= self.range
     }
@@ -352,6 +355,7 @@ impl<R: Real> Supervisor<R> {
 
     /// The rules as they are evaluated; `None` where they conclude numbers.
     #[cfg(feature = "batch")]
+    #[inline]
     pub(crate) fn consequents(&self) -> Option<&[Consequents; 3]> {
         match &self.rules {
             Rules::Labels(consequents) => Some(consequents),
