@@ -1,4 +1,4 @@
-//! Flights that no lane can fly: nonlinear aircraft, actuators, gusts, sensors.
+//! Flights that no lane can fly: nonlinear aircraft, actuators that are no first-order servo, gusts, sensors.
 
 use std::ops::ControlFlow;
 

@@ -10,8 +10,8 @@
 //! acts. A flight that diverges is parked: its lane computes zeros from then on.
 //!
 //! Flights of a group may differ in all numbers: plant, servo, gains, factors, limits, signals. They
-//! share what [`Refusal`] lists. What has no lanes (aircraft, actuators, gusts, sensors) is refused,
-//! and flies by [`fly`](crate::fly).
+//! share what [`Refusal`] lists. What has no lanes (aircraft, actuators that are no first-order servo,
+//! gusts, sensors) is refused, and flies by [`fly`](crate::fly).
 //!
 //! Threads are the caller's business: groups know nothing of each other.
 
