@@ -188,3 +188,25 @@ fn the_family_of_all_gains_is_the_open_loop_at_each() {
         assert!(model.family(BreakPoint::Rate).expect("poles").is_none());
     }
 }
+
+/// A servo without a lag but with a rate limit used to change as if its deflection stood still, and had no margins.
+#[test]
+fn what_a_sample_changes_is_its_step_less_what_it_was() {
+    let limited = |actuator: Actuator| actuator.with_rate_limit(0.3).expect("allowed");
+    let second = Actuator::new(Lag::second_order(20.0, 0.7).expect("allowed"));
+    let ideal = Actuator::ideal();
+    for actuator in [ideal, limited(ideal), servo(0), limited(servo(0)), limited(second)] {
+        let case = Case { actuator, ..cases().remove(0) };
+        let propagation = case.scenario().propagation(&case.plant(), DT_S).expect("sampled");
+        let step = propagation.linear_step().expect("linear");
+        let change = propagation.linear_change(&case.plant()).expect("sampled").expect("linear");
+        let rows = change[0].chunks_exact(step.states + 1);
+        for (place, (row, of_step)) in rows.zip(step.rows.chunks_exact(step.states + 2)).enumerate()
+        {
+            for (column, (entry, stepped)) in row.iter().zip(of_step).enumerate() {
+                let was = if column == place { 1.0 } else { 0.0 };
+                assert!((entry + was - stepped).abs() < 1e-14, "{actuator:?} {place} {column}");
+            }
+        }
+    }
+}
