@@ -137,7 +137,8 @@ impl<R: Real> Supervisor<R> {
     ) -> Result<Self, FuzzyError> {
         let rules = Rules::Labels(Output::ALL.map(|output| Consequents::new(table.grid(output))));
         let defuzzifier = defuzzifier.checked()?;
-        Self::built(rules, (range, R::from_f64(SIGMA_PER_SPACING)), defuzzifier, out_of_range)
+        let width = R::from_f64(SIGMA_PER_SPACING);
+        Self::built(rules, range, width, defuzzifier, out_of_range)
     }
 
     /// A supervisor whose rules conclude numbers, over `[-range, range]` for both inputs; they lie within
@@ -152,7 +153,7 @@ impl<R: Real> Supervisor<R> {
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {
         let rules = Rules::Numbers(*table);
-        let built = Self::built(rules, (range, R::ONE), Defuzzifier::Exact, out_of_range)?;
+        let built = Self::built(rules, range, R::ONE, Defuzzifier::Exact, out_of_range)?;
         table.check_within(range)?;
         Ok(built)
     }
@@ -160,7 +161,8 @@ impl<R: Real> Supervisor<R> {
     /// A supervisor whose sets have this width in spacings.
     fn built(
         rules: Rules<R>,
-        (range, width): (R, R),
+        range: R,
+        width: R,
         defuzzifier: Defuzzifier,
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {

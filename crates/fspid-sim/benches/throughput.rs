@@ -19,7 +19,7 @@ use fspid_core::{
     AntiWindup, Derivative, Fspid, Gains, InputScale, Limits, Pid, PidConfig, SelfTuner,
     TunerSettings,
 };
-use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
+use fspid_sim::batch::{BatchRow, Entrant, InstructionSet, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
     Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario,
@@ -75,7 +75,7 @@ fn single_sum(prepared: &Prepared, controller: &Controller) -> f64 {
 
 fn group_sums<const W: usize>(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
     let mut sums = [0.0; W];
-    let outcomes = fly_group_by::<W>(set, flights, |row: &Row<'_, W>| {
+    let outcomes = fly_group_by::<W>(set, flights, |row: &BatchRow<'_, W>| {
         let [kp, ..] = row.gains;
         for (lane, sum) in sums.iter_mut().enumerate() {
             *sum += row.theta_rad[lane] + kp[lane];

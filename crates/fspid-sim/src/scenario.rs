@@ -99,7 +99,7 @@ impl Scenario {
         let (stages, gusts) = (self.stages()?, self.gusts()?);
         let gust_responses = match (&self.surroundings.weather, &gusts) {
             (Some(weather), Some(gusts)) => {
-                gust_response::responses(weather, (self.timing, gusts), &stages)?
+                gust_response::responses(weather, self.timing, gusts, &stages)?
             }
             _ => None,
         };

@@ -71,7 +71,7 @@ impl Actuator {
             let direction = self.direction(state, target_rad, drive);
             self.meet(state, direction);
             let (from, moves) = (*state, self.moves_surface(state));
-            let duration_s = self.pass(state, target_rad, drive, (direction, left_s));
+            let duration_s = self.pass(state, target_rad, drive, direction, left_s);
             each(self.leg(&from, duration_s, if moves { drive } else { Drive::Held }, target_rad));
             left_s -= duration_s;
         }
@@ -144,7 +144,8 @@ impl Actuator {
         state: &mut ActuatorState,
         target_rad: f64,
         drive: Drive,
-        (direction, left_s): (f64, f64),
+        direction: f64,
+        left_s: f64,
     ) -> f64 {
         let moves = self.moves_surface(state);
         let duration_s = match drive {

@@ -166,8 +166,8 @@ impl<'a> Walk<'a> {
             time_s: prepared.timing.time_s(instant.k),
             gains: done.gains,
             limited: cut || !done.is_free(),
-            frozen: self.matrix(&parts, &frozen, (&done, None)),
-            matrix: self.matrix(&parts, &moving, (&done, Some(slopes))),
+            frozen: self.matrix(&parts, &frozen, &done, None),
+            matrix: self.matrix(&parts, &moving, &done, Some(slopes)),
             by_command: padded(&parts.by_command, moving.size),
         };
         self.parts = Some((begun, parts)).filter(|_| !cut && is_linear(coming.propagation));
@@ -220,7 +220,8 @@ impl<'a> Walk<'a> {
         &self,
         parts: &LoopParts,
         places: &Places,
-        (done, slopes): (&Done, Option<IncrementSlopes>),
+        done: &Done,
+        slopes: Option<IncrementSlopes>,
     ) -> Vec<Vec<f64>> {
         let (pitch, rate) = (padded(&parts.pitch, places.size), padded(&parts.rate, places.size));
         let inputs = Inputs { pitch: &pitch, rate: &rate, slopes };
