@@ -17,7 +17,8 @@ use crate::number_table::{self, NumberTable};
 use crate::rule_table::{Output, RuleTable};
 use fspid_numeric::Real;
 #[cfg(feature = "batch")]
-use fspid_numeric::lanes::{Lanes, One, Two};
+use fspid_numeric::lanes::Lanes;
+use fspid_numeric::lanes::{One, Two};
 
 /// Half ranges outside this interval would overflow or underflow inside.
 const RANGE_LIMITS: core::ops::RangeInclusive<f64> = 1e-100..=1e100;

@@ -2,7 +2,7 @@
 //!
 //! Ticks stand at steps of 1, 2 or 5 times a power of ten. Inside the drawing code an axis is used in
 //! *tick units*: 0 is a tick near the lower end and 1 the next one, so that neither very large nor very
-//! small numbers reach the drawing library.
+//! small numbers reach the canvas.
 
 /// Largest magnitude that is drawn; larger values are drawn there.
 const LIMIT: f64 = 1e150;

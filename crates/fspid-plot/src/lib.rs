@@ -1,8 +1,8 @@
 #![doc = include_str!("../README.md")]
 //!
 //! Colours are CSS variables with fallbacks, so that one file is right on white paper and inline in a dark page;
-//! [`page_style`] is the style sheet for such a page. Why `kuva` draws the line charts and our own code the rest is in
-//! `docs/decisions/0001-figures.md`.
+//! [`page_style`] is the style sheet for such a page. Why no library draws them
+//! is in `docs/decisions/0023-own-line-charts.md`.
 //!
 //! No features. Not here: what is drawn is computed elsewhere; a figure finds no peak and no margin.
 

@@ -162,7 +162,7 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, swatch: Swatch) {
     }
 }
 
-/// The marker of `style`, as the drawing library draws it.
+/// The marker of `style`, as in the plot area.
 fn marker(canvas: &mut Canvas, (x, y): (f64, f64), style: SeriesStyle) {
     let (s, paint) = (3.4, Paint::face(style.role()));
     match style.marker() {

@@ -1,17 +1,4 @@
-//! The one place that knows the drawing library.
-//!
-//! A [`Frame`] is a plot area with its axes. `kuva` lays out grid, axes, ticks, bands, lines and markers
-//! into a scene; the scene's primitives are then drawn on our [`Canvas`], which rounds, themes, numbers
-//! and escapes. Its own SVG writer is not used: it numbers clip paths by a counter of the process, so the
-//! same figure would come out with other bytes the second time.
-
-use kuva::plot::{LinePlot, LineStyle, MarkerShape, ScatterPlot};
-use kuva::render::annotations::{ReferenceLine, ShadedRegion};
-use kuva::render::color::Color;
-use kuva::render::layout::{Layout, TickFormat};
-use kuva::render::plots::Plot;
-use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, render_multiple};
-use kuva::render::theme::Theme;
+//! A plot area with its axes: grid, ticks, tolerance bands, lines of reference, curves and markers.
 
 use super::axis::Axis;
 use super::style::{Role, SeriesStyle};
@@ -20,10 +7,18 @@ use super::thin;
 
 /// Size of tick labels (px).
 pub(super) const TICK_PX: f64 = 11.0;
-/// Room that the library gets around the plot area for ticks and their labels (px).
-const ROOM_ABOVE: f64 = 12.0;
-const ROOM_BELOW: f64 = 28.0;
+/// Length of ticks (px).
 const TICK_LENGTH: f64 = 4.0;
+/// Where the drawing of a frame begins above its area (px).
+const ROOM_ABOVE: f64 = 12.0;
+/// Half the size of a mark (px).
+const MARK_PX: f64 = 3.4;
+/// Room between a tick and a number beside it (px).
+const TICK_GAP_PX: f64 = 3.0;
+/// Height of a tick's number above its baseline, and half of that of a capital letter, by the measures of DejaVu
+/// Sans, 1901 and 1493 of 2048 (px).
+const TICK_ASCENT_PX: f64 = TICK_PX * 1901.0 / 2048.0;
+const TICK_CENTRE_PX: f64 = TICK_PX * 1493.0 / 2048.0 / 2.0;
 
 /// A plot area and its axes.
 #[derive(Debug, Clone)]
@@ -66,139 +61,163 @@ impl Frame {
         let (x, y) = (self.x.unit_range(), self.y.unit_range());
         (self.area.width / (x.1 - x.0), self.area.height / (y.1 - y.0))
     }
+
+    /// Position in tick units on the canvas.
+    fn unit_place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (self.x_of_unit(x), self.y_of_unit(y))
+    }
+
+    fn x_of_unit(&self, unit: f64) -> f64 {
+        let scale = self.scale().0;
+        (self.area.x - self.x.unit_range().0 * scale) + unit * scale
+    }
+
+    fn y_of_unit(&self, unit: f64) -> f64 {
+        let scale = self.scale().1;
+        let bottom = self.area.y + self.area.height;
+        (bottom + self.y.unit_range().0 * scale) - unit * scale
+    }
 }
 
 /// Draws grid, axes and content of `frame`.
 pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
-    let area = &frame.area;
-    let mut plots = Vec::new();
-    for curve in &content.curves {
-        push_curve(&mut plots, frame, curve);
-    }
-    if plots.is_empty() {
-        // Without any plot the library draws no axes.
-        plots.push(Plot::Line(LinePlot::new()));
-    }
     for (axis_is_x, axis) in [(true, &frame.x), (false, &frame.y)] {
         if axis.log {
             log_ticks(canvas, frame, axis, axis_is_x);
         }
     }
-    let scene = render_multiple(plots, layout(canvas.width(), frame, content));
-    canvas.begin_shift(0.0, area.y - ROOM_ABOVE);
-    let clip = Rect { x: area.x, y: ROOM_ABOVE, width: area.width, height: area.height };
-    replay(canvas, &scene, clip);
+    canvas.begin_shift(0.0, frame.area.y - ROOM_ABOVE);
+    let area = Rect { y: ROOM_ABOVE, ..frame.area };
+    let frame = Frame { area, ..frame.clone() };
+    grid(canvas, &frame);
+    axes(canvas, &frame);
+    canvas.begin_clip(area);
+    marks(canvas, &frame, content);
+    for curve in &content.curves {
+        draw_curve(canvas, &frame, curve);
+    }
+    canvas.end();
     canvas.end();
 }
 
-fn push_curve(plots: &mut Vec<Plot>, frame: &Frame, curve: &Curve) {
-    let style = curve.style;
-    let units = curve.points.iter().map(|&(x, y)| (frame.x.unit(x), frame.y.unit(y)));
-    let marks: Vec<(f64, f64)> =
-        units.clone().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
-    for mut run in thin::runs(units, frame.scale(), curve.stairs) {
-        if let [only] = *run.as_slice() {
-            run.push(only);
+/// Whole tick units within a range.
+fn ticks((lo, hi): (f64, f64)) -> impl Iterator<Item = f64> {
+    let count = if hi - lo <= 400.0 { (hi.floor() - lo.ceil()).max(-1.0) as usize + 1 } else { 0 };
+    (0..count).map(move |index| lo.ceil() + index as f64)
+}
+
+/// Lines at the ticks, but for those that would lie under an axis.
+fn grid(canvas: &mut Canvas, frame: &Frame) {
+    let Rect { x: left, y: top, width, height } = frame.area;
+    let (right, bottom) = (left + width, top + height);
+    let paint = Paint::line(Role::Grid, 0.7);
+    for x in ticks(frame.x.unit_range()).map(|unit| frame.x_of_unit(unit)) {
+        if (x - left).abs() >= 1.0 {
+            canvas.line((x, top), (x, bottom), &paint);
         }
-        let mut line = LinePlot::new()
-            .with_data(run)
-            .with_color(style.role().token())
-            .with_stroke_width(style.width());
-        if !style.dash().is_empty() {
-            line = line.with_line_style(LineStyle::Custom(style.dash().to_owned()));
-        }
-        plots.push(Plot::Line(line));
     }
-    if curve.marked {
-        let shape =
-            [MarkerShape::Circle, MarkerShape::Square, MarkerShape::Triangle, MarkerShape::Diamond]
-                .get(style.marker())
-                .copied()
-                .unwrap_or(MarkerShape::Circle);
-        let dots = ScatterPlot::new()
-            .with_data(marks)
-            .with_color(style.role().token())
-            .with_size(3.4)
-            .with_marker(shape);
-        plots.push(Plot::Scatter(dots));
+    for y in ticks(frame.y.unit_range()).map(|unit| frame.y_of_unit(unit)) {
+        if (y - bottom).abs() >= 1.0 {
+            canvas.line((left, y), (right, y), &paint);
+        }
     }
 }
 
-fn layout(canvas_width: f64, frame: &Frame, content: &Content) -> Layout {
-    let (area, x, y) = (&frame.area, frame.x.unit_range(), frame.y.unit_range());
-    let (x_axis, y_axis) = (frame.x, frame.y);
-    let below = if frame.x_labels { ROOM_BELOW } else { ROOM_ABOVE };
-    let named = frame.x_labels && !x_axis.log;
-    let layout = Layout::new(x, y)
-        .with_width(canvas_width)
-        .with_height(area.height + ROOM_ABOVE + below)
-        .with_force_margins(area.x, canvas_width - area.x - area.width)
-        .with_force_margins_y(ROOM_ABOVE, below)
-        .with_x_axis_min(x.0)
-        .with_x_axis_max(x.1)
-        .with_y_axis_min(y.0)
-        .with_y_axis_max(y.1)
-        .with_x_tick_step(1.0)
-        .with_y_tick_step(1.0)
-        .with_x_tick_format(TickFormat::Custom(std::sync::Arc::new(move |unit| {
-            if named { x_axis.label(unit) } else { String::new() }
-        })))
-        .with_y_tick_format(TickFormat::Custom(std::sync::Arc::new(move |unit| {
-            if y_axis.log { String::new() } else { y_axis.label(unit) }
-        })))
-        .with_tick_size(TICK_PX as u32)
-        .with_tick_length(TICK_LENGTH)
-        .with_grid_line_width(0.7)
-        .with_axis_line_width(1.0)
-        .with_theme(theme());
-    marks(layout, frame, content)
+/// The lines of the axes, their ticks and their numbers.
+fn axes(canvas: &mut Canvas, frame: &Frame) {
+    let Rect { x: left, y: top, width, height } = frame.area;
+    let bottom = top + height;
+    let paint = Paint::line(Role::Ink, 1.0);
+    canvas.line((left, bottom), (left + width, bottom), &paint);
+    canvas.line((left, top), (left, bottom), &paint);
+    for unit in ticks(frame.x.unit_range()) {
+        let x = frame.x_of_unit(unit);
+        canvas.line((x, bottom), (x, bottom + TICK_LENGTH), &paint);
+        if frame.x_labels && !frame.x.log {
+            let font = Font::new(TICK_PX, Anchor::Middle);
+            canvas.text(x, bottom + TICK_LENGTH + TICK_ASCENT_PX, &frame.x.label(unit), font);
+        }
+    }
+    for unit in ticks(frame.y.unit_range()) {
+        let y = frame.y_of_unit(unit);
+        canvas.line((left - TICK_LENGTH, y), (left, y), &paint);
+        if !frame.y.log {
+            let font = Font::new(TICK_PX, Anchor::End);
+            let x = left - TICK_LENGTH - TICK_GAP_PX;
+            canvas.text(x, y + TICK_CENTRE_PX, &frame.y.label(unit), font);
+        }
+    }
 }
 
-/// Adds bands and lines of reference.
-fn marks(mut layout: Layout, frame: &Frame, content: &Content) -> Layout {
-    let y = frame.y.unit_range();
+/// Bands and lines of reference.
+fn marks(canvas: &mut Canvas, frame: &Frame, content: &Content) {
+    let Rect { x: left, width, .. } = frame.area;
+    let mut lines = Vec::new();
     for &(lo, hi) in &content.bands {
         let (lo, hi) = (frame.y.unit(lo), frame.y.unit(hi));
         if lo.is_finite() && hi.is_finite() {
             // A band too thin for an outline is made darker instead.
             let thin = (hi - lo).abs() * frame.scale().1 < 8.0;
-            let opacity = if thin { 0.45 } else { 0.2 };
-            layout = layout.with_shaded_region(
-                ShadedRegion::horizontal(lo.min(hi), lo.max(hi))
-                    .with_color(Role::Band.token())
-                    .with_opacity(opacity),
+            let paint = Paint::face(Role::Band).opacity(if thin { 0.45 } else { 0.2 });
+            let (top, bottom) = (frame.y_of_unit(lo.max(hi)), frame.y_of_unit(lo.min(hi)));
+            canvas.rect(left, top, width, bottom - top, &paint);
+            let edge = Paint::line(Role::Band, 0.8).dashed("3 2.5");
+            lines.extend([lo, hi].into_iter().filter(|_| !thin).map(|at| (at, edge.clone())));
+        }
+    }
+    let (lowest, highest) = frame.y.unit_range();
+    let shown = content.references.iter().map(|value| frame.y.unit(*value));
+    let shown = shown.filter(|at| (lowest..=highest).contains(at));
+    lines.extend(shown.map(|at| (at, Paint::line(Role::Ink, 1.0).dashed("6 3"))));
+    for (at, paint) in lines {
+        let y = frame.y_of_unit(at);
+        canvas.line((left, y), (left + width, y), &paint);
+    }
+}
+
+fn draw_curve(canvas: &mut Canvas, frame: &Frame, curve: &Curve) {
+    let style = curve.style;
+    let units = curve.points.iter().map(|&(x, y)| (frame.x.unit(x), frame.y.unit(y)));
+    let paint = Paint::line(style.role(), style.width()).dashed(style.dash());
+    for mut run in thin::runs(units.clone(), frame.scale(), curve.stairs) {
+        for point in &mut run {
+            *point = frame.unit_place(*point);
+        }
+        canvas.polyline(&run, false, &paint);
+    }
+    if curve.marked {
+        for point in units.filter(|(x, y)| x.is_finite() && y.is_finite()) {
+            draw_mark(canvas, style, frame.unit_place(point));
+        }
+    }
+}
+
+/// A circle, square, triangle or diamond, by the number of the style.
+fn draw_mark(canvas: &mut Canvas, style: SeriesStyle, (x, y): (f64, f64)) {
+    let face = Paint::face(style.role());
+    let outlined = || Paint::line(style.role(), 0.5).filled(style.role());
+    match style.marker() {
+        1 => canvas.rect(x - MARK_PX, y - MARK_PX, 2.0 * MARK_PX, 2.0 * MARK_PX, &face),
+        2 => {
+            let (above, below) = (y - MARK_PX * 1.7 * 0.6, y + MARK_PX * 1.7 * 0.4);
+            canvas.path(
+                &corners(&[(x, above), (x - MARK_PX, below), (x + MARK_PX, below)]),
+                &outlined(),
             );
-            for edge in [lo, hi].into_iter().filter(|_| !thin) {
-                layout = layout.with_reference_line(reference(edge, Role::Band, 0.8, "3 2.5"));
-            }
         }
-    }
-    for &value in &content.references {
-        let at = frame.y.unit(value);
-        if at.is_finite() && at >= y.0 && at <= y.1 {
-            layout = layout.with_reference_line(reference(at, Role::Ink, 1.0, "6 3"));
+        3 => {
+            let s = MARK_PX * 1.3;
+            canvas.path(&corners(&[(x, y - s), (x + s, y), (x, y + s), (x - s, y)]), &outlined());
         }
+        _ => canvas.circle((x, y), MARK_PX, &face),
     }
-    layout
 }
 
-fn reference(at: f64, role: Role, width: f64, dash: &str) -> ReferenceLine {
-    ReferenceLine::horizontal(at)
-        .with_color(role.token())
-        .with_stroke_width(width)
-        .with_dasharray(dash)
-}
-
-/// The library's theme, with our roles in place of colours.
-fn theme() -> Theme {
-    Theme {
-        background: "none".to_owned(),
-        axis_color: Role::Ink.token(),
-        grid_color: Role::Grid.token(),
-        tick_color: Role::Ink.token(),
-        text_color: Role::Ink.token(),
-        ..Theme::light()
-    }
+/// Path data of a closed polygon.
+fn corners(points: &[(f64, f64)]) -> String {
+    let rounded = |value: f64| (value * 100.0).round() / 100.0;
+    let corner = |&(x, y): &(f64, f64)| format!("{:?},{:?}", rounded(x), rounded(y));
+    format!("M{} Z", points.iter().map(corner).collect::<Vec<_>>().join(" L"))
 }
 
 /// Ticks of a logarithmic axis, which the library cannot place at will.
@@ -233,71 +252,5 @@ fn log_ticks(canvas: &mut Canvas, frame: &Frame, axis: &Axis, is_x: bool) {
                 Font::new(TICK_PX, Anchor::End),
             );
         }
-    }
-}
-
-/// Draws the primitives of `scene`; those between clip marks are clipped to `clip`.
-fn replay(canvas: &mut Canvas, scene: &Scene, clip: Rect) {
-    for primitive in &scene.elements {
-        match primitive {
-            Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray } => {
-                let paint = Paint::line(role(stroke), *stroke_width)
-                    .dashed(stroke_dasharray.as_deref().unwrap_or(""));
-                canvas.line((*x1, *y1), (*x2, *y2), &paint);
-            }
-            Primitive::PolyLine { points, stroke, stroke_width, stroke_dasharray } => {
-                let paint = Paint::line(role(stroke), *stroke_width)
-                    .dashed(stroke_dasharray.as_deref().unwrap_or(""));
-                canvas.polyline(points, false, &paint);
-            }
-            Primitive::Path(path) => replay_path(canvas, path),
-            Primitive::ClipStart { .. } => canvas.begin_clip(clip),
-            Primitive::ClipEnd => canvas.end(),
-            other => replay_shape(canvas, other),
-        }
-    }
-}
-
-/// Draws texts, rectangles and circles.
-fn replay_shape(canvas: &mut Canvas, primitive: &Primitive) {
-    match primitive {
-        Primitive::Text { x, y, content, size, anchor, .. } if !content.is_empty() => {
-            let font = Font::new(f64::from(*size), anchor_of(*anchor));
-            canvas.text(*x, *y, content, font);
-        }
-        Primitive::Rect { x, y, width, height, fill, opacity, .. } => {
-            let paint = Paint { opacity: *opacity, ..Paint::face(role(fill)) };
-            canvas.rect(*x, *y, *width, *height, &paint);
-        }
-        Primitive::Circle { cx, cy, r, fill, .. } => {
-            canvas.circle((*cx, *cy), *r, &Paint::face(role(fill)));
-        }
-        Primitive::CircleBatch { cx, cy, r, fill, .. } => {
-            for centre in cx.iter().copied().zip(cy.iter().copied()) {
-                canvas.circle(centre, *r, &Paint::face(role(fill)));
-            }
-        }
-        _ => {}
-    }
-}
-
-fn replay_path(canvas: &mut Canvas, path: &PathData) {
-    let fill = path.fill.as_ref().map_or(Role::None, role);
-    canvas.path(&path.d, &Paint::line(role(&path.stroke), path.stroke_width).filled(fill));
-}
-
-fn anchor_of(anchor: TextAnchor) -> Anchor {
-    match anchor {
-        TextAnchor::Start => Anchor::Start,
-        TextAnchor::Middle => Anchor::Middle,
-        TextAnchor::End => Anchor::End,
-    }
-}
-
-fn role(color: &Color) -> Role {
-    match color {
-        Color::Rgb(r, g, b) => Role::Fixed([*r, *g, *b]),
-        Color::None => Role::None,
-        Color::Css(token) => Role::from_token(token).unwrap_or(Role::Ink),
     }
 }

@@ -138,23 +138,6 @@ impl Role {
             }
         }
     }
-
-    /// A word that survives a trip through the drawing library as a colour; see [`Role::from_token`].
-    pub(super) fn token(self) -> String {
-        match self {
-            Self::Fixed(_) | Self::None => self.fallback(),
-            themed => format!("role:{}", themed.variable().unwrap_or_default()),
-        }
-    }
-
-    /// The role that [`Role::token`] wrote down.
-    pub(super) fn from_token(token: &str) -> Option<Self> {
-        let name = token.strip_prefix("role:")?;
-        if let Some(number) = name.strip_prefix("series-") {
-            return number.parse::<usize>().ok()?.checked_sub(1).map(Self::Series);
-        }
-        PLAIN.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
 }
 
 /// Style sheet for a page that shows figures inline: light, dark and print colours.
@@ -283,14 +266,6 @@ mod tests {
                 assert_ne!(a.dash(), b.dash());
                 assert_ne!(a.role().fallback(), b.role().fallback());
             }
-        }
-    }
-
-    #[test]
-    fn a_role_survives_the_trip_through_its_token() {
-        let themed = PLAIN.iter().map(|row| row.0).chain((0..SeriesStyle::COUNT).map(Role::Series));
-        for role in themed {
-            assert_eq!(Role::from_token(&role.token()), Some(role));
         }
     }
 

@@ -1,7 +1,7 @@
 //! The drawing surface: text, lines, boxes and paths become one self-contained SVG.
 //!
-//! Everything that a figure draws passes through [`Canvas`], the output of the drawing library too, so
-//! numbers are rounded, text is escaped, colours follow the page and ids are unique in one place.
+//! Everything that a figure draws passes through [`Canvas`], so numbers are rounded, text is
+//! escaped, colours follow the page and ids are unique in one place.
 
 use std::collections::BTreeSet;
 use std::fmt;
