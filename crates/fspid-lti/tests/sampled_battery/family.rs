@@ -1,7 +1,7 @@
 //! Loops of a family by the quick way and by the careful one.
 
 use crate::sampled_battery::Outcome;
-use crate::sampled_battery::factored::{Factored, FactorSection};
+use crate::sampled_battery::factored::{FactorSection, Factored};
 use crate::sampled_battery::families::random_loop;
 use crate::support::Random;
 use fspid_lti::{
