@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::data::Laws;
-use fspid_aircraft::envelope::EnvelopeGrid;
+use fspid_aircraft::envelope::{EnvelopeGrid, Evenly};
 use fspid_aircraft::qualities::CommandPath;
 use fspid_aircraft::{AirMotion, Aircraft, Environment, TrimTarget, Vector3};
 use fspid_lti::{FrequencyResponse, TransferFunction};
@@ -64,7 +64,13 @@ fn trim_and_linearise(aircraft: &Aircraft<DerivativeModel>, target: TrimTarget) 
 fn map(aircraft: &Aircraft<DerivativeModel>) -> f64 {
     let servo = TransferFunction::new(&[10.0], &[1.0, 10.0]).expect("a servo");
     let path = CommandPath { servo: Some(servo.clone()), delay_s: 0.05 };
-    let grid = EnvelopeGrid { path, ..EnvelopeGrid::even((100.0, 290.0, 30), (0.0, 12_000.0, 20)) };
+    let grid = EnvelopeGrid {
+        path,
+        ..EnvelopeGrid::even(
+            Evenly { first: 100.0, last: 290.0, count: 30 },
+            Evenly { first: 0.0, last: 12_000.0, count: 20 },
+        )
+    };
     let threads = NonZeroUsize::new(2).expect("two");
     let rows = aircraft.envelope(black_box(&grid), threads, |linear| {
         let plant = linear.theta_over_elevator().expect("a plant").negated();

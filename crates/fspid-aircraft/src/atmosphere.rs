@@ -110,8 +110,8 @@ impl Air {
     }
 
     fn in_layers(altitude_m: f64) -> Self {
-        let ground = (SEA_LEVEL_TEMPERATURE_K, SEA_LEVEL_PRESSURE_PA);
-        let mut base = ground;
+        let mut base =
+            Base { temperature_k: SEA_LEVEL_TEMPERATURE_K, pressure_pa: SEA_LEVEL_PRESSURE_PA };
         for (index, layer) in LAYERS.iter().enumerate() {
             match LAYERS.get(index + 1) {
                 Some(next) if altitude_m > next.base_m => base = layer.above(base, next.base_m),
@@ -121,7 +121,7 @@ impl Air {
                 }
             }
         }
-        Self::of(base.0, base.1)
+        Self::of(base.temperature_k, base.pressure_pa)
     }
 
     /// Air in which nothing can be computed: every number is NaN.
@@ -135,9 +135,17 @@ impl Air {
     }
 }
 
+/// The air at the base of a layer.
+#[derive(Clone, Copy)]
+struct Base {
+    temperature_k: f64,
+    pressure_pa: f64,
+}
+
 impl Layer {
-    /// Temperature and pressure at an altitude, from those at the layer's base.
-    fn above(&self, (temperature_k, pressure_pa): (f64, f64), altitude_m: f64) -> (f64, f64) {
+    /// The air at an altitude, from that at the layer's base.
+    fn above(&self, base: Base, altitude_m: f64) -> Base {
+        let Base { temperature_k, pressure_pa } = base;
         let above_m = altitude_m - self.base_m;
         let change_k = self.lapse_k_m * above_m;
         let scale_k_m = STANDARD_GRAVITY_M_S2 / GAS_CONSTANT_J_KG_K;
@@ -147,7 +155,7 @@ impl Layer {
             let exponent = -scale_k_m / self.lapse_k_m;
             libm::pow(1.0 + change_k / temperature_k, exponent)
         };
-        (temperature_k + change_k, pressure_pa * ratio)
+        Base { temperature_k: temperature_k + change_k, pressure_pa: pressure_pa * ratio }
     }
 }
 

@@ -60,10 +60,10 @@ pub struct EnvelopeFlight<T> {
 impl EnvelopeGrid {
     /// Grid of evenly spaced airspeeds and altitudes in straight and level flight, for category B without a servo.
     #[must_use]
-    pub fn even(airspeeds_m_s: (f64, f64, usize), altitudes_m: (f64, f64, usize)) -> Self {
+    pub fn even(airspeeds_m_s: Evenly, altitudes_m: Evenly) -> Self {
         Self {
-            airspeeds_m_s: even(airspeeds_m_s),
-            altitudes_m: even(altitudes_m),
+            airspeeds_m_s: airspeeds_m_s.values(),
+            altitudes_m: altitudes_m.values(),
             flight_path_rad: 0.0,
             path: CommandPath::default(),
             category: Category::default(),
@@ -83,10 +83,23 @@ impl EnvelopeGrid {
     }
 }
 
-/// Values from the first to the last; the first alone if one is asked for.
-fn even((first, last, count): (f64, f64, usize)) -> Vec<f64> {
-    let steps = count.saturating_sub(1).max(1) as f64;
-    (0..count).map(|index| first + (last - first) * (index as f64 / steps)).collect()
+/// Evenly spaced values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evenly {
+    /// The first.
+    pub first: f64,
+    /// The last.
+    pub last: f64,
+    /// How many; of one the first.
+    pub count: usize,
+}
+
+impl Evenly {
+    fn values(self) -> Vec<f64> {
+        let Self { first, last, count } = self;
+        let steps = count.saturating_sub(1).max(1) as f64;
+        (0..count).map(|index| first + (last - first) * (index as f64 / steps)).collect()
+    }
 }
 
 impl<M: ForceModel + Sync> Aircraft<M> {
@@ -99,7 +112,7 @@ impl<M: ForceModel + Sync> Aircraft<M> {
     /// # use fspid_aircraft::{
     /// #     AircraftError, Aircraft, Controls, Environment, Flow, ForceModel, Loads, MassProperties, Travel, Validity,
     /// # };
-    /// # use fspid_aircraft::envelope::{EnvelopeGrid, one_thread};
+    /// # use fspid_aircraft::envelope::{EnvelopeGrid, Evenly, one_thread};
     /// # struct Stone;
     /// # impl ForceModel for Stone {
     /// #     fn loads(&self, _: &Flow, _: &Controls) -> Loads { Loads::default() }
@@ -112,7 +125,10 @@ impl<M: ForceModel + Sync> Aircraft<M> {
     /// #     mass_kg: 1.0, ix_kg_m2: 1.0, iy_kg_m2: 1.0, iz_kg_m2: 1.0, ixz_kg_m2: 0.0, engine_kg_m2_s: 0.0,
     /// # };
     /// # let stone = Aircraft::new(mass, Stone, Environment::STANDARD)?;
-    /// let grid = EnvelopeGrid::even((50.0, 80.0, 4), (0.0, 3000.0, 2));
+    /// let grid = EnvelopeGrid::even(
+    ///     Evenly { first: 50.0, last: 80.0, count: 4 },
+    ///     Evenly { first: 0.0, last: 3000.0, count: 2 },
+    /// );
     /// let rows = stone.envelope(&grid, one_thread(), |linear| linear.trim.thrust_n);
     /// assert_eq!(rows.len(), 8);
     /// assert!(rows.iter().all(|row| row.flight.is_err()), "a stone does not fly");

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::data::Laws;
-use fspid_aircraft::envelope::{EnvelopeGrid, EnvelopeRow, one_thread};
+use fspid_aircraft::envelope::{EnvelopeGrid, EnvelopeRow, Evenly, one_thread};
 use fspid_aircraft::qualities::{CommandPath, PitchModel, Qualities};
 use fspid_aircraft::{Aircraft, Environment, Linearisation, ModeName};
 use fspid_lti::{FrequencyResponse, LtiError, TransferFunction};
@@ -24,7 +24,13 @@ fn servo() -> TransferFunction {
 /// Slow enough to stall and fast enough to leave the derivatives.
 fn grid() -> EnvelopeGrid {
     let path = CommandPath { servo: Some(servo()), delay_s: 0.05 };
-    EnvelopeGrid { path, ..EnvelopeGrid::even((60.0, 300.0, 9), (0.0, 12_000.0, 5)) }
+    EnvelopeGrid {
+        path,
+        ..EnvelopeGrid::even(
+            Evenly { first: 60.0, last: 300.0, count: 9 },
+            Evenly { first: 0.0, last: 12_000.0, count: 5 },
+        )
+    }
 }
 
 /// Gain margin of proportional control with gain 1 behind the servo.
@@ -85,7 +91,10 @@ fn at_the_reference_the_map_has_the_printed_modes_and_the_load_of_the_derivative
     let environment = derivative_data("b747-cruise-low").reference_environment();
     let speed_m_s = 673.0 * FOOT_M;
     let altitude_m = derivative_data("b747-cruise-low").reference.altitude_m;
-    let grid = EnvelopeGrid::even((speed_m_s, speed_m_s, 1), (altitude_m, altitude_m, 1));
+    let grid = EnvelopeGrid::even(
+        Evenly { first: speed_m_s, last: speed_m_s, count: 1 },
+        Evenly { first: altitude_m, last: altitude_m, count: 1 },
+    );
     let rows = b747(environment).envelope(&grid, one_thread(), |_| ());
     let flight = rows[0].flight.as_ref().expect("the reference");
     let modes = flight.longitudinal.as_ref().expect("four poles");
@@ -100,7 +109,10 @@ fn at_the_reference_the_map_has_the_printed_modes_and_the_load_of_the_derivative
 
 #[test]
 fn an_empty_grid_has_no_rows() {
-    let grid = EnvelopeGrid::even((60.0, 300.0, 0), (0.0, 12_000.0, 5));
+    let grid = EnvelopeGrid::even(
+        Evenly { first: 60.0, last: 300.0, count: 0 },
+        Evenly { first: 0.0, last: 12_000.0, count: 5 },
+    );
     let threads = NonZeroUsize::new(2).expect("some");
     assert!(b747(Environment::STANDARD).envelope(&grid, threads, |_| ()).is_empty());
 }

@@ -32,12 +32,19 @@ fn at(name: &str, speed_part: f64) -> (Aircraft<DerivativeModel>, TrimTarget) {
     (aircraft, target)
 }
 
+/// For how long.
+#[derive(Clone, Copy)]
+struct Span {
+    samples: usize,
+    dt_s: f64,
+}
+
 fn fly<M: ForceModel>(
     aircraft: &Aircraft<M>,
     start: &RigidState,
     controls: &Controls,
     motion: &AirMotion,
-    (samples, dt_s): (usize, f64),
+    Span { samples, dt_s }: Span,
 ) -> RigidState {
     (0..samples).fold(*start, |state, _| aircraft.step(&state, controls, motion, dt_s))
 }
@@ -49,7 +56,13 @@ fn a_trim_stays_where_it_is_for_a_minute() {
             let (aircraft, target) = at(name, speed_part);
             let trim = aircraft.trim(target).expect("a flight that can be held");
             assert!(trim.iterations <= 8, "{name}: {} iterations", trim.iterations);
-            let end = fly(&aircraft, &trim.state, &trim.controls, &AirMotion::STILL, (6000, 0.01));
+            let end = fly(
+                &aircraft,
+                &trim.state,
+                &trim.controls,
+                &AirMotion::STILL,
+                Span { samples: 6000, dt_s: 0.01 },
+            );
             let drift =
                 (end.velocity_body_m_s - trim.state.velocity_body_m_s).norm() / target.airspeed_m_s;
             let turned = (end.euler().theta_rad - trim.state.euler().theta_rad).abs();
@@ -70,7 +83,13 @@ fn a_climb_goes_up_at_the_asked_angle() {
     let velocity = climb.state.velocity_ned_m_s();
     assert!((libm::atan2(-velocity.z, velocity.x) - 3.0 * DEG_RAD).abs() < 1e-12);
     assert!(climb.point.throttle > aircraft.trim(level).expect("level").point.throttle);
-    let end = fly(&aircraft, &climb.state, &climb.controls, &AirMotion::STILL, (1000, 0.01));
+    let end = fly(
+        &aircraft,
+        &climb.state,
+        &climb.controls,
+        &AirMotion::STILL,
+        Span { samples: 1000, dt_s: 0.01 },
+    );
     let expected_m =
         target.altitude_m + 10.0 * target.airspeed_m_s * libm::sin(target.flight_path_rad);
     assert!((end.altitude_m() - expected_m).abs() < 1e-6);
@@ -214,7 +233,7 @@ fn a_steady_wind_carries_the_aircraft_and_changes_nothing_else() {
         velocity_body_m_s: still.velocity_body_m_s + still.attitude.to_body(wind_ned_m_s),
         ..still
     };
-    let span = (2000, 0.01);
+    let span = Span { samples: 2000, dt_s: 0.01 };
     let still = fly(&aircraft, &still, &trim.controls, &AirMotion::STILL, span);
     let blown = fly(&aircraft, &blown, &trim.controls, &AirMotion::wind(wind_ned_m_s), span);
     let carried = blown.position_ned_m - still.position_ned_m - 20.0 * wind_ned_m_s;
@@ -261,9 +280,12 @@ fn a_flight_has_the_same_bits_again_and_behind_a_pointer() {
     let trim = aircraft.trim(target).expect("a flight that can be held");
     let motion = AirMotion::wind(Vector3::new(3.0, 1.0, 0.0));
     let bits = |state: RigidState| state.to_array().map(f64::to_bits);
-    let first = fly(&aircraft, &upset(&trim), &trim.controls, &motion, (500, 0.02));
-    let second = fly(&aircraft, &upset(&trim), &trim.controls, &motion, (500, 0.02));
-    let third = fly(&pointed, &upset(&trim), &trim.controls, &motion, (500, 0.02));
+    let first =
+        fly(&aircraft, &upset(&trim), &trim.controls, &motion, Span { samples: 500, dt_s: 0.02 });
+    let second =
+        fly(&aircraft, &upset(&trim), &trim.controls, &motion, Span { samples: 500, dt_s: 0.02 });
+    let third =
+        fly(&pointed, &upset(&trim), &trim.controls, &motion, Span { samples: 500, dt_s: 0.02 });
     assert_eq!(bits(first), bits(second));
     assert_eq!(bits(first), bits(third));
 }
@@ -273,7 +295,8 @@ fn a_motion_that_is_only_longitudinal_stays_so() {
     let (aircraft, target) = at("b747-cruise-low", 1.0);
     let trim = aircraft.trim(target).expect("a flight that can be held");
     let moved = Controls { elevator_rad: trim.controls.elevator_rad - 0.02, ..trim.controls };
-    let end = fly(&aircraft, &trim.state, &moved, &AirMotion::STILL, (3000, 0.01));
+    let end =
+        fly(&aircraft, &trim.state, &moved, &AirMotion::STILL, Span { samples: 3000, dt_s: 0.01 });
     let sideways =
         [end.velocity_body_m_s.y, end.rates_rad_s.x, end.rates_rad_s.z, end.position_ned_m.y];
     assert!(sideways.iter().all(|value| value.abs() < 1e-12), "{sideways:?}");

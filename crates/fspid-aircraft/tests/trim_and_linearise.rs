@@ -12,7 +12,7 @@ use crate::support;
 
 use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG, derivative_data};
 
-struct Row {
+struct TrimRow {
     aircraft: &'static str,
     airspeed_ft_s: f64,
     alpha_deg: f64,
@@ -30,8 +30,8 @@ const fn row(
     numerator: [f64; 3],
     denominator: [f64; 4],
     modes: [f64; 4],
-) -> Row {
-    Row {
+) -> TrimRow {
+    TrimRow {
         aircraft,
         airspeed_ft_s,
         alpha_deg,
@@ -47,7 +47,7 @@ const NAVION: &str = "navion";
 const B747: &str = "b747-cruise-low";
 
 #[rustfmt::skip]
-const PRINTED: [Row; 9] = [
+const PRINTED: [TrimRow; 9] = [
     row(NAVION, [130.0, 4.55257, -3.36881, 282.705], [-6.404598, -9.509671, -0.898821], [3.741500, 7.225941, 0.537982, 0.583926], [2.64982, 0.69982, 0.28838, 0.05668]),
     row(NAVION, [150.0, 2.06610, -1.52887, 304.898], [-8.526832, -14.467272, -0.990089], [4.300607, 9.511853, 0.578056, 0.586376], [3.05075, 0.69940, 0.25100, 0.06618]),
     row(NAVION, [176.0, 0.0, 0.0, 338.840], [-11.738984, -23.179856, -1.169816], [5.029950, 12.991427, 0.661851, 0.588729], [3.57443, 0.69888, 0.21466, 0.07869]),

@@ -39,7 +39,9 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
     let extra = Extra { overrides: question.overrides, ..Extra::default() };
     let template = Template::parse(&text, &path, Some(home), &extra)
         .map_err(|problems| CampaignError::Unreadable(LoadError::Problems(problems)))?;
-    let usual = if flies_in_lanes(&template) { SHARD_RUNS } else { SLOW_SHARD_RUNS };
+    // Flights side by side are some hundred times as fast as six degrees of freedom.
+    let side_by_side = template.study().scenario.flies_side_by_side();
+    let usual = if side_by_side { SHARD_RUNS } else { SLOW_SHARD_RUNS };
     let shard_runs = question.shard_runs.unwrap_or(usual);
     check("the number of runs in a shard", shard_runs, MOST_SHARD_RUNS)?;
     let plan = Plan {
@@ -63,17 +65,6 @@ fn check(what: &'static str, found: u64, most: u64) -> Result<(), CampaignError>
     }
     let allowed = format!("1 to {most}");
     Err(CampaignError::Number { what, found: found.to_string(), allowed })
-}
-
-/// True for flights that go side by side, which are some hundred times as fast as six degrees of freedom.
-fn flies_in_lanes(template: &Template) -> bool {
-    let scenario = &template.study().scenario;
-    let has_sensors =
-        scenario.surroundings.pitch_sensor.is_some() || scenario.surroundings.rate_sensor.is_some();
-    scenario.plant.linear().is_some()
-        && scenario.surroundings.weather.is_none()
-        && scenario.surroundings.actuator.is_none()
-        && !has_sensors
 }
 
 /// The way from a folder that may not be there yet to one that is; absolute where there is none.

@@ -5,7 +5,7 @@ use fspid_numeric::Real;
 use crate::equations::{PidEquations, TunerEquations};
 use crate::error::ConfigError;
 use crate::gains::Gains;
-use crate::pid_config::{PidConfig, SetpointWeights};
+use crate::pid_config::{Moment, PidConfig, SetpointWeights};
 use crate::second_input::ModelState;
 use crate::state::{Sample, State, Step};
 use crate::tuner::{GainCoupling, SelfTuner};
@@ -54,8 +54,8 @@ impl<R: Real> Pid<R> {
             Err(fault) => return self.config.hold(state, fault, gains),
         };
         let memory = state.memory_for(equations, &sample, &gains);
-        let no_model = ModelState::at(R::ZERO);
-        self.config.step(state, (equations, &memory), sample, (gains, no_model))
+        let model = ModelState::at(R::ZERO);
+        self.config.step(state, sample, Moment { equations, memory: &memory, gains, model })
     }
 }
 
@@ -120,7 +120,7 @@ impl<R: Real> Fspid<R> {
             Ok((gains, fault)) => {
                 state.latch(fault);
                 let model = self.tuner_equations.next_model(&memory, &sample);
-                self.config.step(state, (equations, &memory), sample, (gains, model))
+                self.config.step(state, sample, Moment { equations, memory: &memory, gains, model })
             }
             Err(fault) => self.config.hold(state, fault, nominal),
         }

@@ -87,6 +87,17 @@ pub struct PidConfig<R> {
     pub guard: Guard<R>,
 }
 
+/// What a controller answers a sample by.
+pub(crate) struct Moment<'a, R> {
+    pub(crate) equations: &'a PidEquations<R>,
+    /// What it remembers.
+    pub(crate) memory: &'a Memory<R>,
+    /// The gains of the moment.
+    pub(crate) gains: Gains<R>,
+    /// The reference model, to be remembered.
+    pub(crate) model: ModelState<R>,
+}
+
 impl<R: Real> PidConfig<R> {
     /// Plain error feedback, no filter, no limits, no anti-windup, no rate loop.
     pub fn sampled_every(dt_s: R) -> Self {
@@ -169,18 +180,17 @@ impl<R: Real> PidConfig<R> {
         self.rate_gain_s != R::ZERO
     }
 
-    /// One sample by its equations with the gains of the moment, from a memory; `model` is to be
-    /// remembered. `sample` has been [admitted](Self::admitted).
+    /// One sample by its equations with the gains of the moment, from a memory. `sample` has been [admitted](Self::admitted).
     ///
     /// Either the whole memory moves on, or none of it (overflow: held and latched).
     #[inline(always)]
     pub(crate) fn step(
         &self,
         state: &mut State<R>,
-        (equations, memory): (&PidEquations<R>, &Memory<R>),
         sample: Sample<R>,
-        (gains, model): (Gains<R>, ModelState<R>),
+        moment: Moment<'_, R>,
     ) -> Step<R> {
+        let Moment { equations, memory, gains, model } = moment;
         let free = equations.free(memory, &sample, &gains);
         let regulated = equations.regulated(memory, &free, gains.ki);
         let Free { error_rad, derivative_input_rad, derivative_rad_s, wound, .. } = free;

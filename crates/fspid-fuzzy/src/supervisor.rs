@@ -138,7 +138,8 @@ impl<R: Real> Supervisor<R> {
     ) -> Result<Self, FuzzyError> {
         let rules = Rules::Labels(Output::ALL.map(|output| Consequents::new(table.grid(output))));
         let defuzzifier = defuzzifier.checked()?;
-        Self::built(rules, (range, R::from_f64(SIGMA_PER_SPACING)), defuzzifier, out_of_range)
+        let width = R::from_f64(SIGMA_PER_SPACING);
+        Self::built(rules, range, width, defuzzifier, out_of_range)
     }
 
     /// A supervisor whose rules conclude numbers, over `[-range, range]` for both inputs; they lie within
@@ -153,7 +154,7 @@ impl<R: Real> Supervisor<R> {
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {
         let rules = Rules::Numbers(*table);
-        let built = Self::built(rules, (range, R::ONE), Defuzzifier::Exact, out_of_range)?;
+        let built = Self::built(rules, range, R::ONE, Defuzzifier::Exact, out_of_range)?;
         table.check_within(range)?;
         Ok(built)
     }
@@ -161,7 +162,8 @@ impl<R: Real> Supervisor<R> {
     /// A supervisor whose sets have this width in spacings.
     fn built(
         rules: Rules<R>,
-        (range, width): (R, R),
+        range: R,
+        width: R,
         defuzzifier: Defuzzifier,
         out_of_range: OutOfRange,
     ) -> Result<Self, FuzzyError> {
@@ -181,6 +183,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// Half range of inputs and outputs.
+    #[inline]
     pub fn range(&self) -> R {
         self.range
     }
@@ -215,6 +218,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// What happens to an input beyond the range.
+    #[inline]
     pub fn out_of_range(&self) -> OutOfRange {
         self.out_of_range
     }
@@ -245,6 +249,7 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// True for an input within the range.
+    #[inline]
     pub(crate) fn holds(&self, input: R) -> bool {
         input.abs() <= self.range
     }
@@ -353,6 +358,7 @@ impl<R: Real> Supervisor<R> {
 
     /// The rules as they are evaluated; `None` where they conclude numbers.
     #[cfg(feature = "batch")]
+    #[inline]
     pub(crate) fn consequents(&self) -> Option<&[Consequents; 3]> {
         match &self.rules {
             Rules::Labels(consequents) => Some(consequents),

@@ -9,18 +9,18 @@ const SINGLE_TOLERANCE: f64 = 4e-6;
 /// A few roundings of the exponent of a tail, which reaches 700.
 const TAIL_TOLERANCE: f64 = 1e-12;
 
-struct Row {
+struct MembershipRow {
     kind: ShapeKind,
     params: Vec<f64>,
     x: f64,
     grade: f64,
 }
 
-fn rows() -> Vec<Row> {
+fn rows() -> Vec<MembershipRow> {
     let number = |text: &str| text.parse::<f64>().expect("a number");
     let row = |line: &str| {
         let columns: Vec<&str> = line.split(',').collect();
-        Row {
+        MembershipRow {
             kind: ShapeKind::from_name(columns[0]).expect("a known shape"),
             params: columns[1].split(' ').map(number).collect(),
             x: number(columns[2]),
@@ -41,7 +41,7 @@ fn every_shape_is_compared() {
 #[test]
 fn every_grade_agrees_with_the_published_definition() {
     let mut worst = (0.0, "");
-    for Row { kind, params, x, grade } in rows() {
+    for MembershipRow { kind, params, x, grade } in rows() {
         assert_eq!(kind.check(&params), Ok(()), "{} {params:?}", kind.name());
         let error = (kind.grade(&params, x) - grade).abs();
         assert!(error <= TOLERANCE, "{} {params:?} at {x}: {error:e}", kind.name());
@@ -56,7 +56,7 @@ fn every_grade_agrees_with_the_published_definition() {
 /// sigmoids is the exception, whose tails cancel in its definition.
 #[test]
 fn tails_agree_in_proportion() {
-    let not_cancelling = |row: &Row| row.kind != ShapeKind::SigmoidDifference;
+    let not_cancelling = |row: &MembershipRow| row.kind != ShapeKind::SigmoidDifference;
     for row in rows().into_iter().filter(not_cancelling) {
         let found = row.kind.grade(&row.params, row.x);
         let error = (found - row.grade).abs();
@@ -68,7 +68,7 @@ fn tails_agree_in_proportion() {
 /// In single precision, a few of its own roundings.
 #[test]
 fn single_precision_is_near() {
-    for Row { kind, params, x, grade } in rows() {
+    for MembershipRow { kind, params, x, grade } in rows() {
         #[allow(clippy::cast_possible_truncation, reason = "single precision is what is asked")]
         let narrow = |value: f64| value as f32;
         let params: Vec<f32> = params.iter().map(|&p| narrow(p)).collect();

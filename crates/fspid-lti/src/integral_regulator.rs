@@ -66,10 +66,9 @@ pub fn integral_regulator(
     let root = positive("weight of the integral, 1/s²", weights.integral_per_s2)?.sqrt();
     let position = positive("weight of the position", weights.position)?;
     let rate = positive("weight of the rate, s²", weights.rate_s2)?;
-    let still = a * a + b * b * rate;
-    let pole_sum = |gain: f64| (still + 2.0 * b * gain).sqrt();
-    let gain = position_gain((position, 2.0 * root / b, still, b), pole_sum);
-    let sum = pole_sum(gain);
+    let pole_sum = PoleSum { still: a * a + b * b * rate, b };
+    let gain = position_gain(pole_sum, position, 2.0 * root / b);
+    let sum = pole_sum.at(gain);
     // Each form of c2 - a where it does not cancel.
     let rate_s = match a > 0.0 {
         true => (b * rate + 2.0 * gain) / (sum + a),
@@ -81,11 +80,22 @@ pub fn integral_regulator(
     if good { Ok(found) } else { Err(LtiError::OutOfRange { what: "gain of the regulator" }) }
 }
 
+/// $c_2(k) = \sqrt{s + 2 b k}$, 1/s, with $s$ its square without the gain.
+#[derive(Clone, Copy)]
+struct PoleSum {
+    still: f64,
+    b: f64,
+}
+
+impl PoleSum {
+    fn at(self, gain: f64) -> f64 {
+        (self.still + 2.0 * self.b * gain).sqrt()
+    }
+}
+
 /// The root of $k^2 - w - f c_2(k)$, from a bound above it downwards.
-fn position_gain(
-    (weight, factor, still, b): (f64, f64, f64, f64),
-    pole_sum: impl Fn(f64) -> f64,
-) -> f64 {
+fn position_gain(pole_sum: PoleSum, weight: f64, factor: f64) -> f64 {
+    let PoleSum { still, b } = pole_sum;
     // √(still + 2 b k) is at most √still + √(2 b k). Where k² is at least three times each of the three terms that the
     // right side then has, it is at least their sum.
     let bounds = [
@@ -95,7 +105,7 @@ fn position_gain(
     ];
     let mut gain = bounds.into_iter().fold(0.0, f64::max);
     for _ in 0..STEPS_MAX {
-        let sum = pole_sum(gain);
+        let sum = pole_sum.at(gain);
         let slope = 2.0 * gain - factor * b / sum;
         let next = gain - (gain * gain - weight - factor * sum) / slope;
         // Rounding ends the fall.

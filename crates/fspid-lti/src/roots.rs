@@ -184,9 +184,9 @@ fn starting_points(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
     let degree = coefficients.len() - 1;
     let mut points = Vec::with_capacity(degree);
     for edge in newton_polygon(coefficients).windows(2) {
-        let ((power, low), (next_power, high)) = (edge[0], edge[1]);
-        let count = next_power - power;
-        let radius = libm::exp2((low - high) / count as f64);
+        let (Corner { power, log2: low }, next) = (edge[0], edge[1]);
+        let count = next.power - power;
+        let radius = libm::exp2((low - next.log2) / count as f64);
         if !radius.is_normal() {
             return Err(LtiError::OutOfRange { what: WHAT });
         }
@@ -199,11 +199,19 @@ fn starting_points(coefficients: &[f64]) -> Result<Vec<Complex>, LtiError> {
     Ok(points)
 }
 
-/// Corners (power, log2 |coefficient|) of the upper convex hull, by rising power.
-fn newton_polygon(coefficients: &[f64]) -> Vec<(usize, f64)> {
-    let mut hull: Vec<(usize, f64)> = Vec::new();
+/// A term of a polynomial.
+#[derive(Clone, Copy)]
+struct Corner {
+    power: usize,
+    /// Of the coefficient's magnitude.
+    log2: f64,
+}
+
+/// Corners of the upper convex hull, by rising power.
+fn newton_polygon(coefficients: &[f64]) -> Vec<Corner> {
+    let mut hull: Vec<Corner> = Vec::new();
     let terms = coefficients.iter().rev().enumerate().filter(|(_, value)| **value != 0.0);
-    for point in terms.map(|(power, value)| (power, libm::log2(value.abs()))) {
+    for point in terms.map(|(power, value)| Corner { power, log2: libm::log2(value.abs()) }) {
         while hull.len() >= 2 && !turns_down(hull[hull.len() - 2], hull[hull.len() - 1], point) {
             hull.pop();
         }
@@ -212,9 +220,9 @@ fn newton_polygon(coefficients: &[f64]) -> Vec<(usize, f64)> {
     hull
 }
 
-fn turns_down(first: (usize, f64), middle: (usize, f64), last: (usize, f64)) -> bool {
-    let before = (middle.1 - first.1) * (last.0 - middle.0) as f64;
-    before > (last.1 - middle.1) * (middle.0 - first.0) as f64
+fn turns_down(first: Corner, middle: Corner, last: Corner) -> bool {
+    let before = (middle.log2 - first.log2) * (last.power - middle.power) as f64;
+    before > (last.log2 - middle.log2) * (middle.power - first.power) as f64
 }
 
 /// Makes real what is its own mirror image and exactly conjugate what has a partner.

@@ -75,6 +75,7 @@ pub trait Real:
     fn is_finite(self) -> bool;
 
     /// The number moved into `[lower, upper]`; NaN stays NaN.
+    #[inline(always)]
     fn limited(self, lower: Self, upper: Self) -> Self {
         if self < lower {
             lower
@@ -128,14 +129,17 @@ macro_rules! real {
                 clippy::cast_possible_truncation,
                 reason = "rounding to the nearest f32 is what is meant"
             )]
+            #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 value as $float
             }
 
+            #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
 
+            #[inline(always)]
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }

@@ -8,7 +8,7 @@ use fspid_core::{
 };
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, LinearPlant, NamedController, Scenario, Servo, SimError, Surroundings, Timing,
+    Actuator, Controller, LinearPlant, NamedController, Scenario, SimError, Surroundings, Timing,
 };
 
 use fspid_scenario::units::{degrees, radians};
@@ -146,7 +146,7 @@ impl FlightModel {
             name: self.name.clone(),
             plant: plant.clone().into(),
             plant_changes: Vec::new(),
-            servo: Servo::first_order(SERVO_S)?,
+            actuator: Actuator::first_order(SERVO_S)?,
             timing: Timing::new(SAMPLE_PERIOD_S, self.duration_s())?,
             setpoint: Profile::new(radians(self.amplitude_deg()), shape)?,
             disturbances: Vec::new(),

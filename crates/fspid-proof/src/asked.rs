@@ -33,8 +33,8 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         name: _,
         plant,
         plant_changes,
-        // Covered: the description has it as an actuator.
-        servo: _,
+        // Covered: the description has it.
+        actuator: _,
         // The period is the controller's, checked when the scenario is built; a claim holds for any length.
         timing: _,
         // Bounded: the range.
@@ -44,13 +44,7 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         controllers: _,
         surroundings,
     } = scenario;
-    let Surroundings {
-        weather,
-        // Covered: the description has it.
-        actuator: _,
-        pitch_sensor,
-        rate_sensor,
-    } = surroundings;
+    let Surroundings { weather, pitch_sensor, rate_sensor } = surroundings;
     let sensors = || [pitch_sensor, rate_sensor].into_iter().flatten().map(Sensor::model);
     let noisy = sensors().any(is_noisy) || disturbances.iter().any(|one| one.is_noise());
     let present = |what: LeftOut| match what {

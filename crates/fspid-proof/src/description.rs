@@ -154,7 +154,7 @@ impl LoopDescription {
             numerator: transfer_function.numerator().coefficients().to_vec(),
             denominator: transfer_function.denominator().coefficients().to_vec(),
             elevator_sign: plant.elevator_sign(),
-            actuator: scenario.actuator()?,
+            actuator: scenario.actuator,
             pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), dt_s),
             rate: Sensing::through(surroundings.rate_sensor.as_ref(), dt_s),
             controller: *controller,

@@ -7,7 +7,7 @@ use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing,
 };
 
 const GAINS: Gains<f64> = Gains { kp: 0.8, ki: 0.4, kd: 0.2 };
@@ -28,35 +28,31 @@ const LAGS: [ActuatorLag; 3] = [
     ActuatorLag::Second { natural_frequency_rad_s: 30.0, damping: 0.7 },
 ];
 
-/// The same loop as the simulation builds it, by its servo or by an actuator.
-fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, by_servo: bool) -> SampledPlant<f64> {
+/// The same loop as the simulation builds it: as one with its plant, or, with stops that are never reached, by legs.
+fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, as_one: bool) -> SampledPlant<f64> {
     let (numerator, denominator, sign) = PLANTS[plant];
     let plant = LinearPlant::new(numerator, denominator, sign).expect("allowed");
-    let (servo, lag) = match lag {
-        ActuatorLag::None => (Ok(Servo::ideal()), Ok(Lag::NONE)),
-        ActuatorLag::First { time_constant_s } => {
-            (Servo::first_order(time_constant_s), Lag::first_order(time_constant_s))
-        }
+    let lag = match lag {
+        ActuatorLag::None => Ok(Lag::NONE),
+        ActuatorLag::First { time_constant_s } => Lag::first_order(time_constant_s),
         ActuatorLag::Second { natural_frequency_rad_s, damping } => {
-            (Ok(Servo::ideal()), Lag::second_order(natural_frequency_rad_s, damping))
+            Lag::second_order(natural_frequency_rad_s, damping)
         }
     };
-    let actuator = Actuator::new(lag.expect("allowed"));
+    let servo = Actuator::new(lag.expect("allowed"));
+    let by_legs = servo.with_travel(-1e3, 1e3).expect("allowed");
     let config = PidConfig::sampled_every(dt_s);
     let pid = Pid::new(GAINS, config).expect("allowed");
     let scenario = Scenario {
         name: "plant".into(),
         plant: plant.clone().into(),
         plant_changes: Vec::new(),
-        servo: servo.expect("allowed"),
+        actuator: if as_one { servo } else { by_legs },
         timing: Timing::new(dt_s, 1.0).expect("allowed"),
         setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller: Controller::Fixed(pid) }],
-        surroundings: Surroundings {
-            actuator: if by_servo { None } else { Some(actuator) },
-            ..Surroundings::default()
-        },
+        surroundings: Surroundings::default(),
     };
     let memory = Memory::of_gains(GAINS, &config);
     LoopModel::of(&scenario, &plant, &config, memory).expect("a loop").plant().clone()
@@ -85,8 +81,8 @@ fn the_plant_of_the_simulation_lies_inside_but_for_its_own_rounding() {
         for lag in LAGS {
             for dt_s in [0.01, 0.02, 0.05] {
                 let second = matches!(lag, ActuatorLag::Second { .. });
-                for by_servo in [false, true].into_iter().filter(|servo| !(*servo && second)) {
-                    let flown = flown(plant, lag, dt_s, by_servo);
+                for as_one in [false, true].into_iter().filter(|as_one| !(*as_one && second)) {
+                    let flown = flown(plant, lag, dt_s, as_one);
                     let enclosed = enclosed(plant, lag, dt_s);
                     assert_eq!(enclosed.states, flown.states);
                     let (outside, radius) = distances(&enclosed.rows, &flown.rows);

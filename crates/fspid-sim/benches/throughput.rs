@@ -19,10 +19,10 @@ use fspid_core::{
     AntiWindup, ControllerSetting, Derivative, Fspid, Gains, InputScale, Limits, Pid, PidConfig,
     SelfTuner, TunerSettings,
 };
-use fspid_sim::batch::{Entrant, InstructionSet, Row, fly_group_by};
+use fspid_sim::batch::{BatchRow, Entrant, InstructionSet, fly_group_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario, Servo,
+    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario,
     Surroundings, Timing, fly,
 };
 
@@ -75,7 +75,7 @@ fn single_sum(prepared: &Prepared, controller: &Controller) -> f64 {
 
 fn group_sums<const W: usize>(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
     let mut sums = [0.0; W];
-    let outcomes = fly_group_by::<W>(set, flights, |row: &Row<'_, W>| {
+    let outcomes = fly_group_by::<W>(set, flights, |row: &BatchRow<'_, W>| {
         let [kp, ..] = row.gains;
         for (lane, sum) in sums.iter_mut().enumerate() {
             *sum += row.theta_rad[lane] + kp[lane];
@@ -162,7 +162,7 @@ fn scenario(seed: u64) -> Scenario {
         name: "throughput".to_owned(),
         plant: plant.expect("the paper's plant").into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, (SAMPLES - 1) as f64 * 0.01).expect("allowed"),
         setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed }).expect("allowed"),
         disturbances: Vec::new(),

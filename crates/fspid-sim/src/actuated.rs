@@ -8,15 +8,13 @@
 //!
 //! is solved leg by leg, by the [`law`](crate::law) of the leg. Nothing is allocated.
 
-use fspid_lti::{FineMatrix, Matrix, exponential_change};
-
 use crate::actuator::{Actuator, ActuatorState, Course, Leg};
 use crate::error::SimError;
+use crate::generator::Generator;
 use crate::gust_response::PlantAir;
-use crate::law::{INPUTS, Law, StateVector};
+use crate::law::{Law, LinearStep, StateVector};
 use crate::math::dot;
 use crate::plant::LinearPlant;
-use crate::propagator::{LinearStep, part_of_change};
 
 /// What enters the plant beside the command, held over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,31 +40,6 @@ pub(crate) struct Actuated {
     elevator_per_command: f64,
 }
 
-/// How elevator and gusts enter the states of the plant.
-struct Entries {
-    by_elevator: Vec<f64>,
-    by_gust: [Vec<f64>; 3],
-}
-
-impl Entries {
-    /// Rows of the generator: those of the plant, then two of zeros for deflection and its rate. The
-    /// elevator is the deflection, or the leg's input where it `follows_at_once`.
-    fn rows(&self, a: &[f64], follows_at_once: bool) -> Vec<Vec<f64>> {
-        let order = self.by_elevator.len();
-        let input = order + 2;
-        let mut rows = vec![vec![0.0; order + 2 + INPUTS]; order + 2];
-        for (i, row) in rows.iter_mut().take(order).enumerate() {
-            row[..order].copy_from_slice(&a[i * order..(i + 1) * order]);
-            row[if follows_at_once { input } else { order }] = self.by_elevator[i];
-            row[input + 1] = self.by_elevator[i];
-            for (place, column) in self.by_gust.iter().enumerate() {
-                row[input + 2 + place] = column[i];
-            }
-        }
-        rows
-    }
-}
-
 /// State of plant and actuator; the plant's values are followed by the deflection and its rate.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ActuatedState {
@@ -86,40 +59,18 @@ impl Actuated {
         actuator: Actuator,
         dt_s: f64,
     ) -> Result<Self, SimError> {
-        let model = plant.state_space();
         let order = plant.order();
-        let elevator_per_command = plant.elevator_sign().per_nose_up();
-        let entries = Entries {
-            by_elevator: model.b().data().iter().map(|b| elevator_per_command * b).collect(),
-            by_gust: plant.gust_columns().unwrap_or_else(|| [0; 3].map(|_| vec![0.0; order])),
-        };
-        let law = |follows: bool| {
-            let mut rows = entries.rows(model.a().data(), follows && actuator.lag().order() == 0);
-            actuator_rows(&mut rows[order..], actuator, follows);
-            Law::new(&rows, dt_s)
-        };
-        // θ' is the second state and what the elevator adds to it at once; of a plant of order 1 it
-        // is its only equation.
-        let mut rate_row = vec![0.0; order + 2];
-        match rate_row.get_mut(1) {
-            Some(rate) if order > 1 => *rate = 1.0,
-            _ => rate_row[..order].copy_from_slice(model.a().data()),
-        }
-        rate_row[order] = entries.by_elevator.first().copied().unwrap_or(0.0);
-        let mut follow = law(true)?;
-        if actuator.lag().order() == 0 {
-            // The remembered deflection of an ideal actuator is its target.
-            follow.remember_input(order);
-        }
+        let by_gust = plant.gust_columns().unwrap_or_else(|| no_gusts(order));
+        let generator = Generator::of(plant).by_legs(by_gust.clone());
         Ok(Self {
             actuator,
             dt_s,
             order,
-            follow,
-            air: PlantAir::new(model.a().data(), &entries.by_gust),
-            ramp: law(false)?,
-            rate_row,
-            elevator_per_command,
+            follow: generator.follow(actuator.lag(), dt_s)?,
+            ramp: generator.ramp(dt_s)?,
+            rate_row: generator.rate_row(),
+            air: PlantAir::new(&generator.a, &by_gust),
+            elevator_per_command: plant.elevator_sign().per_nose_up(),
         })
     }
 
@@ -202,55 +153,24 @@ impl Actuated {
         }
     }
 
-    /// The linear part of a sample: what a loop around rest obeys. The rate of a lag below second
-    /// order is no state of it.
-    pub(crate) fn linear_step(&self) -> LinearStep {
-        let (all, states) = (self.order + 2, self.order + self.actuator.lag().order().max(1));
-        let rows = self.follow.step_rows().take(states);
-        let entries = |row: &[f64]| -> Vec<f64> { [&row[..states], &row[all..all + 2]].concat() };
-        LinearStep {
-            states,
-            rows: rows.flat_map(entries).collect(),
-            rate_row: self.rate_row.iter().take(states).copied().collect(),
-        }
+    /// Of a lag below second order the rate is no state.
+    fn linear_states(&self) -> usize {
+        self.order + self.actuator.lag().order().max(1)
     }
-}
 
-impl Actuated {
+    /// The linear part of a sample: what a loop around rest obeys.
+    pub(crate) fn linear_step(&self) -> LinearStep {
+        self.follow.linear_step(self.linear_states(), &self.rate_row)
+    }
+
     /// What a sample changes of the states of [`linear_step`](Self::linear_step), and what 64 bits leave out of it.
     pub(crate) fn linear_change(&self, plant: &LinearPlant) -> Result<[Vec<f64>; 2], SimError> {
-        let order = self.actuator.lag().order();
-        let rest = plant.transfer_function().state_space_rest();
-        let entries = Entries {
-            by_elevator: rest.b().data().iter().map(|b| self.elevator_per_command * b).collect(),
-            by_gust: [0; 3].map(|_| vec![0.0; self.order]),
-        };
-        let mut rows = entries.rows(rest.a().data(), order == 0);
-        let generator = self.follow.generator()?;
-        rows.resize(generator.rows(), vec![0.0; generator.columns()]);
-        let generator = FineMatrix::new(generator, Matrix::from_rows(&rows)?)?;
-        let at_once = (order == 0).then_some(self.order);
-        let places = (self.order + order.max(1), self.order + 2);
-        part_of_change(&exponential_change(&generator, self.dt_s)?, places, at_once)
+        let rest = Generator::of_rest(plant).by_legs(no_gusts(self.order));
+        let rest = rest.rows(self.actuator.lag());
+        self.follow.change(&rest, self.linear_states(), self.dt_s)
     }
 }
 
-/// Rows of deflection and its rate.
-fn actuator_rows(rows: &mut [Vec<f64>], actuator: Actuator, follows: bool) {
-    let [deflection, rate] = rows else {
-        return;
-    };
-    let place = deflection.len() - INPUTS - 2;
-    let [by_deflection, by_rate, by_target] = actuator.lag().coefficients();
-    match (follows, actuator.lag().order()) {
-        (false, _) => deflection[place + 2] = 1.0,
-        (true, 1) => {
-            (deflection[place], deflection[place + 2]) = (by_deflection, by_target);
-        }
-        (true, 2) => {
-            deflection[place + 1] = 1.0;
-            (rate[place], rate[place + 1], rate[place + 2]) = (by_deflection, by_rate, by_target);
-        }
-        (true, _) => {}
-    }
+fn no_gusts(order: usize) -> [Vec<f64>; 3] {
+    [0; 3].map(|_| vec![0.0; order])
 }

@@ -87,7 +87,8 @@ fn powers(values: &[[f64; 3]; NODES]) -> [[f64; 3]; NODES] {
 /// every sample.
 pub(crate) fn responses(
     weather: &Weather,
-    (timing, gusts): (Timing, &[[f64; 3]]),
+    timing: Timing,
+    gusts: &[[f64; 3]],
     stages: &[Stage],
 ) -> Result<Option<Vec<Vec<f64>>>, SimError> {
     let grid = Grid::new(timing.dt_s());
@@ -95,7 +96,8 @@ pub(crate) fn responses(
     if weather.winds.is_empty() && held {
         return Ok(None);
     }
-    let mut walk = Walk { weather, turbulence: weather.walk()?, corners_s: corners_s(weather) };
+    let (turbulence, corners_s) = (weather.walk()?, corners_s(weather));
+    let mut walk = Walk { weather, turbulence, corners_s, timing, grid };
     let mut stages = stages.iter().peekable();
     let mut plant = None;
     let mut rows = Vec::with_capacity(gusts.len());
@@ -106,14 +108,14 @@ pub(crate) fn responses(
         let Some(plant) = plant else {
             return Ok(None);
         };
-        rows.push(walk.sample(plant, (k, gust), (timing, grid)));
+        rows.push(walk.sample(plant, k, gust));
     }
     Ok(Some(rows))
 }
 
 fn plant_air(propagation: &Propagation) -> Option<&PlantAir> {
     match propagation {
-        Propagation::Actuated(actuated) => Some(Actuated::air(actuated)),
+        Propagation::ByLegs(actuated) => Some(Actuated::air(actuated)),
         _ => None,
     }
 }
@@ -137,32 +139,25 @@ struct Walk<'a> {
     weather: &'a Weather,
     turbulence: Option<TurbulenceWalk>,
     corners_s: Vec<f64>,
+    timing: Timing,
+    grid: Grid,
 }
 
 impl Walk<'_> {
-    fn sample(
-        &mut self,
-        plant: &PlantAir,
-        (k, gust): (usize, &[f64; 3]),
-        (timing, grid): (Timing, Grid),
-    ) -> Vec<f64> {
+    fn sample(&mut self, plant: &PlantAir, k: usize, gust: &[f64; 3]) -> Vec<f64> {
         let mut states = vec![0.0; plant.rows.len()];
-        for piece in grid.pieces(k) {
+        for piece in self.grid.pieces(k) {
             let turbulence = self.turbulence.as_mut().map(|walk| walk.at(piece.tick));
             let still = turbulence.unwrap_or_default();
             let base: [f64; 3] = std::array::from_fn(|part| still[part] - gust[part]);
-            self.piece(&mut states, plant, (timing.time_s(k), piece, base));
+            self.piece(&mut states, plant, k, &piece, base);
         }
         states
     }
 
     /// A part of one tick, cut at corners.
-    fn piece(
-        &self,
-        states: &mut [f64],
-        plant: &PlantAir,
-        (sample_s, piece, base): (f64, Piece, [f64; 3]),
-    ) {
+    fn piece(&self, states: &mut [f64], plant: &PlantAir, k: usize, piece: &Piece, base: [f64; 3]) {
+        let sample_s = self.timing.time_s(k);
         let (begin_s, end_s) = (sample_s + piece.from_s, sample_s + piece.from_s + piece.length_s);
         let inside = |time_s: &f64| *time_s > begin_s + SHORTEST_S && *time_s < end_s - SHORTEST_S;
         let mut from_s = begin_s;
@@ -171,7 +166,7 @@ impl Walk<'_> {
             let length_s = (to_s - from_s) / parts;
             let mut index = 0.0;
             while index < parts {
-                self.part(states, plant, (from_s + index * length_s, length_s, base));
+                self.part(states, plant, from_s + index * length_s, length_s, base);
                 index += 1.0;
             }
             from_s = to_s;
@@ -182,7 +177,9 @@ impl Walk<'_> {
         &self,
         states: &mut [f64],
         plant: &PlantAir,
-        (from_s, length_s, base): (f64, f64, [f64; 3]),
+        from_s: f64,
+        length_s: f64,
+        base: [f64; 3],
     ) {
         let values: [[f64; 3]; NODES] = std::array::from_fn(|node| {
             let wind = self.weather.wind_change(from_s + 0.25 * node as f64 * length_s);

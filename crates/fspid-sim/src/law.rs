@@ -4,7 +4,7 @@
 //! exponential on the state: its Taylor series over pieces so short that what follows its last term
 //! is below rounding. Neither allocates.
 
-use fspid_lti::{Matrix, exponential};
+use fspid_lti::{FineMatrix, Matrix, exponential, exponential_change};
 
 use crate::error::SimError;
 use crate::math::dot;
@@ -15,6 +15,17 @@ pub(crate) const INPUTS: usize = 5;
 const PIECE: f64 = 0.5;
 /// Its terms: 0.5^16 / 16! is below 10⁻¹⁸.
 const TERMS: u32 = 16;
+
+/// One sample of plant and actuator without limits.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LinearStep {
+    /// States of plant and actuator, pitch angle first.
+    pub(crate) states: usize,
+    /// Rows over states, command and elevator disturbance, flat.
+    pub(crate) rows: Vec<f64>,
+    /// Row from states to pitch rate.
+    pub(crate) rate_row: Vec<f64>,
+}
 
 /// A state and what is needed to move it.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,55 +45,89 @@ impl StateVector {
 /// A linear law over state and held inputs, and its solution over one sample.
 #[derive(Clone, Debug)]
 pub(crate) struct Law {
-    /// Rows of the generator.
-    generator: Vec<f64>,
-    /// Rows of its exponential over the sample.
-    step: Vec<f64>,
-    width: usize,
+    /// Rows of all states over states and inputs, then rows of zeros.
+    generator: Matrix,
+    /// Rows of its exponential over the sample, flat.
+    pub(crate) step: Vec<f64>,
+    states: usize,
+    /// A state that is the first input.
+    remembers: Option<usize>,
     /// Largest row sum of the part over the state, 1/s.
     norm_1_s: f64,
 }
 
 impl Law {
-    pub(crate) fn new(rows: &[Vec<f64>], dt_s: f64) -> Result<Self, SimError> {
-        let width = rows.len() + INPUTS;
-        let mut square = rows.to_vec();
-        square.resize(width, vec![0.0; width]);
-        let generator = Matrix::from_rows(&square)?;
-        let step = exponential(&generator.scaled(dt_s))?;
-        let sum = |row: &Vec<f64>| row.iter().take(rows.len()).map(|entry| entry.abs()).sum();
-        Ok(Self {
-            generator: generator.data()[..rows.len() * width].to_vec(),
-            step: step.data()[..rows.len() * width].to_vec(),
-            width,
+    /// Of the rows of all states over states and inputs; a state may be the first input itself.
+    pub(crate) fn new(
+        rows: &[Vec<f64>],
+        remembers: Option<usize>,
+        dt_s: f64,
+    ) -> Result<Self, SimError> {
+        let states = rows.len();
+        let sum = |row: &Vec<f64>| row.iter().take(states).map(|entry| entry.abs()).sum();
+        let mut law = Self {
+            generator: square(rows)?,
+            step: Vec::new(),
+            states,
+            remembers,
             norm_1_s: rows.iter().map(sum).fold(0.0, f64::max),
-        })
+        };
+        law.step = law.step_over(dt_s)?;
+        Ok(law)
     }
 
-    /// The generator of states and held inputs.
-    pub(crate) fn generator(&self) -> Result<Matrix, SimError> {
-        let mut square: Vec<Vec<f64>> =
-            self.generator.chunks_exact(self.width).map(<[f64]>::to_vec).collect();
-        square.resize(self.width, vec![0.0; self.width]);
-        Ok(Matrix::from_rows(&square)?)
-    }
-
-    /// The rows of one sample.
-    pub(crate) fn step_rows(&self) -> std::slice::ChunksExact<'_, f64> {
-        self.step.chunks_exact(self.width)
-    }
-
-    /// Lets the deflection after a sample be the input.
-    pub(crate) fn remember_input(&mut self, deflection: usize) {
-        if let Some(row) = self.step.chunks_exact_mut(self.width).nth(deflection) {
+    /// The rows of all states over another time, flat.
+    pub(crate) fn step_over(&self, time_s: f64) -> Result<Vec<f64>, SimError> {
+        let step = exponential(&self.generator.scaled(time_s))?;
+        let width = self.generator.columns();
+        let mut rows = step.data()[..self.states * width].to_vec();
+        if let Some(row) = self.remembers.and_then(|state| rows.chunks_exact_mut(width).nth(state))
+        {
             row.fill(0.0);
-            row[deflection + 2] = 1.0;
+            row[self.states] = 1.0;
         }
+        Ok(rows)
+    }
+
+    /// The first of its states over one sample.
+    pub(crate) fn linear_step(&self, states: usize, rate_row: &[f64]) -> LinearStep {
+        let rows = self.step.chunks_exact(self.generator.columns()).take(states);
+        let inputs = self.states..self.states + 2;
+        let entries = |row: &[f64]| [&row[..states], &row[inputs.clone()]].concat();
+        LinearStep {
+            states,
+            rows: rows.flat_map(entries).collect(),
+            rate_row: rate_row[..states].to_vec(),
+        }
+    }
+
+    /// What a sample changes of the first of its states: rows over them and the command, less 1 on the diagonal, and
+    /// what 64 bits leave out of them, `rest` being what they leave out of the generator's rows.
+    pub(crate) fn change(
+        &self,
+        rest: &[Vec<f64>],
+        states: usize,
+        dt_s: f64,
+    ) -> Result<[Vec<f64>; 2], SimError> {
+        let generator = FineMatrix::new(self.generator.clone(), square(rest)?)?;
+        let change = exponential_change(&generator, dt_s)?;
+        let part = |matrix: &Matrix, [left, kept]: [f64; 2]| {
+            let rows = matrix.data().chunks_exact(matrix.columns()).take(states);
+            let columns = |row: &[f64]| [&row[..states], &row[self.states..=self.states]].concat();
+            let mut part: Vec<f64> = rows.flat_map(columns).collect();
+            if let Some(state) = self.remembers {
+                let row = &mut part[state * (states + 1)..(state + 1) * (states + 1)];
+                row.fill(0.0);
+                (row[state], row[states]) = (left, kept);
+            }
+            part
+        };
+        Ok([part(change.high(), [-1.0, 1.0]), part(change.low(), [0.0, 0.0])])
     }
 
     /// x ← Φ x + Γ u
     pub(crate) fn advance(&self, state: &mut StateVector, inputs: &[f64; INPUTS]) {
-        let rows = self.step.chunks_exact(self.width);
+        let rows = self.step.chunks_exact(self.generator.columns());
         for (next, row) in state.scratch.iter_mut().zip(rows) {
             let (by_state, by_input) = row.split_at(state.values.len());
             *next = dot(by_state, &state.values) + dot(by_input, inputs);
@@ -110,7 +155,7 @@ impl Law {
     }
 
     fn piece(&self, state: &mut StateVector, inputs: &[f64; INPUTS], step_s: f64) {
-        let rows = || self.generator.chunks_exact(self.width);
+        let rows = || self.generator.data().chunks_exact(self.generator.columns());
         for (term, row) in state.term.iter_mut().zip(rows()) {
             let (by_state, by_input) = row.split_at(state.values.len());
             *term = step_s * (dot(by_state, &state.values) + dot(by_input, inputs));
@@ -125,4 +170,12 @@ impl Law {
             std::mem::swap(&mut state.term, &mut state.scratch);
         }
     }
+}
+
+/// Rows with rows of zeros below them.
+fn square(rows: &[Vec<f64>]) -> Result<Matrix, SimError> {
+    let width = rows.first().map_or(0, Vec::len);
+    let mut square = rows.to_vec();
+    square.resize(width, vec![0.0; width]);
+    Ok(Matrix::from_rows(&square)?)
 }

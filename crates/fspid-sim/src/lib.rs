@@ -1,9 +1,9 @@
 #![doc = include_str!("../README.md")]
 //!
-//! What flies is a [`LinearPlant`] or an [`AircraftPlant`] behind a [`Servo`], what answers a [`Controller`]. Units are
+//! What flies is a [`LinearPlant`] or an [`AircraftPlant`] behind an [`Actuator`], what answers a [`Controller`]. Units are
 //! SI and radians; degrees exist in files and reports only.
 //!
-//! [`Surroundings`] adds what a real flight has: moving [`air`], an [`actuator`] with limits, sensors
+//! [`Surroundings`] adds what a real flight has: moving [`air`], sensors
 //! with noise and delay. Without them the loop is that of the paper, bit for bit.
 //!
 //! No features. Not here: measures and verdicts (`fspid-study`). [`stability`] is the exception that the loop itself
@@ -23,6 +23,7 @@ mod controller;
 pub mod describing;
 mod error;
 pub mod flown;
+mod generator;
 mod gust_entry;
 mod gust_response;
 mod law;
@@ -36,7 +37,6 @@ mod propagator;
 mod rest;
 mod scenario;
 pub mod sensor;
-mod servo;
 pub mod signal;
 pub mod stability;
 mod steady;
@@ -44,6 +44,7 @@ mod surroundings;
 mod timing;
 mod trace;
 
+pub use actuator::Actuator;
 pub use aircraft::{AircraftPlant, AircraftSample};
 pub use closed_loop::{Flight, Instant, fly, fly_commanded, fly_perturbed, simulate};
 pub use controller::Controller;
@@ -53,7 +54,6 @@ pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use rest::{Rest, RestPoint, Side, Stand};
 pub use scenario::{NamedController, Prepared, Scenario};
-pub use servo::Servo;
 pub use steady::Steady;
 pub use surroundings::{Course, Surroundings, Weather};
 pub use timing::{MAX_ROWS, Timing};

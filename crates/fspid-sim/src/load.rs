@@ -93,7 +93,7 @@ pub fn constant_load(
     let lasting = scenario.lasting_plants().into_iter().map(|(_, plant)| plant);
     let mut worst: Option<ConstantLoad> = None;
     for plant in trimmed.iter().chain(lasting) {
-        let load = with_plant(scenario, plant, (gains, config))?;
+        let load = with_plant(scenario, plant, gains, config)?;
         // Written so that NaN is the worst.
         if worst.is_none_or(|worst| !(load.share_left() <= worst.share_left())) {
             worst = Some(load);
@@ -105,7 +105,8 @@ pub fn constant_load(
 fn with_plant(
     scenario: &Scenario,
     plant: &LinearPlant,
-    (gains, config): (Gains<f64>, &PidConfig<f64>),
+    gains: Gains<f64>,
+    config: &PidConfig<f64>,
 ) -> Result<ConstantLoad, SimError> {
     let memory = Memory::of_gains(gains, config);
     let model = LoopModel::of(scenario, plant, config, memory)?.without_changing_ages();
@@ -126,7 +127,7 @@ fn with_plant(
     let mut largest: f64 = 0.0;
     for point in 1..=points {
         if point > EARLY_POINTS {
-            history.extend(sizes_between(&one, (at, &state), stretch)?);
+            history.extend(sizes_between(&one, &state, at, stretch)?);
         }
         several.apply(&state, &mut next)?;
         std::mem::swap(&mut state, &mut next);
@@ -153,7 +154,8 @@ fn size(state: &[f64]) -> f64 {
 /// The samples of a stretch but for its ends, with the size of the error at each.
 fn sizes_between(
     one: &Matrix,
-    (from, state): (usize, &[f64]),
+    state: &[f64],
+    from: usize,
     stretch: usize,
 ) -> Result<Vec<(usize, f64)>, LtiError> {
     let (mut state, mut next) = (state.to_vec(), state.to_vec());
@@ -223,9 +225,9 @@ mod tests {
     use fspid_core::{Gains, PidConfig};
 
     use super::*;
+    use crate::actuator::Actuator;
     use crate::controller::Controller;
     use crate::plant::{ElevatorSign, Plant};
-    use crate::servo::Servo;
     use crate::signal::Profile;
     use crate::stability::growth_at_rest;
     use crate::timing::Timing;
@@ -239,7 +241,7 @@ mod tests {
             name: String::new(),
             plant: Plant::Linear(plant.expect("a plant")),
             plant_changes: Vec::new(),
-            servo: Servo::ideal(),
+            actuator: Actuator::ideal(),
             timing: Timing::new(DT_S, duration_s).expect("a timing"),
             setpoint: Profile::new(0.0, crate::signal::Shape::Step { at_s: 0.0 }).expect("a step"),
             disturbances: Vec::new(),

@@ -1,12 +1,13 @@
-//! The ways from one sample to the next: behind the servo of the paper, behind an actuator, or in an
-//! aircraft. All stages of a flight are of one kind, so that a motion always meets its own.
+//! The ways from one sample to the next: plant and actuator as one linear system, leg by leg of the actuator, or in
+//! an aircraft. All stages of a flight are of one kind, so that a motion always meets its own.
 
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::error::SimError;
+use crate::law::LinearStep;
 use crate::loop_model::SampledPlant;
 use crate::plant::LinearPlant;
-use crate::propagator::{LinearStep, PlantState, Propagator};
+use crate::propagator::{PlantState, Propagator};
 
 /// Beyond this pitch angle a flight has diverged: 10⁶ degrees.
 pub(crate) const DIVERGED_RAD: f64 = 1e6 * std::f64::consts::PI / 180.0;
@@ -18,10 +19,10 @@ const DIFFERENCE: f64 = 1e-7;
 /// A plant and what moves its elevator, discretised.
 #[derive(Clone, Debug)]
 pub(crate) enum Propagation {
-    /// With the first-order servo, without gusts: the bits of stored results.
-    Servo(Propagator),
-    /// With an actuator and gusts.
-    Actuated(Actuated),
+    /// A first-order servo in calm air, sampled with its plant: what lanes fly.
+    AsOne(Propagator),
+    /// Any other actuator, and any in moving air.
+    ByLegs(Actuated),
     /// A nonlinear aircraft with an actuator, in moving air.
     Aircraft(Box<AircraftFlight>),
 }
@@ -29,16 +30,16 @@ pub(crate) enum Propagation {
 /// Where plant and elevator are.
 #[derive(Clone, Debug)]
 pub(crate) enum Motion {
-    Servo(PlantState),
-    Actuated(ActuatedState),
+    AsOne(PlantState),
+    ByLegs(ActuatedState),
     Aircraft(Box<AircraftMotion>),
 }
 
 impl Motion {
     pub(crate) fn theta_rad(&self) -> f64 {
         match self {
-            Self::Servo(state) => state.theta_rad(),
-            Self::Actuated(state) => state.theta_rad(),
+            Self::AsOne(state) => state.theta_rad(),
+            Self::ByLegs(state) => state.theta_rad(),
             Self::Aircraft(state) => state.theta_rad(),
         }
     }
@@ -55,8 +56,8 @@ impl Motion {
 impl Propagation {
     pub(crate) fn at_rest(&self) -> Motion {
         match self {
-            Self::Servo(propagator) => Motion::Servo(PlantState::at_rest(propagator.order())),
-            Self::Actuated(actuated) => Motion::Actuated(actuated.at_rest()),
+            Self::AsOne(propagator) => Motion::AsOne(PlantState::at_rest(propagator.order())),
+            Self::ByLegs(actuated) => Motion::ByLegs(actuated.at_rest()),
             Self::Aircraft(flight) => Motion::Aircraft(Box::new(flight.at_rest())),
         }
     }
@@ -74,8 +75,8 @@ impl Propagation {
     #[inline(always)]
     pub(crate) fn rate_rad_s(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
         match (self, motion) {
-            (Self::Servo(it), Motion::Servo(state)) => it.rate_rad_s(state, disturbance_rad),
-            (Self::Actuated(it), Motion::Actuated(state)) => it.rate_rad_s(state, disturbance_rad),
+            (Self::AsOne(it), Motion::AsOne(state)) => it.rate_rad_s(state, disturbance_rad),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.rate_rad_s(state, disturbance_rad),
             (_, Motion::Aircraft(state)) => state.rate_rad_s(),
             _ => 0.0,
         }
@@ -86,10 +87,8 @@ impl Propagation {
     #[inline(always)]
     pub(crate) fn elevator_rad(&self, motion: &Motion, disturbance_rad: f64) -> f64 {
         match (self, motion) {
-            (Self::Servo(it), Motion::Servo(state)) => it.elevator_rad(state, disturbance_rad),
-            (Self::Actuated(it), Motion::Actuated(state)) => {
-                it.elevator_rad(state, disturbance_rad)
-            }
+            (Self::AsOne(it), Motion::AsOne(state)) => it.elevator_rad(state, disturbance_rad),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.elevator_rad(state, disturbance_rad),
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 it.elevator_rad(state, disturbance_rad)
             }
@@ -111,8 +110,8 @@ impl Propagation {
     #[inline(always)]
     pub(crate) fn settle(&self, motion: &mut Motion, command_rad: f64) {
         match (self, motion) {
-            (Self::Servo(it), Motion::Servo(state)) => it.settle_ideal_servo(state, command_rad),
-            (Self::Actuated(it), Motion::Actuated(state)) => it.settle(state, command_rad),
+            (Self::AsOne(it), Motion::AsOne(state)) => it.settle_ideal_servo(state, command_rad),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.settle(state, command_rad),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.settle(state, command_rad),
             _ => {}
         }
@@ -126,10 +125,10 @@ impl Propagation {
         held: &Held<'_>,
     ) -> Result<(), SimError> {
         match (self, motion) {
-            (Self::Servo(it), Motion::Servo(state)) => {
+            (Self::AsOne(it), Motion::AsOne(state)) => {
                 it.advance(state, command_rad, held.elevator_rad)?;
             }
-            (Self::Actuated(it), Motion::Actuated(state)) => it.advance(state, command_rad, held),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.advance(state, command_rad, held),
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 it.advance(state, command_rad, held.elevator_rad);
             }
@@ -141,8 +140,8 @@ impl Propagation {
     /// True where a limit makes of the coming sample another than one without limits.
     pub(crate) fn is_limited(&self, motion: &Motion, command_rad: f64) -> bool {
         match (self, motion) {
-            (Self::Servo(it), Motion::Servo(state)) => it.is_limited(state, command_rad),
-            (Self::Actuated(it), Motion::Actuated(state)) => it.is_limited(state, command_rad),
+            (Self::AsOne(it), Motion::AsOne(state)) => it.is_limited(state, command_rad),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.is_limited(state, command_rad),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.is_limited(state, command_rad),
             _ => false,
         }
@@ -152,8 +151,8 @@ impl Propagation {
     /// [`linear_step`](Self::linear_step), or pitch, u, w, q and actuator of an aircraft.
     fn values(&self, motion: &Motion) -> Vec<f64> {
         match (self, motion) {
-            (Self::Servo(_), Motion::Servo(state)) => state.values().to_vec(),
-            (Self::Actuated(it), Motion::Actuated(state)) => it.values(state),
+            (Self::AsOne(_), Motion::AsOne(state)) => state.values().to_vec(),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.values(state),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.values(state),
             _ => Vec::new(),
         }
@@ -161,8 +160,8 @@ impl Propagation {
 
     fn nudge(&self, motion: &mut Motion, place: usize, by: f64) {
         match (self, motion) {
-            (Self::Servo(_), Motion::Servo(state)) => state.nudge(place, by),
-            (Self::Actuated(it), Motion::Actuated(state)) => it.nudge(state, place, by),
+            (Self::AsOne(_), Motion::AsOne(state)) => state.nudge(place, by),
+            (Self::ByLegs(it), Motion::ByLegs(state)) => it.nudge(state, place, by),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.nudge(state, place, by),
             _ => {}
         }
@@ -210,16 +209,16 @@ impl Propagation {
         plant: &LinearPlant,
     ) -> Result<Option<[Vec<f64>; 2]>, SimError> {
         match self {
-            Self::Servo(it) => it.linear_change(plant).map(Some),
-            Self::Actuated(it) => it.linear_change(plant).map(Some),
+            Self::AsOne(it) => it.linear_change(plant).map(Some),
+            Self::ByLegs(it) => it.linear_change(plant).map(Some),
             Self::Aircraft(_) => Ok(None),
         }
     }
 
     pub(crate) fn linear_step(&self) -> Option<LinearStep> {
         match self {
-            Self::Servo(it) => Some(it.linear_step()),
-            Self::Actuated(it) => Some(it.linear_step()),
+            Self::AsOne(it) => Some(it.linear_step()),
+            Self::ByLegs(it) => Some(it.linear_step()),
             Self::Aircraft(_) => None,
         }
     }

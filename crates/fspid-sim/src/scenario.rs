@@ -10,7 +10,6 @@ use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
 use crate::propagator::Propagator;
 use crate::sensor::Sensor;
-use crate::servo::Servo;
 use crate::signal::{Disturbance, Edge, Entry, Profile};
 use crate::surroundings::Surroundings;
 use crate::timing::Timing;
@@ -33,8 +32,8 @@ pub struct Scenario {
     pub plant: Plant,
     /// Changes of a linear plant in flight, in order of time.
     pub plant_changes: Vec<PlantChange>,
-    /// The elevator servo.
-    pub servo: Servo,
+    /// What moves the elevator.
+    pub actuator: Actuator,
     /// Samples.
     pub timing: Timing,
     /// Commanded pitch.
@@ -43,19 +42,19 @@ pub struct Scenario {
     pub disturbances: Vec<Disturbance>,
     /// Who answers.
     pub controllers: Vec<NamedController>,
-    /// Moving air, an actuator in place of the servo, sensors; by default none.
+    /// Moving air and sensors; by default none.
     pub surroundings: Surroundings,
 }
 
 impl Scenario {
-    /// A flight with an ideal servo in calm air, without anybody who answers yet; `name` is the title of reports.
+    /// A flight with an ideal actuator in calm air, without anybody who answers yet; `name` is the title of reports.
     #[must_use]
     pub fn new(name: &str, plant: impl Into<Plant>, timing: Timing, setpoint: Profile) -> Self {
         Self {
             name: name.to_owned(),
             plant: plant.into(),
             plant_changes: Vec::new(),
-            servo: Servo::ideal(),
+            actuator: Actuator::ideal(),
             timing,
             setpoint,
             disturbances: Vec::new(),
@@ -100,13 +99,13 @@ impl Scenario {
         let (stages, gusts) = (self.stages()?, self.gusts()?);
         let gust_responses = match (&self.surroundings.weather, &gusts) {
             (Some(weather), Some(gusts)) => {
-                gust_response::responses(weather, (self.timing, gusts), &stages)?
+                gust_response::responses(weather, self.timing, gusts, &stages)?
             }
             _ => None,
         };
         Ok(Prepared {
             timing: self.timing,
-            delay_samples: self.delay_samples(),
+            delay_samples: self.actuator.delay_samples(),
             setpoint_rad,
             edges,
             at_servo: column(Entry::Servo),
@@ -120,17 +119,14 @@ impl Scenario {
         })
     }
 
-    /// What moves the elevator: the surroundings' actuator, or the servo written as one.
-    ///
-    /// # Errors
-    /// None: what a servo allows, an actuator allows.
-    pub fn actuator(&self) -> Result<Actuator, SimError> {
-        self.surroundings.actuator.map_or_else(|| self.servo.as_actuator(), Ok)
-    }
-
-    pub(crate) fn delay_samples(&self) -> usize {
-        let actuator = self.surroundings.actuator.as_ref();
-        actuator.map_or(self.servo.delay_samples(), Actuator::delay_samples)
+    /// True for a flight that [`batch`](crate::batch) can fly: a linear plant in calm air behind a first-order servo,
+    /// seen as it is.
+    #[must_use]
+    pub fn flies_side_by_side(&self) -> bool {
+        let Surroundings { weather, pitch_sensor, rate_sensor } = &self.surroundings;
+        let is_seen = pitch_sensor.is_none() && rate_sensor.is_none();
+        let is_calm = weather.is_none();
+        self.plant.linear().is_some() && is_calm && is_seen && self.actuator.is_first_order_servo()
     }
 
     fn gusts(&self) -> Result<Option<Vec<[f64; 3]>>, SimError> {
@@ -143,21 +139,16 @@ impl Scenario {
         weather.gusts(self.timing).map(Some)
     }
 
-    /// A plant of the scenario, discretised: behind the servo in calm air, behind an actuator else.
+    /// A plant of the scenario, discretised: as one with a first-order servo in calm air, by legs else.
     pub(crate) fn propagation(
         &self,
         plant: &LinearPlant,
         dt_s: f64,
     ) -> Result<Propagation, SimError> {
-        let Surroundings { weather, actuator, .. } = &self.surroundings;
-        let actuator = match (actuator, weather) {
-            (Some(actuator), _) => *actuator,
-            (None, Some(_)) => self.servo.as_actuator()?,
-            (None, None) => {
-                return Ok(Propagation::Servo(Propagator::new(plant, self.servo, dt_s)?));
-            }
-        };
-        Ok(Propagation::Actuated(Actuated::new(plant, actuator, dt_s)?))
+        if self.surroundings.weather.is_none() && self.actuator.is_first_order_servo() {
+            return Propagator::new(plant, self.actuator, dt_s).map(Propagation::AsOne);
+        }
+        Actuated::new(plant, self.actuator, dt_s).map(Propagation::ByLegs)
     }
 
     /// The one stage of a flight whose plant is an aircraft.
@@ -166,7 +157,7 @@ impl Scenario {
             return Err(SimError::AircraftChanges);
         }
         let weather = self.surroundings.weather.as_ref();
-        let flight = AircraftFlight::new(plant, self.actuator()?, weather, self.timing)?;
+        let flight = AircraftFlight::new(plant, self.actuator, weather, self.timing)?;
         Ok(vec![Stage { from: 0, propagation: Propagation::Aircraft(Box::new(flight)) }])
     }
 

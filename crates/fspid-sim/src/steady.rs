@@ -42,11 +42,10 @@ impl Scenario {
 
     fn steady_where(&self, counts: impl Fn(&Shape) -> bool + Copy) -> Steady {
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
-        let bias_rad = self.actuator().map_or(0.0, |actuator| actuator.bias_rad());
         Steady {
             setpoint_rad: self.setpoint.ends_rad(),
             load_rad: self.furthest(&[Entry::Servo, Entry::Elevator], counts),
-            bias_rad: bias_rad.abs(),
+            bias_rad: self.actuator.bias_rad().abs(),
             offset_rad: self.furthest(&[Entry::Measurement], counts)
                 + biased(&self.surroundings.pitch_sensor),
             rate_offset_rad_s: biased(&self.surroundings.rate_sensor),

@@ -1,23 +1,20 @@
-//! What a flight has beyond plant and servo: moving air, an actuator, sensors.
+//! What a flight has beyond plant and actuator: moving air and sensors.
 
 use crate::actuated::Held;
-use crate::actuator::Actuator;
-use crate::air::{AirMotion, GRID_S, Grid, Place, Shaping, Turbulence, Wind, sum_at};
+use crate::air::{AirMotion, AirPlace, GRID_S, Grid, Shaping, Turbulence, Wind, sum_at};
 use crate::error::{SimError, finite, positive};
 use crate::math::sin_cos;
 use crate::sensor::Sensor;
 use crate::timing::Timing;
 
-/// Moving air, an actuator, sensors; by default none of them, so that the plant flies in calm air
-/// behind its servo and the controller sees pitch and pitch rate as they are.
+/// Moving air and sensors; by default none of them, so that the plant flies in calm air and the controller sees pitch
+/// and pitch rate as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// Air that moves. The plant must say how it acts ([`LinearPlant::with_gusts`]).
     ///
     /// [`LinearPlant::with_gusts`]: crate::LinearPlant::with_gusts
     pub weather: Option<Weather>,
-    /// What moves the elevator, in place of the scenario's servo.
-    pub actuator: Option<Actuator>,
     /// What measures the pitch angle.
     pub pitch_sensor: Option<Sensor>,
     /// What measures the pitch rate.
@@ -53,13 +50,13 @@ pub struct Weather {
 impl Course {
     /// Where the aircraft is at a time. It drifts with no wind: a linear model has small gusts.
     #[must_use]
-    pub fn place(&self, time_s: f64) -> Place {
+    pub fn place(&self, time_s: f64) -> AirPlace {
         let distance_m = self.airspeed_m_s * time_s;
         let (sine, cosine) = sin_cos(self.heading_rad);
         let (up, along) = sin_cos(self.climb_rad);
         let ground_m = distance_m * along;
         let [north_m, east_m] = self.start_m;
-        Place {
+        AirPlace {
             time_s,
             distance_m,
             north_m: north_m + ground_m * cosine,

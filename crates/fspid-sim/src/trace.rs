@@ -44,7 +44,8 @@ impl Exit {
     pub fn take_in(
         exit: &mut Option<Self>,
         departure: Option<Departure>,
-        (k, timing): (usize, Timing),
+        k: usize,
+        timing: Timing,
     ) {
         let Some(departure) = departure else {
             return;
@@ -129,7 +130,7 @@ impl Trace {
         self.faults = instant.step.faults;
         self.push_columns(prepared, instant);
         let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
-        Exit::take_in(&mut self.exit, departure, (instant.k, prepared.timing()));
+        Exit::take_in(&mut self.exit, departure, instant.k, prepared.timing());
     }
 
     /// The values in the order of [`column_names`].

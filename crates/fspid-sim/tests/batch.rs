@@ -13,8 +13,8 @@ use fspid_core::{
 use fspid_sim::batch::{Entrant, InstructionSet, Refusal, fly_group_by, fly_many};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, Instant, LinearPlant, Outcome, PlantChange, Prepared, Scenario,
-    Servo, SimError, Surroundings, Timing, fly,
+    Actuator, Controller, ElevatorSign, Instant, LinearPlant, Outcome, PlantChange, Prepared,
+    Scenario, SimError, Surroundings, Timing, fly,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -84,13 +84,13 @@ fn plant(random: &mut Random, order: usize, nose_up: bool) -> LinearPlant {
     LinearPlant::new(&numerator, &denominator, sign).expect("proper")
 }
 
-fn servo(random: &mut Random, wild: bool) -> Servo {
-    let mut servo = Servo::first_order(random.between(0.03, 0.2)).expect("allowed");
+fn servo(random: &mut Random, wild: bool) -> Actuator {
+    let mut servo = Actuator::first_order(random.between(0.03, 0.2)).expect("allowed");
     if !wild {
         return servo;
     }
     if random.one_in(4) {
-        servo = Servo::ideal();
+        servo = Actuator::ideal();
     }
     if random.one_in(2) {
         servo = servo.with_position_limit(random.between(0.05, 0.5)).expect("allowed");
@@ -231,7 +231,7 @@ fn scenario(random: &mut Random, structure: Structure) -> Scenario {
         name: "batch".into(),
         plant: plant(random, structure.order, false).into(),
         plant_changes: Vec::new(),
-        servo: servo(random, structure.wild),
+        actuator: servo(random, structure.wild),
         timing: Timing::new(0.02, 3.0).expect("allowed"),
         setpoint: Profile::new(random.between(-1.0, 1.0), Shape::Step { at_s: 0.3 })
             .expect("allowed"),
@@ -472,7 +472,7 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     other.timing = Timing::new(0.02, 1.0).expect("allowed");
     mixed[3] = (other.prepare().expect("flies"), mixed[0].1);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its timing" });
-    other.surroundings.actuator = Some(other.servo.as_actuator().expect("allowed"));
+    other.actuator = other.actuator.with_bias(0.01).expect("allowed");
     mixed[3] = (other.prepare().expect("flies"), mixed[0].1);
     assert_eq!(refusal(&mixed), Refusal::Part { flight: 3, what: "an actuator or gusts" });
     assert!(refusal(&mixed).to_string().starts_with("flight 3 has an actuator or gusts"));

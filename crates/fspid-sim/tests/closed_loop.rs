@@ -7,8 +7,8 @@ use core::ops::ControlFlow;
 use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange, Scenario, Servo,
-    SimError, Surroundings, Timing, Trace, fly_commanded, simulate,
+    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange,
+    Scenario, SimError, Surroundings, Timing, Trace, fly_commanded, simulate,
 };
 use proptest::prelude::*;
 
@@ -36,7 +36,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         name: "law".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, 5.0).expect("allowed"),
         setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
         disturbances: Vec::new(),
@@ -78,7 +78,7 @@ proptest! {
         kp in 0.5_f64..20.0, limit in 0.05_f64..1.0, rate in 0.2_f64..5.0, lag in 0.0_f64..0.3,
     ) {
         let mut scenario = scenario(b747(), pid(kp, 0.1, 0.5), 1.0);
-        scenario.servo = Servo::first_order(lag)
+        scenario.actuator = Actuator::first_order(lag)
             .and_then(|servo| servo.with_position_limit(limit))
             .and_then(|servo| servo.with_rate_limit(rate))
             .expect("allowed");
@@ -114,8 +114,8 @@ fn a_disturbance_of_the_measurement_is_not_in_the_pitch_of_the_trace() {
 fn a_delay_shifts_the_first_motion_by_its_samples() {
     let first_motion = |delay: usize| {
         let mut scenario = scenario(b747(), pid(1.0, 0.0, 0.0), 0.1);
-        scenario.servo =
-            Servo::first_order(0.1).and_then(|s| s.with_delay(delay)).expect("allowed");
+        scenario.actuator =
+            Actuator::first_order(0.1).and_then(|s| s.with_delay(delay)).expect("allowed");
         flown(&scenario).theta_rad.iter().position(|&theta| theta != 0.0)
     };
     assert_eq!(first_motion(0), Some(1));
@@ -125,7 +125,7 @@ fn a_delay_shifts_the_first_motion_by_its_samples() {
 #[test]
 fn an_ideal_servo_is_where_it_is_commanded() {
     let mut scenario = scenario(b747(), pid(1.0, 0.2, 0.3), 0.1);
-    scenario.servo = Servo::ideal();
+    scenario.actuator = Actuator::ideal();
     let trace = flown(&scenario);
     for (command, elevator) in trace.command_rad.iter().zip(&trace.elevator_rad) {
         assert_eq!(-command, *elevator);
@@ -135,9 +135,9 @@ fn an_ideal_servo_is_where_it_is_commanded() {
 #[test]
 fn a_fast_servo_is_nearly_an_ideal_one() {
     let mut scenario = scenario(b747(), pid(1.0, 0.2, 0.3), 0.1);
-    scenario.servo = Servo::ideal();
+    scenario.actuator = Actuator::ideal();
     let ideal = flown(&scenario).theta_rad;
-    scenario.servo = Servo::first_order(1e-6).expect("allowed");
+    scenario.actuator = Actuator::first_order(1e-6).expect("allowed");
     for (a, b) in ideal.iter().zip(flown(&scenario).theta_rad) {
         assert!((a - b).abs() < 1e-6, "{a} {b}");
     }
@@ -218,7 +218,7 @@ fn a_first_order_plant_answers_as_its_formula() {
     // θ' = -2 θ + 3 δ with a constant ideal elevator: θ = 1.5 δ (1 - e^(-2 t)), q = 3 δ e^(-2 t).
     let plant = LinearPlant::new(&[3.0], &[1.0, 2.0], ElevatorSign::NoseUpPositive);
     let mut scenario = scenario(plant.expect("proper"), pid(0.0, 0.0, 0.0), 0.0);
-    scenario.servo = Servo::ideal();
+    scenario.actuator = Actuator::ideal();
     scenario.disturbances = vec![disturbance(Entry::Servo, 0.2, STEP)];
     let trace = flown(&scenario);
     for (k, (theta, q)) in trace.theta_rad.iter().zip(&trace.q_rad_s).enumerate().skip(1) {

@@ -14,8 +14,8 @@ use fspid_sim::describing::{
 use fspid_sim::lti::{Complex, modulus};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo,
-    Surroundings, Timing, Trace, simulate,
+    AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings,
+    Timing, Trace, simulate,
 };
 
 use crate::support;
@@ -42,18 +42,23 @@ fn plain() -> PidConfig<f64> {
     PidConfig::sampled_every(DT_S)
 }
 
-fn servo() -> Servo {
-    Servo::first_order(0.1).expect("allowed")
+fn servo() -> Actuator {
+    Actuator::first_order(0.1).expect("allowed")
 }
 
 /// A step of the set-point away and back, so that what remains swings around zero.
-fn scenario(servo: Servo, kick_rad: f64, duration_s: f64, controller: Controller) -> Scenario {
+fn scenario(
+    actuator: Actuator,
+    kick_rad: f64,
+    duration_s: f64,
+    controller: Controller,
+) -> Scenario {
     let kick = Shape::Pulse { at_s: 0.0, width_s: 1.0 };
     Scenario {
         name: "cycle".into(),
         plant: b747().into(),
         plant_changes: Vec::new(),
-        servo,
+        actuator,
         timing: Timing::new(DT_S, duration_s).expect("allowed"),
         setpoint: Profile::new(kick_rad, kick).expect("allowed"),
         disturbances: Vec::new(),
@@ -63,8 +68,8 @@ fn scenario(servo: Servo, kick_rad: f64, duration_s: f64, controller: Controller
 }
 
 fn with_actuator(actuator: Actuator) -> LimitedPath {
-    let mut scenario = scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, plain()));
-    scenario.surroundings.actuator = Some(actuator);
+    let mut scenario = scenario(Actuator::ideal(), 0.1, 1.0, proportional(1.0, plain()));
+    scenario.actuator = actuator;
     LimitedPath::of(&scenario, &plain()).expect("a path")
 }
 
@@ -122,7 +127,7 @@ fn a_limit_of_the_position_has_the_textbook_describing_function() {
         with_actuator(
             Actuator::new(Lag::NONE).with_travel(-limit_rad, limit_rad).expect("allowed"),
         ),
-        LimitedPath::of(&scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, config)), &config)
+        LimitedPath::of(&scenario(Actuator::ideal(), 0.1, 1.0, proportional(1.0, config)), &config)
             .expect("a path"),
     ];
     for path in paths {
@@ -170,7 +175,7 @@ fn a_rate_limit_that_never_lets_go_makes_the_triangle_of_the_textbook() {
 #[test]
 fn a_slew_limit_of_the_controller_is_a_rate_limit() {
     let config = PidConfig { slew_rad_s: Some(0.5), ..plain() };
-    let scenario = scenario(Servo::ideal(), 0.1, 1.0, proportional(1.0, config));
+    let scenario = scenario(Actuator::ideal(), 0.1, 1.0, proportional(1.0, config));
     let path = LimitedPath::of(&scenario, &config).expect("a path");
     let n = path.describing_function(1.0, 2.0).expect("positive");
     near(modulus(n), 4.0 * 0.5 / (PI * 2.0), 1.0 / 512.0);

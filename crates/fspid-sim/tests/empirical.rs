@@ -19,8 +19,8 @@ use fspid_sim::flown::{Failure, Margin};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{
-    AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Perturbation,
-    Scenario, Servo, Surroundings, Timing, fly, fly_perturbed,
+    Actuator, AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, Outcome,
+    Perturbation, Scenario, Surroundings, Timing, fly, fly_perturbed,
 };
 
 use crate::support;
@@ -56,7 +56,7 @@ fn scenario(plant: LinearPlant, controller: Controller, duration_s: f64) -> Scen
         name: "margins".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(DT_S, duration_s).expect("allowed"),
         setpoint: Profile::new(5.0 * DEG, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
@@ -154,8 +154,8 @@ fn a_linear_loop_bears_the_delay_and_the_lag_of_its_phase_margin() {
     // Whole samples by the eigenvalues of the loop that has them.
     let most = |largest: f64| {
         let holds = |samples: &usize| {
-            let servo = Servo::first_order(0.1).and_then(|servo| servo.with_delay(*samples));
-            let late = Scenario { servo: servo.expect("allowed"), ..scenario.clone() };
+            let servo = Actuator::first_order(0.1).and_then(|servo| servo.with_delay(*samples));
+            let late = Scenario { actuator: servo.expect("allowed"), ..scenario.clone() };
             radius(&late, gains, 1.0) < largest
         };
         (0..500).take_while(holds).last().expect("stable at 0") as f64 * DT_S
@@ -244,8 +244,9 @@ fn a_flight_that_does_not_hold_has_no_margins() {
 #[test]
 fn an_oscillation_that_lasts_is_a_failure() {
     let mut lasting = scenario(b747(), pid(5.2, 0.0, 0.0), 60.0);
-    let limited = Servo::first_order(0.1).and_then(|servo| servo.with_position_limit(10.0 * DEG));
-    lasting.servo = limited.expect("allowed");
+    let limited =
+        Actuator::first_order(0.1).and_then(|servo| servo.with_position_limit(10.0 * DEG));
+    lasting.actuator = limited.expect("allowed");
     let answer = answer(&lasting);
     assert!(
         matches!(answer, EmpiricalAnswer::NominalFails { failure: Failure::Oscillates { .. }, .. }),
@@ -278,8 +279,9 @@ fn a_flight_in_noise_is_held_to_twice_its_own_swing() {
 fn a_loop_with_a_rate_limit_bears_its_linear_margin_from_a_small_step_and_less_from_a_large_one() {
     let delay_s = |step_rad: f64| {
         let mut flight = scenario(b747(), pid(1.5, 0.3, 0.5), 60.0);
-        let limited = Servo::first_order(0.1).and_then(|servo| servo.with_rate_limit(20.0 * DEG));
-        flight.servo = limited.expect("allowed");
+        let limited =
+            Actuator::first_order(0.1).and_then(|servo| servo.with_rate_limit(20.0 * DEG));
+        flight.actuator = limited.expect("allowed");
         flight.setpoint =
             Profile::new(step_rad, Shape::Ramp { at_s: 0.0, width_s: 1.0 }).expect("allowed");
         margins(&flight).delay_s

@@ -14,7 +14,7 @@ use fspid_sim::air::{
 use fspid_sim::aircraft::Forces;
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    AircraftPlant, Controller, Course, LinearPlant, NamedController, Plant, Scenario, Servo,
+    Actuator, AircraftPlant, Controller, Course, LinearPlant, NamedController, Plant, Scenario,
     Surroundings, Timing, Trace, Weather, simulate,
 };
 use support::{FOOT_M, derivative_data};
@@ -46,7 +46,7 @@ fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -
         name: "air".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(dt_s, end_s).expect("allowed"),
         setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
@@ -103,7 +103,7 @@ fn turbulence(seed: u64) -> Weather {
 }
 
 /// Largest difference at common times, as a share of the largest value.
-fn apart((coarse, by_coarse): (&[f64], usize), (fine, by_fine): (&[f64], usize)) -> f64 {
+fn apart(coarse: &[f64], by_coarse: usize, fine: &[f64], by_fine: usize) -> f64 {
     let pairs = coarse.iter().step_by(by_coarse).zip(fine.iter().step_by(by_fine));
     let most = fine.iter().map(|value| value.abs()).fold(0.0, f64::max);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / most
@@ -120,7 +120,7 @@ fn a_gust_moves_a_linear_aircraft_alike_at_any_period() {
         let fine = flown(linear(), weather.clone(), (0.001, 3.0));
         for (dt_s, by) in [(0.005, 5), (0.01, 10), (0.025, 25), (0.05, 50)] {
             let coarse = flown(linear(), weather.clone(), (dt_s, 3.0));
-            let off = apart((&coarse.theta_rad, 1), (&fine.theta_rad, by));
+            let off = apart(&coarse.theta_rad, 1, &fine.theta_rad, by);
             // Sub-steps of 10 ms through a gust of 89 ms: the sixth power of an eighth of it.
             assert!(off < 2e-6, "{dt_s}: {off}");
         }
@@ -133,7 +133,7 @@ fn a_gust_moves_a_nonlinear_aircraft_alike_at_any_period() {
     let fine = flown(aircraft(), shortest(), (0.0005, 3.0));
     for (dt_s, by) in [(0.005, 10), (0.01, 20), (0.025, 50), (0.05, 100)] {
         let coarse = flown(aircraft(), shortest(), (dt_s, 3.0));
-        let off = apart((&coarse.theta_rad, 1), (&fine.theta_rad, by));
+        let off = apart(&coarse.theta_rad, 1, &fine.theta_rad, by);
         assert!(off < 1e-4, "{dt_s}: {off}");
     }
 }
@@ -144,7 +144,7 @@ fn a_gust_moves_a_nonlinear_aircraft_alike_at_any_period() {
 fn the_error_of_a_step_through_gusts_falls_with_its_fourth_power() {
     let theta = |dt_s: f64| flown(aircraft(), several(), (dt_s, 1.0)).theta_rad;
     let exact = theta(0.000_312_5);
-    let error = |dt_s: f64, by: usize| apart((&theta(dt_s), 1), (&exact, by));
+    let error = |dt_s: f64, by: usize| apart(&theta(dt_s), 1, &exact, by);
     let (ten, five, two) = (error(0.01, 32), error(0.005, 16), error(0.0025, 8));
     let orders = [ten / five, five / two].map(libm::log2);
     for order in orders {
@@ -169,7 +169,7 @@ fn the_same_seed_is_the_same_air_at_any_period() {
             }
         }
         // The air between the samples is the same too: so is what it does.
-        let off = apart((&other.theta_rad, 1), (&reference.theta_rad, by));
+        let off = apart(&other.theta_rad, 1, &reference.theta_rad, by);
         assert!(off < 1e-10, "{dt_s}: {off}");
     }
 }
@@ -188,7 +188,7 @@ fn a_nonlinear_aircraft_meets_the_same_turbulence_at_any_period() {
                 assert_eq!(a.to_bits(), b.to_bits(), "{name} {dt_s}");
             }
         }
-        let off = apart((&other.theta_rad, 1), (&reference.theta_rad, by));
+        let off = apart(&other.theta_rad, 1, &reference.theta_rad, by);
         assert!(off < 1e-5, "{dt_s}: {off}");
     }
 }
@@ -205,6 +205,6 @@ fn a_period_that_does_not_fit_the_grid_flies_through_the_same_air() {
         assert_eq!(*gust, reference[10 * tick], "{k}");
     }
     // Each tenth of a second is a sample of both.
-    let off = apart((&other.theta_rad, 12), (&fine.theta_rad, 100));
+    let off = apart(&other.theta_rad, 12, &fine.theta_rad, 100);
     assert!(off < 1e-10, "{off}");
 }

@@ -14,8 +14,8 @@ use fspid_core::{
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Scenario, Servo, Surroundings,
-    Timing, Trace, simulate,
+    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Scenario,
+    Surroundings, Timing, Trace, simulate,
 };
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -40,7 +40,7 @@ fn scenario(plant: LinearPlant, controller: Controller) -> Scenario {
         name: "reference".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(0.01, 20.0).expect("allowed"),
         setpoint: Profile::new(DEG, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
@@ -200,7 +200,7 @@ fn a_filtered_and_limited_pid_with_back_calculation_flies_as_the_reference() {
 #[test]
 fn a_servo_at_its_rate_and_position_limits_flies_as_the_reference() {
     let mut scenario = scenario(b747(), pid(3.5, 0.0, 0.0, plain()));
-    scenario.servo = Servo::first_order(0.1)
+    scenario.actuator = Actuator::first_order(0.1)
         .and_then(|servo| servo.with_position_limit(3.0 * DEG))
         .and_then(|servo| servo.with_rate_limit(10.0 * DEG))
         .expect("allowed");

@@ -12,7 +12,7 @@ use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
 use fspid_sim::{
     Controller, Course, ElevatorSign, LinearPlant, LongitudinalDerivatives, NamedController,
-    PlantChange, Scenario, Servo, SimError, Surroundings, Timing, Trace, Weather, fly, simulate,
+    PlantChange, Scenario, SimError, Surroundings, Timing, Trace, Weather, fly, simulate,
 };
 use proptest::prelude::*;
 
@@ -43,7 +43,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         name: "surroundings".into(),
         plant: plant.into(),
         plant_changes: Vec::new(),
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         timing: Timing::new(DT_S, 10.0).expect("allowed"),
         setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
         disturbances: Vec::new(),
@@ -84,22 +84,28 @@ fn apart(first: &[f64], second: &[f64]) -> f64 {
     first.iter().zip(second).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// The same actuator with stops that are never reached: it is followed leg by leg.
+fn by_legs(servo: Actuator) -> Actuator {
+    servo.with_travel(-1e3, 1e3).expect("allowed")
+}
+
 #[test]
-fn an_actuator_that_is_the_servo_flies_as_the_servo() {
-    let plain = Servo::first_order(0.1).expect("allowed");
+fn a_servo_by_legs_flies_as_it_does_as_one_with_its_plant() {
+    let plain = Actuator::first_order(0.1).expect("allowed");
     let limited = plain
         .with_position_limit(0.2)
         .and_then(|servo| servo.with_rate_limit(0.6))
         .and_then(|servo| servo.with_delay(3))
         .expect("allowed");
-    for servo in [plain, limited, Servo::ideal()] {
-        let mut flight = Scenario { servo, ..scenario(navion(), pid(1.0, 0.3, 0.2), 0.3) };
-        let by_servo = flown(&flight);
-        flight.surroundings.actuator = Some(servo.as_actuator().expect("allowed"));
-        let by_actuator = flown(&flight);
-        assert!(apart(&by_servo.theta_rad, &by_actuator.theta_rad) < 1e-12, "{servo:?}");
-        assert!(apart(&by_servo.q_rad_s, &by_actuator.q_rad_s) < 1e-11, "{servo:?}");
-        assert!(apart(&by_servo.elevator_rad, &by_actuator.elevator_rad) < 1e-11, "{servo:?}");
+    for servo in [plain, limited, Actuator::ideal()] {
+        let mut flight = scenario(navion(), pid(1.0, 0.3, 0.2), 0.3);
+        flight.actuator = servo;
+        let as_one = flown(&flight);
+        flight.actuator = by_legs(servo);
+        let by_legs = flown(&flight);
+        assert!(apart(&as_one.theta_rad, &by_legs.theta_rad) < 1e-12, "{servo:?}");
+        assert!(apart(&as_one.q_rad_s, &by_legs.q_rad_s) < 1e-11, "{servo:?}");
+        assert!(apart(&as_one.elevator_rad, &by_legs.elevator_rad) < 1e-11, "{servo:?}");
     }
 }
 
@@ -221,7 +227,7 @@ fn a_slow_second_order_actuator_makes_a_stable_loop_unstable() {
     for (natural_frequency_rad_s, stable) in [(50.0, true), (3.0, false)] {
         let mut flight = scenario(navion(), pid(2.0, 0.1, 0.0), 0.01);
         flight.timing = Timing::new(DT_S, 60.0).expect("allowed");
-        flight.surroundings.actuator = Some(actuator(natural_frequency_rad_s));
+        flight.actuator = actuator(natural_frequency_rad_s);
         let verdict = instability(&flight, &flight.controllers[0].controller).expect("found");
         assert_eq!(verdict.is_none(), stable, "{verdict:?}");
         let theta_rad = flown(&flight).theta_rad;
@@ -231,16 +237,15 @@ fn a_slow_second_order_actuator_makes_a_stable_loop_unstable() {
 }
 
 #[test]
-fn servo_and_equal_actuator_have_the_same_spectral_radius() {
+fn a_servo_by_legs_has_the_spectral_radius_that_it_has_as_one_with_its_plant() {
     let mut flight = scenario(navion(), pid(1.0, 0.2, 0.3), 0.1);
     let (gains, config) = (Gains { kp: 1.0, ki: 0.2, kd: 0.3 }, PidConfig::sampled_every(DT_S));
-    for servo in [Servo::ideal(), Servo::first_order(0.1).expect("allowed")] {
-        flight.servo = servo;
-        flight.surroundings.actuator = None;
-        let by_servo = loop_spectral_radius(&flight, gains, &config).expect("found");
-        flight.surroundings.actuator = Some(servo.as_actuator().expect("allowed"));
-        let by_actuator = loop_spectral_radius(&flight, gains, &config).expect("found");
-        assert!((by_servo - by_actuator).abs() < 1e-12, "{by_servo} {by_actuator}");
+    for servo in [Actuator::ideal(), Actuator::first_order(0.1).expect("allowed")] {
+        flight.actuator = servo;
+        let as_one = loop_spectral_radius(&flight, gains, &config).expect("found");
+        flight.actuator = by_legs(servo);
+        let by_legs = loop_spectral_radius(&flight, gains, &config).expect("found");
+        assert!((as_one - by_legs).abs() < 1e-12, "{as_one} {by_legs}");
     }
 }
 
@@ -263,7 +268,7 @@ proptest! {
             .and_then(|actuator| actuator.with_play(play))
             .expect("allowed");
         let mut flight = scenario(navion(), pid(kp, 0.1, 0.2), 0.5);
-        flight.surroundings.actuator = Some(actuator);
+        flight.actuator = actuator;
         flight.surroundings.weather = Some(turbulence(w20_m_s));
         // Trailing edge down positive: the other way round than the command.
         let trace = flown(&flight);
@@ -296,7 +301,7 @@ fn an_ideal_sensor_leaves_every_bit_and_a_delayed_one_does_not() {
 fn a_sensors_delay_is_worth_as_much_as_the_servos() {
     let mut by_servo = scenario(navion(), pid(1.0, 0.0, 0.0), 0.1);
     let mut by_sensor = by_servo.clone();
-    by_servo.servo = by_servo.servo.with_delay(4).expect("allowed");
+    by_servo.actuator = by_servo.actuator.with_delay(4).expect("allowed");
     let model = SensorModel { delay_s: 4.0 * DT_S, ..SensorModel::default() };
     by_sensor.surroundings.pitch_sensor = Some(Sensor::new(model, 1, PITCH).expect("allowed"));
     // The set-point is not delayed by a sensor; let both begin as late.
@@ -313,9 +318,9 @@ fn everything() -> Scenario {
         .and_then(|actuator| actuator.with_play(0.002))
         .expect("allowed");
     let mems = SensorPreset::from_name("mems").expect("there");
+    flight.actuator = actuator;
     flight.surroundings = Surroundings {
         weather: Some(turbulence(8.0)),
-        actuator: Some(actuator),
         pitch_sensor: Some(Sensor::new(mems.pitch, 3, PITCH).expect("allowed")),
         rate_sensor: Some(Sensor::new(mems.rate, 3, RATE).expect("allowed")),
     };

@@ -22,7 +22,7 @@ use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{
     AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario,
-    Servo, SimError, Surroundings, Timing, simulate,
+    SimError, Surroundings, Timing, simulate,
 };
 
 use crate::support;
@@ -57,7 +57,7 @@ struct Case {
     config: PidConfig<f64>,
     defuzzifier: Defuzzifier,
     out_of_range: OutOfRange,
-    servo: Servo,
+    actuator: Actuator,
     surroundings: Surroundings,
 }
 
@@ -72,7 +72,7 @@ fn base() -> Case {
         config: PidConfig::sampled_every(DT_S),
         defuzzifier: Defuzzifier::Exact,
         out_of_range: OutOfRange::Clamp,
-        servo: Servo::first_order(0.1).expect("allowed"),
+        actuator: Actuator::first_order(0.1).expect("allowed"),
         surroundings: Surroundings::default(),
     }
 }
@@ -91,7 +91,7 @@ impl Case {
             name: "apart".into(),
             plant: b747().into(),
             plant_changes: Vec::new(),
-            servo: self.servo,
+            actuator: self.actuator,
             timing: Timing::new(DT_S, 4.0).expect("allowed"),
             setpoint: Profile::new(4.0 * DEG, Shape::Step { at_s: 0.05 }).expect("allowed"),
             disturbances: Vec::new(),
@@ -140,8 +140,7 @@ fn error(scenario: &Scenario, at_s: f64, delay: usize) -> (f64, f64) {
 
 /// Share of limited samples of a case whose differences are as linearised.
 fn agrees(case: &Case, at_s: f64) -> f64 {
-    let delay = case.surroundings.actuator.map_or(0, |actuator| actuator.delay_samples());
-    let (off, limited) = error(&case.scenario(), at_s, delay);
+    let (off, limited) = error(&case.scenario(), at_s, case.actuator.delay_samples());
     assert!(off < TOLERANCE, "{off:e}, limited {limited}");
     limited
 }
@@ -183,7 +182,7 @@ fn every_form_of_controller_and_every_part_of_the_loop_is_linearised() {
     case.config.rate_gain_s = 0.3;
     agrees(&case, 0.8);
     let lag = Lag::second_order(30.0, 0.7).expect("allowed");
-    case.surroundings.actuator = Some(Actuator::new(lag).with_delay(2).expect("allowed"));
+    case.actuator = Actuator::new(lag).with_delay(2).expect("allowed");
     case.surroundings.pitch_sensor = sensor(0.015, PITCH);
     case.surroundings.rate_sensor = sensor(0.02, RATE);
     agrees(&case, 0.8);
@@ -240,12 +239,12 @@ fn a_cut_command_is_linearised_with_every_anti_windup() {
 
 #[test]
 fn limits_of_servo_and_actuator_are_linearised_as_they_act() {
-    let servo = Servo::first_order(0.1).expect("allowed");
+    let servo = Actuator::first_order(0.1).expect("allowed");
     let limited_servo = servo
         .with_position_limit(3.0 * DEG)
         .and_then(|servo| servo.with_rate_limit(12.0 * DEG))
         .expect("allowed");
-    let limited = agrees(&Case { servo: limited_servo, ..base() }, BEFORE_S);
+    let limited = agrees(&Case { actuator: limited_servo, ..base() }, BEFORE_S);
     assert!(limited > 0.0, "{limited}");
     let lag = Lag::second_order(30.0, 0.7).expect("allowed");
     let actuator = Actuator::new(lag)
@@ -254,7 +253,7 @@ fn limits_of_servo_and_actuator_are_linearised_as_they_act() {
         .and_then(|actuator| actuator.with_delay(3))
         .expect("allowed");
     let mut case = base();
-    case.surroundings.actuator = Some(actuator);
+    case.actuator = actuator;
     let limited = agrees(&case, BEFORE_S);
     assert!(limited > 0.0, "{limited}");
 }

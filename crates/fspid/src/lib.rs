@@ -74,7 +74,7 @@ pub mod prelude {
     pub use fspid_scenario::file::{Study, load, parse};
     pub use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
     pub use fspid_sim::{
-        Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Plant, Scenario, Servo,
+        Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Plant, Scenario,
         SimError, Timing, Trace, simulate,
     };
     pub use fspid_study::analysis::{Analysis, Question};

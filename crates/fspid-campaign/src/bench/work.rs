@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use fspid_core::fuzzy::{Answers, Increments, Supervisor};
 use fspid_scenario::file::{Extra, Template};
-use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
+use fspid_sim::batch::{BatchRow, Entrant, LANES, fly_group};
 use fspid_sim::{Controller, Prepared, fly};
 
 use crate::campaign::{Campaign, Progress};
@@ -130,7 +130,7 @@ impl Work {
         let mut total = 0.0;
         for group in loops.chunks(LANES) {
             let mut sums = [0.0; LANES];
-            let outcomes = fly_group(black_box(group), |row: &Row<'_, LANES>| {
+            let outcomes = fly_group(black_box(group), |row: &BatchRow<'_, LANES>| {
                 let [kp, ..] = row.gains;
                 for (sum, (theta_rad, kp)) in sums.iter_mut().zip(row.theta_rad.iter().zip(kp)) {
                     *sum += theta_rad + kp;

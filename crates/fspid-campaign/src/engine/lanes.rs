@@ -1,7 +1,7 @@
 //! One controller of each study, in lanes as far as they go.
 
 use fspid_scenario::file::Study;
-use fspid_sim::batch::{Entrant, LANES, Row, fly_group};
+use fspid_sim::batch::{BatchRow, Entrant, LANES, fly_group};
 use fspid_sim::{Controller, Prepared, SimError, Trace};
 
 use super::memory::Memory;
@@ -55,7 +55,8 @@ fn in_lanes(memory: &mut Memory, group: &[Ready<'_>]) -> Option<Vec<Result<Trace
     let recorder = &mut memory.recorder;
     let rows = group.first()?.prepared.timing().rows();
     recorder.begin(rows);
-    let outcomes = fly_group::<LANES>(&entrants, |row: &Row<'_, LANES>| recorder.push(row)).ok()?;
+    let outcomes =
+        fly_group::<LANES>(&entrants, |row: &BatchRow<'_, LANES>| recorder.push(row)).ok()?;
     let mut traces: Vec<Trace> = group.iter().map(|_| memory.empty_trace(rows)).collect();
     let prepared: Vec<&Prepared> = group.iter().map(|flight| flight.prepared).collect();
     memory.recorder.fill(&mut traces, &prepared);

@@ -1,7 +1,7 @@
 //! What measures need of flights side by side: a few columns of all lanes, made traces at the end.
 
 use fspid_core::Faults;
-use fspid_sim::batch::Row;
+use fspid_sim::batch::BatchRow;
 use fspid_sim::{Prepared, Trace};
 
 /// Columns of a trace that is measured.
@@ -33,7 +33,7 @@ impl<const W: usize> Recorder<W> {
 
     /// Adds a sample of all lanes.
     #[inline(always)]
-    pub(super) fn push(&mut self, row: &Row<'_, W>) {
+    pub(super) fn push(&mut self, row: &BatchRow<'_, W>) {
         self.theta_rad.push(*row.theta_rad);
         self.command_rad.push(*row.command_rad);
         self.elevator_rad.push(*row.elevator_rad);

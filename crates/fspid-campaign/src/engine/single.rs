@@ -1,4 +1,4 @@
-//! Flights that no lane can fly: nonlinear aircraft, actuators, gusts, sensors.
+//! Flights that no lane can fly: nonlinear aircraft, actuators that are no first-order servo, gusts, sensors.
 
 use std::ops::ControlFlow;
 
@@ -20,7 +20,7 @@ pub(super) fn record(
         trace.saturated_samples += usize::from(instant.step.saturated);
         trace.faults = instant.step.faults;
         let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
-        Exit::take_in(&mut trace.exit, departure, (instant.k, timing));
+        Exit::take_in(&mut trace.exit, departure, instant.k, timing);
         ControlFlow::Continue(())
     })?;
     trace.outcome = outcome;

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::defuzzifier::Defuzzifier;
-use super::error::{Problem, SystemError};
+use super::error::{SystemError, SystemProblem};
 use super::output::{Activations, Outline, Plan};
 use super::parts::{
     Antecedent, Conclusion, Input, Membership, Output, Parts, Rule, RuleBlock, Statement, Universe,
@@ -181,7 +181,7 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn say(&mut self, place: impl FnOnce() -> String, problem: impl Into<Problem>) {
+    fn say(&mut self, place: impl FnOnce() -> String, problem: impl Into<SystemProblem>) {
         if self.errors.len() < MAX_PROBLEMS {
             self.errors.push(SystemError { place: place(), problem: problem.into() });
         }
@@ -191,12 +191,12 @@ impl Check<'_> {
         let parts = self.parts;
         let whole = || String::from("the system");
         if parts.inputs.is_empty() {
-            self.say(whole, Problem::Missing { what: "input" });
+            self.say(whole, SystemProblem::Missing { what: "input" });
         }
         // Without rules there is nothing to conclude: such a system grades its inputs.
         let rules = parts.blocks.iter().any(|block| !block.rules.is_empty());
         if parts.outputs.is_empty() && (rules || parts.inputs.is_empty()) {
-            self.say(whole, Problem::Missing { what: "output" });
+            self.say(whole, SystemProblem::Missing { what: "output" });
         }
         self.names(
             "the system",
@@ -215,9 +215,9 @@ impl Check<'_> {
         let mut seen = BTreeSet::new();
         for name in names {
             if name.trim().is_empty() {
-                self.say(|| place.into(), Problem::NoName);
+                self.say(|| place.into(), SystemProblem::NoName);
             } else if !seen.insert(name) {
-                self.say(|| place.into(), Problem::Duplicate { name: name.clone() });
+                self.say(|| place.into(), SystemProblem::Duplicate { name: name.clone() });
             }
         }
     }
@@ -226,7 +226,7 @@ impl Check<'_> {
         let Some(Universe { lower, upper }) = universe else { return };
         let usable = lower < upper && (upper - lower).is_finite();
         if !usable {
-            self.say(|| place.into(), Problem::Universe { lower, upper });
+            self.say(|| place.into(), SystemProblem::Universe { lower, upper });
         }
     }
 
@@ -246,7 +246,7 @@ impl Check<'_> {
         let (Membership::Shape { height, .. } | Membership::Formula { height, .. }) = membership;
         if !(*height > 0.0 && *height <= 1.0) {
             let allowed = "a number above 0, at most 1";
-            self.say(&place, Problem::Number { what: "height", found: *height, allowed });
+            self.say(&place, SystemProblem::Number { what: "height", found: *height, allowed });
         }
         if let Membership::Shape { kind, params, .. } = membership
             && let Err(error) = kind.check(params)
@@ -264,11 +264,11 @@ impl Check<'_> {
             output.terms.iter().filter(|t| matches!(t.conclusion, Conclusion::Set { .. })).count();
         if integrates && output.universe.is_none() {
             let (what, needs) = (output.defuzzifier.name(), "a universe to integrate over");
-            self.say(|| place.clone(), Problem::Conflict { what, needs });
+            self.say(|| place.clone(), SystemProblem::Conflict { what, needs });
         }
         if integrates && sets < output.terms.len() {
             let (what, needs) = (output.defuzzifier.name(), "terms that are all fuzzy sets");
-            self.say(|| place.clone(), Problem::Conflict { what, needs });
+            self.say(|| place.clone(), SystemProblem::Conflict { what, needs });
         }
         if let Some(Err(error)) = output.defuzzifier.sampling().map(|s| s.checked()) {
             self.say(|| place.clone(), error);
@@ -277,10 +277,13 @@ impl Check<'_> {
             && !found.is_finite()
         {
             let allowed = "a finite number";
-            self.say(|| place.clone(), Problem::Number { what: "the default", found, allowed });
+            self.say(
+                || place.clone(),
+                SystemProblem::Number { what: "the default", found, allowed },
+            );
         }
         if let Some((what, needs)) = self.type2.then(|| type2::conflict(output)).flatten() {
-            self.say(|| place.clone(), Problem::Conflict { what, needs });
+            self.say(|| place.clone(), SystemProblem::Conflict { what, needs });
         }
         for term in &output.terms {
             let place = || format!("{place}, term `{}`", term.name);
@@ -292,7 +295,7 @@ impl Check<'_> {
         let mut finite = |what, number: f64| {
             if !number.is_finite() {
                 let allowed = "a finite number";
-                self.say(&place, Problem::Number { what, found: number, allowed });
+                self.say(&place, SystemProblem::Number { what, found: number, allowed });
             }
         };
         match found {
@@ -301,7 +304,7 @@ impl Check<'_> {
                 ends.iter().for_each(|&end| finite("an end of the interval", end));
                 let [lower, upper] = *ends;
                 if lower > upper {
-                    self.say(&place, Problem::Universe { lower, upper });
+                    self.say(&place, SystemProblem::Universe { lower, upper });
                 }
             }
             Conclusion::Linear { coefficients, constant } => {
@@ -309,7 +312,10 @@ impl Check<'_> {
                 finite("the constant", *constant);
                 let (found, count) = (coefficients.len(), self.parts.inputs.len());
                 if found != count {
-                    self.say(&place, Problem::TooMany { what: "coefficients", found, most: count });
+                    self.say(
+                        &place,
+                        SystemProblem::TooMany { what: "coefficients", found, most: count },
+                    );
                 }
             }
             Conclusion::Set { membership, lower } => {
@@ -339,7 +345,7 @@ impl Check<'_> {
         };
         if reading == super::SetReading::Tsukamoto && inverse.is_none() {
             let (what, needs) = (method.name(), "sets that rise or fall throughout (Tsukamoto)");
-            self.say(place, Problem::Conflict { what, needs });
+            self.say(place, SystemProblem::Conflict { what, needs });
         }
     }
 
@@ -348,13 +354,13 @@ impl Check<'_> {
         let found: usize = parts.blocks.iter().map(|block| block.rules.len()).sum();
         if found > MAX_RULES {
             let place = || String::from("the system");
-            self.say(place, Problem::TooMany { what: "rules", found, most: MAX_RULES });
+            self.say(place, SystemProblem::TooMany { what: "rules", found, most: MAX_RULES });
         }
         for (block_index, block) in parts.blocks.iter().enumerate() {
             if let Some((what, needs)) = self.type2.then(|| type2::block_conflict(block)).flatten()
             {
                 let place = || format!("rule block {}", block_index + 1);
-                self.say(place, Problem::Conflict { what, needs });
+                self.say(place, SystemProblem::Conflict { what, needs });
             }
             for (rule_index, rule) in block.rules.iter().enumerate() {
                 let place = || match (parts.blocks.len(), block.name.as_str()) {
@@ -365,21 +371,24 @@ impl Check<'_> {
                 if !(0.0..=1.0).contains(&rule.weight) {
                     let allowed = "a number from 0 to 1";
                     let found = rule.weight;
-                    self.say(place, Problem::Number { what: "the weight", found, allowed });
+                    self.say(place, SystemProblem::Number { what: "the weight", found, allowed });
                 }
                 if rule.consequents.is_empty() {
-                    self.say(place, Problem::Missing { what: "conclusion" });
+                    self.say(place, SystemProblem::Missing { what: "conclusion" });
                 }
                 self.antecedent(&place, &rule.antecedent, 0);
                 for consequent in &rule.consequents {
                     let Some(output) = parts.outputs.get(consequent.output) else {
                         let (found, count) = (consequent.output, parts.outputs.len());
-                        self.say(place, Problem::Position { what: "output", found, count });
+                        self.say(place, SystemProblem::Position { what: "output", found, count });
                         continue;
                     };
                     let (found, count) = (consequent.term, output.terms.len());
                     if found >= count {
-                        self.say(place, Problem::Position { what: "output term", found, count });
+                        self.say(
+                            place,
+                            SystemProblem::Position { what: "output term", found, count },
+                        );
                     }
                 }
             }
@@ -388,7 +397,7 @@ impl Check<'_> {
 
     fn antecedent(&mut self, place: &impl Fn() -> String, part: &Antecedent, depth: usize) {
         if depth > MAX_DEPTH {
-            self.say(place, Problem::Depth { most: MAX_DEPTH });
+            self.say(place, SystemProblem::Depth { most: MAX_DEPTH });
             return;
         }
         match part {
@@ -415,9 +424,9 @@ impl Check<'_> {
             }
         };
         match (terms, statement.term) {
-            (None, _) => self.say(place, Problem::Position { what, found, count: variables }),
+            (None, _) => self.say(place, SystemProblem::Position { what, found, count: variables }),
             (Some(count), Some(found)) if found >= count => {
-                self.say(place, Problem::Position { what: "term", found, count });
+                self.say(place, SystemProblem::Position { what: "term", found, count });
             }
             _ => {}
         }

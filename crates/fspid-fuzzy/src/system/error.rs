@@ -11,13 +11,13 @@ pub struct SystemError {
     /// Where, in words: ``input `service`, term `poor` ``.
     pub place: String,
     /// What.
-    pub problem: Problem,
+    pub problem: SystemProblem,
 }
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Problem {
+pub enum SystemProblem {
     /// A system needs at least one.
     Missing {
         /// What: `input`, `output`, `term`, `universe`.
@@ -86,7 +86,7 @@ impl fmt::Display for SystemError {
     }
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for SystemProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing { what } => write!(f, "has no {what}; at least one is needed"),
@@ -116,7 +116,7 @@ impl fmt::Display for Problem {
 
 impl core::error::Error for SystemError {}
 
-impl From<FuzzyError> for Problem {
+impl From<FuzzyError> for SystemProblem {
     fn from(error: FuzzyError) -> Self {
         Self::Fuzzy(error)
     }

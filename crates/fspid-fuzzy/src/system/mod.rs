@@ -30,7 +30,7 @@ mod workspace;
 
 pub use build::System;
 pub use defuzzifier::{Defuzzifier, Sampling, SetReading};
-pub use error::{Problem, SystemError};
+pub use error::{SystemError, SystemProblem};
 pub use evaluate::{Answer, InputError, Source};
 pub(crate) use firing::hedged;
 pub use gradient::{Differentiator, Gradient, GradientError, Parameter};

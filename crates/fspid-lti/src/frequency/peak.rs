@@ -40,7 +40,7 @@ impl FrequencyResponse {
             return Err(LtiError::UnstablePoles { unstable_poles });
         }
         let (over, under) = (self.system.numerator(), self.system.denominator());
-        let distance = combined((under, centre), (over, centre - 1.0))?;
+        let distance = combined(under, centre, over, centre - 1.0)?;
         let closed = over.sum(under)?;
         Ok(Self::new(TransferFunction::from_polynomials(distance, closed)?, 0.0)?.highest())
     }
@@ -65,8 +65,10 @@ impl FrequencyResponse {
 
 /// Sum of two polynomials times factors, either of which may be 0.
 fn combined(
-    (first, factor): (&Polynomial, f64),
-    (second, other): (&Polynomial, f64),
+    first: &Polynomial,
+    factor: f64,
+    second: &Polynomial,
+    other: f64,
 ) -> Result<Polynomial, LtiError> {
     let size = first.degree().max(second.degree());
     let at = |polynomial: &Polynomial, power: usize| {

@@ -5,7 +5,7 @@ use fspid_lti::{Complex, Matrix, SampledLoop};
 /// A quotient of two polynomials of degree 1 or 2 in ζ = z − 1, lowest power first; the denominator's leading
 /// coefficient is 1, the numerator's coefficient of the same power 0 or 1.
 #[derive(Debug, Clone)]
-pub(crate) struct Section {
+pub(crate) struct FactorSection {
     pub(crate) numerator: [f64; 3],
     pub(crate) denominator: [f64; 3],
     pub(crate) order: usize,
@@ -14,7 +14,7 @@ pub(crate) struct Section {
 /// A product of sections with a gain and a dead time of whole samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Factored {
-    pub(crate) sections: Vec<Section>,
+    pub(crate) sections: Vec<FactorSection>,
     pub(crate) gain: f64,
     pub(crate) delay: usize,
     pub(crate) dt_s: f64,
@@ -33,7 +33,7 @@ pub(crate) fn zeta(angle_rad: f64) -> Complex {
     Complex::new(-2.0 * sin * sin, 2.0 * sin * cos)
 }
 
-impl Section {
+impl FactorSection {
     /// The last coefficient of the denominator before the leading one stands in the matrix as its distance from 1;
     /// rounded so that the matrix holds it exactly.
     pub(crate) fn new(numerator: [f64; 3], mut denominator: [f64; 3], order: usize) -> Self {
@@ -80,7 +80,7 @@ impl Factored {
         }
         for _ in 0..self.delay {
             // z⁻¹ = 1/(1 + ζ).
-            chain.append(&Section {
+            chain.append(&FactorSection {
                 numerator: [1.0, 0.0, 0.0],
                 denominator: [1.0, 1.0, 0.0],
                 order: 1,
@@ -101,7 +101,7 @@ struct Chain {
 }
 
 impl Chain {
-    fn append(&mut self, section: &Section) {
+    fn append(&mut self, section: &FactorSection) {
         let (n, d, order) = (&section.numerator, &section.denominator, section.order);
         let through = self.through.unwrap_or(1.0);
         for row in 0..order {

@@ -1,6 +1,6 @@
 //! Random loops of several kinds.
 
-use crate::sampled_battery::factored::{Factored, Section, zeta};
+use crate::sampled_battery::factored::{FactorSection, Factored, zeta};
 use crate::support::Random;
 use fspid_lti::modulus;
 
@@ -29,9 +29,9 @@ fn chance(random: &mut Random, share: f64) -> bool {
 }
 
 /// 1/(ζ − root), or (ζ − zero)/(ζ − root); both roots as distances from z = 1.
-fn real(root: f64, zero: Option<f64>) -> Section {
+fn real(root: f64, zero: Option<f64>) -> FactorSection {
     let numerator = zero.map_or([1.0, 0.0, 0.0], |zero| [-zero, 1.0, 0.0]);
-    Section::new(numerator, [-root, 1.0, 0.0], 1)
+    FactorSection::new(numerator, [-root, 1.0, 0.0], 1)
 }
 
 /// Coefficients of a pair of roots of a size and a damping ratio about z = 1, as a sampled mode has them:
@@ -43,13 +43,13 @@ fn pair(radius: f64, angle_rad: f64) -> [f64; 3] {
 }
 
 /// A pair of poles with no zeros, one, or two.
-fn resonance(random: &mut Random, pole: [f64; 3], numerator: [f64; 3]) -> Section {
+fn resonance(random: &mut Random, pole: [f64; 3], numerator: [f64; 3]) -> FactorSection {
     let numerator = match whole(random, 0, 3) {
         0 => [1.0, 0.0, 0.0],
         1 => [random.uniform(0.0, 1.0) * pole[0].sqrt(), 1.0, 0.0],
         _ => numerator,
     };
-    Section::new(numerator, pole, 2)
+    FactorSection::new(numerator, pole, 2)
 }
 
 /// Gain chosen so that |L| is near 1 at a frequency within the band of the modes.
@@ -65,7 +65,7 @@ fn with_gain(mut open: Factored, angle_rad: f64, random: &mut Random) -> Factore
     open
 }
 
-fn open(sections: Vec<Section>, delay: usize, dt_s: f64) -> Factored {
+fn open(sections: Vec<FactorSection>, delay: usize, dt_s: f64) -> Factored {
     Factored { sections, gain: 1.0, delay, dt_s }
 }
 
@@ -144,7 +144,7 @@ fn delayed(random: &mut Random) -> Factored {
     }
     if chance(random, 0.3) {
         let pole = pair(1.0 - spread(random, 1e-3, 1e-1), random.uniform(0.1, 2.0));
-        sections.insert(0, Section::new([1.0, 0.0, 0.0], pole, 2));
+        sections.insert(0, FactorSection::new([1.0, 0.0, 0.0], pole, 2));
     }
     let crossover = random.uniform(0.05, 2.0) / delay as f64;
     with_gain(open(sections, delay, 0.01), crossover, random)
@@ -157,7 +157,7 @@ fn unstable(random: &mut Random) -> Factored {
     if chance(random, 0.4) {
         let angle_rad = random.uniform(0.3, 2.0) * growth;
         let pole = pair(1.0 + 0.3 * growth, angle_rad);
-        sections.push(Section::new([growth * random.uniform(0.2, 2.0), 1.0, 0.0], pole, 2));
+        sections.push(FactorSection::new([growth * random.uniform(0.2, 2.0), 1.0, 0.0], pole, 2));
     } else {
         sections.push(real(growth, Some(-growth * random.uniform(0.1, 3.0))));
     }

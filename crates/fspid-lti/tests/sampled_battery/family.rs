@@ -1,7 +1,7 @@
 //! Loops of a family by the quick way and by the careful one.
 
 use crate::sampled_battery::Outcome;
-use crate::sampled_battery::factored::{Factored, Section};
+use crate::sampled_battery::factored::{FactorSection, Factored};
 use crate::sampled_battery::families::random_loop;
 use crate::support::Random;
 use fspid_lti::{
@@ -32,7 +32,7 @@ impl Tuned {
         let by_gain = vec![vec![1.0], vec![1.0, 1.0, 1.0], vec![1.0, -1.0]];
         let control = SeriesControl::new(vec![-1.0, 0.0], by_gain)?;
         let a = Matrix::from_rows(&rows)?;
-        LoopFamily::new((&a, &b), [&vec![0.0; b.len()], &c], control, self.plant.dt_s)
+        LoopFamily::new(&a, &b, [&vec![0.0; b.len()], &c], control, self.plant.dt_s)
     }
 
     /// The loop with some gains: the controller as one more section, kp + ki (1 + ζ)/ζ + kd ζ/(1 + ζ).
@@ -41,7 +41,7 @@ impl Tuned {
         let lead = kp + ki + kd;
         open.gain *= lead;
         let numerator = [ki / lead, (kp + 2.0 * ki) / lead, 1.0];
-        open.sections.insert(0, Section::new(numerator, [0.0, 1.0, 1.0], 2));
+        open.sections.insert(0, FactorSection::new(numerator, [0.0, 1.0, 1.0], 2));
         open.realised()
     }
 }
@@ -74,7 +74,8 @@ impl Tally {
     fn compare(
         &mut self,
         quick: Option<SampledMargins>,
-        (careful, slow): (&Stability, bool),
+        careful: &Stability,
+        slow: bool,
         what: &dyn Fn() -> String,
     ) {
         self.pairs += 1;
@@ -143,7 +144,7 @@ fn the_quick_way_answers_as_the_careful_one_and_no_unstable_loop() -> Outcome {
         let open = tuned.in_series(gains);
         let Ok(careful) = open.margins() else { return Ok(()) };
         let what = || format!("{gains:?} with {:?}", tuned.plant);
-        tally.compare(family.margins(&gains), (&careful, is_slow(&open)?), &what);
+        tally.compare(family.margins(&gains), &careful, is_slow(&open)?, &what);
         Ok(())
     })?;
     assert!(tally.pairs > 5 * PLANTS * GAINS, "{}", tally.pairs);

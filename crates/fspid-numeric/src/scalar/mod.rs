@@ -45,18 +45,21 @@ pub trait Scalar:
 
     /// Zero.
     #[must_use]
+    #[inline(always)]
     fn zero() -> Self {
         Self::constant(0.0)
     }
 
     /// One.
     #[must_use]
+    #[inline(always)]
     fn one() -> Self {
         Self::constant(1.0)
     }
 
     /// One half.
     #[must_use]
+    #[inline(always)]
     fn half() -> Self {
         Self::constant(0.5)
     }
@@ -223,24 +226,24 @@ macro_rules! float {
                 clippy::cast_possible_truncation,
                 reason = "rounding to the nearest f32 is what is meant"
             )]
-            #[inline]
+            #[inline(always)]
             fn constant(value: f64) -> Self {
                 value as $float
             }
             $(#[inline] $lift)?
-            #[inline]
+            #[inline(always)]
             fn smaller(self, other: Self) -> Self {
                 if self < other { self } else { other }
             }
-            #[inline]
+            #[inline(always)]
             fn larger(self, other: Self) -> Self {
                 if self > other { self } else { other }
             }
-            #[inline]
+            #[inline(always)]
             fn abs(self) -> Self {
                 $float::abs(self)
             }
-            #[inline]
+            #[inline(always)]
             fn if_less(self, bound: Self, then: Self, otherwise: Self) -> Self {
                 if self < bound { then } else { otherwise }
             }

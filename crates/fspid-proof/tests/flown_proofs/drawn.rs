@@ -10,8 +10,7 @@ use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::sensor::{PITCH, Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Plant, Scenario, Servo, Surroundings,
-    Timing,
+    Controller, ElevatorSign, LinearPlant, NamedController, Plant, Scenario, Surroundings, Timing,
 };
 
 const DEG: f64 = core::f64::consts::PI / 180.0;
@@ -85,17 +84,12 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
         name: "drawn".to_owned(),
         plant: Plant::from(plant.expect("a plant")),
         plant_changes: Vec::new(),
-        servo: Servo::ideal(),
         timing: Timing::new(dt_s, 5.0).expect("allowed"),
         setpoint: Profile::new(setpoint_rad, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: if dice.happens(0.5) { vec![load.expect("allowed")] } else { Vec::new() },
         controllers: vec![NamedController { name: "C".to_owned(), controller }],
-        surroundings: Surroundings {
-            weather: None,
-            actuator: Some(actuator(dice)),
-            pitch_sensor: sensor(dice),
-            rate_sensor: None,
-        },
+        actuator: actuator(dice),
+        surroundings: Surroundings { weather: None, pitch_sensor: sensor(dice), rate_sensor: None },
     }
 }
 

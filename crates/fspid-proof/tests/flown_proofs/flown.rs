@@ -213,10 +213,10 @@ fn settles(
 
 fn without_limits(scenario: &Scenario) -> Scenario {
     let mut free = scenario.clone();
-    let actuator = scenario.actuator().expect("allowed");
+    let actuator = scenario.actuator;
     let plain = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples());
     let plain = plain.and_then(|plain| plain.with_bias(actuator.bias_rad())).expect("allowed");
-    free.surroundings.actuator = Some(plain);
+    free.actuator = plain;
     let config = PidConfig {
         limits: None,
         slew_rad_s: None,

@@ -10,8 +10,8 @@ use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
 use fspid_scenario::file::{self, rule_table};
 use fspid_sim::signal::{Disturbance, Entry, Interpolation, Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario, Servo, SimError,
-    Surroundings, Timing,
+    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario,
+    SimError, Surroundings, Timing,
 };
 
 use crate::file::text;
@@ -154,7 +154,7 @@ fn expected() -> Result<Scenario, SimError> {
         |numerator: &[f64], denominator: &[f64]| LinearPlant::new(numerator, denominator, sign);
     let navion = plant(&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0])?;
     let changed = plant(&[10.0, 20.0], &[1.0, 5.0, 13.0, 0.0])?;
-    let servo = Servo::first_order(0.1)?.with_position_limit(25.0 * DEG)?;
+    let servo = Actuator::first_order(0.1)?.with_position_limit(25.0 * DEG)?;
     Ok(Scenario {
         name: "every key".to_owned(),
         plant: navion.clone().into(),
@@ -162,7 +162,7 @@ fn expected() -> Result<Scenario, SimError> {
             PlantChange::new(3.0, 1.0, changed)?,
             PlantChange::new(6.0, 0.0, navion)?,
         ],
-        servo: servo.with_rate_limit(40.0 * DEG)?.with_delay(1)?,
+        actuator: servo.with_rate_limit(40.0 * DEG)?.with_delay(1)?,
         timing: Timing::new(0.01, 10.0)?,
         setpoint: Profile::new(1.0 * DEG, Shape::Step { at_s: 0.5 })?,
         disturbances: disturbances()?,

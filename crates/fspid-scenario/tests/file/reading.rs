@@ -173,7 +173,7 @@ fn an_absent_actuator_is_an_ideal_servo() {
     let (before, rest) = file::starter().split_once("[actuator]").expect("there is one");
     let (_, after) = rest.split_once("[loop]").expect("there is one");
     let study = parse(&format!("{before}[loop]{after}")).expect("no problems");
-    assert_eq!(study.scenario.servo, fspid_sim::Servo::ideal());
+    assert_eq!(study.scenario.actuator, fspid_sim::Actuator::ideal());
 }
 
 #[test]

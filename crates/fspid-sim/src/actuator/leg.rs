@@ -71,7 +71,7 @@ impl Actuator {
             let direction = self.direction(state, target_rad, drive);
             self.meet(state, direction);
             let (from, moves) = (*state, self.moves_surface(state));
-            let duration_s = self.pass(state, target_rad, drive, (direction, left_s));
+            let duration_s = self.pass(state, target_rad, drive, direction, left_s);
             each(self.leg(&from, duration_s, if moves { drive } else { Drive::Held }, target_rad));
             left_s -= duration_s;
         }
@@ -80,7 +80,7 @@ impl Actuator {
 
     /// Moves an actuator without lag and rate limit to its command at once.
     pub(crate) fn settle(&self, state: &mut ActuatorState, command_rad: f64) {
-        if self.lag.order() == 0 && self.rate_limit_rad_s.is_none() {
+        if self.is_at_once() {
             state.position_rad = within(self.travel_rad, self.target_rad(command_rad));
             let (x, half_rad) = (state.position_rad, 0.5 * self.play_rad);
             state.surface_rad = state.surface_rad.clamp(x - half_rad, x + half_rad);
@@ -144,7 +144,8 @@ impl Actuator {
         state: &mut ActuatorState,
         target_rad: f64,
         drive: Drive,
-        (direction, left_s): (f64, f64),
+        direction: f64,
+        left_s: f64,
     ) -> f64 {
         let moves = self.moves_surface(state);
         let duration_s = match drive {

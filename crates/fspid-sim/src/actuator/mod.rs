@@ -18,7 +18,9 @@
 //! so that a limit that is crossed and left again within such a piece is passed over; what is missed
 //! stays below 0.05 % of the motion. More than 64 legs a sample are not followed; the rest is held.
 //!
-//! [`Servo`](crate::Servo) is the plain first-order servo of the paper and stays as it is.
+//! A first-order servo, which has nothing but command limits, a lag and a rate limit, is one linear system with a
+//! linear plant in calm air: there it is sampled with it by matrix exponentials, in place of leg by leg. The two ways
+//! differ by rounding, and the first is the one that lanes fly.
 
 mod lag;
 mod leg;
@@ -100,6 +102,24 @@ const SAME: f64 = 1e-12;
 pub(crate) const MAX_DELAY_SAMPLES: usize = 10_000;
 
 impl Actuator {
+    /// The elevator is where it is commanded.
+    #[must_use]
+    pub const fn ideal() -> Self {
+        Self::new(Lag::NONE)
+    }
+
+    /// A servo of $1 / (\tau s + 1)$ without limits; 0 for no lag.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a time constant that is negative or not finite.
+    pub fn first_order(time_constant_s: f64) -> Result<Self, SimError> {
+        let time_constant_s = not_negative("time_constant_s", time_constant_s)?;
+        if time_constant_s == 0.0 {
+            return Ok(Self::ideal());
+        }
+        Lag::first_order(time_constant_s).map(Self::new)
+    }
+
     /// An actuator with this lag and no limits.
     #[must_use]
     pub const fn new(lag: Lag) -> Self {
@@ -128,6 +148,16 @@ impl Actuator {
     pub fn with_command_limits(self, least_rad: f64, most_rad: f64) -> Result<Self, SimError> {
         let limits = around_zero("command limits, rad", least_rad, most_rad)?;
         Ok(Self { command_limits_rad: Some(limits), ..self })
+    }
+
+    /// With commands kept within ± `limit_rad`: a lag of first order never overshoots its command, so that this bounds
+    /// the deflection as well.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] unless the limit is finite and positive.
+    pub fn with_position_limit(self, limit_rad: f64) -> Result<Self, SimError> {
+        let limit_rad = positive("position limit, rad", limit_rad)?;
+        self.with_command_limits(-limit_rad, limit_rad)
     }
 
     /// With commands up to ± `half_width_rad` taken for 0 and larger ones for so much less.
@@ -269,10 +299,39 @@ impl Actuator {
         !limits && !widths && self.rate_limit_rad_s.is_none()
     }
 
+    /// True with nothing but command limits that are equal to both sides, a lag of at most first order, a rate limit and
+    /// delay: while no rate limit holds it, it is one linear system with its plant.
+    pub(crate) fn is_first_order_servo(&self) -> bool {
+        let widths = self.deadband_rad > 0.0 || self.play_rad > 0.0;
+        let centred = self.command_limits_rad.is_none_or(|(least, most)| least + most == 0.0);
+        let unbiased = self.bias_rad == 0.0 && self.travel_rad.is_none();
+        self.lag.order() < 2 && centred && unbiased && !widths
+    }
+
+    /// True without lag and rate limit: the actuator is where it is told to be.
+    pub(crate) fn is_at_once(&self) -> bool {
+        self.lag.order() == 0 && self.rate_limit_rad_s.is_none()
+    }
+
+    /// The command within its limits, rad.
+    pub(crate) fn limited_rad(&self, command_rad: f64) -> f64 {
+        within(self.command_limits_rad, command_rad)
+    }
+
+    /// How a sample of `dt_s` passes when a first-order servo starts `gap_rad` short of its command: the rate [rad/s]
+    /// at which it is held by its limit, and for how long [s].
+    pub(crate) fn rate_limited_phase(&self, gap_rad: f64, dt_s: f64) -> Option<(f64, f64)> {
+        let limit = self.rate_limit_rad_s?;
+        // Below this gap the lag alone is slower than the limit.
+        let free_gap_rad = limit * self.lag.trailing_s();
+        let duration_s = (gap_rad.abs() - free_gap_rad) / limit;
+        (duration_s > 0.0).then(|| (limit.copysign(gap_rad), duration_s.min(dt_s)))
+    }
+
     /// What the lag is told when this command has arrived: within its limits, less the deadband.
     #[must_use]
     pub fn target_rad(&self, command_rad: f64) -> f64 {
-        let limited = within(self.command_limits_rad, command_rad);
+        let limited = self.limited_rad(command_rad);
         limited - limited.clamp(-self.deadband_rad, self.deadband_rad)
     }
 

@@ -3,7 +3,7 @@
 use fspid_aircraft::{AirMotion, Vector3};
 
 use super::corner::{Corner, Corners};
-use crate::air::{self, Place, Shaping, Wind};
+use crate::air::{self, AirPlace, Shaping, Wind};
 use crate::error::{SimError, finite};
 use crate::surroundings::Weather;
 
@@ -50,7 +50,7 @@ impl Atmosphere {
     }
 
     /// Winds and gusts at a place.
-    pub(super) fn wind(&self, place: &Place) -> AirMotion {
+    pub(super) fn wind(&self, place: &AirPlace) -> AirMotion {
         motion(self.winds_at(place))
     }
 
@@ -60,7 +60,7 @@ impl Atmosphere {
     }
 
     /// Winds and gusts at a place with turbulence.
-    pub(super) fn at(&self, place: &Place, turbulence: air::AirMotion) -> AirMotion {
+    pub(super) fn at(&self, place: &AirPlace, turbulence: air::AirMotion) -> AirMotion {
         motion(self.winds_at(place) + turbulence)
     }
 
@@ -70,11 +70,11 @@ impl Atmosphere {
     }
 
     /// The first corner of the winds between two places, not counting those at the first.
-    pub(super) fn corner(&self, from: &Place, to: &Place) -> Option<Corner> {
+    pub(super) fn corner(&self, from: &AirPlace, to: &AirPlace) -> Option<Corner> {
         self.corners.first_between(from, to)
     }
 
-    fn winds_at(&self, place: &Place) -> air::AirMotion {
+    fn winds_at(&self, place: &AirPlace) -> air::AirMotion {
         let motions = self.winds.iter().map(|wind| wind.at(place));
         motions.fold(air::AirMotion::default(), |sum, motion| sum + motion)
     }

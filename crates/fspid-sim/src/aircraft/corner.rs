@@ -1,6 +1,6 @@
 //! Where winds are not smooth, and how far a step may go so that it ends there.
 
-use crate::air::{Place, Wind};
+use crate::air::{AirPlace, Wind};
 
 /// How near to a corner a place is on it, m.
 const NEAR_M: f64 = 1e-9;
@@ -29,7 +29,7 @@ impl Corners {
     }
 
     /// The one that a straight way from a place to another meets first, if it is not at the first place.
-    pub(super) fn first_between(&self, from: &Place, to: &Place) -> Option<Corner> {
+    pub(super) fn first_between(&self, from: &AirPlace, to: &AirPlace) -> Option<Corner> {
         let share = |corner: &Corner| {
             let (before_m, after_m) = (corner.past_m(from), corner.past_m(to));
             let crossed = before_m.abs() > NEAR_M
@@ -44,7 +44,7 @@ impl Corners {
 
 impl Corner {
     /// How far a place is past it, m.
-    pub(super) fn past_m(self, place: &Place) -> f64 {
+    pub(super) fn past_m(self, place: &AirPlace) -> f64 {
         match self {
             Self::Distance(at_m) => place.distance_m - at_m,
             Self::Height(at_m) => place.height_m - at_m,
@@ -52,7 +52,7 @@ impl Corner {
     }
 
     /// True at the corner.
-    pub(super) fn is_at(self, place: &Place) -> bool {
+    pub(super) fn is_at(self, place: &AirPlace) -> bool {
         self.past_m(place).abs() <= NEAR_M
     }
 }

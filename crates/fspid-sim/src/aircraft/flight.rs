@@ -9,7 +9,7 @@ use fspid_aircraft::{
 use super::corner::Corner;
 use super::{AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller};
 use crate::actuator::{Actuator, ActuatorState};
-use crate::air::{self, Grid, Place, Shaping};
+use crate::air::{self, AirPlace, Grid, Shaping};
 use crate::error::SimError;
 use crate::surroundings::Weather;
 use crate::timing::Timing;
@@ -177,7 +177,7 @@ impl AircraftFlight {
         self.atmosphere.at(&self.place(&motion.body), turbulence(motion))
     }
 
-    fn place(&self, body: &Moving) -> Place {
+    fn place(&self, body: &Moving) -> AirPlace {
         place(&body.state, &self.atmosphere, body.distance_m)
     }
 
@@ -230,7 +230,7 @@ impl AircraftFlight {
             else {
                 return next;
             };
-            let (there, step_s) = self.stepped_to((&body, &next), held, (corner, left_s));
+            let (there, step_s) = self.stepped_to([&body, &next], held, corner, left_s);
             body = there;
             left_s -= step_s;
         }
@@ -240,9 +240,10 @@ impl AircraftFlight {
     /// The motion at a corner that a step of `most_s` passes, and how long a step reaches it: by regula falsi.
     fn stepped_to(
         &self,
-        (body, beyond): (&Moving, &Moving),
+        [body, beyond]: [&Moving; 2],
         held: &Holding,
-        (corner, most_s): (Corner, f64),
+        corner: Corner,
+        most_s: f64,
     ) -> (Moving, f64) {
         let past_m = |body: &Moving| corner.past_m(&self.place(body));
         let (mut before, mut after) = ((0.0, past_m(body)), (most_s, past_m(beyond)));
@@ -419,11 +420,11 @@ fn parted(values: &[f64; STATES]) -> (RigidState, f64) {
     (RigidState::from_array(&state), values[RIGID_STATES])
 }
 
-fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> Place {
+fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> AirPlace {
     let [north_m, east_m, _] = state.position_ned_m.to_array();
     let height_m = state.altitude_m() - atmosphere.ground_altitude_m();
     // No wind of the family asks for the time.
-    Place { time_s: 0.0, distance_m, north_m, east_m, height_m }
+    AirPlace { time_s: 0.0, distance_m, north_m, east_m, height_m }
 }
 
 /// At the course's start and heading, moving with the wind that blows there.

@@ -7,7 +7,7 @@ use super::lane::{Lanes, Mask, NO, YES, all, mask};
 use super::pid_lanes::{Controllers, Samples};
 use super::plant::Plants;
 use super::refusal::Refusal;
-use super::row::Row;
+use super::row::BatchRow;
 use crate::error::SimError;
 use crate::propagation::{DIVERGED_RAD, Propagation};
 use crate::propagator::Propagator;
@@ -137,7 +137,7 @@ impl<'a, const W: usize> Group<'a, W> {
 
     /// Flies all samples.
     #[inline(always)]
-    pub(super) fn fly(&mut self, observer: &mut impl FnMut(&Row<'_, W>)) {
+    pub(super) fn fly(&mut self, observer: &mut impl FnMut(&BatchRow<'_, W>)) {
         for k in 0..self.timing.rows() {
             if self.next_change <= k {
                 self.change_plants(k);
@@ -151,7 +151,7 @@ impl<'a, const W: usize> Group<'a, W> {
     }
 
     #[inline(always)]
-    fn sample(&mut self, k: usize, observer: &mut impl FnMut(&Row<'_, W>)) {
+    fn sample(&mut self, k: usize, observer: &mut impl FnMut(&BatchRow<'_, W>)) {
         let setpoint_rad = self.gather(k, |signals| signals.setpoint_rad);
         let disturbance_rad = self.gather(k, |signals| signals.at_elevator);
         let at_servo_rad = self.gather(k, |signals| signals.at_servo);
@@ -172,7 +172,7 @@ impl<'a, const W: usize> Group<'a, W> {
         }
         self.plants.settle(&command_rad);
         let elevator_rad = self.plants.elevator_rad(&disturbance_rad);
-        observer(&Row {
+        observer(&BatchRow {
             k,
             flying: &self.flying,
             setpoint_rad: &setpoint_rad,
@@ -273,8 +273,8 @@ fn course(flight: usize, prepared: &Prepared) -> Result<Course<'_>, Refusal> {
     let mut stages = Vec::with_capacity(prepared.stages.len());
     for stage in &prepared.stages {
         match &stage.propagation {
-            Propagation::Servo(propagator) => stages.push(Stage { from: stage.from, propagator }),
-            Propagation::Actuated(_) => return Err(refused("an actuator or gusts")),
+            Propagation::AsOne(propagator) => stages.push(Stage { from: stage.from, propagator }),
+            Propagation::ByLegs(_) => return Err(refused("an actuator or gusts")),
             Propagation::Aircraft(_) => return Err(refused("a nonlinear aircraft")),
         }
     }

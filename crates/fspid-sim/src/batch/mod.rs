@@ -10,8 +10,8 @@
 //! acts. A flight that diverges is parked: its lane computes zeros from then on.
 //!
 //! Flights of a group may differ in all numbers: plant, servo, gains, factors, limits, signals. They
-//! share what [`Refusal`] lists. What has no lanes (aircraft, actuators, gusts, sensors) is refused,
-//! and flies by [`fly`](crate::fly).
+//! share what [`Refusal`] lists. What has no lanes (aircraft, actuators that are no first-order servo,
+//! gusts, sensors) is refused, and flies by [`fly`](crate::fly).
 //!
 //! Threads are the caller's business: groups know nothing of each other.
 
@@ -33,7 +33,7 @@ mod tests;
 
 pub use fspid_numeric::InstructionSet;
 pub use refusal::Refusal;
-pub use row::Row;
+pub use row::BatchRow;
 
 use fearless_simd::dispatch;
 
@@ -64,7 +64,7 @@ pub struct Entrant<'a> {
 /// [`Refusal`] for flights that cannot fly side by side; none has flown then.
 pub fn fly_group<const W: usize>(
     flights: &[Entrant<'_>],
-    observer: impl FnMut(&Row<'_, W>),
+    observer: impl FnMut(&BatchRow<'_, W>),
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
     fly_group_by::<W>(InstructionSet::best(), flights, observer)
 }
@@ -76,7 +76,7 @@ pub fn fly_group<const W: usize>(
 pub fn fly_group_by<const W: usize>(
     instructions: InstructionSet,
     flights: &[Entrant<'_>],
-    mut observer: impl FnMut(&Row<'_, W>),
+    mut observer: impl FnMut(&BatchRow<'_, W>),
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
     let mut group = Group::<W>::new(flights, instructions)?;
     dispatch!(instructions.level(), _simd => group.fly(&mut observer));
@@ -96,7 +96,7 @@ pub fn fly_many<const W: usize>(
     let mut outcomes = Vec::with_capacity(flights.len());
     for group in flights.chunks(W.max(1)) {
         let first = outcomes.len();
-        let flown = fly_group::<W>(group, |row: &Row<'_, W>| {
+        let flown = fly_group::<W>(group, |row: &BatchRow<'_, W>| {
             for lane in 0..W {
                 if let Some(instant) = row.instant(lane) {
                     observer(first + lane, &instant);

@@ -17,10 +17,13 @@ pub(super) struct Plants<const W: usize> {
     rate_output: Vec<Lanes<W>>,
     rate_feedthrough: Lanes<W>,
     elevator_per_command: Lanes<W>,
-    position_limit_rad: Lanes<W>,
+    /// To both sides.
+    command_limit_rad: Lanes<W>,
     rate_limit_rad_s: Lanes<W>,
     time_constant_s: Lanes<W>,
     at_once: Mask<W>,
+    /// True if a lane has command limits.
+    any_command_limit: bool,
     /// True if a lane has a rate limit.
     any_rate_limit: bool,
     /// True if a lane has a servo without lag.
@@ -46,10 +49,11 @@ impl<const W: usize> Plants<W> {
             rate_output: zeros(order),
             rate_feedthrough: [0.0; W],
             elevator_per_command: [0.0; W],
-            position_limit_rad: [f64::INFINITY; W],
+            command_limit_rad: [f64::INFINITY; W],
             rate_limit_rad_s: [f64::INFINITY; W],
             time_constant_s: [0.0; W],
             at_once: [NO; W],
+            any_command_limit: false,
             any_rate_limit: false,
             any_at_once: false,
             single: PlantState::at_rest(order),
@@ -58,20 +62,23 @@ impl<const W: usize> Plants<W> {
 
     /// Lets a lane go on with this plant from where it is.
     pub(super) fn load(&mut self, lane: usize, propagator: &Propagator) {
-        for (place, &entry) in self.rows.iter_mut().zip(&propagator.free_step) {
+        for (place, &entry) in self.rows.iter_mut().zip(&propagator.free.step) {
             place[lane] = entry;
         }
-        for (place, &entry) in self.rate_output.iter_mut().zip(&propagator.rate_output) {
+        for (place, &entry) in self.rate_output.iter_mut().zip(propagator.rate_output()) {
             place[lane] = entry;
         }
-        self.rate_feedthrough[lane] = propagator.rate_feedthrough;
+        self.rate_feedthrough[lane] = propagator.rate_feedthrough();
         self.elevator_per_command[lane] = propagator.elevator_per_command;
         let servo = &propagator.servo;
-        let [position, rate] = servo.limits().map(|limit| limit.unwrap_or(f64::INFINITY));
-        (self.position_limit_rad[lane], self.rate_limit_rad_s[lane]) = (position, rate);
-        self.time_constant_s[lane] = servo.time_constant_s();
+        let limit_rad = servo.command_limits_rad().map_or(f64::INFINITY, |(_, most)| most);
+        self.command_limit_rad[lane] = limit_rad;
+        let rate = servo.rate_limit_rad_s().unwrap_or(f64::INFINITY);
+        self.rate_limit_rad_s[lane] = rate;
+        self.time_constant_s[lane] = servo.lag().trailing_s();
         self.at_once[lane] = mask(servo.is_at_once());
         self.any_at_once |= servo.is_at_once();
+        self.any_command_limit |= limit_rad < f64::INFINITY;
         self.any_rate_limit |= rate < f64::INFINITY;
     }
 
@@ -140,8 +147,11 @@ impl<const W: usize> Plants<W> {
     #[inline(always)]
     fn limited(&self, command_rad: &Lanes<W>) -> Lanes<W> {
         let mut inside_rad = *command_rad;
+        if !self.any_command_limit {
+            return inside_rad;
+        }
         for lane in 0..W {
-            let limit_rad = self.position_limit_rad[lane];
+            let limit_rad = self.command_limit_rad[lane];
             inside_rad[lane] = inside_rad[lane].limited(-limit_rad, limit_rad);
         }
         inside_rad
@@ -179,7 +189,7 @@ impl<const W: usize> Plants<W> {
         held
     }
 
-    /// As [`Servo::rate_limited_phase`](crate::Servo).
+    /// As [`Actuator::rate_limited_phase`](crate::Actuator).
     #[inline(always)]
     fn held(&self, command_rad: &Lanes<W>) -> Mask<W> {
         let mut held = [NO; W];

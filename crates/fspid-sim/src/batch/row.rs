@@ -8,7 +8,7 @@ use crate::closed_loop::Instant;
 /// Everything observable of a group at one sample, one entry a lane. What stands in a lane that does
 /// not fly means nothing.
 #[derive(Clone, Copy, Debug)]
-pub struct Row<'a, const W: usize> {
+pub struct BatchRow<'a, const W: usize> {
     /// Index of the sample.
     pub k: usize,
     pub(super) flying: &'a Mask<W>,
@@ -30,7 +30,7 @@ pub struct Row<'a, const W: usize> {
     pub(super) faults: &'a [Faults; W],
 }
 
-impl<const W: usize> Row<'_, W> {
+impl<const W: usize> BatchRow<'_, W> {
     /// True for a lane whose flight goes on; false without such a lane.
     #[inline(always)]
     #[must_use]

@@ -8,7 +8,7 @@ use proptest::test_runner::RngSeed;
 use super::{Entrant, fly_many};
 use crate::signal::{Disturbance, Entry, Profile, Shape};
 use crate::{
-    Controller, ElevatorSign, Instant, LinearPlant, Prepared, Scenario, Servo, Timing, fly,
+    Actuator, Controller, ElevatorSign, Instant, LinearPlant, Prepared, Scenario, Timing, fly,
 };
 use fspid_options::{DT_S, controller, structure};
 
@@ -23,7 +23,7 @@ fn prepared(seed: u64) -> Prepared {
     let timing = Timing::new(DT_S, 1.0).expect("allowed");
     let setpoint = Profile::new(0.5, noise(seed)).expect("allowed");
     let mut scenario = Scenario::new("options", plant.expect("proper"), timing, setpoint);
-    scenario.servo = Servo::first_order(0.05).expect("allowed");
+    scenario.actuator = Actuator::first_order(0.05).expect("allowed");
     let seen = Disturbance::new(Entry::Measurement, 0.1, noise(seed.wrapping_add(1)));
     scenario.disturbances.push(seen.expect("allowed"));
     scenario.prepare().expect("flies")

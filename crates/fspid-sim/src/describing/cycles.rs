@@ -3,7 +3,7 @@
 use fspid_core::Gains;
 use fspid_lti::modulus;
 
-use super::scan::{Table, Zero};
+use super::scan::{DescribingTable, Zero};
 use super::{LimitedPath, OpenLoop};
 use crate::controller::Controller;
 use crate::error::{SimError, positive};
@@ -124,7 +124,7 @@ pub fn limit_cycles_at(
         return Ok(vec![LimitCycles::NothingLimits; gains.len()]);
     }
     let plant = plant_around_rest(scenario)?;
-    let mut table = Table::new(&path, searched);
+    let mut table = DescribingTable::new(&path, searched);
     let answer = |gains: &Gains<f64>| {
         let open = OpenLoop::of(scenario, &plant, &controller.config_at(*gains), *gains)?;
         let zeros = table.zeros(&open);

@@ -31,7 +31,7 @@ const FAIR: Effort = Effort { steps: 128, steady: 1e-4, periods: 50, least_lag: 
 /// To some percent, where cycles are only looked for.
 const ROUGH: Effort = Effort { steps: 64, steady: 1e-3, periods: 20, least_lag: 0.1 };
 /// What limits a command between controller and surface: slew and output limits of the controller,
-/// everything of servo or actuator but its delay, and an aircraft's travel of the elevator.
+/// everything of the actuator but its delay, and an aircraft's travel of the elevator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitedPath {
     slew_rad_s: Option<f64>,
@@ -59,7 +59,7 @@ impl LimitedPath {
         Ok(Self {
             slew_rad_s: config.slew_rad_s,
             limits: config.limits,
-            actuator: scenario.actuator()?.with_bias(0.0)?,
+            actuator: scenario.actuator.with_bias(0.0)?,
             travel_rad,
         })
     }

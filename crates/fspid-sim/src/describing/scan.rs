@@ -52,7 +52,7 @@ pub(super) struct Zero {
 }
 
 /// Describing functions of a path over amplitudes and frequencies, computed where they are asked for.
-pub(super) struct Table<'a> {
+pub(super) struct DescribingTable<'a> {
     path: &'a LimitedPath,
     search: Search,
     /// Logarithms of the amplitudes.
@@ -60,7 +60,7 @@ pub(super) struct Table<'a> {
     columns: BTreeMap<i32, Vec<Complex>>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> DescribingTable<'a> {
     pub(super) fn new(path: &'a LimitedPath, search: Search) -> Self {
         let (least, most) = search.amplitude_rad;
         let amplitudes = spaced(libm::log(least), libm::log(most), AMPLITUDES);

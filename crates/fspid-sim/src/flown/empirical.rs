@@ -135,11 +135,11 @@ pub fn empirical_margins(
         return Err(SimError::Number { what, found: patience, allowed });
     }
     let duration_s = options.duration_s.unwrap_or_else(|| scenario.timing.end_s());
-    let first = Length::of(scenario, controller, (&options.criterion, duration_s))?;
+    let first = Length::of(scenario, controller, &options.criterion, duration_s)?;
     if first.nominal.largest_rad <= 0.0 {
         return Ok(EmpiricalAnswer::NothingMoves);
     }
-    let longer = Length::of(scenario, controller, (&options.criterion, patience * duration_s))?;
+    let longer = Length::of(scenario, controller, &options.criterion, patience * duration_s)?;
     // The longer flight has the last word, and tells of slower growth.
     if let Some(failure) = longer.nominal.failure(&options.criterion, longer.floor_rad) {
         return Ok(EmpiricalAnswer::NominalFails { failure, nominal: longer.nominal });
@@ -149,7 +149,7 @@ pub fn empirical_margins(
         None => gain_crossovers_rad_s(scenario, controller)?,
     };
     let longest = patience * patience * duration_s;
-    let longest = Length::of(scenario, controller, (&options.criterion, longest))?;
+    let longest = Length::of(scenario, controller, &options.criterion, longest)?;
     let lengths = [&first, &longer, &longest];
     let criterion = &options.criterion;
     let mut trials = Trials { lengths, controller, criterion, tolerance, flights: 2 };
@@ -210,7 +210,8 @@ impl Length {
     fn of(
         scenario: &Scenario,
         controller: &Controller,
-        (criterion, duration_s): (&Criterion, f64),
+        criterion: &Criterion,
+        duration_s: f64,
     ) -> Result<Self, SimError> {
         let timing = Timing::new(scenario.timing.dt_s(), duration_s)?;
         let flown = Scenario { timing, ..scenario.clone() };

@@ -64,7 +64,7 @@ impl Ladder {
         let mut holds = self.from;
         for &rung in &self.rungs {
             if let Some(failure) = trial(rung)? {
-                return self.halve(holds, (rung, failure), trial);
+                return self.halve(holds, rung, failure, trial);
             }
             holds = rung;
         }
@@ -74,7 +74,8 @@ impl Ladder {
     fn halve(
         &self,
         mut holds: f64,
-        (mut fails, mut failure): (f64, Failure),
+        mut fails: f64,
+        mut failure: Failure,
         mut trial: impl FnMut(f64) -> Result<Option<Failure>, SimError>,
     ) -> Result<Margin, SimError> {
         while fails - holds > self.width.max(self.tolerance * fails) {

@@ -32,8 +32,8 @@ use fspid_numeric::Scalar;
 use fspid_numeric::scalar::{Base, Interval};
 
 use crate::error::SimError;
+use crate::law::LinearStep;
 use crate::plant::LinearPlant;
-use crate::propagator::LinearStep;
 use crate::scenario::Scenario;
 
 pub use memory::Memory;
@@ -74,7 +74,7 @@ impl LoopSettings {
         Self {
             config: *config,
             memory,
-            delay_samples: scenario.delay_samples(),
+            delay_samples: scenario.actuator.delay_samples(),
             pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), config.dt_s),
             rate: Sensing::through(surroundings.rate_sensor.as_ref(), config.dt_s),
         }

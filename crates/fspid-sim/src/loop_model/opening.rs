@@ -64,7 +64,7 @@ impl LoopModel<f64> {
         let control = settings.series_control()?;
         let outputs = [fixed.as_slice(), &plant.pitch];
         let dt_s = settings.config.dt_s;
-        Ok(Some(LoopFamily::new((&matrix, &plant.by_command), outputs, control, dt_s)?))
+        Ok(Some(LoopFamily::new(&matrix, &plant.by_command, outputs, control, dt_s)?))
     }
 
     /// The open loop at a point.

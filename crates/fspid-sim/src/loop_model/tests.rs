@@ -8,7 +8,7 @@ use crate::actuator::{Actuator, Lag};
 use crate::sensor::{PITCH, RATE, Sensor, SensorModel};
 use crate::signal::{Disturbance, Entry, Profile, Shape};
 use crate::{
-    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
+    Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing,
     simulate,
 };
 
@@ -28,7 +28,7 @@ struct Case {
     gains: Gains<f64>,
     config: PidConfig<f64>,
     surroundings: Surroundings,
-    delay_samples: usize,
+    actuator: Actuator,
 }
 
 impl Case {
@@ -41,12 +41,11 @@ impl Case {
         let pid = Pid::new(self.gains, self.config).expect("allowed");
         let kick = Shape::Pulse { at_s: 0.0, width_s: DT_S };
         let named = NamedController { name: "C".into(), controller: Controller::Fixed(pid) };
-        let servo = Servo::first_order(0.1).and_then(|servo| servo.with_delay(self.delay_samples));
         Scenario {
             name: "matrix".into(),
             plant: self.plant().into(),
             plant_changes: Vec::new(),
-            servo: servo.expect("allowed"),
+            actuator: self.actuator,
             timing: Timing::new(DT_S, 5.0).expect("allowed"),
             setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
             disturbances: vec![Disturbance::new(Entry::Elevator, 0.1, kick).expect("allowed")],
@@ -78,6 +77,11 @@ fn sensor(delay_s: f64, scale_error: f64, channel: u32) -> Option<Sensor> {
     Some(Sensor::new(model, 1, channel).expect("allowed"))
 }
 
+fn servo(delay_samples: usize) -> Actuator {
+    let servo = Actuator::first_order(0.1).and_then(|servo| servo.with_delay(delay_samples));
+    servo.expect("allowed")
+}
+
 fn cases() -> Vec<Case> {
     let plain = PidConfig::sampled_every(DT_S);
     let rich = PidConfig {
@@ -90,7 +94,6 @@ fn cases() -> Vec<Case> {
     let lag = Lag::second_order(20.0, 0.7).expect("allowed");
     let actuator = Actuator::new(lag).with_delay(3).expect("allowed");
     let seen = Surroundings {
-        actuator: Some(actuator),
         pitch_sensor: sensor(0.015, 0.02, PITCH),
         rate_sensor: sensor(0.02, -0.01, RATE),
         ..Surroundings::default()
@@ -98,15 +101,15 @@ fn cases() -> Vec<Case> {
     let calm = Surroundings::default;
     let gains = Gains { kp: 0.8, ki: 0.4, kd: 0.2 };
     vec![
-        Case { plant: 0, gains, config: plain, surroundings: calm(), delay_samples: 0 },
-        Case { plant: 1, gains, config: rich, surroundings: calm(), delay_samples: 2 },
-        Case { plant: 1, gains, config: rich, surroundings: seen.clone(), delay_samples: 0 },
+        Case { plant: 0, gains, config: plain, surroundings: calm(), actuator: servo(0) },
+        Case { plant: 1, gains, config: rich, surroundings: calm(), actuator: servo(2) },
+        Case { plant: 1, gains, config: rich, surroundings: seen.clone(), actuator },
         Case {
             plant: 0,
             gains: Gains { ki: 0.0, kd: 0.0, ..gains },
             config: PidConfig { rate_gain_s: 0.9, ..plain },
             surroundings: seen,
-            delay_samples: 0,
+            actuator,
         },
     ]
 }
@@ -183,5 +186,27 @@ fn the_family_of_all_gains_is_the_open_loop_at_each() {
             }
         }
         assert!(model.family(BreakPoint::Rate).expect("poles").is_none());
+    }
+}
+
+/// A servo without a lag but with a rate limit used to change as if its deflection stood still, and had no margins.
+#[test]
+fn what_a_sample_changes_is_its_step_less_what_it_was() {
+    let limited = |actuator: Actuator| actuator.with_rate_limit(0.3).expect("allowed");
+    let second = Actuator::new(Lag::second_order(20.0, 0.7).expect("allowed"));
+    let ideal = Actuator::ideal();
+    for actuator in [ideal, limited(ideal), servo(0), limited(servo(0)), limited(second)] {
+        let case = Case { actuator, ..cases().remove(0) };
+        let propagation = case.scenario().propagation(&case.plant(), DT_S).expect("sampled");
+        let step = propagation.linear_step().expect("linear");
+        let change = propagation.linear_change(&case.plant()).expect("sampled").expect("linear");
+        let rows = change[0].chunks_exact(step.states + 1);
+        for (place, (row, of_step)) in rows.zip(step.rows.chunks_exact(step.states + 2)).enumerate()
+        {
+            for (column, (entry, stepped)) in row.iter().zip(of_step).enumerate() {
+                let was = if column == place { 1.0 } else { 0.0 };
+                assert!((entry + was - stepped).abs() < 1e-14, "{actuator:?} {place} {column}");
+            }
+        }
     }
 }

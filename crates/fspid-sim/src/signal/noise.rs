@@ -12,11 +12,20 @@ const AT_ONCE: usize = 16;
 /// How many such blocks a thread keeps, a power of two: 0.6 MB, some flights of 25 s at 100 Hz with all noises.
 const KEPT: usize = 4096;
 
+/// Which numbers a block holds.
+#[derive(Clone, Copy, PartialEq)]
+struct BlockOf {
+    seed: u64,
+    stream: u64,
+    /// Number of the block in its stream.
+    block: usize,
+}
+
 /// Numbers of one stream that follow each other.
 #[derive(Clone, Copy)]
 struct Block {
-    /// Seed, stream and number of the block; none before anything was drawn.
-    of: Option<(u64, u64, usize)>,
+    /// None before anything was drawn.
+    of: Option<BlockOf>,
     numbers: [f64; AT_ONCE],
 }
 
@@ -30,7 +39,7 @@ thread_local! {
 /// The standard normal number of a sample: counter-based, so that no stream and no sample depends
 /// on another, by the transform of Box and Muller (1958).
 pub(crate) fn standard_normal(seed: u64, stream: u64, k: usize) -> f64 {
-    let of = (seed, stream, k / AT_ONCE);
+    let of = BlockOf { seed, stream, block: k / AT_ONCE };
     BLOCKS.with_borrow_mut(|blocks| {
         let block = &mut blocks[place(of)];
         if block.of != Some(of) {
@@ -41,16 +50,17 @@ pub(crate) fn standard_normal(seed: u64, stream: u64, k: usize) -> f64 {
 }
 
 /// Where a block is kept: those of a stream side by side, streams and seeds apart by more than a short flight.
-fn place((seed, stream, block): (u64, u64, usize)) -> usize {
+fn place(of: BlockOf) -> usize {
+    let BlockOf { seed, stream, block } = of;
     let apart = seed.wrapping_mul(1031).wrapping_add(stream.wrapping_mul(331));
     apart.wrapping_add(block as u64) as usize % KEPT
 }
 
 /// The numbers of a block.
-fn drawn((seed, stream, block): (u64, u64, usize)) -> [f64; AT_ONCE] {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    generator.set_stream(stream);
-    generator.set_word_pos((block * AT_ONCE) as u128 * WORDS);
+fn drawn(of: BlockOf) -> [f64; AT_ONCE] {
+    let mut generator = ChaCha8Rng::seed_from_u64(of.seed);
+    generator.set_stream(of.stream);
+    generator.set_word_pos((of.block * AT_ONCE) as u128 * WORDS);
     std::array::from_fn(|_| {
         // In (0, 1], so that the logarithm is finite.
         let radius = unit(generator.next_u64()) + UNIT;

@@ -17,11 +17,10 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
 
 fn of_what_flies(scenario: &Scenario) -> [LeftOut; 5] {
     let surroundings = &scenario.surroundings;
-    let actuator = surroundings.actuator.as_ref();
+    let actuator = &scenario.actuator;
     let is_aircraft = scenario.plant.aircraft().is_some();
-    let is_limited = !actuator.map_or(scenario.servo.is_linear(), |actuator| actuator.is_linear());
-    let has_widths =
-        actuator.is_some_and(|actuator| actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0);
+    let is_limited = !actuator.is_linear();
+    let has_widths = actuator.deadband_rad() > 0.0 || actuator.play_rad() > 0.0;
     let mut sensors = [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter().flatten();
     let is_stepped = sensors.any(|sensor| sensor.model().resolution > 0.0);
     let erects = surroundings.pitch_sensor.is_some_and(|s| s.model().erection_rad_s > 0.0);

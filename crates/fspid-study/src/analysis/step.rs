@@ -31,12 +31,14 @@ pub(crate) struct StepResponse {
 pub(crate) fn step_responses(scenario: &Scenario) -> Result<Vec<StepResponse>, SimError> {
     let plants = lasting_plants(scenario)?;
     let Some((_, plant)) = plants.into_iter().next() else { return Ok(Vec::new()) };
+    let actuator = scenario.actuator;
     let mut linear = Scenario {
         plant: Plant::from(plant),
         plant_changes: Vec::new(),
         setpoint: Profile::new(STEP_RAD, Shape::Step { at_s: 0.0 })?,
         disturbances: Vec::new(),
         controllers: Vec::new(),
+        actuator: Actuator::new(actuator.lag()).with_delay(actuator.delay_samples())?,
         surroundings: surroundings(scenario)?,
         ..scenario.clone()
     };
@@ -64,10 +66,8 @@ fn at_rest(named: &NamedController) -> Option<NamedController> {
     Some(NamedController { name: named.name.clone(), controller })
 }
 
-/// The actuator's lag and delay, and what sensors do to a measurement but for noise.
+/// What sensors do to a measurement but for noise.
 fn surroundings(scenario: &Scenario) -> Result<Surroundings, SimError> {
-    let actuator = scenario.actuator()?;
-    let actuator = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples())?;
     let quiet = |sensor: Option<Sensor>, channel| {
         let model = sensor.as_ref().map(|sensor| *sensor.model());
         let model = model.map(|model| SensorModel {
@@ -80,7 +80,6 @@ fn surroundings(scenario: &Scenario) -> Result<Surroundings, SimError> {
     };
     Ok(Surroundings {
         weather: None,
-        actuator: Some(actuator),
         pitch_sensor: quiet(scenario.surroundings.pitch_sensor, PITCH)?,
         rate_sensor: quiet(scenario.surroundings.rate_sensor, RATE)?,
     })

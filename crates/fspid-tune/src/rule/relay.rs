@@ -220,7 +220,7 @@ fn still(scenario: &Scenario, longest_s: f64) -> Result<Scenario, RuleError> {
 
 /// `Ok` where the actuator lets the relay's command through.
 fn require_passed(scenario: &Scenario, amplitude_rad: f64) -> Result<(), RuleError> {
-    let actuator = scenario.actuator()?;
+    let actuator = scenario.actuator;
     // Dead bands and biases move the command a little, limits of command and travel cut it.
     let bounds = [actuator.command_limits_rad(), actuator.travel_rad()];
     let ends = bounds.into_iter().flatten().flat_map(|(low, high)| [-low, high]);
@@ -239,7 +239,7 @@ impl RelayExperiment {
         exact: Option<&UltimatePoint>,
     ) -> Vec<String> {
         let mut warnings = Vec::new();
-        let rate = scenario.actuator().ok().and_then(|actuator| actuator.rate_limit_rad_s());
+        let rate = scenario.actuator.rate_limit_rad_s();
         let travel_s = rate.map_or(0.0, |rate| 2.0 * self.amplitude_rad / rate);
         if travel_s > TRAVEL * 0.5 * self.period_s {
             warnings.push(format!(

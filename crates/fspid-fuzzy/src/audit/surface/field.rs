@@ -82,7 +82,8 @@ impl<'a> Field<'a> {
         };
         let (answer, least) = match self.methods.get_mut(index) {
             Some(Method::Layers(layers, levels)) => {
-                let room = (&mut self.low, &mut self.high, &mut self.levels);
+                let room =
+                    Room { low: &mut self.low, high: &mut self.high, ends: &mut self.levels };
                 let gradient = along.map(|_| &mut self.gradient);
                 from_layers(&self.firing, layers, levels, room, gradient)
             }
@@ -119,13 +120,22 @@ fn method(system: &System, index: usize) -> Method {
     }
 }
 
+/// What an answer by layers is computed in.
+struct Room<'a> {
+    low: &'a mut Envelope,
+    high: &'a mut Envelope,
+    /// Lower and upper ends of the levels.
+    ends: &'a mut [Vec<f64>; 2],
+}
+
 fn from_layers(
     firing: &Firing<'_>,
     layers: &Layers,
     levels: &mut [Level],
-    (low, high, ends): (&mut Envelope, &mut Envelope, &mut [Vec<f64>; 2]),
+    room: Room<'_>,
     gradient: Option<&mut Gradient>,
 ) -> (Slope, f64) {
+    let Room { low, high, ends } = room;
     let slack = 2.0 * layers.slack;
     for (level, layer) in levels.iter_mut().zip(&layers.layers) {
         let strength = firing.strongest(&layer.conclusions, &mut level.tops);

@@ -19,7 +19,7 @@ const STEPS: usize = 30;
 
 /// A sample, or a slice.
 #[derive(Clone, Debug)]
-struct Place {
+struct MassPlace {
     at: Interval,
     /// What it counts: 1 or ½ for a sample, the width of a slice.
     weight: Interval,
@@ -30,7 +30,7 @@ struct Place {
 /// An output read off places.
 #[derive(Clone, Debug)]
 pub(super) struct Masses {
-    places: Vec<Place>,
+    places: Vec<MassPlace>,
     reading: Reading,
     smooth: bool,
     universe: Interval,
@@ -67,7 +67,7 @@ impl Masses {
         let spots =
             if reading == Reading::Unknown { Vec::new() } else { spots(universe, sampling) };
         let sets = sets.unwrap_or_default();
-        let places = spots.into_iter().map(|(at, weight)| Place {
+        let places = spots.into_iter().map(|(at, weight)| MassPlace {
             at,
             weight,
             grades: sets.iter().map(|set| grade(system, set, at)).collect(),
@@ -312,7 +312,7 @@ fn strongest(firing: &Firing<'_>, index: usize, output: &Output, terms: &mut Vec
     }
 }
 
-fn join_terms(system: &System, index: usize, place: &Place, terms: &[Slope]) -> Slope {
+fn join_terms(system: &System, index: usize, place: &MassPlace, terms: &[Slope]) -> Slope {
     let first = system.outputs.get(index).and_then(|o| o.conclusions.first());
     let block = first.and_then(|&c| system.parts.blocks.get(system.conclusions.get(c)?.block));
     let Some(block) = block else { return Slope::zero() };
@@ -331,7 +331,7 @@ fn join_all(
     system: &System,
     index: usize,
     output: &Output,
-    place: &Place,
+    place: &MassPlace,
     degrees: &[Slope],
 ) -> Slope {
     let mut joined = Slope::zero();

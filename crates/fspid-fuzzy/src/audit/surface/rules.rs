@@ -103,14 +103,15 @@ pub(super) fn effects(
         if stands_alone(system, rule) && redundant.iter().any(|known| known.rule == position) {
             return RuleEffect::None { rule: position };
         }
-        effect(field, (rule, position), domain, effort)
+        effect(field, rule, position, domain, effort)
     });
     each.collect()
 }
 
 fn effect(
     field: &mut Field<'_>,
-    (rule, position): (usize, RulePosition),
+    rule: usize,
+    position: RulePosition,
     domain: &[Interval],
     effort: Effort,
 ) -> RuleEffect {

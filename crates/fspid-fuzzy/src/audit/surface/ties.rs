@@ -117,7 +117,8 @@ impl Ties {
             };
             let offset = one.centre + slope * other.centre;
             let scale = one.centre.abs() + ratio * other.centre.abs() + one.sigma;
-            self.add_tie([one.input, other.input], slope, (offset, scale), tie);
+            let (inputs, ties) = ([one.input, other.input], Vec::from([tie]));
+            self.add_line(Line { inputs, ratio: slope, offset, scale, ties });
         }
     }
 
@@ -131,24 +132,29 @@ impl Ties {
         };
         let offset = 0.5 * (left.centre + right.centre);
         let scale = left.centre.abs() + right.centre.abs();
-        self.add_tie([left.input; 2], 0.0, (offset, scale), tie);
+        self.add_line(Line {
+            inputs: [left.input; 2],
+            ratio: 0.0,
+            offset,
+            scale,
+            ties: Vec::from([tie]),
+        });
     }
 
-    fn add_tie(&mut self, inputs: [usize; 2], ratio: f64, (offset, scale): (f64, f64), tie: Tie) {
+    /// A line with its ties; those of a line that is there already join it.
+    fn add_line(&mut self, new: Line) {
         let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 0.25 * STRIP * scale;
         let known = self.lines.iter_mut().find(|line| {
-            line.inputs == inputs
-                && near(line.ratio, ratio, ratio.abs())
-                && near(line.offset, offset, scale)
+            line.inputs == new.inputs
+                && near(line.ratio, new.ratio, new.ratio.abs())
+                && near(line.offset, new.offset, new.scale)
         });
         match known {
             Some(line) => {
-                line.ties.push(tie);
-                line.scale = line.scale.max(scale);
+                line.ties.extend(new.ties);
+                line.scale = line.scale.max(new.scale);
             }
-            None => {
-                self.lines.push(Line { inputs, ratio, offset, scale, ties: Vec::from([tie]) });
-            }
+            None => self.lines.push(new),
         }
     }
 

@@ -80,7 +80,7 @@ fn stretches<T: Number>(
             if index < STRETCHES && closed(&plain.after_first()) {
                 continue;
             }
-            let mut stretch = Stretch::new(coefficients, &shares, (exponent, inverse));
+            let mut stretch = Stretch::new(coefficients, &shares, exponent, inverse);
             if index < STRETCHES {
                 stretch.leave_first();
             }
@@ -168,7 +168,7 @@ struct Stretch<T> {
 
 impl<T: Number> Stretch<T> {
     /// From 0 to a power of 2.
-    fn new(coefficients: &[T], shares: &[T], (exponent, inverse): (i32, bool)) -> Self {
+    fn new(coefficients: &[T], shares: &[T], exponent: i32, inverse: bool) -> Self {
         let terms = (0_i32..).zip(coefficients.iter().zip(shares));
         let scaled =
             terms.map(|(power, (value, share))| value.shifted(exponent * power).product(*share));

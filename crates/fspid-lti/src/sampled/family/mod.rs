@@ -56,7 +56,8 @@ impl LoopFamily {
     /// # Errors
     /// As [`SampledLoop::new`]; poles of the plant that are not found.
     pub fn new(
-        (a, b): (&Matrix, &[f64]),
+        a: &Matrix,
+        b: &[f64],
         [fixed, measured]: [&[f64]; 2],
         control: SeriesControl,
         dt_s: f64,

@@ -17,16 +17,15 @@ mod signal;
 mod supervisor;
 mod timing;
 
-use actuator::Drive;
 pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
 use flight::Flown;
+use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
-use fspid_sim::{
-    ElevatorSign, LinearPlant, NamedController, Scenario, Servo, Surroundings, Timing,
-};
+use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
 pub use range_rule::RangeRule;
 use schedule::Pressure;
+use timing::Sampling;
 
 use crate::dispersion::Dispersion;
 use crate::file::dispersion::dispersions;
@@ -66,9 +65,9 @@ pub(crate) fn scenario(
     }
     let timing = sound(section.get(keys::LOOP)).and_then(|part| timing::timing(report, part));
     let flown = flight::flown(report, files, section);
-    let drive = drive(report, section);
-    let servo = drive.map(|drive| drive.servo);
-    check_linear(report, section, (flown.as_ref(), timing, servo));
+    let actuator = actuator(report, section);
+    let sampling = timing.zip(actuator).map(|(timing, actuator)| Sampling { timing, actuator });
+    check_linear(report, section, flown.as_ref(), sampling);
     let setpoint =
         sound(section.get(keys::SETPOINT)).and_then(|part| signal::setpoint(report, part));
     let disturbances = disturbances(report, section);
@@ -76,9 +75,10 @@ pub(crate) fn scenario(
         report,
         files,
         section.sections(keys::PLANT_CHANGE),
-        (flown.as_ref().map(|flown| &flown.plant), timing, servo),
+        flown.as_ref().map(|flown| &flown.plant),
+        sampling,
     );
-    let surroundings = surroundings(report, files, (section, flown.as_ref(), drive));
+    let surroundings = surroundings(report, files, section, flown.as_ref());
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     if let Some(timing) = timing {
@@ -95,7 +95,7 @@ pub(crate) fn scenario(
         name: section.get(keys::NAME)?.to_owned(),
         plant: flown?.plant,
         plant_changes,
-        servo: servo?,
+        actuator: actuator?,
         timing: timing?,
         setpoint: setpoint?,
         disturbances,
@@ -118,23 +118,24 @@ pub(crate) fn scenario(
     })
 }
 
-/// Asks of a linear plant what it has to be at this period and with this servo, where all three are sound.
+/// Asks of a linear plant what it has to be at this period and with this actuator, where all three are sound.
 fn check_linear(
     report: &mut Report,
     section: &Section,
-    (flown, timing, servo): (Option<&flight::Flown>, Option<Timing>, Option<Servo>),
+    flown: Option<&Flown>,
+    sampling: Option<Sampling>,
 ) {
     let linear = flown.and_then(|flown| flown.plant.linear());
-    if let (Some(plant), Some(timing), Some(servo)) = (linear, timing, servo) {
-        timing::check_plant(report, section, plant, (timing, servo));
+    if let (Some(plant), Some(sampling)) = (linear, sampling) {
+        timing::check_plant(report, section, plant, sampling);
     }
 }
 
-/// What moves the elevator, and how.
-fn drive(report: &mut Report, section: &Section) -> Option<Drive> {
+/// What moves the elevator.
+fn actuator(report: &mut Report, section: &Section) -> Option<Actuator> {
     match section.get(keys::ACTUATOR) {
-        None => Some(Drive::ideal()),
-        part => sound(part).and_then(|part| actuator::drive(report, part)),
+        None => Some(Actuator::ideal()),
+        part => sound(part).and_then(|part| actuator::actuator(report, part)),
     }
 }
 
@@ -143,11 +144,12 @@ fn disturbances(report: &mut Report, section: &Section) -> Vec<Disturbance> {
     parts.filter_map(|part| signal::disturbance(report, part)).collect()
 }
 
-/// Moving air, actuator and sensors; what is wrong with them is reported.
+/// Moving air and sensors; what is wrong with them is reported.
 fn surroundings(
     report: &mut Report,
     files: &mut Files<'_>,
-    (section, flown, drive): (&Section, Option<&Flown>, Option<Drive>),
+    section: &Section,
+    flown: Option<&Flown>,
 ) -> Option<Surroundings> {
     let weather = flown.map(|flown| air::weather(report, files, (section, flown)));
     let sensors = match section.get(keys::SENSOR) {
@@ -155,8 +157,7 @@ fn surroundings(
         part => sound(part).and_then(|part| sensor::sensors(report, part)),
     };
     let (pitch_sensor, rate_sensor) = sensors?;
-    let actuator = drive?.actuator;
-    Some(Surroundings { weather: weather?, actuator, pitch_sensor, rate_sensor })
+    Some(Surroundings { weather: weather?, pitch_sensor, rate_sensor })
 }
 
 /// A part in which the check found nothing wrong.

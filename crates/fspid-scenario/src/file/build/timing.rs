@@ -1,6 +1,8 @@
 //! Samples, and what depends on when they are taken.
 
-use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, Servo, SimError, Surroundings, Timing};
+use fspid_sim::actuator::Actuator;
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, SimError, Timing};
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
@@ -49,22 +51,19 @@ pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timin
     }
 }
 
+/// When samples are taken, and of what moves the plant.
+#[derive(Clone, Copy)]
+pub(super) struct Sampling {
+    pub(super) timing: Timing,
+    pub(super) actuator: Actuator,
+}
+
 /// Finds out whether the plant can be sampled at all: its coefficients may be too far apart.
-fn can_be_sampled(plant: &LinearPlant, (timing, servo): (Timing, Servo)) -> Result<(), SimError> {
-    let dt_s = timing.dt_s();
-    let setpoint =
-        fspid_sim::signal::Profile::new(0.0, fspid_sim::signal::Shape::Step { at_s: 0.0 })?;
-    let scenario = Scenario {
-        name: String::new(),
-        plant: plant.clone().into(),
-        plant_changes: Vec::new(),
-        servo,
-        timing: Timing::new(dt_s, dt_s)?,
-        setpoint,
-        disturbances: Vec::new(),
-        controllers: Vec::new(),
-        surroundings: Surroundings::default(),
-    };
+fn can_be_sampled(plant: &LinearPlant, sampling: Sampling) -> Result<(), SimError> {
+    let dt_s = sampling.timing.dt_s();
+    let still = Profile::new(0.0, Shape::Step { at_s: 0.0 })?;
+    let mut scenario = Scenario::new("", plant.clone(), Timing::new(dt_s, dt_s)?, still);
+    scenario.actuator = sampling.actuator;
     scenario.prepare().map(|_| ())
 }
 
@@ -72,13 +71,13 @@ pub(super) fn check_plant(
     report: &mut Report,
     section: &Section,
     plant: &LinearPlant,
-    loop_: (Timing, Servo),
+    sampling: Sampling,
 ) {
     if let Some(part) = section.get(keys::PLANT) {
-        judged(report, (part, key_of(part)), can_be_sampled(plant, loop_));
+        judged(report, (part, key_of(part)), can_be_sampled(plant, sampling));
     } else if let Some(part) = section.get(keys::AIRCRAFT) {
         let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };
-        judged(report, (part, key), can_be_sampled(plant, loop_));
+        judged(report, (part, key), can_be_sampled(plant, sampling));
     }
 }
 
@@ -93,7 +92,8 @@ pub(super) fn plant_changes(
     report: &mut Report,
     files: &mut Files<'_>,
     parts: &[Section],
-    (plant, timing, servo): (Option<&Plant>, Option<Timing>, Option<Servo>),
+    plant: Option<&Plant>,
+    sampling: Option<Sampling>,
 ) -> Vec<PlantChange> {
     if let Some(Plant::Aircraft(_)) = plant {
         parts.iter().for_each(|part| refuse_change(report, part));
@@ -129,10 +129,10 @@ pub(super) fn plant_changes(
             part.problem(report, key, message, allowed);
             continue;
         }
-        if let (Some(timing), Some(servo)) = (timing, servo) {
-            let sampled = can_be_sampled(&target, (timing, servo));
+        if let Some(sampling) = sampling {
+            let sampled = can_be_sampled(&target, sampling);
             judged(report, (part, key_of(part)), sampled);
-            check_ramp(report, part, timing);
+            check_ramp(report, part, sampling.timing);
         }
         let change = PlantChange::new(at_s, part.get(keys::RAMP_S).unwrap_or(0.0), target);
         changes.extend(judged(report, (part, keys::AT_S), change));

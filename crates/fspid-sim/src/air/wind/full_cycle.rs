@@ -4,7 +4,7 @@ use fspid_fuzzy::membership::Param;
 
 use super::super::FOOT_M;
 use super::one_minus_cosine::{frozen, one_minus_cosine};
-use super::{AirMotion, Corners, Place, WindField, first, number, size};
+use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
 use crate::error::{SimError, finite, positive};
 
 /// A gust that rises over its gradient distance and falls back over another.
@@ -42,7 +42,7 @@ impl WindField for FullCycle {
         Self { amplitude_m_s: [forward, right, down], gradient_m, start_m }
     }
 
-    fn at(&self, place: &Place) -> AirMotion {
+    fn at(&self, place: &AirPlace) -> AirMotion {
         let into_m = place.distance_m - self.start_m;
         let inside = (0.0..=2.0 * self.gradient_m).contains(&into_m);
         let shape = if inside { one_minus_cosine(into_m, self.gradient_m) } else { (0.0, 0.0) };

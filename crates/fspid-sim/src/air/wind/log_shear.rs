@@ -3,7 +3,7 @@
 use fspid_fuzzy::membership::Param;
 
 use super::super::FOOT_M;
-use super::{AirMotion, Corners, Place, WindField, first, number, size};
+use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
 
 /// The logarithmic wind profile of the boundary layer.
 ///
@@ -55,7 +55,7 @@ impl WindField for LogShear {
         Self { w20_m_s, from_rad, roughness_m }
     }
 
-    fn at(&self, place: &Place) -> AirMotion {
+    fn at(&self, place: &AirPlace) -> AirMotion {
         let speed_m_s = self.speed_m_s(place.height_m);
         let (east, north) = crate::math::sin_cos(self.from_rad);
         AirMotion {

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::membership::Param;
 
-use super::{AirMotion, Corners, Place, WindField, first, number, size};
+use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
 use crate::math::exp;
 
 /// An axisymmetric microburst that obeys continuity.
@@ -83,7 +83,7 @@ impl WindField for Microburst {
         Self { outflow_m_s, radius_m, peak_height_m, axis_m: [north_m, east_m] }
     }
 
-    fn at(&self, place: &Place) -> AirMotion {
+    fn at(&self, place: &AirPlace) -> AirMotion {
         let [axis_north_m, axis_east_m] = self.axis_m;
         let (north_m, east_m) = (place.north_m - axis_north_m, place.east_m - axis_east_m);
         let distance_m = libm::hypot(north_m, east_m);

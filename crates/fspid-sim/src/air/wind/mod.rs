@@ -23,7 +23,7 @@ use crate::error::SimError;
 
 /// Where an aircraft is and how far it has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct AirPlace {
     /// Time since the start, s.
     pub time_s: f64,
     /// Distance flown through the air since the start, m.
@@ -80,7 +80,7 @@ impl Corners {
 
 /// The motion of several winds together.
 #[must_use]
-pub fn sum_at(winds: &[Wind], place: &Place) -> AirMotion {
+pub fn sum_at(winds: &[Wind], place: &AirPlace) -> AirMotion {
     winds.iter().fold(AirMotion::default(), |sum, wind| sum + wind.at(place))
 }
 
@@ -98,7 +98,7 @@ pub trait WindField: Sized {
     fn from_checked(params: &[f64]) -> Self;
 
     /// How the air moves at a place. Finite wherever the place is.
-    fn at(&self, place: &Place) -> AirMotion;
+    fn at(&self, place: &AirPlace) -> AirMotion;
 
     /// Where it is not smooth; nowhere if nothing is said.
     fn corners(&self) -> Corners {
@@ -157,7 +157,7 @@ macro_rules! winds {
         impl Wind {
             /// How the air moves at a place.
             #[must_use]
-            pub fn at(&self, place: &Place) -> AirMotion {
+            pub fn at(&self, place: &AirPlace) -> AirMotion {
                 match self { $(Self::$member(wind) => wind.at(place),)* }
             }
 

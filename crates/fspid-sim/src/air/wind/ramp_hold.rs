@@ -3,7 +3,7 @@
 use fspid_fuzzy::membership::Param;
 
 use super::one_minus_cosine::{frozen, one_minus_cosine};
-use super::{AirMotion, Corners, Place, WindField, first, number, size};
+use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
 
 /// A gust that rises over a length and then stays.
 ///
@@ -41,7 +41,7 @@ impl WindField for RampHold {
         Self { amplitude_m_s: [forward, right, down], length_m, start_m }
     }
 
-    fn at(&self, place: &Place) -> AirMotion {
+    fn at(&self, place: &AirPlace) -> AirMotion {
         let into_m = place.distance_m - self.start_m;
         let shape = if into_m > self.length_m {
             (1.0, 0.0)

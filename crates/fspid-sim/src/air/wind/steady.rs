@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::membership::Param;
 
-use super::{AirMotion, Place, WindField, first, number};
+use super::{AirMotion, AirPlace, WindField, first, number};
 
 /// A steady wind with its vertical part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl WindField for Steady {
         Self { earth_m_s: first(params) }
     }
 
-    fn at(&self, _: &Place) -> AirMotion {
+    fn at(&self, _: &AirPlace) -> AirMotion {
         AirMotion { earth_m_s: self.earth_m_s, ..AirMotion::default() }
     }
 }

@@ -6,8 +6,8 @@ fn close(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
 }
 
-fn at_distance(distance_m: f64) -> Place {
-    Place { distance_m, ..Place::default() }
+fn at_distance(distance_m: f64) -> AirPlace {
+    AirPlace { distance_m, ..AirPlace::default() }
 }
 
 fn numbers(motion: &AirMotion) -> impl Iterator<Item = f64> {
@@ -22,7 +22,8 @@ fn every_example_builds_and_moves_the_air_by_finite_amounts_everywhere() {
         let (mut moved, lengths) = (false, [-1e9, -50.0, 0.0, 1e-300, 30.0, 120.0, 2000.0, 1e9]);
         for distance_m in lengths {
             for height_m in lengths {
-                let place = Place { distance_m, north_m: distance_m, height_m, ..Place::default() };
+                let place =
+                    AirPlace { distance_m, north_m: distance_m, height_m, ..AirPlace::default() };
                 let motion = wind.at(&place);
                 assert!(numbers(&motion).all(f64::is_finite), "{} {place:?}", kind.name());
                 moved |= numbers(&motion).any(|part| part != 0.0);
@@ -131,7 +132,7 @@ fn a_wind_from_the_east_moves_the_air_west() {
     let from_rad = std::f64::consts::FRAC_PI_2;
     let wind = LogShear { w20_m_s: 10.0, from_rad, roughness_m: 0.05 };
     let [north, east, down] =
-        wind.at(&Place { height_m: 20.0 * FOOT_M, ..Place::default() }).earth_m_s;
+        wind.at(&AirPlace { height_m: 20.0 * FOOT_M, ..AirPlace::default() }).earth_m_s;
     close(north, 0.0, 1e-12);
     close(east, -10.0, 1e-12);
     assert_eq!(down, 0.0);
@@ -170,7 +171,7 @@ fn a_microburst_neither_makes_nor_swallows_air() {
 #[test]
 fn a_microburst_blows_outwards_and_down_and_nothing_passes_the_ground() {
     let at = |north_m: f64, height_m: f64| {
-        BURST.at(&Place { north_m, height_m, ..Place::default() }).earth_m_s
+        BURST.at(&AirPlace { north_m, height_m, ..AirPlace::default() }).earth_m_s
     };
     assert!(at(800.0, 50.0)[0] > 0.0 && at(-800.0, 50.0)[0] < 0.0);
     assert!(at(0.0, 300.0)[2] > 0.0 && at(0.0, 300.0)[0] == 0.0);
@@ -180,6 +181,6 @@ fn a_microburst_blows_outwards_and_down_and_nothing_passes_the_ground() {
 #[test]
 fn motions_of_the_air_add() {
     let steady = WindKind::Steady.build(&[1.0, 2.0, 3.0]).expect("allowed");
-    let sum = steady.at(&Place::default()) + steady.at(&Place::default());
+    let sum = steady.at(&AirPlace::default()) + steady.at(&AirPlace::default());
     assert_eq!(sum.earth_m_s, [2.0, 4.0, 6.0]);
 }

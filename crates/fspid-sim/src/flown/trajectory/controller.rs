@@ -213,7 +213,7 @@ impl Done {
                 Gains { kp: memory.kp, ki: memory.ki, kd: memory.kd }
             }
             (Controller::SelfTuning(fspid), Some(slopes)) => {
-                self.tuned(fspid, &memory, (&sample, slopes))
+                self.tuned(fspid, &memory, &sample, slopes)
             }
             _ => fixed(self.gains),
         };
@@ -248,7 +248,8 @@ impl Done {
         &self,
         fspid: &Fspid<f64>,
         memory: &Memory<Slope>,
-        (sample, slopes): (&Sample<Slope>, IncrementSlopes),
+        sample: &Sample<Slope>,
+        slopes: IncrementSlopes,
     ) -> Gains<Slope> {
         let equations = fspid.tuner_equations().lifted();
         let error_rad = sample.setpoint_rad - sample.measurement_rad;

@@ -39,7 +39,8 @@ fn unit(place: usize) -> Vec<f64> {
 /// What the core answers where one state is `by` off.
 fn stepped(
     controller: &Controller,
-    (mut state, mut sample): (State<f64>, Sample<f64>),
+    mut state: State<f64>,
+    mut sample: Sample<f64>,
     place: usize,
     by: f64,
 ) -> Answer {
@@ -102,7 +103,7 @@ fn compared(controller: &Controller, samples: &[Sample<f64>]) -> Result<[usize; 
         // Before the first sample there are no gains that could be moved.
         let places = if before.previous.is_some() { STATES } else { STATES - 3 };
         for place in 0..places {
-            let at = |by| stepped(controller, (before, sample), place, by);
+            let at = |by| stepped(controller, before, sample, place, by);
             let (below, here, above) = (at(-HALF), at(0.0), at(HALF));
             let expected = column(&rows, place);
             let size = expected.iter().fold(1.0_f64, |most, entry| most.max(entry.abs()));

@@ -45,7 +45,7 @@ pub struct SmallSignal {
 /// The states are those of [`LoopModel`](crate::loop_model::LoopModel) (pitch angle first), then the
 /// last command where a slew limit or a held sample needs it, then the three gains where they carry
 /// over from sample to sample. The plant is the one that flies then: its exact matrices, or, where a
-/// limit acts on servo or actuator, their differences; of a nonlinear aircraft the differences of its
+/// limit acts on the actuator, its differences; of a nonlinear aircraft the differences of its
 /// own motion in pitch angle, forward and downward speed, pitch rate, deflection and its rate, so that
 /// altitude, heading and everything lateral are left out. A sensor that has a clock of its own is
 /// taken at the largest age of its values.
@@ -166,8 +166,8 @@ impl<'a> Walk<'a> {
             time_s: prepared.timing.time_s(instant.k),
             gains: done.gains,
             limited: cut || !done.is_free(),
-            frozen: self.matrix(&parts, &frozen, (&done, None)),
-            matrix: self.matrix(&parts, &moving, (&done, Some(slopes))),
+            frozen: self.matrix(&parts, &frozen, &done, None),
+            matrix: self.matrix(&parts, &moving, &done, Some(slopes)),
             by_command: padded(&parts.by_command, moving.size),
         };
         self.parts = Some((begun, parts)).filter(|_| !cut && is_linear(coming.propagation));
@@ -220,7 +220,8 @@ impl<'a> Walk<'a> {
         &self,
         parts: &LoopParts,
         places: &Places,
-        (done, slopes): (&Done, Option<IncrementSlopes>),
+        done: &Done,
+        slopes: Option<IncrementSlopes>,
     ) -> Vec<Vec<f64>> {
         let (pitch, rate) = (padded(&parts.pitch, places.size), padded(&parts.rate, places.size));
         let inputs = Inputs { pitch: &pitch, rate: &rate, slopes };

@@ -9,7 +9,7 @@ mod text;
 
 use std::path::Path;
 
-use fspid_aircraft::envelope::{EnvelopeGrid, one_thread};
+use fspid_aircraft::envelope::{EnvelopeGrid, Evenly, one_thread};
 use fspid_aircraft::qualities::Category;
 use serde_json::{Map, Value, json};
 
@@ -72,7 +72,10 @@ pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFai
         airspeeds_m_s: speeds_m_s.clone(),
         altitudes_m: altitudes_m.clone(),
         category,
-        ..EnvelopeGrid::even((0.0, 0.0, 0), (0.0, 0.0, 0))
+        ..EnvelopeGrid::even(
+            Evenly { first: 0.0, last: 0.0, count: 0 },
+            Evenly { first: 0.0, last: 0.0, count: 0 },
+        )
     };
     let threads = std::thread::available_parallelism().unwrap_or(one_thread());
     let points = aircraft.envelope(&grid, threads, |linear| {

@@ -40,10 +40,7 @@ fn plants(scenario: &Scenario) -> Result<Vec<(PlantAt, LinearPlant)>, SimError> 
 
 /// Servo, whole samples of delay, and half a sample for which the hold keeps a command on average.
 fn command_path(scenario: &Scenario) -> Result<CommandPath, SimError> {
-    let actuator = match scenario.surroundings.actuator {
-        Some(actuator) => actuator,
-        None => scenario.servo.as_actuator()?,
-    };
+    let actuator = scenario.actuator;
     let samples = actuator.delay_samples() as f64 + 0.5;
     let servo = actuator.lag().transfer_function()?;
     Ok(CommandPath { servo, delay_s: samples * scenario.timing.dt_s() })
