@@ -177,7 +177,7 @@ impl Baseline {
 
     /// The change that brings a number in: as the start of a mark where its bounds hold it, else as it is.
     fn change(&self, template: &Template, key: &str, number: f64) -> String {
-        let is_start = template.study().marks.iter().any(|mark| {
+        let is_start = template.study().tunable_parameters.iter().any(|mark| {
             let holds = match &mark.free {
                 Free::Number(free) => (free.lower..=free.upper).contains(&number),
                 Free::Grid(_) | Free::Numbers(_) => false,

@@ -1,7 +1,7 @@
 //! A design: the scenario's own text with what was found in place of the marks.
 
 use fspid_scenario::file::{Extra, NewValue, Template, read_text};
-use fspid_scenario::tuning::{Free, Mark};
+use fspid_scenario::tuning::{Free, TunableParameter};
 
 use crate::error::TuneError;
 use crate::source::{Source, folder_of};
@@ -68,8 +68,8 @@ pub fn text(
 ) -> Result<String, TuneError> {
     let original = text_of(source)?;
     let values = space.values(point);
-    let mut places: Vec<(&Mark, &NewValue)> =
-        space.marks().iter().zip(values.iter().map(|(_, value)| value)).collect();
+    let mut places: Vec<(&TunableParameter, &NewValue)> =
+        space.parameters().iter().zip(values.iter().map(|(_, value)| value)).collect();
     places.sort_by_key(|(mark, _)| mark.bytes().start);
     let mut body = String::new();
     let mut from = 0;
@@ -104,7 +104,7 @@ pub(crate) fn with_changes(body: &str, heading: &[String], changes: &[String]) -
 }
 
 /// A value as a person would write it; a grid in lines.
-fn written(mark: &Mark, value: &NewValue) -> String {
+fn written(mark: &TunableParameter, value: &NewValue) -> String {
     match (&mark.free, value) {
         (Free::Grid(_), NewValue::Text(text)) => format!("\"\"\"\n{text}\n\"\"\""),
         (Free::Numbers(_), NewValue::Rows(rows)) => rows_of(rows),

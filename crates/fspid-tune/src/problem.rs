@@ -3,7 +3,7 @@
 use fspid_campaign::engine::{Judging, Stability};
 use fspid_scenario::file::Study;
 use fspid_scenario::requirement::Requirement;
-use fspid_scenario::tuning::{Mark, Tuning};
+use fspid_scenario::tuning::{TunableParameter, Tuning};
 use fspid_sim::Controller;
 use fspid_study::analysis::AtRest;
 use sha2::{Digest as _, Sha256};
@@ -24,7 +24,7 @@ pub struct TuningProblem {
 }
 
 impl TuningProblem {
-    /// The tuning of one controller of a scenario; of the one that has marks where none is named.
+    /// The tuning of one controller of a scenario; of the one that has parameters where none is named.
     ///
     /// # Errors
     /// No objective, nothing free, or cases, draws or bounds that make the scenario wrong.
@@ -37,18 +37,18 @@ impl TuningProblem {
         };
         let named = controller.or(tuning.controller.as_deref());
         let controller = chosen(study, named)?;
-        let marks = marks_of(study, &controller);
-        if marks.is_empty() {
+        let parameters = tunable_parameters_of(study, &controller);
+        if parameters.is_empty() {
             return Err(TuneError::NothingFree { path: path(), controller });
         }
         template.only(&controller)?.check_marks()?;
         let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
         let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
-        let digest = digest(&marks, &tuning, &cases);
+        let digest = digest(&parameters, &tuning, &cases);
         let measured = measured(&tuning);
         let loads = tuning.removes_constant_load && has_integral(study, &controller);
         let judging = Judging { stability: Stability::Analysed, loads };
-        let flights = Flights::new(Space::new(marks), cases, measured).with(judging);
+        let flights = Flights::new(Space::new(parameters), cases, measured).with(judging);
         Ok(Self { controller, tuning, flights, digest })
     }
 
@@ -187,11 +187,12 @@ pub fn controllers_with_marks(source: &Source) -> Result<Vec<String>, TuneError>
     let template = source.template()?;
     let study = template.study();
     let names = study.scenario.controllers.iter().map(|named| named.name.clone());
-    let own = |name: &String| study.marks.iter().any(|mark| mark.controller() == Some(name));
+    let own =
+        |name: &String| study.tunable_parameters.iter().any(|mark| mark.controller() == Some(name));
     Ok(names.filter(own).collect())
 }
 
-/// The controller of that name, or the one that has marks.
+/// The controller of that name, or the one that has parameters.
 pub(crate) fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneError> {
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
@@ -205,7 +206,8 @@ pub(crate) fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneE
             }),
         };
     }
-    let own = |name: &str| study.marks.iter().any(|mark| mark.controller() == Some(name));
+    let own =
+        |name: &str| study.tunable_parameters.iter().any(|mark| mark.controller() == Some(name));
     let marked: Vec<&str> = names.iter().copied().filter(|name| own(name)).collect();
     match marked[..] {
         [] => Ok(names.first().copied().unwrap_or_default().to_owned()),
@@ -216,20 +218,25 @@ pub(crate) fn chosen(study: &Study, named: Option<&str>) -> Result<String, TuneE
     }
 }
 
-/// The marks of a controller, and those that belong to none.
-pub(crate) fn marks_of(study: &Study, controller: &str) -> Vec<Mark> {
-    let concerns = |mark: &&Mark| mark.controller().is_none_or(|name| name == controller);
-    study.marks.iter().filter(concerns).cloned().collect()
+/// The parameters of a controller, and those that belong to none.
+pub(crate) fn tunable_parameters_of(study: &Study, controller: &str) -> Vec<TunableParameter> {
+    let concerns =
+        |mark: &&TunableParameter| mark.controller().is_none_or(|name| name == controller);
+    study.tunable_parameters.iter().filter(concerns).cloned().collect()
 }
 
 /// Of what is free, what makes a flight good, and what is flown; not of other controllers, nor of the cases that a
 /// contest judges on, so that these can change and nothing is searched again. Every requirement of the controller is part
 /// of it, also one that is asked in cases of the contest alone.
-fn digest(marks: &[Mark], tuning: &Tuning, cases: &[FlownCase]) -> String {
+fn digest(parameters: &[TunableParameter], tuning: &Tuning, cases: &[FlownCase]) -> String {
     let Tuning { over, objectives, limits, removes_constant_load, .. } = tuning;
     // Not where in the text they stand.
-    let free: Vec<_> = marks.iter().map(|mark| (mark.path.text(), &mark.free)).collect();
-    let mut all = format!("{free:?}\n{over:?}\n{objectives:?}\n{limits:?}\n");
+    let free: Vec<_> = parameters.iter().map(|it| (it.path.text(), &it.free)).collect();
+    // In the words of the first version, so that a search that was kept goes on.
+    let free = ["Number", "Numbers", "Grid"].iter().fold(format!("{free:?}"), |text, kind| {
+        text.replace(&format!("Tunable{kind} {{"), &format!("{kind}Mark {{"))
+    });
+    let mut all = format!("{free}\n{over:?}\n{objectives:?}\n{limits:?}\n");
     if *removes_constant_load {
         all.push_str("a constant load is removed\n");
     }

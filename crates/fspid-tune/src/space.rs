@@ -1,43 +1,43 @@
 //! The unit cube that is searched, and what its points put into a scenario.
 
 use fspid_scenario::file::{NewValue, SettingPath};
-use fspid_scenario::tuning::Mark;
+use fspid_scenario::tuning::TunableParameter;
 
 /// The marked places of a scenario, one or more coordinates each.
 #[derive(Clone, Debug)]
 pub struct Space {
-    marks: Vec<Mark>,
+    parameters: Vec<TunableParameter>,
 }
 
 impl Space {
-    /// The cube of these marks.
+    /// The cube of these parameters.
     #[must_use]
-    pub fn new(marks: Vec<Mark>) -> Self {
-        Self { marks }
+    pub fn new(parameters: Vec<TunableParameter>) -> Self {
+        Self { parameters }
     }
 
-    /// The marks, in the order of the coordinates.
+    /// The parameters, in the order of the coordinates.
     #[must_use]
-    pub fn marks(&self) -> &[Mark] {
-        &self.marks
+    pub fn parameters(&self) -> &[TunableParameter] {
+        &self.parameters
     }
 
     /// Number of coordinates.
     #[must_use]
     pub fn dimension(&self) -> usize {
-        self.marks.iter().map(Mark::dimensions).sum()
+        self.parameters.iter().map(TunableParameter::dimensions).sum()
     }
 
     /// The point from which a search begins.
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
-        self.marks.iter().flat_map(Mark::start).collect()
+        self.parameters.iter().flat_map(TunableParameter::start).collect()
     }
 
     /// Names of the coordinates.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        self.marks.iter().flat_map(Mark::names).collect()
+        self.parameters.iter().flat_map(TunableParameter::names).collect()
     }
 
     /// What the point puts into the scenario.
@@ -55,9 +55,9 @@ impl Space {
     fn parts<'a, 'p>(
         &'a self,
         point: &'p [f64],
-    ) -> impl Iterator<Item = (&'a Mark, &'p [f64])> + use<'a, 'p> {
+    ) -> impl Iterator<Item = (&'a TunableParameter, &'p [f64])> + use<'a, 'p> {
         let mut rest = point;
-        self.marks.iter().map(move |mark| {
+        self.parameters.iter().map(move |mark| {
             let (mine, others) = rest.split_at(mark.dimensions().min(rest.len()));
             rest = others;
             (mark, mine)

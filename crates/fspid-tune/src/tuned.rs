@@ -341,7 +341,7 @@ impl Tuned {
 
 fn numbers(problem: &TuningProblem, start: &Trial, best: &Trial) -> Vec<Number> {
     let space = problem.space();
-    let bounds = space.marks().iter().flat_map(|mark| match &mark.free {
+    let bounds = space.parameters().iter().flat_map(|mark| match &mark.free {
         Free::Number(number) => vec![Some([number.lower, number.upper])],
         Free::Grid(_) => vec![None; mark.dimensions()],
         Free::Numbers(numbers) => numbers.bounds().into_iter().map(Some).collect(),

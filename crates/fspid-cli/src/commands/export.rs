@@ -11,7 +11,7 @@ use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
 use fspid_export::{Angles, Export, Request, Target, export};
 use fspid_scenario::file::{self, Study};
-use fspid_scenario::tuning::Mark;
+use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
 use fspid_study::output;
 
@@ -137,8 +137,8 @@ fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedControlle
 
 /// Refuses a controller that is not tuned yet.
 fn tuned(study: &Study, name: &str) -> Result<(), Failure> {
-    let free = |mark: &&Mark| mark.controller().is_none_or(|it| it == name);
-    match study.marks.iter().find(free) {
+    let free = |mark: &&TunableParameter| mark.controller().is_none_or(|it| it == name);
+    match study.tunable_parameters.iter().find(free) {
         None => Ok(()),
         Some(mark) => Err(Failure::input(format_args!(
             "{} is marked for tuning; `fspid tune FILE --out design.toml` writes a design, which can be exported",

@@ -20,7 +20,6 @@ mod build;
 mod dispersion;
 mod extra;
 pub(crate) mod files;
-mod mark;
 mod overrides;
 mod paths;
 mod preset;
@@ -32,6 +31,7 @@ pub(crate) mod spec;
 pub(crate) mod tables;
 mod template;
 mod templates;
+mod tunable;
 mod tuning;
 
 use std::fmt;
@@ -45,7 +45,7 @@ use crate::file::files::Files;
 use crate::keyed::{check, document};
 use crate::setting_path::renamed;
 use crate::system_text::other_kind;
-use crate::tuning::{Contest, Mark, Tuning};
+use crate::tuning::{Contest, TunableParameter, Tuning};
 use fspid_diagnostics::{Place, Report, Span};
 
 pub use crate::carried::{aircraft_names, plant_names, rule_table_names};
@@ -82,9 +82,9 @@ pub struct Study {
     pub dispersions: Vec<Dispersion>,
     /// Gains that no setting states, because a schedule or a design makes them.
     pub derived_gains: Vec<DerivedGains>,
-    /// Places that are marked free for tuning, in the order of the file.
-    pub marks: Vec<Mark>,
-    /// How the marked places are chosen.
+    /// Places that tuning may change, in the order of the file.
+    pub tunable_parameters: Vec<TunableParameter>,
+    /// How their values are chosen.
     pub tuning: Option<Tuning>,
     /// Where tuned controllers are compared.
     pub contest: Option<Contest>,
@@ -146,7 +146,7 @@ impl Study {
             airframes,
             dispersions,
             derived_gains,
-            marks: Vec::new(),
+            tunable_parameters: Vec::new(),
             tuning,
             contest,
             range_rule,
@@ -251,9 +251,10 @@ pub fn parse_with(
     let study = read(&mut report, &mut files, text, extra);
     let warnings = report.finish(name)?;
     // Without a problem there is a study; the other case would be a mistake in this module.
-    let (built, settings, marks) = study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
+    let (built, settings, tunable_parameters) =
+        study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
     let digest = files.finish();
-    Ok(Study { settings, digest, warnings, marks, ..Study::without_text(built) })
+    Ok(Study { settings, digest, warnings, tunable_parameters, ..Study::without_text(built) })
 }
 
 fn read(
@@ -261,7 +262,7 @@ fn read(
     files: &mut Files<'_>,
     text: &str,
     extra: &Extra<'_>,
-) -> Option<(Built, Vec<Setting>, Vec<Mark>)> {
+) -> Option<(Built, Vec<Setting>, Vec<TunableParameter>)> {
     let (document, marks) = changed_document(report, files, text, extra)?;
     let section = check::table(report, &spec::SCENARIO, &document, "")?;
     requirement::check_cases(report, &section);
@@ -277,7 +278,7 @@ fn changed_document(
     files: &mut Files<'_>,
     text: &str,
     extra: &Extra<'_>,
-) -> Option<(document::Item, Vec<Mark>)> {
+) -> Option<(document::Item, Vec<TunableParameter>)> {
     if text.len() as u64 > document::FILE_LIMIT {
         let source = report.add_source(None, "");
         let place = Span { source, start: 0, end: 0 };
@@ -299,7 +300,7 @@ fn changed_document(
         overrides::apply(report, files, &mut document, text);
     }
     extra::apply(report, files, &mut document, extra);
-    let marks = mark::take(report, &mut document);
+    let marks = tunable::take(report, &mut document);
     Some((document, marks))
 }
 

@@ -5,9 +5,9 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::files::Files;
-use super::mark::FIXED;
 use super::setting::{number, quoted, step, written};
 use super::spec::SCENARIO;
+use super::tunable::FIXED;
 use super::{LoadError, build, changed_document, extra::Extra, read_text};
 use crate::keyed::check::{self, allowed};
 use crate::keyed::schema::{self, kind as schema_of};

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::file::mark;
 use crate::file::spec::SCENARIO;
+use crate::file::tunable;
 use crate::keyed::schema::{GRID_WORD, NUMBERS_WORD, schema_of};
 
 /// The JSON Schema (draft 2020-12) of scenario files.
@@ -13,10 +13,10 @@ pub fn schema() -> Value {
     if let Some(tables) = schema.get_mut("properties").and_then(Value::as_object_mut) {
         tables
             .iter_mut()
-            .filter(|(name, _)| !mark::FIXED.contains(&name.as_str()))
+            .filter(|(name, _)| !tunable::FIXED.contains(&name.as_str()))
             .for_each(|(_, table)| allow_marks(table));
     }
-    schema["$defs"] = mark::schemas();
+    schema["$defs"] = tunable::schemas();
     schema
 }
 

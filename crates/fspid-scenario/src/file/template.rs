@@ -8,7 +8,7 @@ use super::extra::Extra;
 use super::files::Files;
 use super::overrides::{self, Found, Setting};
 use crate::setting_path::{NewValue, SettingPath, steps};
-use crate::tuning::Mark;
+use crate::tuning::TunableParameter;
 use fspid_diagnostics::{Problems, Report, Span};
 
 use super::{LoadError, Study, changed_document, check, spec};
@@ -136,14 +136,16 @@ impl Template {
                 }
             }
         }
-        let is_mine = |mark: &&Mark| mark.controller().is_none_or(|name| name == controller);
-        let marks = self.study.marks.iter().filter(is_mine).cloned().collect();
+        let is_mine =
+            |mark: &&TunableParameter| mark.controller().is_none_or(|name| name == controller);
+        let tunable_parameters =
+            self.study.tunable_parameters.iter().filter(is_mine).cloned().collect();
         let mut files = one.files();
         let study = one.with_files(&mut files, &[])?;
         files.digest(&one.document.meaning());
         one.changes.iter().for_each(|change| files.digest(&change.meaning()));
         let digest = files.finish();
-        one.study = Study { marks, digest, ..study };
+        one.study = Study { tunable_parameters, digest, ..study };
         Ok(one)
     }
 

@@ -2,13 +2,13 @@
 //!
 //! Plain data, read and checked with the scenario; `fspid-tune` searches by it.
 
-mod grid_mark;
-mod mark;
-mod numbers_mark;
+mod tunable_grid;
+mod tunable_numbers;
+mod tunable_parameter;
 
-pub use grid_mark::{GridMark, Monotone};
-pub use mark::{Free, Mark, NumberMark};
-pub use numbers_mark::NumbersMark;
+pub use tunable_grid::{Monotone, TunableGrid};
+pub use tunable_numbers::TunableNumbers;
+pub use tunable_parameter::{Free, TunableNumber, TunableParameter};
 
 use crate::requirement::Requirement;
 

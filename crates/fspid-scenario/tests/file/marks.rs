@@ -22,14 +22,14 @@ fn a_mark_flies_as_its_start_and_as_the_middle_of_its_bounds_without_one() {
     let text = changed(&[("kp = 1.0\n", "kp = { tune = [0.1, 10.0], scale = \"log\" }\n")]);
     let study = file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
     let plain = file::parse(file::starter(), "starter.toml", None, &[]).expect("a scenario");
-    let Free::Number(number) = study.marks[0].free else { panic!("a number") };
+    let Free::Number(number) = study.tunable_parameters[0].free else { panic!("a number") };
     assert!((number.start - 1.0).abs() < 1e-15);
     assert_eq!(study.scenario.controllers.len(), plain.scenario.controllers.len());
     let text = text.replace("\"log\"", "\"log\", start = 1.0");
     let study = file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
     assert_eq!(study.scenario, plain.scenario);
-    assert_eq!(study.marks[0].path.text(), "controller.PID.kp");
-    assert_eq!(study.marks[0].controller(), Some("PID"));
+    assert_eq!(study.tunable_parameters[0].path.text(), "controller.PID.kp");
+    assert_eq!(study.tunable_parameters[0].controller(), Some("PID"));
 }
 
 #[test]
@@ -37,10 +37,10 @@ fn a_value_from_the_command_line_is_not_free_any_more() {
     let text = changed(&[("kp = 1.0\n", "kp = { tune = [0.1, 10.0] }\n")]);
     let set = ["controller.PID.kp=2.0".to_owned()];
     let study = file::parse(&text, "mine.toml", None, &set).expect("a scenario");
-    assert!(study.marks.is_empty());
+    assert!(study.tunable_parameters.is_empty());
     let set = ["controller.PID.kp.start=0.5".to_owned()];
     let study = file::parse(&text, "mine.toml", None, &set).expect("a scenario");
-    assert_eq!(study.marks.len(), 1);
+    assert_eq!(study.tunable_parameters.len(), 1);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn a_grid_of_rules_may_be_free_within_its_reach() {
     let text = free(&grid);
     let template =
         Template::parse(&text, "mine.toml", None, &Extra::default()).expect("a scenario");
-    let mark = &template.study().marks[0];
+    let mark = &template.study().tunable_parameters[0];
     assert_eq!(mark.dimensions(), 49);
     let NewValue::Text(highest) = mark.value(&[1.0; 49]) else { panic!("a grid") };
     assert!(highest.starts_with("NS ZO PS PM PB PB PB\n"), "{highest}");
@@ -164,7 +164,10 @@ fn every_marked_scenario_flies_and_bears_the_ends_of_its_bounds() {
     for (name, _) in crate::file::marked() {
         let path = crate::file::repository(&format!("scenarios/{name}"));
         let template = Template::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-        assert!(!template.study().marks.is_empty() && template.study().tuning.is_some(), "{name}");
+        assert!(
+            !template.study().tunable_parameters.is_empty() && template.study().tuning.is_some(),
+            "{name}"
+        );
         assert_eq!(template.check_marks(), Ok(()), "{name}");
     }
 }

@@ -288,7 +288,7 @@ fn a_grid_of_numbers_may_be_free_and_so_may_a_single_cell() {
     let study = file::parse(&marked, "mine.toml", None, &[]).expect("a scenario");
     let plain = file::parse(&numbers(&grid()), "mine.toml", None, &[]).expect("a scenario");
     assert_eq!(study.scenario, plain.scenario);
-    let mark = &study.marks[0];
+    let mark = &study.tunable_parameters[0];
     assert_eq!((mark.dimensions(), mark.controller()), (25, Some("FSPID")));
     assert!(matches!(mark.free, Free::Numbers(_)));
     let schema = file::schema();

@@ -158,9 +158,9 @@ fn an_old_key_is_read_around_a_mark_and_the_mark_has_the_new_path() {
     let found = read(&text, &[]);
     let expected = read(&scenario(&format!("error_set_centres = {mark}"), ""), &[]);
     assert_eq!(found.scenario, expected.scenario);
-    let [mark] = &found.marks[..] else { panic!("{:?}", found.marks) };
+    let [mark] = &found.tunable_parameters[..] else { panic!("{:?}", found.tunable_parameters) };
     assert_eq!(mark.path.text(), "controller.FSPID.supervisor.error_set_centres[0]");
-    assert_eq!(mark.free, expected.marks[0].free);
+    assert_eq!(mark.free, expected.tunable_parameters[0].free);
     assert_eq!(found.warnings.iter().filter(|it| it.contains("error_sets")).count(), 1);
     // The bytes of the mark are those of the text as it is.
     assert!(text[mark.bytes()].starts_with("{ tune"));

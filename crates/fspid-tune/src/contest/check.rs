@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use super::{Contest, Entrant, Options, flight};
 use crate::error::TuneError;
 use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
-use crate::problem::{TuningProblem, marks_of};
+use crate::problem::{TuningProblem, tunable_parameters_of};
 use crate::search::Effort;
 use crate::source::Source;
 use crate::space::Space;
@@ -142,8 +142,8 @@ fn entrant(
     cases: &[Template],
     rules: &Rules,
 ) -> Result<Entrant, TuneError> {
-    let marks = marks_of(study, name);
-    let problem = match marks.is_empty() {
+    let parameters = tunable_parameters_of(study, name);
+    let problem = match parameters.is_empty() {
         true => None,
         false => Some(TuningProblem::new(source, Some(name))?),
     };
@@ -155,6 +155,6 @@ fn entrant(
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.as_ref().map_or(&[][..], |tuning| &tuning.objectives);
     let measured = flight::measured(objectives);
-    let flights = Flights::new(Space::new(marks), flown, measured).with(JUDGING);
+    let flights = Flights::new(Space::new(parameters), flown, measured).with(JUDGING);
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -8,7 +8,7 @@ use crate::file::setting::named_step;
 use crate::keyed::check::{grid_text, number_grid};
 use crate::keyed::document::{Item, Member, Value};
 use crate::setting_path::{NewValue, SettingPath, bare};
-use crate::tuning::{Free, GridMark, Mark, Monotone, NumberMark, NumbersMark};
+use crate::tuning::{Free, Monotone, TunableGrid, TunableNumber, TunableNumbers, TunableParameter};
 use fspid_diagnostics::{Problems, Report, Span, nearest};
 use fspid_optimise::Scale;
 
@@ -73,7 +73,7 @@ pub(crate) fn schemas() -> serde_json::Value {
 }
 
 /// Takes the marks out of a document and leaves their starts.
-pub(crate) fn take(report: &mut Report, document: &mut Item) -> Vec<Mark> {
+pub(crate) fn take(report: &mut Report, document: &mut Item) -> Vec<TunableParameter> {
     let mut marks = Vec::new();
     let mut walk = Walk { report, marks: &mut marks, controller: None };
     walk.inside(document, "");
@@ -84,7 +84,7 @@ pub(crate) fn take(report: &mut Report, document: &mut Item) -> Vec<Mark> {
 
 struct Walk<'a> {
     report: &'a mut Report,
-    marks: &'a mut Vec<Mark>,
+    marks: &'a mut Vec<TunableParameter>,
     /// Name of the controller that is walked through.
     controller: Option<String>,
 }
@@ -145,7 +145,12 @@ impl Walk<'_> {
         if let Some(path) = SettingPath::parse(path) {
             let bytes =
                 if item.place.source == 0 { item.place.start..item.place.end } else { 0..0 };
-            self.marks.push(Mark { path, free, controller: self.controller.clone(), bytes });
+            self.marks.push(TunableParameter {
+                path,
+                free,
+                controller: self.controller.clone(),
+                bytes,
+            });
         }
     }
 }
@@ -238,7 +243,7 @@ impl Fields<'_> {
         self.report.value(place, &format!("{}.{key}", self.path), message, allowed);
     }
 
-    fn number(&mut self) -> Option<NumberMark> {
+    fn number(&mut self) -> Option<TunableNumber> {
         const BOUNDS: &str = "[lower, upper], two finite numbers with lower below upper";
         let bounds = match self.member(KEY).map(|item| &item.value) {
             Some(Value::Array(items)) => items.iter().map(number_of).collect::<Option<Vec<f64>>>(),
@@ -276,7 +281,7 @@ impl Fields<'_> {
                 }
             },
         };
-        Some(NumberMark { lower, upper, scale, start })
+        Some(TunableNumber { lower, upper, scale, start })
     }
 
     /// The word of a key, or the default.
@@ -295,7 +300,7 @@ impl Fields<'_> {
         found.map(|(value, _)| *value)
     }
 
-    fn grid(&mut self) -> Option<GridMark> {
+    fn grid(&mut self) -> Option<TunableGrid> {
         self.word(KEY, &[((), "rules"), ((), "numbers")], ())?;
         let start = self.start_grid()?;
         let reach = |value: &Value| match value {
@@ -307,7 +312,7 @@ impl Fields<'_> {
         let labels = Label::ALL.map(|label| (Some(label), label.name()));
         let at_rest = self.word("at_rest", &labels, None)?;
         let monotone = self.word("monotone", &Monotone::NAMES, Monotone::No)?;
-        let mark = GridMark { start, reach, symmetric, at_rest, monotone };
+        let mark = TunableGrid { start, reach, symmetric, at_rest, monotone };
         if !mark.start_is_allowed() {
             let allowed = "a grid that is symmetric, at rest and monotone as the mark asks";
             self.wrong("start", "the grid does not keep what is asked of it", allowed);
@@ -324,11 +329,11 @@ impl Fields<'_> {
         self.of_kind("symmetric", truth, true, "true or false")
     }
 
-    fn numbers(&mut self) -> Option<NumbersMark> {
+    fn numbers(&mut self) -> Option<TunableNumbers> {
         let start = self.start_numbers();
         let reach = self.reach();
         let symmetric = self.symmetric();
-        let mark = NumbersMark { start: start?, reach: reach?, symmetric: symmetric? };
+        let mark = TunableNumbers { start: start?, reach: reach?, symmetric: symmetric? };
         if !mark.start_is_allowed() {
             let message = "cell (i, j) is not cell (6 - i, 6 - j) everywhere";
             self.wrong("start", message, "a symmetric grid, or symmetric = false");
@@ -412,7 +417,7 @@ impl Template {
     /// Everything that is wrong then, each at its mark.
     pub fn check_marks(&self) -> Result<(), Problems> {
         let mut report = self.report();
-        for mark in &self.study().marks {
+        for mark in &self.study().tunable_parameters {
             let wrong = mark.ends().into_iter().find_map(|end| {
                 let problems = self.with(&[(&mark.path, end.clone())]).err()?;
                 Some((end, problems.first_in_a_line()))

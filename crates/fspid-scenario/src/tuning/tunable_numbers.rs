@@ -11,7 +11,7 @@ const LAST: usize = LABEL_COUNT - 1;
 
 /// A free grid of numbers, in the units of the supervisor's range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumbersMark {
+pub struct TunableNumbers {
     /// The grid that a search begins from.
     pub start: NumberGrid<f64>,
     /// How far a cell may move from there; above 0.
@@ -20,7 +20,7 @@ pub struct NumbersMark {
     pub symmetric: bool,
 }
 
-impl NumbersMark {
+impl TunableNumbers {
     /// Rows and columns of the cells that are chosen; the others follow from them.
     #[must_use]
     pub fn cells(&self) -> Vec<(usize, usize)> {
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_symmetric_grid_has_25_free_numbers_and_answers_a_fall_as_a_rise() {
-        let mark = NumbersMark { start: start(), reach: 0.5, symmetric: true };
+        let mark = TunableNumbers { start: start(), reach: 0.5, symmetric: true };
         assert!(mark.start_is_allowed());
         assert_eq!((mark.cells().len(), mark.bounds().len()), (25, 25));
         let unit: Vec<f64> = (0..25).map(|k| f64::from(k) / 24.0).collect();
@@ -118,18 +118,18 @@ mod tests {
     fn one_half_is_the_start_and_the_ends_are_its_reach() {
         let mut uneven = start();
         uneven[0][0] = 1.0 / 3.0;
-        let mark = NumbersMark { start: uneven, reach: 0.5, symmetric: false };
+        let mark = TunableNumbers { start: uneven, reach: 0.5, symmetric: false };
         assert_eq!(mark.cells().len(), 49);
         assert_eq!(mark.at(&[0.5; 49]), uneven);
         let [least, most] = [mark.at(&[0.0; 49]), mark.at(&[1.0; 49])];
         assert!((least[3][3] - (uneven[3][3] - 0.5)).abs() < 1e-15, "{least:?}");
         assert!((most[6][0] - (uneven[6][0] + 0.5)).abs() < 1e-15, "{most:?}");
-        assert!(!NumbersMark { symmetric: true, ..mark }.start_is_allowed());
+        assert!(!TunableNumbers { symmetric: true, ..mark }.start_is_allowed());
     }
 
     #[test]
     fn numbers_that_were_moved_have_few_digits_and_stay_within_their_reach() {
-        let mark = NumbersMark { start: [[1.0 / 3.0; 7]; 7], reach: 0.05, symmetric: false };
+        let mark = TunableNumbers { start: [[1.0 / 3.0; 7]; 7], reach: 0.05, symmetric: false };
         for unit in [0.0, 0.123_456_789, 0.7, 1.0] {
             let number = mark.at(&[unit; 49])[2][2];
             let shift = number - 1.0 / 3.0;

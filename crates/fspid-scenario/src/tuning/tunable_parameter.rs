@@ -1,13 +1,13 @@
 //! A place of a scenario that tuning may change.
 
-use super::{GridMark, NumbersMark};
+use super::{TunableGrid, TunableNumbers};
 use crate::keyed::check::grid_text;
 use crate::setting_path::{NewValue, SettingPath};
 use fspid_optimise::Scale;
 
 /// A place that is marked free.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub struct TunableParameter {
     /// Where it is, as `--set` names it.
     pub path: SettingPath,
     /// What may stand there.
@@ -22,16 +22,16 @@ pub struct Mark {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Free {
     /// A number between bounds.
-    Number(NumberMark),
+    Number(TunableNumber),
     /// A grid of rules.
-    Grid(GridMark),
+    Grid(TunableGrid),
     /// A grid of numbers.
-    Numbers(Box<NumbersMark>),
+    Numbers(Box<TunableNumbers>),
 }
 
 /// A free number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberMark {
+pub struct TunableNumber {
     /// Least value.
     pub lower: f64,
     /// Greatest value, above the least.
@@ -42,7 +42,7 @@ pub struct NumberMark {
     pub start: f64,
 }
 
-impl NumberMark {
+impl TunableNumber {
     /// Value at `unit` of the way from the lower to the upper bound.
     #[must_use]
     pub fn at(&self, unit: f64) -> f64 {
@@ -56,7 +56,7 @@ impl NumberMark {
     }
 }
 
-impl Mark {
+impl TunableParameter {
     /// Name of the controller that it belongs to; none for a place outside of the controllers.
     #[must_use]
     pub fn controller(&self) -> Option<&str> {

@@ -30,7 +30,7 @@ impl Monotone {
 
 /// A free grid of rules. Its labels are whole numbers from -3 (`NB`) to 3 (`PB`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridMark {
+pub struct TunableGrid {
     /// The grid that a search begins from.
     pub start: Grid,
     /// How many labels a cell may move from there, 1 to 6.
@@ -48,7 +48,7 @@ const LAST: usize = LABEL_COUNT - 1;
 
 type Levels = [[i8; LABEL_COUNT]; LABEL_COUNT];
 
-impl GridMark {
+impl TunableGrid {
     /// Rows and columns of the cells that are chosen; the others follow from them.
     #[must_use]
     pub fn cells(&self) -> Vec<(usize, usize)> {
@@ -140,9 +140,9 @@ mod tests {
 
     const FLAT: &str = "ZO ZO ZO ZO ZO ZO ZO\n";
 
-    fn mark(monotone: Monotone, at_rest: Option<Label>) -> GridMark {
+    fn mark(monotone: Monotone, at_rest: Option<Label>) -> TunableGrid {
         let start = Grid::parse(&FLAT.repeat(7)).expect("a grid");
-        GridMark { start, reach: 3, symmetric: true, at_rest, monotone }
+        TunableGrid { start, reach: 3, symmetric: true, at_rest, monotone }
     }
 
     /// Coordinates that look as if they were drawn.
