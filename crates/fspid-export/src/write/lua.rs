@@ -21,7 +21,7 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    writer.new(&mut page);
+    writer.begin(&mut page);
     page.line("");
     page.line("return { design = design, new = new, step = step, hold = hold }");
     page.text
@@ -165,7 +165,7 @@ impl Writer<'_> {
         page.line("end");
     }
 
-    fn new(&self, page: &mut Page) {
+    fn begin(&self, page: &mut Page) {
         comment(page, "The memory of a controller that has not flown yet.");
         page.line("local function new(design)");
         page.inside(|page| {
