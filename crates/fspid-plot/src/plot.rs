@@ -92,10 +92,11 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
     grid(canvas, &frame);
     axes(canvas, &frame);
     canvas.begin_clip(area);
-    marks(canvas, &frame, content);
+    bands(canvas, &frame, content);
     for curve in &content.curves {
         draw_curve(canvas, &frame, curve);
     }
+    lines(canvas, &frame, content);
     canvas.end();
     canvas.end();
 }
@@ -149,29 +150,55 @@ fn axes(canvas: &mut Canvas, frame: &Frame) {
     }
 }
 
-/// Bands and lines of reference.
-fn marks(canvas: &mut Canvas, frame: &Frame, content: &Content) {
+/// Bands, behind the curves.
+fn bands(canvas: &mut Canvas, frame: &Frame, content: &Content) {
     let Rect { x: left, width, .. } = frame.area;
-    let mut lines = Vec::new();
-    for &(lo, hi) in &content.bands {
-        let (lo, hi) = (frame.y.unit(lo), frame.y.unit(hi));
-        if lo.is_finite() && hi.is_finite() {
-            // A band too thin for an outline is made darker instead.
-            let thin = (hi - lo).abs() * frame.scale().1 < 8.0;
-            let paint = Paint::face(Role::Band).opacity(if thin { 0.45 } else { 0.2 });
-            let (top, bottom) = (frame.y_of_unit(lo.max(hi)), frame.y_of_unit(lo.min(hi)));
-            canvas.rect(left, top, width, bottom - top, &paint);
-            let edge = Paint::line(Role::Band, 0.8).dashed("3 2.5");
-            lines.extend([lo, hi].into_iter().filter(|_| !thin).map(|at| (at, edge.clone())));
+    for band in content.bands.iter().filter_map(|band| Band::of(frame, *band)) {
+        // A band too thin for an outline is made darker instead.
+        let paint = Paint::face(Role::Band).opacity(if band.is_thin { 0.45 } else { 0.2 });
+        canvas.rect(left, band.top, width, band.bottom - band.top, &paint);
+    }
+}
+
+/// The edges of bands and the lines of reference, before the curves.
+fn lines(canvas: &mut Canvas, frame: &Frame, content: &Content) {
+    let Rect { x: left, width, .. } = frame.area;
+    let mut line = |y: f64, paint: &Paint| canvas.line((left, y), (left + width, y), paint);
+    let edge = Paint::line(Role::Band, 0.8).dashed("3 2.5");
+    for band in content.bands.iter().filter_map(|band| Band::of(frame, *band)) {
+        if !band.is_thin {
+            band.edges.iter().for_each(|y| line(*y, &edge));
         }
     }
+    let reference = Paint::line(Role::Ink, 1.0).dashed("6 3");
     let (lowest, highest) = frame.y.unit_range();
-    let shown = content.references.iter().map(|value| frame.y.unit(*value));
-    let shown = shown.filter(|at| (lowest..=highest).contains(at));
-    lines.extend(shown.map(|at| (at, Paint::line(Role::Ink, 1.0).dashed("6 3"))));
-    for (at, paint) in lines {
-        let y = frame.y_of_unit(at);
-        canvas.line((left, y), (left + width, y), &paint);
+    for at in content.references.iter().map(|value| frame.y.unit(*value)) {
+        if (lowest..=highest).contains(&at) {
+            line(frame.y_of_unit(at), &reference);
+        }
+    }
+}
+
+/// A tolerance band on the canvas.
+struct Band {
+    top: f64,
+    bottom: f64,
+    /// Of the two ends, in the order in which they were given.
+    edges: [f64; 2],
+    is_thin: bool,
+}
+
+impl Band {
+    /// Nothing for ends that cannot be shown.
+    fn of(frame: &Frame, (lower, upper): (f64, f64)) -> Option<Self> {
+        let ends = [frame.y.unit(lower), frame.y.unit(upper)];
+        let [lower, upper] = ends;
+        (lower.is_finite() && upper.is_finite()).then(|| Self {
+            top: frame.y_of_unit(lower.max(upper)),
+            bottom: frame.y_of_unit(lower.min(upper)),
+            edges: ends.map(|end| frame.y_of_unit(end)),
+            is_thin: (upper - lower).abs() * frame.scale().1 < 8.0,
+        })
     }
 }
 
