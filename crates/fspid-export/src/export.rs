@@ -4,41 +4,10 @@ use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, precision_of, program};
-use crate::program::{Precision, Program};
-use crate::vectors::{Vector, vectors};
+use crate::program::Precision;
+use crate::targets::{File, Source, Target};
+use crate::vectors::vectors;
 use crate::write::{self, Heading};
-
-/// A language that a controller can be written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// C99.
-    C,
-    /// Lua 5.3.
-    Lua,
-}
-
-impl Target {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::C, Self::Lua];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::C => "c",
-            Self::Lua => "lua",
-        }
-    }
-
-    /// What is written, in a line.
-    #[must_use]
-    pub const fn about(self) -> &'static str {
-        match self {
-            Self::C => "C99, freestanding: a header and a source",
-            Self::Lua => "a module for Lua 5.3",
-        }
-    }
-}
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -78,15 +47,6 @@ pub enum ExportError {
         /// Why.
         reason: ConfigError,
     },
-}
-
-/// A file of an export.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct File {
-    /// Its name in the folder.
-    pub name: String,
-    /// What is in it.
-    pub text: String,
 }
 
 /// A controller in another language.
@@ -129,50 +89,30 @@ fn exported<R: Real>(
         notes.push(format!("`{}` is called `{prefix}` in the code", request.name));
     }
     notes.extend(way(controller));
+    notes.push(NOT_JUDGED.to_owned());
+    if request.precision == Precision::Single {
+        notes.push(SINGLE.to_owned());
+    }
     let heading = Heading {
         name: request.name,
         digest: request.digest,
         precision: precision_of::<R>(),
         angles: request.angles,
     };
-    let mut files = match request.target {
-        Target::C => in_c(&program, &prefix, &heading, &vectors),
-        Target::Lua => in_lua(&program, &prefix, &heading, &vectors),
-    };
-    files.push(File { name: "vectors.csv".to_owned(), text: write::csv(&program, &vectors) });
+    let source =
+        Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
+    let mut files = request.target.files(&source);
+    files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
     Ok(Export { prefix, files, notes })
 }
 
+const NOT_JUDGED: &str =
+    "the same bits say nothing of the loop: `fspid verify` and `fspid certify` judge it";
+const SINGLE: &str =
+    "settings were rounded to 32 bits; verdicts, margins and certificates are of 64 bits";
+
 /// Of the vectors' samples.
 const SEED: u64 = 1;
-
-fn in_c<R: Real>(
-    program: &Program,
-    prefix: &str,
-    heading: &Heading<'_>,
-    vectors: &[Vector<R>],
-) -> Vec<File> {
-    let files = write::c(program, prefix, heading);
-    let file = |name: String, text| File { name, text };
-    vec![
-        file(format!("{prefix}.h"), files.header),
-        file(format!("{prefix}.c"), files.source),
-        file(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
-    ]
-}
-
-fn in_lua<R: Real>(
-    program: &Program,
-    prefix: &str,
-    heading: &Heading<'_>,
-    vectors: &[Vector<R>],
-) -> Vec<File> {
-    let file = |name: String, text| File { name, text };
-    vec![
-        file(format!("{prefix}.lua"), write::lua(program, heading)),
-        file(format!("{prefix}_check.lua"), write::lua_harness(program, prefix, vectors)),
-    ]
-}
 
 /// How the supervisor infers.
 fn way<R: Real>(controller: &Controller<R>) -> Option<String> {

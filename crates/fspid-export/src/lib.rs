@@ -6,10 +6,12 @@ mod compose;
 mod export;
 pub mod interpret;
 pub mod program;
+mod targets;
 mod trace;
 pub mod vectors;
 pub mod write;
 
 pub use compose::{Angles, Refusal, precision_of, program};
-pub use export::{Export, ExportError, File, Request, Target, export, identifier};
+pub use export::{Export, ExportError, Request, export, identifier};
 pub use fspid_core::Controller;
+pub use targets::{File, Target};

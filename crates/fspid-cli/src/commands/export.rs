@@ -17,8 +17,8 @@ use fspid_study::output;
 
 /// Write a controller in another language: the same bits as the simulator, with vectors that show it.
 ///
-/// The folder holds the code, `vectors.csv` with samples and answers of every option at work, and a program that asks
-/// the code for the answers and counts those with other bits.
+/// The folder holds the code, `vectors.csv` with drawn samples, good and bad ones, and their answers, and a program that asks
+/// the code for the answers and counts those with other bits. Whether the loop is good is not asked: `verify` and `certify` do.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language.
+    /// The language: c (C99, freestanding) or lua (5.3).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -160,9 +160,10 @@ fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
 }
 
 fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
-    output::make_folder(folder)?;
     for file in &exported.files {
-        output::write(&folder.join(&file.name), &file.text)?;
+        let path = folder.join(&file.name);
+        output::make_folder(path.parent().unwrap_or(folder))?;
+        output::write(&path, &file.bytes)?;
     }
     Ok(())
 }

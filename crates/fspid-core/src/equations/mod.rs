@@ -29,12 +29,12 @@ pub use tuner::{
 macro_rules! numbers {
     (
         $(#[$doc:meta])* $name:ident:
-        $($(#[$field_doc:meta])* $field:ident),+ $(,)?
+        $($(#[doc = $field_doc:literal])+ $field:ident),+ $(,)?
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name<S> {
-            $($(#[$field_doc])* pub $field: S,)+
+            $($(#[doc = $field_doc])+ pub $field: S,)+
         }
 
         impl<S> $name<S> {
@@ -52,7 +52,7 @@ macro_rules! numbers {
                 $name {
                     $($field: number(
                         stringify!($field),
-                        concat!($(stringify!($field_doc)),+),
+                        concat!($($field_doc),+),
                         &self.$field,
                     ),)+
                 }

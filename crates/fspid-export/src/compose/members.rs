@@ -34,13 +34,7 @@ impl Configuration {
         if value.is_infinite() {
             return Traced::configured(value, Expression::Number(0.0));
         }
-        let read = self.real(name, &plain(doc), value);
+        let read = self.real(name, doc.replace('`', "").trim(), value);
         Traced::configured(value, read)
     }
-}
-
-/// The text of a doc comment as the compiler hands it on.
-fn plain(doc: &str) -> String {
-    let text = doc.split_once('"').map_or(doc, |(_, text)| text);
-    text.trim_end_matches('"').replace('`', "").trim().to_owned()
 }

@@ -1,4 +1,4 @@
-//! Leaves out what nobody reads, and blocks that are none.
+//! Leaves out what nobody reads.
 
 use std::collections::BTreeSet;
 
@@ -6,32 +6,7 @@ use crate::program::{Argument, Expression, Part, Place, Program, Statement};
 
 /// Removes values and members of configuration and state that are not read, with what is written into them.
 pub(super) fn prune(program: &mut Program) {
-    for function in &mut program.functions {
-        flatten(&mut function.body);
-    }
     while remove_unread(program) {}
-}
-
-/// A block that is always done is no block.
-fn flatten(body: &mut Vec<Statement>) {
-    let mut flat = Vec::with_capacity(body.len());
-    for mut statement in std::mem::take(body) {
-        match &mut statement {
-            Statement::If(Expression::Truth(true), then, _) => {
-                flatten(then);
-                flat.append(then);
-                continue;
-            }
-            Statement::If(_, then, otherwise) => {
-                flatten(then);
-                flatten(otherwise);
-            }
-            Statement::For(.., inside) => flatten(inside),
-            _ => {}
-        }
-        flat.push(statement);
-    }
-    *body = flat;
 }
 
 fn size(program: &Program) -> usize {

@@ -1,8 +1,6 @@
 //! The step of a controller: what is believed, the gains of the moment, the command, what is remembered.
 
-use fspid_core::equations::{
-    Free, GainNumbers, LawKind, Memory, PidEquations, SecondInputKind, TunerEquations,
-};
+use fspid_core::equations::{Free, Memory, PidEquations, SecondInputKind, TunerEquations};
 use fspid_core::{Faults, Gains, InputSets, ModelState, Sample, SetCentres, largest_remembered};
 use fspid_numeric::Real;
 use fspid_numeric::scalar::Scalar as _;
@@ -110,6 +108,7 @@ pub(super) fn functions<R: Real>(
     {
         functions.push(infer::warp_function::<R>());
     }
+    functions.push(reset(configuration, controller));
     functions.push(hold(configuration, controller, angles));
     let step =
         Composer { configuration, controller, angles, listing: Listing::new(precision_of::<R>()) };
@@ -118,6 +117,28 @@ pub(super) fn functions<R: Real>(
 }
 
 const PARTS: &[Part] = &[Part::Configuration, Part::State, Part::Sample, Part::Answer];
+
+/// The function that forgets everything.
+fn reset<R: Real>(configuration: &mut Configuration, controller: &Controller<R>) -> Function {
+    let begin = |member: Member| {
+        let value = match (GAINS.iter().position(|gain| *gain == member.name), member.value) {
+            (Some(gain), _) => nominal_gain(configuration, controller, gain),
+            (None, Value::Truth(value)) => Expression::Truth(value),
+            (None, Value::Byte(value)) => Expression::Byte(value),
+            (None, Value::Real(value)) => number(value),
+            (None, Value::Reals(_) | Value::Bytes(_)) => unreachable!("no list is remembered"),
+        };
+        Statement::set_member(Part::State, &member.name, value)
+    };
+    Function {
+        name: "reset",
+        doc: "Forgets everything: as before the first sample.",
+        parts: &[Part::Configuration, Part::State],
+        parameters: Vec::new(),
+        answers: None,
+        body: state(controller).into_iter().map(begin).collect(),
+    }
+}
 
 /// The function that answers a sample which cannot be used.
 fn hold<R: Real>(
@@ -339,23 +360,16 @@ impl<R: Real> Composer<'_, R> {
         let first = pid.at_first(sample, nominal);
         let state = |name: &str| member(Part::State, name);
         let started = state("started");
-        let mut chosen = Vec::new();
-        for (name, at_first) in [
-            ("last_error_rad", first.error_rad),
-            ("last_input_rad", first.derivative_input_rad),
-            ("model_rad", first.model_rad),
+        // Those that this controller does not use are left out, as nothing reads them.
+        for (name, of_state, at_first) in [
+            ("last_error_rad", "error_rad", first.error_rad),
+            ("last_input_rad", "derivative_input_rad", first.derivative_input_rad),
+            ("model_rad", "model_rad", first.model_rad),
         ] {
-            let of_state = match name {
-                "last_error_rad" => "error_rad",
-                "last_input_rad" => "derivative_input_rad",
-                other => other,
-            };
             let at_first = self.listing.value(at_first);
             let value = started.clone().select(state(of_state), at_first);
-            chosen.push(Statement::real(name, value));
+            body.push(Statement::real(name, value));
         }
-        // Only what this controller uses; the rest is left out where nothing reads it.
-        body.extend(chosen);
         let kept = |name: &str| Traced::read(state(name));
         Memory {
             command_rad: kept("command_rad"),
@@ -392,42 +406,44 @@ impl<R: Real> Composer<'_, R> {
         for (gain, last) in GAINS.into_iter().zip(before) {
             body.push(Statement::real(gain, self.listing.value(last)));
         }
-        let mut moved = Vec::new();
-        let mut free = Vec::new();
-        for ((gain, last), (numbers, scaled)) in
-            GAINS.into_iter().zip(before).zip(tuner.gains.iter().zip(&scaled))
-        {
-            let _ = gain;
-            free.push((numbers, tuner.free_gain(numbers, last, read(scaled))));
+        let moved = self.moved(tuner, before, &scaled);
+        if self.refuses() {
+            let (fault, refused) = (local("fault"), Expression::Byte(infer::OUT_OF_RANGE));
+            let refused = Expression::binary(Operator::Equal, fault, refused);
+            body.push(Statement::when(refused.negated(), moved));
+        } else {
+            body.extend(moved);
         }
-        let names = GAINS.map(|gain| format!("free_{gain}"));
-        let values: Vec<(&str, Traced)> =
-            names.iter().map(String::as_str).zip(free.iter().map(|(_, free)| *free)).collect();
-        let mut inside = self.listing.values(&values);
-        let finite = both(names.iter().map(|name| local(name).magnitude().at_most(self.largest())));
-        inside.push(Statement::when(finite.negated(), held(OVERFLOW)));
-        for (gain, (numbers, free)) in GAINS.into_iter().zip(free) {
-            let limited: &GainNumbers<Traced> = numbers;
-            inside.push(Statement::set(gain, self.listing.value(limited.limited(free))));
-        }
-        self.listing.forget(&names);
-        moved.extend(inside);
-        let refused = Expression::binary(
-            Operator::Equal,
-            local("fault"),
-            Expression::Byte(infer::OUT_OF_RANGE),
-        );
-        body.push(match self.refuses() {
-            true => Statement::when(refused.negated(), moved),
-            false => Statement::when(Expression::Truth(true), moved),
-        });
         let latched =
             Expression::binary(Operator::BitOr, member(Part::State, "faults"), local("fault"));
         body.push(Statement::set_member(Part::State, "faults", latched));
-        let model = (tuner.structure.second_input == SecondInputKind::ModelError)
-            .then(|| tuner.next_model(memory, sample));
-        let _ = LawKind::Memoryless;
+        let has_model = tuner.structure.second_input == SecondInputKind::ModelError;
+        let model = has_model.then(|| tuner.next_model(memory, sample));
         (Gains { kp: read("kp"), ki: read("ki"), kd: read("kd") }, model)
+    }
+
+    /// The gains as the supervisor moves them, within their limits.
+    fn moved(
+        &mut self,
+        tuner: &TunerEquations<Traced>,
+        before: [Traced; 3],
+        scaled: &[String; 3],
+    ) -> Vec<Statement> {
+        let names = GAINS.map(|gain| format!("free_{gain}"));
+        let gains = tuner.gains.iter().zip(before).zip(scaled);
+        let free: Vec<Traced> = gains
+            .map(|((numbers, before), scaled)| tuner.free_gain(numbers, before, read(scaled)))
+            .collect();
+        let named: Vec<(&str, Traced)> =
+            names.iter().map(String::as_str).zip(free.iter().copied()).collect();
+        let mut body = self.listing.values(&named);
+        let finite = both(names.iter().map(|name| local(name).magnitude().at_most(self.largest())));
+        body.push(Statement::when(finite.negated(), held(OVERFLOW)));
+        for ((gain, numbers), free) in GAINS.into_iter().zip(&tuner.gains).zip(free) {
+            body.push(Statement::set(gain, self.listing.value(numbers.limited(free))));
+        }
+        self.listing.forget(&names);
+        body
     }
 
     fn refuses(&self) -> bool {
@@ -485,7 +501,7 @@ impl<R: Real> Composer<'_, R> {
     fn unless_silent(&mut self, body: Vec<Statement>) -> Vec<Statement> {
         let Controller::SelfTuning(fspid) = self.controller else { return body };
         let Some(zone) = fspid.tuner().settings().dead_zone else {
-            return vec![Statement::when(Expression::Truth(true), body)];
+            return body;
         };
         let mut within = |name: &str, doc: &str, value: R, input: &str| {
             let most = self.configuration.real(name, doc, value.to_f64());

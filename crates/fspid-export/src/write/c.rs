@@ -1,10 +1,8 @@
 //! C99, freestanding: one header and one source, `stdint.h` alone.
 
-use super::dialect::{Block, Dialect, block};
+use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
-use crate::program::{
-    Function, Kind, Member, Operator, Parameter, Part, Precision, Program, Value,
-};
+use crate::program::{Function, Kind, Member, Parameter, Part, Precision, Program, Value};
 
 /// The text of both files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,9 +65,6 @@ impl Writer<'_> {
         page.line("");
         page.line("/* The design as it was tuned. */");
         page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
-        page.line("");
-        page.line("/* Forgets everything: as before the first sample. */");
-        page.line(&format!("void {prefix}_reset(const {prefix}_configuration *configuration, {prefix}_state *state);"));
         for function in self.program.functions.iter().filter(|function| is_public(function)) {
             page.line("");
             comment(&mut page, function.doc);
@@ -130,8 +125,6 @@ impl Writer<'_> {
             page.line("");
             self.function(&mut page, function);
         }
-        page.line("");
-        self.reset(&mut page);
         page.text
     }
 
@@ -243,36 +236,6 @@ impl Writer<'_> {
         });
         page.line("}");
     }
-
-    fn reset(&self, page: &mut Page) {
-        page.line(&format!(
-            "void {0}_reset(const {0}_configuration *configuration, {0}_state *state)",
-            self.prefix
-        ));
-        page.line("{");
-        page.inside(|page| {
-            let is_configured = |gain: &str| {
-                let name = format!("nominal_{gain}");
-                self.program.configuration.iter().any(|member| member.name == name)
-            };
-            let mut uses_configuration = false;
-            for Member { name, value, .. } in &self.program.state {
-                let begun = match value {
-                    Value::Real(_) if is_configured(name) => {
-                        uses_configuration = true;
-                        format!("configuration->nominal_{name}")
-                    }
-                    Value::Real(value) => self.number(*value),
-                    _ => "0U".to_owned(),
-                };
-                page.line(&format!("state->{name} = {begun};"));
-            }
-            if !uses_configuration {
-                page.line("(void)configuration;");
-            }
-        });
-        page.line("}");
-    }
 }
 
 impl Dialect for Writer<'_> {
@@ -291,20 +254,8 @@ impl Dialect for Writer<'_> {
         format!("{}U", u8::from(value))
     }
 
-    fn sign(&self, operator: Operator) -> &'static str {
-        match operator {
-            Operator::Add => "+",
-            Operator::Subtract => "-",
-            Operator::Multiply => "*",
-            Operator::Divide => "/",
-            Operator::Less => "<",
-            Operator::LessOrEqual => "<=",
-            Operator::Equal => "==",
-            Operator::NotEqual => "!=",
-            Operator::And => "&&",
-            Operator::Or => "||",
-            Operator::BitOr => "|",
-        }
+    fn truths(&self) -> Truths {
+        Truths { not_equal: "!=", and: "&&", or: "||" }
     }
 
     fn member(&self, part: Part, name: &str) -> String {
@@ -386,7 +337,7 @@ impl Dialect for Writer<'_> {
 
 /// What others may call.
 fn is_public(function: &Function) -> bool {
-    matches!(function.name, "step" | "hold")
+    matches!(function.name, "reset" | "step" | "hold")
 }
 
 fn comment(page: &mut Page, text: &str) {

@@ -10,12 +10,19 @@ pub(super) enum Block {
     For,
 }
 
+/// How a language joins truths; sums and comparisons look alike everywhere.
+pub(super) struct Truths {
+    pub(super) not_equal: &'static str,
+    pub(super) and: &'static str,
+    pub(super) or: &'static str,
+}
+
 /// How a language says things.
 pub(super) trait Dialect {
     fn number(&self, value: f64) -> String;
     fn byte(&self, value: u8) -> String;
     fn truth(&self, value: bool) -> String;
-    fn sign(&self, operator: Operator) -> &'static str;
+    fn truths(&self) -> Truths;
     fn member(&self, part: Part, name: &str) -> String;
     fn not(&self, value: &str) -> String;
     fn magnitude(&self, value: &str) -> String;
@@ -111,9 +118,25 @@ fn outer(dialect: &impl Dialect, value: &Expression) -> String {
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
-            format!("{left} {} {right}", dialect.sign(*operator))
+            format!("{left} {} {right}", sign(&dialect.truths(), *operator))
         }
         value => expression(dialect, value),
+    }
+}
+
+fn sign(truths: &Truths, operator: Operator) -> &'static str {
+    match operator {
+        Operator::Add => "+",
+        Operator::Subtract => "-",
+        Operator::Multiply => "*",
+        Operator::Divide => "/",
+        Operator::Less => "<",
+        Operator::LessOrEqual => "<=",
+        Operator::Equal => "==",
+        Operator::NotEqual => truths.not_equal,
+        Operator::And => truths.and,
+        Operator::Or => truths.or,
+        Operator::BitOr => "|",
     }
 }
 

@@ -2,12 +2,12 @@
 
 use fspid_numeric::Real;
 
-use super::dialect::{Block, Dialect, block};
+use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
-use crate::program::{Function, Kind, Member, Operator, Part, Precision, Program, Value};
+use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
-/// The program as a module that answers `{ design, new, step, hold }`. It has the bits of its precision where Lua's
+/// The program as a module that answers `{ design, reset, step, hold }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
 pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
@@ -21,9 +21,7 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    writer.begin(&mut page);
-    page.line("");
-    page.line("return { design = design, new = new, step = step, hold = hold }");
+    page.line("return { design = design, reset = reset, step = step, hold = hold }");
     page.text
 }
 
@@ -34,7 +32,8 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
     let writer = Writer { program };
     let mut page = Page::default();
     page.line(&format!("local controller = require(\"{name}\")"));
-    page.line("local state, answer, different = controller.new(controller.design), {}, 0");
+    page.line("local state, answer, different = {}, {}, 0");
+    page.line("controller.reset(controller.design, state)");
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
     page.line("local function check(sample, command, kp, ki, kd, saturated, faults)");
     page.inside(|page| {
@@ -164,26 +163,6 @@ impl Writer<'_> {
         page.inside(|page| block(self, page, &function.body));
         page.line("end");
     }
-
-    fn begin(&self, page: &mut Page) {
-        comment(page, "The memory of a controller that has not flown yet.");
-        page.line("local function new(design)");
-        page.inside(|page| {
-            page.line("return {");
-            page.inside(|page| {
-                for Member { name, value, .. } in &self.program.state {
-                    let nominal = format!("nominal_{name}");
-                    let is_configured =
-                        self.program.configuration.iter().any(|member| member.name == nominal);
-                    let begun =
-                        if is_configured { format!("design.{nominal}") } else { self.value(value) };
-                    page.line(&format!("{name} = {begun},"));
-                }
-            });
-            page.line("}");
-        });
-        page.line("end");
-    }
 }
 
 /// Products of exact powers: Lua has no bits of a number at hand.
@@ -225,20 +204,8 @@ impl Dialect for Writer<'_> {
         value.to_string()
     }
 
-    fn sign(&self, operator: Operator) -> &'static str {
-        match operator {
-            Operator::Add => "+",
-            Operator::Subtract => "-",
-            Operator::Multiply => "*",
-            Operator::Divide => "/",
-            Operator::Less => "<",
-            Operator::LessOrEqual => "<=",
-            Operator::Equal => "==",
-            Operator::NotEqual => "~=",
-            Operator::And => "and",
-            Operator::Or => "or",
-            Operator::BitOr => "|",
-        }
+    fn truths(&self) -> Truths {
+        Truths { not_equal: "~=", and: "and", or: "or" }
     }
 
     fn member(&self, part: Part, name: &str) -> String {

@@ -85,8 +85,7 @@ pub(crate) fn scenario(
         timing::check_memory(report, section, timing);
     }
     let names = names(section);
-    let asked = section.sections(keys::REQUIREMENT);
-    let requirements = requirements(report, files, asked, &names);
+    let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
     let dispersions = dispersions(report, section.sections(keys::DISPERSION));
     let tuning = section.get(keys::TUNING).and_then(|part| tuning(report, part, &names));
     let contest = section.get(keys::CONTEST).and_then(|part| contest(report, part, &names));
@@ -105,8 +104,8 @@ pub(crate) fn scenario(
     if section.sound {
         timing::check_flight(report, section, &scenario);
     }
-    let range_rule = RangeRule::of(section, &scenario);
     Some(Built {
+        range_rule: RangeRule::of(section, &scenario),
         scenario,
         requirements,
         airframes,
@@ -114,7 +113,6 @@ pub(crate) fn scenario(
         derived_gains,
         tuning,
         contest,
-        range_rule,
     })
 }
 
