@@ -84,10 +84,7 @@ fn exported<R: Real>(
         .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
     let prefix = identifier(request.name);
     let vectors = vectors(controller, request.angles, SEED, request.samples);
-    let mut notes = Vec::new();
-    if prefix != request.name {
-        notes.push(format!("`{}` is called `{prefix}` in the code", request.name));
-    }
+    let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
     if request.precision == Precision::Single {
@@ -97,13 +94,24 @@ fn exported<R: Real>(
         name: request.name,
         digest: request.digest,
         precision: precision_of::<R>(),
-        angles: request.angles,
+        angles: Some(request.angles),
     };
     let source =
         Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
-    let mut files = request.target.files(&source);
-    files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
+    let files = written(request.target, &source);
     Ok(Export { prefix, files, notes })
+}
+
+/// The files of the target, and the vectors.
+pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Vec<File> {
+    let mut files = target.files(source);
+    files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
+    files
+}
+
+/// That a name is another one in the code, if it is.
+pub(crate) fn renamed(name: &str, called: &str) -> Option<String> {
+    (name != called).then(|| format!("`{name}` is called `{called}` in the code"))
 }
 
 const NOT_JUDGED: &str =
