@@ -4,6 +4,7 @@
 
 mod c;
 mod lua;
+mod structured_text;
 
 use fspid_numeric::Real;
 
@@ -18,11 +19,13 @@ pub enum Target {
     C,
     /// Lua 5.3.
     Lua,
+    /// Structured Text of IEC 61131-3.
+    StructuredText,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::C, Self::Lua];
+    pub const ALL: [Self; 3] = [Self::C, Self::Lua, Self::StructuredText];
 
     /// Its name on the command line.
     #[must_use]
@@ -30,6 +33,7 @@ impl Target {
         match self {
             Self::C => "c",
             Self::Lua => "lua",
+            Self::StructuredText => "st",
         }
     }
 
@@ -38,6 +42,7 @@ impl Target {
         match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
+            Self::StructuredText => structured_text::files(source),
         }
     }
 }

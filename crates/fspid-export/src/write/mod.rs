@@ -6,12 +6,16 @@ mod csv;
 mod dialect;
 mod heading;
 mod lua;
+mod structured_text;
+mod structured_text_check;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
+pub use structured_text::structured_text;
+pub use structured_text_check::structured_text_check;
 
 /// Text with its indentation.
 #[derive(Debug, Default)]
