@@ -80,9 +80,12 @@ impl Writer<'_> {
 
     fn configuration(&self, page: &mut Page) {
         let is_list = |member: &&Member| matches!(member.value, Value::Reals(_) | Value::Bytes(_));
-        let (lists, numbers): (Vec<_>, Vec<_>) = self.program.configuration.iter().partition(is_list);
+        let (lists, numbers): (Vec<_>, Vec<_>) =
+            self.program.configuration.iter().partition(is_list);
         let declare = |page: &mut Page, members: Vec<&Member>| {
-            page.inside(|page| members.into_iter().for_each(|it| self.member(page, Part::Configuration, it)));
+            page.inside(|page| {
+                members.into_iter().for_each(|it| self.member(page, Part::Configuration, it))
+            });
         };
         page.line("VAR CONSTANT");
         declare(page, numbers);
@@ -141,7 +144,8 @@ impl Writer<'_> {
                 array(self.real(), &values)
             }
             Value::Bytes(values) => {
-                let values: Vec<String> = values.iter().map(|value| format!("USINT#{value}")).collect();
+                let values: Vec<String> =
+                    values.iter().map(|value| format!("USINT#{value}")).collect();
                 array("USINT", &values)
             }
         }
@@ -150,7 +154,9 @@ impl Writer<'_> {
     fn kind(&self, kind: Kind) -> String {
         match kind {
             Kind::Real => self.real().to_owned(),
-            Kind::Reals(count) => format!("ARRAY[0..{}] OF {}", count.saturating_sub(1), self.real()),
+            Kind::Reals(count) => {
+                format!("ARRAY[0..{}] OF {}", count.saturating_sub(1), self.real())
+            }
             Kind::Whole => "DINT".to_owned(),
             Kind::Byte => "BYTE".to_owned(),
             Kind::Truth => "BOOL".to_owned(),
