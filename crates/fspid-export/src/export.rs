@@ -101,7 +101,7 @@ fn exported<R: Real>(
     };
     let source =
         Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
-    let mut files = request.target.files(&source);
+    let mut files = request.target.files(&source, &mut notes);
     files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
     Ok(Export { prefix, files, notes })
 }
