@@ -98,13 +98,17 @@ fn exported<R: Real>(
     };
     let source =
         Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
-    let files = written(request.target, &source);
+    let files = written(request.target, &source, &mut notes);
     Ok(Export { prefix, files, notes })
 }
 
 /// The files of the target, and the vectors.
-pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Vec<File> {
-    let mut files = target.files(source);
+pub(crate) fn written<R: Real>(
+    target: Target,
+    source: &Source<'_, R>,
+    notes: &mut Vec<String>,
+) -> Vec<File> {
+    let mut files = target.files(source, notes);
     files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
     files
 }

@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding) or lua (5.3).
+    /// The language: c (C99, freestanding), lua (5.3), fmu2 or fmu3 (functional mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -38,9 +38,9 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
-    /// The digits of the numbers.
-    #[arg(long, value_enum, default_value_t = Numbers::Single)]
-    numbers: Numbers,
+    /// The digits of the numbers; double for fmu2 and fmu3 if left out, else single.
+    #[arg(long, value_enum)]
+    numbers: Option<Numbers>,
     /// The unit of the angles that go in and come out.
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
@@ -88,8 +88,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         name: &named.name,
         target: arguments.to,
         precision: match arguments.numbers {
-            Numbers::Single => Precision::Single,
-            Numbers::Double => Precision::Double,
+            Some(Numbers::Single) => Precision::Single,
+            Some(Numbers::Double) => Precision::Double,
+            None => arguments.to.usual_precision(),
         },
         angles: match arguments.angles {
             Unit::Radians => Angles::Radians,

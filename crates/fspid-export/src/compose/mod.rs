@@ -3,6 +3,7 @@
 mod exponential;
 mod infer;
 mod members;
+mod observe;
 mod prune;
 mod step;
 
@@ -11,6 +12,8 @@ use fspid_numeric::Real;
 
 use crate::program::{Precision, Program};
 use fspid_core::Controller;
+
+pub(crate) use observe::{STRENGTHS, observed};
 
 /// The unit of the angles that go in and come out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,14 +3,16 @@
 //! A new target: a variant, its name, and a function in a file of its own that answers its files.
 
 mod c;
+mod fmu;
 mod lua;
 mod structured_text;
 
 use fspid_numeric::Real;
 
-use crate::program::Program;
+use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
+use crate::write::fmu::Version;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,11 +23,15 @@ pub enum Target {
     Lua,
     /// Structured Text of IEC 61131-3.
     StructuredText,
+    /// A functional mock-up unit, FMI 2.0.
+    Fmu2,
+    /// A functional mock-up unit, FMI 3.0.
+    Fmu3,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::C, Self::Lua, Self::StructuredText];
+    pub const ALL: [Self; 5] = [Self::C, Self::Lua, Self::StructuredText, Self::Fmu2, Self::Fmu3];
 
     /// Its name on the command line.
     #[must_use]
@@ -34,15 +40,32 @@ impl Target {
             Self::C => "c",
             Self::Lua => "lua",
             Self::StructuredText => "st",
+            Self::Fmu2 => "fmu2",
+            Self::Fmu3 => "fmu3",
         }
     }
 
-    /// What is written for it.
-    pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Vec<File> {
+    /// The digits that its users expect: those of a chip, or of a simulator.
+    #[must_use]
+    pub const fn usual_precision(self) -> Precision {
+        match self {
+            Self::C | Self::Lua | Self::StructuredText => Precision::Single,
+            Self::Fmu2 | Self::Fmu3 => Precision::Double,
+        }
+    }
+
+    /// What is written for it; what is to be told of it goes to the notes.
+    pub(crate) fn files<R: Real>(
+        self,
+        source: &Source<'_, R>,
+        notes: &mut Vec<String>,
+    ) -> Vec<File> {
         match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
             Self::StructuredText => structured_text::files(source),
+            Self::Fmu2 => fmu::files(source, Version::Two, notes),
+            Self::Fmu3 => fmu::files(source, Version::Three, notes),
         }
     }
 }

@@ -4,6 +4,7 @@ mod c;
 mod c_harness;
 mod csv;
 mod dialect;
+pub(crate) mod fmu;
 mod heading;
 mod lua;
 mod structured_text;
