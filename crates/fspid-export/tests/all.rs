@@ -1,4 +1,6 @@
 //! All tests of this crate from outside, as one program.
 
 mod c;
+mod rust;
 mod same_bits;
+

@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding) or lua (5.3).
+    /// The language: c (C99, freestanding), lua (5.3) or rust (a constant of fspid-core).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.

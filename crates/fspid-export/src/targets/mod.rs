@@ -4,12 +4,14 @@
 
 mod c;
 mod lua;
+mod rust;
 
 use fspid_numeric::Real;
 
 use crate::program::Program;
 use crate::vectors::Vector;
 use crate::write::Heading;
+use fspid_core::Controller;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,11 +20,13 @@ pub enum Target {
     C,
     /// Lua 5.3.
     Lua,
+    /// Rust, for `fspid-core`.
+    Rust,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::C, Self::Lua];
+    pub const ALL: [Self; 3] = [Self::C, Self::Lua, Self::Rust];
 
     /// Its name on the command line.
     #[must_use]
@@ -30,6 +34,7 @@ impl Target {
         match self {
             Self::C => "c",
             Self::Lua => "lua",
+            Self::Rust => "rust",
         }
     }
 
@@ -38,6 +43,7 @@ impl Target {
         match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
+            Self::Rust => rust::files(source),
         }
     }
 }
@@ -45,6 +51,7 @@ impl Target {
 /// What a target is written from.
 pub(crate) struct Source<'a, R> {
     pub(crate) program: &'a Program,
+    pub(crate) controller: &'a Controller<R>,
     /// What every name begins with.
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,

@@ -6,12 +6,18 @@ mod csv;
 mod dialect;
 mod heading;
 mod lua;
+mod rust;
+mod rust_harness;
+mod rust_rules;
+mod rust_text;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
+pub use rust::rust;
+pub use rust_harness::rust_harness;
 
 /// Text with its indentation.
 #[derive(Debug, Default)]
