@@ -22,6 +22,8 @@ pub struct Request<'a> {
     pub angles: Angles,
     /// How many samples the vectors have.
     pub samples: usize,
+    /// How many points a table has along each input.
+    pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
 }
@@ -80,8 +82,8 @@ fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
 ) -> Result<Export, ExportError> {
-    let program = program(controller, request.angles)
-        .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
+    let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
+    let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
     let vectors = vectors(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::new();
@@ -105,9 +107,15 @@ fn exported<R: Real>(
         prefix: &prefix,
         heading: &heading,
         vectors: &vectors,
+        points: request.points,
     };
-    let mut files = request.target.files(&source);
-    files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
+    let written = request.target.files(&source).map_err(refused)?;
+    let mut files = written.files;
+    notes.extend(written.notes);
+    // A table is no controller.
+    if request.target != Target::Table {
+        files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
+    }
     Ok(Export { prefix, files, notes })
 }
 

@@ -6,6 +6,7 @@ mod compose;
 mod export;
 pub mod interpret;
 pub mod program;
+pub mod table;
 mod targets;
 mod trace;
 pub mod vectors;

@@ -4,3 +4,4 @@ mod c;
 mod rust;
 mod same_bits;
 
+mod table;

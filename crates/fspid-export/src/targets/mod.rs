@@ -5,9 +5,11 @@
 mod c;
 mod lua;
 mod rust;
+mod table;
 
 use fspid_numeric::Real;
 
+use crate::compose::Refusal;
 use crate::program::Program;
 use crate::vectors::Vector;
 use crate::write::Heading;
@@ -22,11 +24,13 @@ pub enum Target {
     Lua,
     /// Rust, for `fspid-core`.
     Rust,
+    /// The supervisor's surface as a table in C and CSV.
+    Table,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::C, Self::Lua, Self::Rust];
+    pub const ALL: [Self; 4] = [Self::C, Self::Lua, Self::Rust, Self::Table];
 
     /// Its name on the command line.
     #[must_use]
@@ -35,16 +39,19 @@ impl Target {
             Self::C => "c",
             Self::Lua => "lua",
             Self::Rust => "rust",
+            Self::Table => "table",
         }
     }
 
     /// What is written for it.
-    pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Vec<File> {
-        match self {
+    pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
+        let files = match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
             Self::Rust => rust::files(source),
-        }
+            Self::Table => return table::files(source),
+        };
+        Ok(Written { files, notes: Vec::new() })
     }
 }
 
@@ -56,6 +63,14 @@ pub(crate) struct Source<'a, R> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) vectors: &'a [Vector<R>],
+    /// Points of a table along an input.
+    pub(crate) points: usize,
+}
+
+/// What is written for a target, and what there is to say of it.
+pub(crate) struct Written {
+    pub(crate) files: Vec<File>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// A file of an export.

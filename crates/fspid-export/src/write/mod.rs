@@ -10,6 +10,7 @@ mod rust;
 mod rust_harness;
 mod rust_rules;
 mod rust_text;
+mod table;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
@@ -18,6 +19,7 @@ pub use heading::Heading;
 pub use lua::{lua, lua_harness};
 pub use rust::rust;
 pub use rust_harness::rust_harness;
+pub use table::{TableFiles, table, table_csv, table_harness};
 
 /// Text with its indentation.
 #[derive(Debug, Default)]
