@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 
 use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, positive};
-use crate::state::Sample;
+use crate::sample::Sample;
 
 /// Faults that a controller has met, latched until they are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,8 +6,9 @@ use crate::equations::{PidEquations, TunerEquations};
 use crate::error::ConfigError;
 use crate::gains::Gains;
 use crate::pid_config::{Moment, PidConfig, SetpointWeights};
+use crate::sample::Sample;
 use crate::second_input::ModelState;
-use crate::state::{Sample, State, Step};
+use crate::state::{State, Step};
 use crate::tuner::{GainCoupling, SelfTuner};
 
 /// A PID controller with fixed gains (`ki = kd = 0`: the paper's proportional controller).

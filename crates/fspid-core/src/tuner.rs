@@ -8,8 +8,8 @@ use crate::equations::{Memory, TunerEquations};
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
+use crate::sample::Sample;
 use crate::second_input::{SecondInput, SetCentres};
-use crate::state::Sample;
 
 /// Which difference the supervisor sees as its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

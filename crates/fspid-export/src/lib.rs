@@ -4,6 +4,7 @@
 
 mod compose;
 mod export;
+mod flat;
 pub mod interpret;
 pub mod program;
 pub mod table;

@@ -4,4 +4,5 @@ mod c;
 mod rust;
 mod same_bits;
 
+mod structured_text;
 mod table;

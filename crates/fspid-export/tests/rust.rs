@@ -39,7 +39,12 @@ fn compiled(folder: &Path) -> std::process::Output {
 }
 
 fn written<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
-    let heading = Heading { name: "pitch", digest: "0", precision: precision_of::<R>(), angles };
+    let heading = Heading {
+        name: "pitch",
+        digest: "0",
+        precision: precision_of::<R>(),
+        angles: Some(angles),
+    };
     let vectors = vectors(controller, angles, 1, 400);
     let check = rust_harness(controller, "pitch", &heading, &vectors);
     std::fs::write(folder.join("pitch_check.rs"), check).expect("a temporary file");

@@ -55,7 +55,7 @@ fn no_input_refutes_the_proved_bound_and_the_bound_is_near_what_is_seen() {
 fn the_table_in_c_answers_as_the_one_that_was_proved_without_a_warning() {
     let supervisor = of_the_paper();
     let table = SurfaceTable::of(&tuner(supervisor), 7).expect("a table");
-    let angles = fspid_export::Angles::Radians;
+    let angles = Some(fspid_export::Angles::Radians);
     let precision = fspid_export::program::Precision::Single;
     let heading = write::Heading { name: "pitch", digest: "0", precision, angles };
     let files = write::table(&table, "pitch", &heading);

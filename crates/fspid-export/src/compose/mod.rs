@@ -30,6 +30,9 @@ pub enum Refusal {
         "the defuzzifier {0} cannot be exported; allowed are exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N"
     )]
     Defuzzifier(Defuzzifier),
+    /// A fuzzy system of its own, where a target is of controllers alone.
+    #[error("this target is written of controllers alone; --to c writes a fuzzy system")]
+    NoController,
     /// Nothing that a table could be of.
     #[error(
         "it has no supervisor, so that there is no surface to write as a table; allowed is a self-tuning controller"

@@ -176,7 +176,7 @@ impl SurfaceTable {
     }
 
     fn measure(&mut self, supervisor: &Supervisor<f64>) {
-        let mut draw = Draw::new(1);
+        let mut draw = Draw(1);
         for _ in 0..MEASURED {
             let [error, change] = [(); 2].map(|()| single(draw.around(f64::from(self.range))));
             let exact = infer(supervisor, f64::from(error), f64::from(change));

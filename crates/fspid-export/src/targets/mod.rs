@@ -5,6 +5,7 @@
 mod c;
 mod lua;
 mod rust;
+mod structured_text;
 mod table;
 
 use fspid_numeric::Real;
@@ -22,6 +23,8 @@ pub enum Target {
     C,
     /// Lua 5.3.
     Lua,
+    /// Structured Text of IEC 61131-3.
+    StructuredText,
     /// Rust, for `fspid-core`.
     Rust,
     /// The supervisor's surface as a table in C and CSV.
@@ -30,7 +33,7 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::C, Self::Lua, Self::Rust, Self::Table];
+    pub const ALL: [Self; 5] = [Self::C, Self::Lua, Self::StructuredText, Self::Rust, Self::Table];
 
     /// Its name on the command line.
     #[must_use]
@@ -38,6 +41,7 @@ impl Target {
         match self {
             Self::C => "c",
             Self::Lua => "lua",
+            Self::StructuredText => "st",
             Self::Rust => "rust",
             Self::Table => "table",
         }
@@ -48,7 +52,8 @@ impl Target {
         let files = match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
-            Self::Rust => rust::files(source),
+            Self::StructuredText => structured_text::files(source),
+            Self::Rust => rust::files(source)?,
             Self::Table => return table::files(source),
         };
         Ok(Written { files, notes: Vec::new() })
@@ -58,11 +63,17 @@ impl Target {
 /// What a target is written from.
 pub(crate) struct Source<'a, R> {
     pub(crate) program: &'a Program,
-    pub(crate) controller: &'a Controller<R>,
     /// What every name begins with.
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) vectors: &'a [Vector<R>],
+    /// What is exported, where that is a controller.
+    pub(crate) flown: Option<Flown<'a, R>>,
+}
+
+/// A controller, and what is asked for that only a controller has.
+pub(crate) struct Flown<'a, R> {
+    pub(crate) controller: &'a Controller<R>,
     /// Points of a table along an input.
     pub(crate) points: usize,
 }

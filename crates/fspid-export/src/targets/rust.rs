@@ -2,19 +2,21 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source};
+use super::{File, Flown, Source};
+use crate::compose::Refusal;
 use crate::write;
 
-pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
-    let Source { controller, prefix, heading, vectors, .. } = source;
+pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusal> {
+    let Source { prefix, heading, vectors, .. } = source;
+    let Flown { controller, .. } = source.flown.as_ref().ok_or(Refusal::NoController)?;
     let prefix = &module(prefix);
     let check = write::rust_harness(controller, prefix, heading, vectors);
-    vec![
+    Ok(vec![
         File::text(format!("{prefix}.rs"), write::rust(controller, heading)),
         File::text("lib.rs", LIBRARY.replace("PREFIX", prefix)),
         File::text("Cargo.toml", MANIFEST.replace("PREFIX", prefix).replace("VERSION", VERSION)),
         File::text(format!("{prefix}_check.rs"), check),
-    ]
+    ])
 }
 
 /// A name that a module, its file and a package may have.

@@ -3,14 +3,15 @@
 use fspid_core::{Controller, SelfTuner};
 use fspid_numeric::Real;
 
-use super::{File, Source, Written};
+use super::{File, Flown, Source, Written};
 use crate::compose::Refusal;
 use crate::table::{Deviation, SurfaceTable};
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Written, Refusal> {
-    let Source { prefix, heading, vectors, points, .. } = source;
-    let tuner = rounded(source.controller)?;
+    let Source { prefix, heading, vectors, .. } = source;
+    let Flown { controller, points } = source.flown.as_ref().ok_or(Refusal::NoController)?;
+    let tuner = rounded(controller)?;
     let table = SurfaceTable::of(&tuner, *points)?;
     let files = write::table(&table, prefix, heading);
     let check = write::table_harness(&table, tuner.supervisor(), prefix, vectors.len());

@@ -27,7 +27,7 @@ pub fn rust<R: Real>(controller: &Controller<R>, heading: &Heading<'_>) -> Strin
         Controller::SelfTuning(fspid) => self_tuning(&mut body, number, fspid),
     }
     body.line("");
-    answer(&mut body, number, heading.angles);
+    answer(&mut body, number, heading.angles.unwrap_or_default());
     helpers(&mut body, real);
     let mut page = Page::default();
     for line in heading.lines() {

@@ -219,7 +219,7 @@ pub fn table_harness(
     prefix: &str,
     count: usize,
 ) -> String {
-    let mut draw = Draw::new(2);
+    let mut draw = Draw(2);
     let mut page = Page::default();
     page.line(&format!("#define COUNT {count}U"));
     page.line("static const struct { uint32_t input[2]; uint32_t answer[2][3]; double exact[3]; unsigned answered; } inputs[COUNT] = {");
