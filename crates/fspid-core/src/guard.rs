@@ -86,6 +86,12 @@ impl<R: Real> Guard<R> {
         Ok(Self { limit: positive(ControllerSetting::SampleGuard, limit_rad)? })
     }
 
+    /// The limit of a guard that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(limit_rad: R) -> Self {
+        Self { limit: limit_rad }
+    }
+
     /// The largest sample that is believed, rad.
     pub fn limit_rad(&self) -> R {
         self.limit

@@ -31,6 +31,17 @@ impl<R: Real> Pid<R> {
         Ok(Self { gains, config, equations })
     }
 
+    /// The parts of a controller that was built, as a constant: an export writes them. Nothing is checked and nothing
+    /// derived; [`Controller::rounded`](crate::Controller::rounded) does both again.
+    #[must_use]
+    pub const fn new_unchecked(
+        gains: Gains<R>,
+        config: PidConfig<R>,
+        equations: PidEquations<R>,
+    ) -> Self {
+        Self { gains, config, equations }
+    }
+
     /// The gains.
     pub fn gains(&self) -> Gains<R> {
         self.gains
@@ -86,6 +97,17 @@ impl<R: Real> Fspid<R> {
         let equations = PidEquations::new(&config, nominal, settings.gain_coupling);
         let tuner_equations = TunerEquations::new(settings, nominal, config.dt_s);
         Ok(Self { tuner, config, equations, tuner_equations })
+    }
+
+    /// As [`Pid::new_unchecked`].
+    #[must_use]
+    pub const fn new_unchecked(
+        tuner: SelfTuner<R>,
+        config: PidConfig<R>,
+        equations: PidEquations<R>,
+        tuner_equations: TunerEquations<R>,
+    ) -> Self {
+        Self { tuner, config, equations, tuner_equations }
     }
 
     /// Where the gains come from.

@@ -223,6 +223,16 @@ impl<R: Real> SelfTuner<R> {
         Ok(Self { nominal, supervisor, settings })
     }
 
+    /// The parts of a tuner that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(
+        nominal: Gains<R>,
+        supervisor: Supervisor<R>,
+        settings: TunerSettings<R>,
+    ) -> Self {
+        Self { nominal, supervisor, settings }
+    }
+
     /// The nominal gains $k'$.
     pub fn nominal(&self) -> Gains<R> {
         self.nominal

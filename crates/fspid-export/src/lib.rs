@@ -8,6 +8,7 @@ mod export;
 mod flat;
 pub mod interpret;
 pub mod program;
+pub mod table;
 mod targets;
 mod trace;
 pub mod vectors;
