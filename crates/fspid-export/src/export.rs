@@ -99,8 +99,13 @@ fn exported<R: Real>(
         precision: precision_of::<R>(),
         angles: request.angles,
     };
-    let source =
-        Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
+    let source = Source {
+        program: &program,
+        prefix: &prefix,
+        heading: &heading,
+        vectors: &vectors,
+        period_s: controller.config().dt_s.to_f64(),
+    };
     let mut files = request.target.files(&source);
     files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
     Ok(Export { prefix, files, notes })

@@ -49,6 +49,8 @@ pub(crate) struct Source<'a, R> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) vectors: &'a [Vector<R>],
+    /// Time from sample to sample, s.
+    pub(crate) period_s: f64,
 }
 
 /// A file of an export.
