@@ -41,6 +41,12 @@ impl Faults {
         self.0
     }
 
+    /// Those that a number's bits stand for; bits of no fault are left out.
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits & 0x1f)
+    }
+
     /// True if every fault of `other` is among these.
     #[must_use]
     pub const fn contains(self, other: Self) -> bool {

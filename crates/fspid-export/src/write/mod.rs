@@ -1,6 +1,7 @@
 //! Programs as text in other languages.
 
 mod c;
+mod c_external;
 mod c_harness;
 mod csv;
 mod dialect;
@@ -16,6 +17,7 @@ mod structured_text_check;
 mod table;
 
 pub use c::{CFiles, c};
+pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
 pub use csv::csv;
 pub use heading::Heading;

@@ -7,6 +7,7 @@ use super::Perturbation;
 use crate::closed_loop::fly_perturbed;
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::external::ControllerLoss;
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::Sensor;
 use crate::trace::Outcome;
@@ -74,6 +75,13 @@ pub enum Failure {
         /// When, s.
         at_s: f64,
     },
+    /// An external controller gave no answer.
+    ControllerLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: ControllerLoss,
+    },
     /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
@@ -95,6 +103,9 @@ impl fmt::Display for Failure {
         match self {
             Self::Diverged { at_s } => write!(f, "diverged at t = {at_s:.2} s"),
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {at_s:.2} s"),
+            Self::ControllerLost { at_s, loss } => {
+                write!(f, "the controller {loss} at t = {at_s:.2} s")
+            }
             Self::Swings { .. } => {
                 f.write_str("in its last third the error swings as far as in its middle one")
             }
@@ -138,6 +149,9 @@ impl Envelope {
         match self.outcome {
             Outcome::Diverged { at_s } => return Some(Failure::Diverged { at_s }),
             Outcome::HitGround { at_s } => return Some(Failure::HitGround { at_s }),
+            Outcome::ControllerLost { at_s, loss } => {
+                return Some(Failure::ControllerLost { at_s, loss });
+            }
             Outcome::Completed => {}
         }
         // Written so that NaN is not held.
