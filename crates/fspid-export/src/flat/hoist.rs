@@ -1,8 +1,8 @@
 //! What is computed in front of a statement.
 
 use super::{
-    Answer, Expression, Flattener, Kind, Operator, POWERS, Part, Place, Scope, Statement,
-    decide, doublings, local, number,
+    Answer, Expression, Flattener, Kind, Operator, POWERS, Part, Place, Scope, Statement, decide,
+    doublings, local, number,
 };
 use crate::program::member_element;
 
@@ -59,14 +59,14 @@ impl Flattener<'_> {
             Expression::Read(place) => Expression::Read(self.place(scope, place, out)),
             Expression::Negative(value) => -self.value(scope, value, out),
             Expression::Not(value) => self.value(scope, value, out).negated(),
-            Expression::ToReal(value) => Expression::ToReal(Box::new(self.value(scope, value, out))),
+            Expression::ToReal(value) => {
+                Expression::ToReal(Box::new(self.value(scope, value, out)))
+            }
             Expression::Binary(operator, left, right) => {
                 let compares = matches!(operator, Operator::Less | Operator::LessOrEqual);
                 let [left, right] = [left, right].map(|side| match &**side {
                     // The sign of a zero does not show in a comparison, and no other number has two magnitudes.
-                    Expression::Magnitude(of) if compares => {
-                        self.value(scope, of, out).magnitude()
-                    }
+                    Expression::Magnitude(of) if compares => self.value(scope, of, out).magnitude(),
                     side => self.value(scope, side, out),
                 });
                 Expression::binary(*operator, left, right)
@@ -105,7 +105,8 @@ impl Flattener<'_> {
     ) {
         self.needs_powers = true;
         let exponent = self.leaf(scope, exponent, out);
-        let [rest, weight, index] = ["power_rest", "power_weight", "power_place"].map(|name| scope.name(name));
+        let [rest, weight, index] =
+            ["power_rest", "power_weight", "power_place"].map(|name| scope.name(name));
         for (name, kind) in [(&rest, Kind::Real), (&weight, Kind::Real), (&index, Kind::Whole)] {
             self.declare(name, kind);
         }

@@ -48,11 +48,23 @@ pub(super) fn remark(page: &mut Page, text: &str) {
     }
 }
 
-/// `ARRAY[..] OF kind := [..]`, seven values a line.
+/// `ARRAY[..] OF kind := [..]`, some values a line.
 pub(super) fn array(kind: &str, values: &[String]) -> String {
-    let rows: Vec<String> = values.chunks(7).map(|row| format!("    {}", row.join(", "))).collect();
+    // Reals of seventeen digits are too wide for seven in a row.
+    let in_row = if kind == "LREAL" { 3 } else { 7 };
+    let rows: Vec<String> =
+        values.chunks(in_row).map(|row| format!("    {}", row.join(", "))).collect();
     let last = values.len().saturating_sub(1);
     format!("ARRAY[0..{last}] OF {kind} := [\n{}\n]", rows.join(",\n"))
+}
+
+/// A statement on as many lines as it needs.
+pub(super) fn statement(page: &mut Page, text: &str) {
+    let lines = wrapped(text, 92);
+    if let Some((first, rest)) = lines.split_first() {
+        page.line(first);
+        page.inside(|page| rest.iter().for_each(|line| page.line(line)));
+    }
 }
 
 struct Writer<'a> {
@@ -80,9 +92,12 @@ impl Writer<'_> {
 
     fn configuration(&self, page: &mut Page) {
         let is_list = |member: &&Member| matches!(member.value, Value::Reals(_) | Value::Bytes(_));
-        let (lists, numbers): (Vec<_>, Vec<_>) = self.program.configuration.iter().partition(is_list);
+        let (lists, numbers): (Vec<_>, Vec<_>) =
+            self.program.configuration.iter().partition(is_list);
         let declare = |page: &mut Page, members: Vec<&Member>| {
-            page.inside(|page| members.into_iter().for_each(|it| self.member(page, Part::Configuration, it)));
+            page.inside(|page| {
+                members.into_iter().for_each(|it| self.member(page, Part::Configuration, it))
+            });
         };
         page.line("VAR CONSTANT");
         declare(page, numbers);
@@ -141,7 +156,8 @@ impl Writer<'_> {
                 array(self.real(), &values)
             }
             Value::Bytes(values) => {
-                let values: Vec<String> = values.iter().map(|value| format!("USINT#{value}")).collect();
+                let values: Vec<String> =
+                    values.iter().map(|value| format!("USINT#{value}")).collect();
                 array("USINT", &values)
             }
         }
@@ -150,7 +166,9 @@ impl Writer<'_> {
     fn kind(&self, kind: Kind) -> String {
         match kind {
             Kind::Real => self.real().to_owned(),
-            Kind::Reals(count) => format!("ARRAY[0..{}] OF {}", count.saturating_sub(1), self.real()),
+            Kind::Reals(count) => {
+                format!("ARRAY[0..{}] OF {}", count.saturating_sub(1), self.real())
+            }
             Kind::Whole => "DINT".to_owned(),
             Kind::Byte => "BYTE".to_owned(),
             Kind::Truth => "BOOL".to_owned(),
@@ -258,7 +276,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn assign(&self, page: &mut Page, place: &str, value: &str) {
-        page.line(&format!("{place} := {value};"));
+        statement(page, &format!("{place} := {value};"));
     }
 
     fn run(&self, page: &mut Page, call: &str) {
@@ -267,6 +285,10 @@ impl Dialect for Writer<'_> {
 
     fn when(&self, condition: &str) -> String {
         format!("IF {condition} THEN")
+    }
+
+    fn open(&self, page: &mut Page, text: &str) {
+        statement(page, text);
     }
 
     fn otherwise(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::structured_text::{array, real, real_literal, remark};
+use super::structured_text::{array, real, real_literal, remark, statement};
 use super::{Heading, Page};
 use crate::interpret::{Cell, Machine};
 use crate::program::{Part, Program};
@@ -65,7 +65,8 @@ fn columns<R: Real>(program: &Program, samples: &[[R; 3]]) -> Vec<Column> {
             columns.push(Column { part, name, kind, values: Vec::new() });
         }
     }
-    let good = samples.iter().filter(|sample| sample.iter().all(|value| value.to_f64().is_finite()));
+    let good =
+        samples.iter().filter(|sample| sample.iter().all(|value| value.to_f64().is_finite()));
     for sample in good.take(MOST_SAMPLES) {
         for (member, value) in program.members(Part::Sample).iter().zip(sample) {
             machine.set(Part::Sample, &member.name, Cell::Real(*value));
@@ -115,7 +116,7 @@ fn body(page: &mut Page, columns: &[Column], count: usize) {
         let inputs: Vec<String> =
             given.iter().map(|column| format!("{} := {}", column.name, of(column))).collect();
         let inputs = inputs.join(", ");
-        page.line(&format!("controller(reset := (check_index = DINT#0), {inputs});"));
+        statement(page, &format!("controller(reset := (check_index = DINT#0), {inputs});"));
         page.line("check_good := TRUE;");
         for column in expected {
             page.line(&format!("IF controller.{} <> {} THEN", column.name, of(column)));
