@@ -1,7 +1,6 @@
 //! The Structured Text that is written answers what the controller answers, bit for bit.
 
-use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_core::{Controller, Fspid, Gains, PidConfig, SelfTuner, TunerSettings, paper};
+use fspid_core::Controller;
 use fspid_export::vectors::{Vector, vectors};
 use fspid_export::write::{Heading, structured_text, structured_text_check};
 use fspid_export::{Angles, program};
@@ -114,12 +113,7 @@ proptest! {
 
 /// The paper's rules in 32 bits, and what they answer.
 fn paper() -> (Text, Vec<Vector<f32>>) {
-    let rules = Supervisor::new(&paper::rules(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let nominal = Gains { kp: 1.0, ki: 0.5, kd: 0.2 };
-    let tuner = SelfTuner::new(nominal, rules.expect("rules"), TunerSettings::literal());
-    let pid = PidConfig::sampled_every(0.01);
-    let fspid = Fspid::new(tuner.expect("a tuner"), pid).expect("a controller");
-    let controller = Controller::SelfTuning(fspid).rounded::<f32>().expect("small numbers");
+    let controller = crate::common::paper().rounded::<f32>().expect("small numbers");
     let vectors = vectors(&controller, Angles::Degrees, 1, 20_000);
     (text(&controller, Angles::Degrees, &vectors), vectors)
 }
