@@ -101,6 +101,7 @@ fn exported<R: Real>(
     };
     let source =
         Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
+    notes.extend(request.target.notes(&source));
     let mut files = request.target.files(&source);
     files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
     Ok(Export { prefix, files, notes })

@@ -1,5 +1,6 @@
 //! All tests of this crate from outside, as one program.
 
+mod ardupilot;
 mod c;
 mod common;
 mod lua;

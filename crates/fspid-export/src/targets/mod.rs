@@ -37,6 +37,15 @@ impl Target {
         }
     }
 
+    /// What is to be told about it.
+    pub(crate) fn notes<R: Real>(self, source: &Source<'_, R>) -> Vec<String> {
+        match self {
+            Self::C => Vec::new(),
+            Self::Lua => lua::notes(source),
+            Self::StructuredText => structured_text::notes(source.prefix),
+        }
+    }
+
     /// What is written for it.
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Vec<File> {
         match self {

@@ -16,3 +16,9 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
         ),
     ]
 }
+
+pub(super) fn notes(prefix: &str) -> Vec<String> {
+    vec![format!(
+        "the function block is FB_{prefix}, the program that checks it PRG_{prefix}_check"
+    )]
+}

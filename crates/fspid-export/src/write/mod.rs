@@ -1,5 +1,6 @@
 //! Programs as text in other languages.
 
+mod ardupilot;
 mod c;
 mod c_harness;
 mod csv;
@@ -9,6 +10,7 @@ mod lua;
 mod structured_text;
 mod structured_text_check;
 
+pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
 pub use csv::csv;
