@@ -5,5 +5,8 @@ mod c;
 mod common;
 mod lua;
 mod lua_interpreter;
+mod rust;
 mod same_bits;
+
 mod structured_text;
+mod table;

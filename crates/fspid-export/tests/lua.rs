@@ -15,7 +15,8 @@ use crate::lua_interpreter::{printed, run};
 /// Writes the module and its check.
 fn write<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
+    let heading =
+        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
     let vectors = vectors(controller, angles, 1, 400);
     for (name, text) in [
         ("pitch.lua", lua(&program, &heading)),

@@ -28,8 +28,8 @@ pub fn ardupilot(program: &Program, prefix: &str, heading: &Heading<'_>) -> Opti
         .replace(
             "@COMMAND@",
             match heading.angles {
-                Angles::Degrees => "answer.command_deg",
-                Angles::Radians => "math.deg(answer.command_rad)",
+                Some(Angles::Degrees) => "answer.command_deg",
+                Some(Angles::Radians) | None => "math.deg(answer.command_rad)",
             },
         );
     Some(head + &text)

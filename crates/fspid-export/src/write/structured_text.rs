@@ -15,9 +15,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     let writer = Writer { program, flat: &flat };
     let mut page = Page::default();
     heading.lines().iter().for_each(|line| remark(&mut page, line));
-    let about = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer is that \
-                 to a first sample.";
-    remark(&mut page, about);
+    if program.function("reset").is_some() {
+        remark(&mut page, ABOUT);
+    }
     page.line(&format!("FUNCTION_BLOCK FB_{prefix}"));
     writer.inputs_and_outputs(&mut page);
     writer.configuration(&mut page);
@@ -26,6 +26,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     page.line("END_FUNCTION_BLOCK");
     page.text
 }
+
+const ABOUT: &str = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer \
+                     is that to a first sample.";
 
 /// A real with its type; it must be finite.
 pub(super) fn real_literal(value: f64, precision: Precision) -> String {
@@ -38,6 +41,16 @@ pub(super) fn real(precision: Precision) -> &'static str {
     match precision {
         Precision::Single => "REAL",
         Precision::Double => "LREAL",
+    }
+}
+
+/// The name of an input or output. Those of a controller are no word of any compiler; those of a fuzzy system are its
+/// user's, and get a part in front.
+pub(super) fn visible_name(program: &Program, part: Part, name: &str) -> String {
+    match part {
+        _ if program.entry() == "step" => name.to_owned(),
+        Part::Sample => format!("in_{name}"),
+        _ => format!("out_{name}"),
     }
 }
 
@@ -79,10 +92,12 @@ impl Writer<'_> {
 
     fn inputs_and_outputs(&self, page: &mut Page) {
         page.line("VAR_INPUT");
-        page.inside(|page| {
-            remark(page, "Forget everything first.");
-            page.line("reset : BOOL;");
-        });
+        if self.program.function("reset").is_some() {
+            page.inside(|page| {
+                remark(page, "Forget everything first.");
+                page.line("reset : BOOL;");
+            });
+        }
         self.members(page, Part::Sample);
         page.line("END_VAR");
         page.line("VAR_OUTPUT");
@@ -117,9 +132,11 @@ impl Writer<'_> {
     }
 
     fn memory(&self, page: &mut Page) {
-        page.line("VAR");
-        self.members(page, Part::State);
-        page.line("END_VAR");
+        if !self.program.state.is_empty() {
+            page.line("VAR");
+            self.members(page, Part::State);
+            page.line("END_VAR");
+        }
         page.line("VAR_TEMP");
         page.inside(|page| {
             for (name, kind) in &self.flat.values {
@@ -179,13 +196,15 @@ impl Writer<'_> {
         match part {
             Part::Configuration => format!("design_{name}"),
             Part::State => format!("state_{name}"),
-            Part::Sample | Part::Answer => name.to_owned(),
+            Part::Sample | Part::Answer => visible_name(self.program, part, name),
         }
     }
 
     fn body(&self, page: &mut Page) {
-        let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
-        block(self, page, &[reset]);
+        if !self.flat.reset.is_empty() {
+            let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
+            block(self, page, &[reset]);
+        }
         block(self, page, &self.flat.step);
     }
 
