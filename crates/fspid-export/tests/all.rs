@@ -1,6 +1,10 @@
 //! All tests of this crate from outside, as one program.
 
+mod ardupilot;
 mod c;
+mod common;
+mod lua;
+mod lua_interpreter;
 mod rust;
 mod same_bits;
 

@@ -71,8 +71,8 @@ impl Target {
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
         let files = match self {
             Self::C => c::files(source),
-            Self::Lua => lua::files(source),
-            Self::StructuredText => structured_text::files(source),
+            Self::Lua => return Ok(lua::files(source)),
+            Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
             Self::Table => return table::files(source),
             Self::Fmu2 => return Ok(fmu::files(source, Version::Two)),

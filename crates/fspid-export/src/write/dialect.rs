@@ -39,6 +39,10 @@ pub(super) trait Dialect {
     /// A call for what it does.
     fn run(&self, page: &mut Page, call: &str);
     fn when(&self, condition: &str) -> String;
+    /// The line, or lines, that a condition stands in.
+    fn open(&self, page: &mut Page, text: &str) {
+        page.line(text);
+    }
     fn otherwise(&self) -> &'static str;
     fn repeat(&self, name: &str, first: i32, last: i32) -> String;
     fn end(&self, block: Block) -> &'static str;
@@ -84,7 +88,7 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             dialect.assign(page, &place(dialect, at), &outer(dialect, value));
         }
         Statement::If(condition, then, otherwise) => {
-            page.line(&dialect.when(&outer(dialect, condition)));
+            dialect.open(page, &dialect.when(&outer(dialect, condition)));
             page.inside(|page| block(dialect, page, then));
             if !otherwise.is_empty() {
                 page.line(dialect.otherwise());

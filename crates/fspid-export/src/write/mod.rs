@@ -1,5 +1,6 @@
 //! Programs as text in other languages.
 
+mod ardupilot;
 mod c;
 mod c_external;
 mod c_harness;
@@ -16,6 +17,7 @@ mod structured_text;
 mod structured_text_check;
 mod table;
 
+pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
 pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
