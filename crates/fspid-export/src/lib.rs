@@ -5,8 +5,10 @@
 mod compile;
 mod compose;
 mod export;
+mod flat;
 pub mod interpret;
 pub mod program;
+pub mod table;
 mod targets;
 mod trace;
 pub mod vectors;

@@ -3,5 +3,9 @@
 mod c;
 mod fmu;
 mod moved;
+mod rust;
 mod same_bits;
+
+mod structured_text;
+mod table;
 mod unpacked;

@@ -29,7 +29,8 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding), lua (5.3), fmu2 or fmu3 (functional mock-up units for co-simulation).
+    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), table (the
+    /// supervisor alone, in C and CSV), fmu2 or fmu3 (functional mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -47,6 +48,9 @@ pub(crate) struct Arguments {
     /// How many samples the vectors have.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     samples: u32,
+    /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
+    #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
+    points: usize,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -97,6 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Unit::Degrees => Angles::Degrees,
         },
         samples: arguments.samples as usize,
+        points: arguments.points,
         digest: &study.digest,
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;

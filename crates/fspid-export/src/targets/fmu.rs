@@ -2,31 +2,28 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source};
+use super::{File, Source, Written};
 use crate::compile::shared_library;
 use crate::compose::observed;
 use crate::write::fmu::{Fmu, Parts, Version, parts};
 use crate::zip::archive;
 
-/// The archive; what was left out of it goes to the notes.
-pub(super) fn files<R: Real>(
-    source: &Source<'_, R>,
-    version: Version,
-    notes: &mut Vec<String>,
-) -> Vec<File> {
+/// The archive; what was left out of it is told.
+pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Written {
     let Source { program, prefix, heading, .. } = source;
     let program = observed((*program).clone());
     let Parts { mut texts, to_compile, sources } =
         parts(&Fmu { program: &program, prefix, heading, version });
-    match library(&to_compile, &sources, version) {
+    let note = match library(&to_compile, &sources, version) {
         Ok((platform, bytes)) => {
             let ending = std::env::consts::DLL_SUFFIX;
             texts.push(File { name: format!("binaries/{platform}/{prefix}{ending}"), bytes });
-            notes.push(format!("the FMU holds its sources and a library for {platform}"));
+            format!("the FMU holds its sources and a library for {platform}")
         }
-        Err(reason) => notes.push(format!("the FMU holds its sources only: {reason}")),
-    }
-    vec![File { name: format!("{prefix}.fmu"), bytes: archive(&texts) }]
+        Err(reason) => format!("the FMU holds its sources only: {reason}"),
+    };
+    let files = vec![File { name: format!("{prefix}.fmu"), bytes: archive(&texts) }];
+    Written { files, notes: vec![note] }
 }
 
 /// The folder of this machine's libraries, and one.

@@ -5,13 +5,18 @@
 mod c;
 mod fmu;
 mod lua;
+mod rust;
+mod structured_text;
+mod table;
 
 use fspid_numeric::Real;
 
+use crate::compose::Refusal;
 use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
 use crate::write::fmu::Version;
+use fspid_core::Controller;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +25,12 @@ pub enum Target {
     C,
     /// Lua 5.3.
     Lua,
+    /// Structured Text of IEC 61131-3.
+    StructuredText,
+    /// Rust, for `fspid-core`.
+    Rust,
+    /// The supervisor's surface as a table in C and CSV.
+    Table,
     /// A functional mock-up unit, FMI 2.0.
     Fmu2,
     /// A functional mock-up unit, FMI 3.0.
@@ -28,7 +39,8 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::C, Self::Lua, Self::Fmu2, Self::Fmu3];
+    pub const ALL: [Self; 7] =
+        [Self::C, Self::Lua, Self::StructuredText, Self::Rust, Self::Table, Self::Fmu2, Self::Fmu3];
 
     /// Its name on the command line.
     #[must_use]
@@ -36,6 +48,9 @@ impl Target {
         match self {
             Self::C => "c",
             Self::Lua => "lua",
+            Self::StructuredText => "st",
+            Self::Rust => "rust",
+            Self::Table => "table",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",
         }
@@ -45,23 +60,25 @@ impl Target {
     #[must_use]
     pub const fn usual_precision(self) -> Precision {
         match self {
-            Self::C | Self::Lua => Precision::Single,
+            Self::C | Self::Lua | Self::StructuredText | Self::Rust | Self::Table => {
+                Precision::Single
+            }
             Self::Fmu2 | Self::Fmu3 => Precision::Double,
         }
     }
 
-    /// What is written for it; what is to be told of it goes to the notes.
-    pub(crate) fn files<R: Real>(
-        self,
-        source: &Source<'_, R>,
-        notes: &mut Vec<String>,
-    ) -> Vec<File> {
-        match self {
+    /// What is written for it.
+    pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
+        let files = match self {
             Self::C => c::files(source),
             Self::Lua => lua::files(source),
-            Self::Fmu2 => fmu::files(source, Version::Two, notes),
-            Self::Fmu3 => fmu::files(source, Version::Three, notes),
-        }
+            Self::StructuredText => structured_text::files(source),
+            Self::Rust => rust::files(source)?,
+            Self::Table => return table::files(source),
+            Self::Fmu2 => return Ok(fmu::files(source, Version::Two)),
+            Self::Fmu3 => return Ok(fmu::files(source, Version::Three)),
+        };
+        Ok(Written { files, notes: Vec::new() })
     }
 }
 
@@ -72,6 +89,21 @@ pub(crate) struct Source<'a, R> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) vectors: &'a [Vector<R>],
+    /// What is exported, where that is a controller.
+    pub(crate) flown: Option<Flown<'a, R>>,
+}
+
+/// A controller, and what is asked for that only a controller has.
+pub(crate) struct Flown<'a, R> {
+    pub(crate) controller: &'a Controller<R>,
+    /// Points of a table along an input.
+    pub(crate) points: usize,
+}
+
+/// What is written for a target, and what there is to say of it.
+pub(crate) struct Written {
+    pub(crate) files: Vec<File>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// A file of an export.

@@ -207,8 +207,9 @@ fn structure(version: Version, variables: &[Variable]) -> String {
             )
         }
         Version::Three => {
-            let output =
-                |reference| format!("    <Output valueReference=\"{reference}\" dependencies=\"\"/>\n");
+            let output = |reference| {
+                format!("    <Output valueReference=\"{reference}\" dependencies=\"\"/>\n")
+            };
             let initial =
                 |reference| format!("    <InitialUnknown valueReference=\"{reference}\"/>\n");
             format!("{}{}", all(&output), all(&initial))

@@ -76,8 +76,10 @@ fn type_name(holds: Holds) -> &'static str {
 }
 
 fn table(variables: &[Variable]) -> String {
-    let mut text =
-        format!("#define VARIABLE_COUNT {}U\n/* At its value reference each. */\n", variables.len());
+    let mut text = format!(
+        "#define VARIABLE_COUNT {}U\n/* At its value reference each. */\n",
+        variables.len()
+    );
     text.push_str("static const struct variable variables[VARIABLE_COUNT] = {\n");
     for variable in variables {
         let role = match variable.role {

@@ -36,15 +36,30 @@ fn range(program: &Program, name: &str) -> Option<(f64, f64)> {
         Precision::Single => (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX)),
         Precision::Double => (f64::MIN_POSITIVE, f64::MAX),
     };
-    let (any, positive, not_negative) =
-        ((-largest, largest), (smallest, largest), (0.0, largest));
+    let (any, positive, not_negative) = ((-largest, largest), (smallest, largest), (0.0, largest));
     let dt_s = real(program, "dt_s")?;
     match name {
         "rate_gain_s" | "rate_gain_per_kd" => has_rate(program).then_some(any),
-        "nominal_kp" | "nominal_ki" | "nominal_kd" | "scale_kp" | "scale_ki" | "scale_kd"
-        | "lower_kp" | "lower_ki" | "lower_kd" | "upper_kp" | "upper_ki" | "upper_kd"
-        | "lower_rad" | "upper_rad" | "term_lower_rad" | "term_upper_rad"
-        | "proportional_weight" | "derivative_weight" | "weight_per_kp" | "error_per_rad"
+        "nominal_kp"
+        | "nominal_ki"
+        | "nominal_kd"
+        | "scale_kp"
+        | "scale_ki"
+        | "scale_kd"
+        | "lower_kp"
+        | "lower_ki"
+        | "lower_kd"
+        | "upper_kp"
+        | "upper_ki"
+        | "upper_kd"
+        | "lower_rad"
+        | "upper_rad"
+        | "term_lower_rad"
+        | "term_upper_rad"
+        | "proportional_weight"
+        | "derivative_weight"
+        | "weight_per_kp"
+        | "error_per_rad"
         | "change_per_rad" => Some(any),
         "slew_rad" | "guard_rad" => Some(positive),
         "filter_s" | "zone_error_rad" | "zone_change_rad" => Some(not_negative),

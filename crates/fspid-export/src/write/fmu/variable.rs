@@ -74,7 +74,8 @@ impl Unit {
     /// The unit that the end of a name says, as names of this project do.
     pub(super) fn of(name: &str) -> Option<&'static Self> {
         // What is seen beside the error is an angle or a rate; what a factor behind the rules is depends on the law.
-        if ["change_per_rad", "zone_change_rad", "scale_kp", "scale_ki", "scale_kd"].contains(&name) {
+        if ["change_per_rad", "zone_change_rad", "scale_kp", "scale_ki", "scale_kd"].contains(&name)
+        {
             return None;
         }
         let ends = [
