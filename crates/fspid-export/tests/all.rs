@@ -5,8 +5,11 @@ mod c;
 mod common;
 mod lua;
 mod lua_interpreter;
+mod fmu;
+mod moved;
 mod rust;
 mod same_bits;
 
 mod structured_text;
 mod table;
+mod unpacked;
