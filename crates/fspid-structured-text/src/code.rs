@@ -30,7 +30,11 @@ pub(crate) struct Known {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Home {
     Slot(usize, Kind),
-    Slots { base: usize, count: usize, kind: Kind },
+    Slots {
+        base: usize,
+        count: usize,
+        kind: Kind,
+    },
     /// A place in the list of instances, and its unit.
     Instance(usize, usize),
 }
@@ -142,7 +146,9 @@ fn run(body: &[Action], codes: &[Code], frame: &mut Frame) -> Result<Flow, Probl
                 // What a counter holds behind its loop differs from compiler to compiler.
                 frame.slots[*slot] = None;
             }
-            Act::Call(instance, unit, inputs) => call(frame, codes, *instance, *unit, inputs, *line)?,
+            Act::Call(instance, unit, inputs) => {
+                call(frame, codes, *instance, *unit, inputs, *line)?
+            }
             Act::Return => return Ok(Flow::Ended),
         }
     }

@@ -217,8 +217,7 @@ impl Compiler<'_> {
                     return Err(Mistake::Use(name.clone()));
                 };
                 let mut outputs = self.codes[unit].variables.iter();
-                let output =
-                    outputs.find(|it| it.section == Section::Output && it.name == *member);
+                let output = outputs.find(|it| it.section == Section::Output && it.name == *member);
                 match output.map(|known| known.home) {
                     Some(Home::Slot(slot, kind)) => Ok((Node::Member(instance, slot), kind)),
                     _ => Err(Mistake::Undeclared(format!("{name}.{member}"))),
@@ -230,7 +229,8 @@ impl Compiler<'_> {
     fn function(&self, function: Function, of: &Expression) -> Compiled<(Node, Kind)> {
         let (node, kind) = self.value(of)?;
         let node = Box::new(node);
-        let from = |wanted: Kind| if kind == wanted { Ok(()) } else { Err(Mistake::Type(wanted, kind)) };
+        let from =
+            |wanted: Kind| if kind == wanted { Ok(()) } else { Err(Mistake::Type(wanted, kind)) };
         match function {
             Function::Abs if matches!(kind, Kind::Real | Kind::Lreal) => {
                 Ok((Node::Magnitude(node), kind))

@@ -7,7 +7,7 @@ use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
     let Source { program, prefix, heading, vectors, .. } = source;
-    let samples: Vec<[R; 3]> = vectors.iter().map(|vector| vector.sample).collect();
+    let samples: Vec<Vec<R>> = vectors.iter().map(|vector| vector.sample.clone()).collect();
     vec![
         File::text(format!("{prefix}.st"), write::structured_text(program, prefix, heading)),
         File::text(

@@ -17,7 +17,7 @@ pub fn structured_text_check<R: Real>(
     program: &Program,
     prefix: &str,
     heading: &Heading<'_>,
-    samples: &[[R; 3]],
+    samples: &[Vec<R>],
 ) -> String {
     let columns = columns(program, samples);
     let count = columns.first().map_or(0, |column| column.values.len());
@@ -51,7 +51,7 @@ impl Column {
     }
 }
 
-fn columns<R: Real>(program: &Program, samples: &[[R; 3]]) -> Vec<Column> {
+fn columns<R: Real>(program: &Program, samples: &[Vec<R>]) -> Vec<Column> {
     let mut machine = Machine::new(program);
     let mut columns = Vec::new();
     for part in [Part::Sample, Part::Answer] {
@@ -71,7 +71,7 @@ fn columns<R: Real>(program: &Program, samples: &[[R; 3]]) -> Vec<Column> {
         for (member, value) in program.members(Part::Sample).iter().zip(sample) {
             machine.set(Part::Sample, &member.name, Cell::Real(*value));
         }
-        machine.run("step");
+        machine.run(program.entry());
         for column in &mut columns {
             let cell = machine.member(column.part, &column.name);
             column.values.extend(cell.map(|cell| literal(program, cell)));
