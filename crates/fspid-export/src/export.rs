@@ -5,7 +5,7 @@ use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::program::Precision;
-use crate::targets::{File, Source, Target};
+use crate::targets::{File, Flown, Source, Target, Written};
 use crate::vectors::vectors;
 use crate::write::{self, Heading};
 
@@ -22,6 +22,8 @@ pub struct Request<'a> {
     pub angles: Angles,
     /// How many samples the vectors have.
     pub samples: usize,
+    /// How many points a table has along each input.
+    pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
 }
@@ -80,14 +82,11 @@ fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
 ) -> Result<Export, ExportError> {
-    let program = program(controller, request.angles)
-        .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
+    let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
+    let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
     let vectors = vectors(controller, request.angles, SEED, request.samples);
-    let mut notes = Vec::new();
-    if prefix != request.name {
-        notes.push(format!("`{}` is called `{prefix}` in the code", request.name));
-    }
+    let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
     if request.precision == Precision::Single {
@@ -97,18 +96,34 @@ fn exported<R: Real>(
         name: request.name,
         digest: request.digest,
         precision: precision_of::<R>(),
-        angles: request.angles,
+        angles: Some(request.angles),
     };
     let source = Source {
         program: &program,
         prefix: &prefix,
         heading: &heading,
         vectors: &vectors,
-        period_s: controller.config().dt_s.to_f64(),
+        flown: Some(Flown { controller, points: request.points }),
     };
-    let mut files = request.target.files(&source);
-    files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
+    let written = written(request.target, &source).map_err(refused)?;
+    notes.extend(written.notes);
+    let files = written.files;
     Ok(Export { prefix, files, notes })
+}
+
+/// The files of the target, and the vectors.
+pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result<Written, Refusal> {
+    let mut written = target.files(source)?;
+    // A table is no controller.
+    if target != Target::Table {
+        written.files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
+    }
+    Ok(written)
+}
+
+/// That a name is another one in the code, if it is.
+pub(crate) fn renamed(name: &str, called: &str) -> Option<String> {
+    (name != called).then(|| format!("`{name}` is called `{called}` in the code"))
 }
 
 const NOT_JUDGED: &str =

@@ -2,14 +2,18 @@
 //!
 //! Not here: scenarios and designs, which `fspid-scenario` reads; flights; the files' places.
 
+mod compile;
 mod compose;
 mod export;
+mod flat;
 pub mod interpret;
 pub mod program;
+pub mod table;
 mod targets;
 mod trace;
 pub mod vectors;
 pub mod write;
+mod zip;
 
 pub use compose::{Angles, Refusal, precision_of, program};
 pub use export::{Export, ExportError, Request, export, identifier};

@@ -1,4 +1,4 @@
-//! Drawn samples, good and bad ones, and what a controller answers to them.
+//! Drawn samples, good and bad ones, and what a controller answers to them; those of systems are in `systems`.
 //!
 //! Set-points jump by up to 0.6 rad, the pitch follows with noise. Which of a controller's limits and rules this reaches is
 //! not measured here.
@@ -9,16 +9,14 @@ use fspid_numeric::Real;
 use crate::Angles;
 
 /// A sample and its answer, in the units of the export.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Vector<R> {
-    /// Set-point, measurement and rate.
-    pub sample: [R; 3],
-    /// Command and the three gains.
-    pub answer: [R; 4],
-    /// The command was cut.
-    pub saturated: bool,
-    /// The faults latched so far, as bits.
-    pub faults: u8,
+    /// What goes in: the members of the sample in their order, of a controller always with the rate.
+    pub sample: Vec<R>,
+    /// The reals that come out, in the order of the answer's members.
+    pub answer: Vec<R>,
+    /// The truths and bytes that come out, behind the reals: of a controller, whether the command was cut, and its faults.
+    pub marks: Vec<u8>,
 }
 
 /// What a controller answers to `count` samples that are drawn from a seed, from a reset on.
@@ -38,28 +36,31 @@ pub fn vectors<R: Real>(
         let [setpoint_rad, measurement_rad, rate_rad_s] = given.map(|value| value * radians);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
         let Step { command_rad, gains, saturated, faults } = controller.step(&mut state, sample);
-        let answer = [command_rad * per_radian, gains.kp, gains.ki, gains.kd];
-        Vector { sample: given, answer, saturated, faults: faults.bits() }
+        Vector {
+            sample: given.to_vec(),
+            answer: vec![command_rad * per_radian, gains.kp, gains.ki, gains.kd],
+            marks: vec![u8::from(saturated), faults.bits()],
+        }
     };
     samples(seed, count).into_iter().map(answered).collect()
 }
 
 /// Numbers that are the same in each run.
-struct Draw(u64);
+pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
     /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn around(&mut self, size: f64) -> f64 {
+    pub(crate) fn around(&mut self, size: f64) -> f64 {
         (2.0 * self.unit() - 1.0) * size
     }
 
-    fn bad(&mut self) -> f64 {
+    pub(crate) fn bad(&mut self) -> f64 {
         const BAD: [f64; 8] =
             [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 3e38, -3e38, 1e30, -0.0, 1e-40];
         BAD[(self.unit() * 8.0) as usize % 8]

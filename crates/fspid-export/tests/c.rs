@@ -12,7 +12,8 @@ use proptest::prelude::*;
 
 fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
+    let heading =
+        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
     let files = c(&program, "pitch", &heading);
     let vectors = vectors(controller, angles, 1, 400);
     let harness = c_harness(&program, "pitch", &vectors);

@@ -4,8 +4,8 @@ use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};
 
 use crate::aircraft::AIRCRAFT_COLUMNS;
-use crate::closed_loop::Instant;
 use crate::external::ControllerLoss;
+use crate::instant::Instant;
 use crate::scenario::Prepared;
 use crate::timing::Timing;
 

@@ -30,7 +30,8 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding) or lua (5.3).
+    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), table (the
+    /// supervisor alone, in C and CSV), fmu2 or fmu3 (functional mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -39,15 +40,18 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
-    /// The digits of the numbers.
-    #[arg(long, value_enum, default_value_t = Numbers::Single)]
-    numbers: Numbers,
+    /// The digits of the numbers; double for fmu2 and fmu3 if left out, else single.
+    #[arg(long, value_enum)]
+    numbers: Option<Numbers>,
     /// The unit of the angles that go in and come out.
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
     /// How many samples the vectors have.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     samples: u32,
+    /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
+    #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
+    points: usize,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -90,14 +94,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         name: &named.name,
         target: arguments.to,
         precision: match arguments.numbers {
-            Numbers::Single => Precision::Single,
-            Numbers::Double => Precision::Double,
+            Some(Numbers::Single) => Precision::Single,
+            Some(Numbers::Double) => Precision::Double,
+            None => arguments.to.usual_precision(),
         },
         angles: match arguments.angles {
             Unit::Radians => Angles::Radians,
             Unit::Degrees => Angles::Degrees,
         },
         samples: arguments.samples as usize,
+        points: arguments.points,
         digest: &study.digest,
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;

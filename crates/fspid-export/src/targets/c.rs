@@ -6,14 +6,18 @@ use super::{File, Source};
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
-    let Source { program, prefix, heading, vectors, period_s } = source;
-    let adapter = write::c_external(program, prefix, *period_s, heading);
+    let Source { program, prefix, heading, vectors, .. } = source;
     let written = write::c(program, prefix, heading);
-    vec![
+    let mut files = vec![
         File::text(format!("{prefix}.h"), written.header),
         File::text(format!("{prefix}.c"), written.source),
         File::text(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
-        File::text("external/fspid_external.h", write::EXTERNAL_HEADER.to_owned()),
-        File::text(format!("external/{prefix}_external.c"), adapter),
-    ]
+    ];
+    if let Some(flown) = &source.flown {
+        let period_s = flown.controller.config().dt_s.to_f64();
+        let adapter = write::c_external(program, prefix, period_s, heading);
+        files.push(File::text("external/fspid_external.h", write::EXTERNAL_HEADER.to_owned()));
+        files.push(File::text(format!("external/{prefix}_external.c"), adapter));
+    }
+    files
 }

@@ -12,13 +12,16 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
     let is_single = program.precision == Precision::Single;
     let (real, bits) = if is_single { ("float", "uint32_t") } else { ("double", "uint64_t") };
     let count = vectors.len();
+    let [reals, marks] = program.answers();
+    // The vectors of a controller hold the rate also where it is not asked for.
+    let inputs = vectors.first().map_or(0, |vector| vector.sample.len());
     let mut page = Page::default();
     for line in ["#include <stdint.h>", "#include <stdio.h>"] {
         page.line(line);
     }
     page.line(&format!("#include \"{prefix}.h\""));
     page.line("");
-    page.line(&format!("static const {bits} vectors[{count}][7] = {{"));
+    page.line(&format!("static const {bits} vectors[{count}][{}] = {{", inputs + reals.len()));
     page.inside(|page| {
         for vector in vectors {
             let values = vector.sample.iter().chain(&vector.answer);
@@ -27,10 +30,11 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         }
     });
     page.line("};");
-    page.line(&format!("static const uint8_t marks[{count}][2] = {{"));
+    page.line(&format!("static const uint8_t marks[{count}][{}] = {{", marks.len()));
     page.inside(|page| {
         for vector in vectors {
-            page.line(&format!("{{ {}U, {}U }},", u8::from(vector.saturated), vector.faults));
+            let values: Vec<String> = vector.marks.iter().map(|mark| format!("{mark}U")).collect();
+            page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
     page.line("};");
@@ -43,37 +47,31 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         ),
     ];
     unions.iter().for_each(|line| page.line(line));
-    main(&mut page, program, prefix, count);
+    main(&mut page, program, prefix, [count, inputs]);
     page.text
 }
 
-fn main(page: &mut Page, program: &Program, prefix: &str, count: usize) {
+fn main(page: &mut Page, program: &Program, prefix: &str, [count, inputs]: [usize; 2]) {
     page.line("");
     page.line("int main(void)");
     page.line("{");
     page.inside(|page| {
-        page.line(&format!("{prefix}_state state;"));
+        if !program.state.is_empty() {
+            page.line(&format!("{prefix}_state state;"));
+        }
         page.line(&format!("{prefix}_sample sample;"));
         page.line(&format!("{prefix}_answer answer;"));
         page.line("unsigned different = 0U;");
-        page.line(&format!("{prefix}_reset(&{prefix}_design, &state);"));
+        if program.function("reset").is_some() {
+            page.line(&called(program, prefix, "reset"));
+        }
         page.line(&format!("for (unsigned k = 0U; k < {count}U; ++k) {{"));
         page.inside(|page| {
             for (index, member) in program.members(Part::Sample).iter().enumerate() {
                 page.line(&format!("sample.{} = real(vectors[k][{index}]);", member.name));
             }
-            page.line(&format!("{prefix}_step(&{prefix}_design, &state, &sample, &answer);"));
-            let command = &program.members(Part::Answer)[0].name;
-            let same: Vec<String> = [command.as_str(), "kp", "ki", "kd"]
-                .iter()
-                .zip(3..)
-                .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"))
-                .chain([
-                    "answer.saturated == marks[k][0]".to_owned(),
-                    "answer.faults == marks[k][1]".to_owned(),
-                ])
-                .collect();
-            page.line(&format!("if (!({})) {{", same.join(" && ")));
+            page.line(&called(program, prefix, program.entry()));
+            page.line(&format!("if (!({})) {{", same(program, inputs)));
             page.inside(|page| {
                 page.line("if (different == 0U) { printf(\"first at sample %u\\n\", k); }");
                 page.line("++different;");
@@ -85,6 +83,30 @@ fn main(page: &mut Page, program: &Program, prefix: &str, count: usize) {
         page.line("return different == 0U ? 0 : 1;");
     });
     page.line("}");
+}
+
+/// A call of a function that is given parts alone.
+fn called(program: &Program, prefix: &str, name: &str) -> String {
+    let parts = program.function(name).map_or(&[] as &[Part], |function| function.parts);
+    let given = parts.iter().map(|part| match part {
+        Part::Configuration => format!("&{prefix}_design"),
+        Part::State => "&state".to_owned(),
+        Part::Sample => "&sample".to_owned(),
+        Part::Answer => "&answer".to_owned(),
+    });
+    format!("{prefix}_{name}({});", given.collect::<Vec<_>>().join(", "))
+}
+
+/// True where every member of the answer is the one of the vector.
+fn same(program: &Program, inputs: usize) -> String {
+    let [reals, marks] = program.answers();
+    let reals = reals
+        .iter()
+        .zip(inputs..)
+        .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"));
+    let marks =
+        marks.iter().zip(0..).map(|(name, index)| format!("answer.{name} == marks[k][{index}]"));
+    reals.chain(marks).collect::<Vec<_>>().join(" && ")
 }
 
 fn hex<R: Real>(value: R, is_single: bool) -> String {

@@ -16,13 +16,10 @@ pub fn csv<R: Real>(program: &Program, vectors: &[Vector<R>]) -> String {
     let mut text = header.join(",");
     text.push('\n');
     for vector in vectors {
-        for value in vector.sample.iter().take(inputs).chain(&vector.answer) {
-            text.push_str(&any(value.to_f64(), is_single));
-            text.push(',');
-        }
-        let saturated = if vector.saturated { "1," } else { "0," };
-        text.push_str(saturated);
-        text.push_str(&vector.faults.to_string());
+        let reals = vector.sample.iter().take(inputs).chain(&vector.answer);
+        let reals = reals.map(|value| any(value.to_f64(), is_single));
+        let cells: Vec<String> = reals.chain(vector.marks.iter().map(u8::to_string)).collect();
+        text.push_str(&cells.join(","));
         text.push('\n');
     }
     text

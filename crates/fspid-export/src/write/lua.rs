@@ -7,7 +7,7 @@ use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
-/// The program as a module that answers `{ design, reset, step, hold }`. It has the bits of its precision where Lua's
+/// The program as a module that answers `{ design, reset, step, hold }`, of a fuzzy system `{ design, infer }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
 pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
@@ -21,7 +21,12 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    page.line("return { design = design, reset = reset, step = step, hold = hold }");
+    let all = [program.entry(), "reset", "hold"];
+    let functions =
+        ["reset", "step", "hold", "infer"].into_iter().filter(|name| all.contains(name));
+    let functions = functions.filter(|name| program.function(name).is_some());
+    let fields = ["design"].into_iter().chain(functions).map(|name| format!("{name} = {name}"));
+    page.line(&format!("return {{ {} }}", fields.collect::<Vec<_>>().join(", ")));
     page.text
 }
 
@@ -32,6 +37,39 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
     let writer = Writer { program };
     let mut page = Page::default();
     page.line(&format!("local controller = require(\"{name}\")"));
+    if program.entry() == "step" {
+        check_of_controller(&mut page, program);
+    } else {
+        check_of_system(&mut page, program);
+    }
+    let names: Vec<&str> =
+        program.members(Part::Sample).iter().map(|member| member.name.as_str()).collect();
+    let [_, marked] = program.answers();
+    for vector in vectors {
+        let sample: Vec<String> = names
+            .iter()
+            .zip(&vector.sample)
+            .map(|(name, value)| format!("{name} = {}", writer.any(value.to_f64())))
+            .collect();
+        let reals = vector.answer.iter().map(|value| writer.any(value.to_f64()));
+        let marks = marked.iter().zip(&vector.marks).map(|(name, mark)| {
+            let holds_truth = program
+                .answer
+                .iter()
+                .any(|member| member.name == *name && matches!(member.value, Value::Truth(_)));
+            if holds_truth { (*mark != 0).to_string() } else { mark.to_string() }
+        });
+        let answer: Vec<String> = reals.chain(marks).collect();
+        page.line(&format!("check({{ {} }}, {})", sample.join(", "), answer.join(", ")));
+    }
+    page.line(&format!(
+        "print(string.format(\"{} samples, %d different\", different))",
+        vectors.len()
+    ));
+    page.text
+}
+
+fn check_of_controller(page: &mut Page, program: &Program) {
     page.line("local state, answer, different = {}, {}, 0");
     page.line("controller.reset(controller.design, state)");
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
@@ -45,29 +83,26 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
         page.line("if not good then different = different + 1 end");
     });
     page.line("end");
-    let names: Vec<&str> =
-        program.members(Part::Sample).iter().map(|member| member.name.as_str()).collect();
-    for vector in vectors {
-        let sample: Vec<String> = names
-            .iter()
-            .zip(vector.sample)
-            .map(|(name, value)| format!("{name} = {}", writer.any(value.to_f64())))
-            .collect();
-        let answer: Vec<String> =
-            vector.answer.iter().map(|value| writer.any(value.to_f64())).collect();
-        page.line(&format!(
-            "check({{ {} }}, {}, {}, {})",
-            sample.join(", "),
-            answer.join(", "),
-            vector.saturated,
-            vector.faults
-        ));
-    }
-    page.line(&format!(
-        "print(string.format(\"{} samples, %d different\", different))",
-        vectors.len()
-    ));
-    page.text
+}
+
+fn check_of_system(page: &mut Page, program: &Program) {
+    let [reals, marks] = program.answers();
+    page.line("local answer, different = {}, 0");
+    page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
+    page.line("local function check(sample, ...)");
+    page.inside(|page| {
+        page.line("controller.infer(controller.design, sample, answer)");
+        page.line("local wanted = { ... }");
+        page.line("local good = true");
+        for (name, index) in reals.iter().zip(1..) {
+            page.line(&format!("good = good and same(answer.{name}, wanted[{index}])"));
+        }
+        for (name, index) in marks.iter().zip(1 + reals.len()..) {
+            page.line(&format!("good = good and answer.{name} == wanted[{index}]"));
+        }
+        page.line("if not good then different = different + 1 end");
+    });
+    page.line("end");
 }
 
 struct Writer<'a> {
