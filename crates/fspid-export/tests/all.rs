@@ -3,9 +3,9 @@
 mod ardupilot;
 mod c;
 mod common;
+mod fmu;
 mod lua;
 mod lua_interpreter;
-mod fmu;
 mod moved;
 mod rust;
 mod same_bits;

@@ -20,6 +20,9 @@ use crate::frame::{Start, read_answer, write_sample};
 const LOAD_LIMIT: Duration = Duration::from_secs(30);
 /// How long a process has to end once nobody asks any more: what it has to print is printed by then.
 const END_LIMIT: Duration = Duration::from_secs(1);
+/// How often, and how far apart, it is looked whether a process has ended whose socket is closed: a second in all.
+const ENDING_LOOKS: u32 = 500;
+const ENDING_PAUSE: Duration = Duration::from_millis(2);
 /// Of the period: how far a controller's may lie beside the scenario's. A period in 32 bits is near enough.
 const SAME_PERIOD: f64 = 1e-6;
 
@@ -48,7 +51,7 @@ impl ProcessHost {
             // Ctrl-C is for us: a flight that was begun is no crash of its controller.
             .process_group(0)
             .spawn()?;
-        Ok(Process { child, stream, sample: 0, limit_s: external.answer_limit_s })
+        Ok(Process { child, stream, sample: 0, limit_s: external.answer_limit_s, is_lost: false })
     }
 }
 
@@ -97,6 +100,8 @@ struct Process {
     /// Number of the next sample.
     sample: u64,
     limit_s: f64,
+    /// True once there is nothing more to wait for.
+    is_lost: bool,
 }
 
 impl Process {
@@ -112,15 +117,25 @@ impl Process {
     /// What an error of the conversation means.
     fn lost(&mut self, error: &io::Error, limit_s: f64) -> ControllerLoss {
         use io::ErrorKind::{BrokenPipe, ConnectionReset, TimedOut, UnexpectedEof, WouldBlock};
+        self.is_lost = true;
         match error.kind() {
             WouldBlock | TimedOut => ControllerLoss::Silent { limit_s },
-            // It is ending, if it has not ended: what it ends with stands before its socket closes.
             UnexpectedEof | BrokenPipe | ConnectionReset => {
-                let _ = self.child.kill();
-                self.child.wait().map_or(ControllerLoss::NoAnswer, of_status)
+                self.ended().map_or(ControllerLoss::NoAnswer, of_status)
             }
             _ => ControllerLoss::NoAnswer,
         }
+    }
+
+    /// What it ended with: its socket closes a moment before that is known. None for one that goes on without it.
+    fn ended(&mut self) -> Option<ExitStatus> {
+        for _ in 0..ENDING_LOOKS {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                return Some(status);
+            }
+            std::thread::sleep(ENDING_PAUSE);
+        }
+        None
     }
 }
 
@@ -138,6 +153,7 @@ impl Answers for Process {
         let read = written.and_then(|()| read_answer(&mut self.stream));
         let (number, step) = read.map_err(|error| self.lost(&error, limit_s))?;
         if number != self.sample {
+            self.is_lost = true;
             return Err(ControllerLoss::NoAnswer);
         }
         self.sample += 1;
@@ -151,10 +167,12 @@ impl Answers for Process {
 impl Drop for Process {
     /// Lets it end; one that does not is ended.
     fn drop(&mut self) {
-        let _ = self.stream.shutdown(Shutdown::Write);
-        let _ = self.stream.set_read_timeout(Some(END_LIMIT));
-        // Its side closes when it has ended; anything else is passed over.
-        let _ = io::copy(&mut self.stream, &mut io::sink());
+        if !self.is_lost {
+            let _ = self.stream.shutdown(Shutdown::Write);
+            let _ = self.stream.set_read_timeout(Some(END_LIMIT));
+            // Its side closes when it has ended; anything else is passed over.
+            let _ = io::copy(&mut self.stream, &mut io::sink());
+        }
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

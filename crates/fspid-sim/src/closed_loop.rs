@@ -9,10 +9,10 @@ use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::external::{ControllerLoss, External};
+use crate::external::ControllerLoss;
 use crate::flown::Perturbation;
 use crate::propagation::{Motion, Propagation};
-use crate::scenario::{Flyer, Prepared, Scenario};
+use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
@@ -40,7 +40,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
 
 fn record(prepared: &Prepared, flyer: Flyer<'_>) -> Result<Trace, SimError> {
     let mut trace = Trace::with_room(prepared);
-    let outcome = flyer.fly(prepared, |instant| {
+    let outcome = flyer.respondent().fly(prepared, &Perturbation::NONE, |instant| {
         trace.push(prepared, &instant);
         ControlFlow::Continue(())
     })?;
@@ -74,35 +74,25 @@ pub fn fly_perturbed(
     watch(prepared, controller, perturbation, |instant, _| observer(instant))
 }
 
-/// Flies an external controller as [`fly`] does one with equations.
-///
-/// # Errors
-/// As [`fly`]; where it cannot be started.
-fn fly_external(
-    prepared: &Prepared,
-    external: &External,
-    perturbation: &Perturbation,
-    mut observer: impl FnMut(Instant) -> ControlFlow<()>,
-) -> Result<Outcome, SimError> {
-    let mut started = external.start()?;
-    let answer = |sample| started.answer(sample);
-    watch_answers(prepared, answer, perturbation, |instant, _| observer(instant))
-}
-
-impl Flyer<'_> {
-    /// Flies it, with equations as [`fly`] does.
+impl Respondent<'_> {
+    /// Flies it, with equations as [`fly_perturbed`] does.
     ///
     /// # Errors
-    /// As [`fly`]; where an external controller cannot be started.
+    /// As [`fly_perturbed`]; where an external controller cannot be started.
     pub fn fly(
         self,
         prepared: &Prepared,
-        observer: impl FnMut(Instant) -> ControlFlow<()>,
+        perturbation: &Perturbation,
+        mut observer: impl FnMut(Instant) -> ControlFlow<()>,
     ) -> Result<Outcome, SimError> {
         match self {
-            Self::Own(named) => fly(prepared, &named.controller, observer),
-            Self::External(named) => {
-                fly_external(prepared, &named.external, &Perturbation::NONE, observer)
+            Self::Equations(controller) => {
+                fly_perturbed(prepared, controller, perturbation, observer)
+            }
+            Self::External(external) => {
+                let mut started = external.start()?;
+                let answer = |sample| started.answer(sample);
+                watch_answers(prepared, answer, perturbation, |instant, _| observer(instant))
             }
         }
     }

@@ -57,7 +57,7 @@ pub use instant::Instant;
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use rest::{Rest, RestPoint, Side, Stand};
-pub use scenario::{Flyer, NamedController, Prepared, Scenario};
+pub use scenario::{Flyer, NamedController, Prepared, Respondent, Scenario};
 pub use steady::Steady;
 pub use surroundings::{Course, Surroundings, Weather};
 pub use timing::{MAX_ROWS, Timing};

@@ -5,7 +5,7 @@ use crate::actuator::Actuator;
 use crate::aircraft::{AircraftFlight, AircraftPlant};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::external::NamedExternal;
+use crate::external::{External, NamedExternal};
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -43,6 +43,15 @@ impl<'a> Flyer<'a> {
         }
     }
 
+    /// The same without its name.
+    #[must_use]
+    pub fn respondent(self) -> Respondent<'a> {
+        match self {
+            Self::Own(named) => Respondent::Equations(&named.controller),
+            Self::External(named) => Respondent::External(&named.external),
+        }
+    }
+
     /// The equations, if there are any.
     #[must_use]
     pub fn controller(self) -> Option<&'a Controller> {
@@ -51,6 +60,15 @@ impl<'a> Flyer<'a> {
             Self::External(_) => None,
         }
     }
+}
+
+/// What answers samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Respondent<'a> {
+    /// Equations.
+    Equations(&'a Controller),
+    /// A program.
+    External(&'a External),
 }
 
 /// A flight to be simulated, once for each controller.
@@ -107,6 +125,14 @@ impl Scenario {
     pub fn flyers(&self) -> impl Iterator<Item = Flyer<'_>> {
         let externals = self.externals.iter().map(Flyer::External);
         self.controllers.iter().map(Flyer::Own).chain(externals)
+    }
+
+    /// Starts every external controller once and lets it go.
+    ///
+    /// # Errors
+    /// [`SimError`] names the first that cannot fly.
+    pub fn start_externals(&self) -> Result<(), SimError> {
+        self.externals.iter().try_for_each(|named| named.external.start().map(drop))
     }
 
     /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_sim::{Exit, Flyer, Prepared, SimError, Trace};
+use fspid_sim::{Exit, Flyer, Perturbation, Prepared, SimError, Trace};
 
 /// One flight, recorded in an empty trace as far as measures need it.
 pub(super) fn record(
@@ -12,7 +12,7 @@ pub(super) fn record(
     flyer: Flyer<'_>,
 ) -> Result<Trace, SimError> {
     let timing = prepared.timing();
-    let outcome = flyer.fly(prepared, |instant| {
+    let outcome = flyer.respondent().fly(prepared, &Perturbation::NONE, |instant| {
         trace.time_s.push(timing.time_s(instant.k));
         trace.setpoint_rad.push(instant.setpoint_rad);
         trace.theta_rad.push(instant.theta_rad);

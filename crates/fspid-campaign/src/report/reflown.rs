@@ -5,6 +5,7 @@ use std::path::Path;
 
 use fspid_scenario::file::Study;
 use fspid_scenario::units::degrees;
+use fspid_sim::Perturbation;
 use rayon::prelude::*;
 
 use super::Source;
@@ -180,7 +181,7 @@ fn of_study(study: &Study, grid: &Grid) -> Option<Vec<Curves>> {
     let mut all = Vec::new();
     for flyer in scenario.flyers() {
         let mut curves = Curves::default();
-        let flown = flyer.fly(&prepared, |instant| {
+        let flown = flyer.respondent().fly(&prepared, &Perturbation::NONE, |instant| {
             if instant.k % grid.every == 0 && curves.pitch_deg.len() < grid.time_s.len() {
                 curves.pitch_deg.push(degrees(instant.theta_rad));
                 curves.elevator_deg.push(degrees(instant.elevator_rad));

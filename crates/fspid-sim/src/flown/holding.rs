@@ -4,11 +4,9 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use super::Perturbation;
-use crate::closed_loop::fly_perturbed;
-use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::ControllerLoss;
-use crate::scenario::{Prepared, Scenario};
+use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::sensor::Sensor;
 use crate::trace::Outcome;
 
@@ -120,15 +118,15 @@ impl Envelope {
     /// Flies and watches.
     ///
     /// # Errors
-    /// As [`fly_perturbed`].
+    /// As [`Respondent::fly`].
     pub fn of(
         prepared: &Prepared,
-        controller: &Controller,
+        respondent: Respondent<'_>,
         perturbation: &Perturbation,
     ) -> Result<Self, SimError> {
         let rows = prepared.timing().rows();
         let mut errors_rad = Vec::with_capacity(rows);
-        let outcome = fly_perturbed(prepared, controller, perturbation, |instant| {
+        let outcome = respondent.fly(prepared, perturbation, |instant| {
             errors_rad.push(instant.setpoint_rad - instant.theta_rad);
             ControlFlow::Continue(())
         })?;
