@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::program::Precision;
 use crate::targets::{File, Source, Target};
-use crate::vectors::vectors;
+use crate::vectors::{eventful, vectors};
 use crate::write::{self, Heading};
 
 /// What is asked for.
@@ -83,7 +83,8 @@ fn exported<R: Real>(
     let program = program(controller, request.angles)
         .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
     let prefix = identifier(request.name);
-    let vectors = vectors(controller, request.angles, SEED, request.samples);
+    let drawn = if request.target.has_events() { eventful } else { vectors };
+    let vectors = drawn(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::new();
     if prefix != request.name {
         notes.push(format!("`{}` is called `{prefix}` in the code", request.name));

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use fspid_core::Controller;
-use fspid_export::vectors::vectors;
+use fspid_export::vectors::eventful;
 use fspid_export::write::{Heading, c, c_harness};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
@@ -14,7 +14,7 @@ fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> St
     let program = program(controller, angles).expect("nothing here is refused");
     let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
     let files = c(&program, "pitch", &heading);
-    let vectors = vectors(controller, angles, 1, 400);
+    let vectors = eventful(controller, angles, 1, 3000);
     let harness = c_harness(&program, "pitch", &vectors);
     for (name, text) in
         [("pitch.h", &files.header), ("pitch.c", &files.source), ("main.c", &harness)]
@@ -28,6 +28,7 @@ fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> St
             "-Wall",
             "-Wextra",
             "-Wconversion",
+            "-Wfloat-equal",
             "-Werror",
             "-ffp-contract=off",
         ])
@@ -50,9 +51,9 @@ proptest! {
     ) {
         let angles = if degrees { Angles::Degrees } else { Angles::Radians };
         let folder = tempfile::tempdir().expect("a temporary folder");
-        prop_assert_eq!(run(&controller, angles, folder.path()), "400 samples, 0 different\n");
+        prop_assert_eq!(run(&controller, angles, folder.path()), "3000 samples, 0 different\n");
         if let Ok(single) = controller.rounded::<f32>() {
-            prop_assert_eq!(run(&single, angles, folder.path()), "400 samples, 0 different\n");
+            prop_assert_eq!(run(&single, angles, folder.path()), "3000 samples, 0 different\n");
         }
     }
 }

@@ -116,6 +116,31 @@ impl Program {
         }
     }
 
+    /// True if a function, or one that it calls, puts something into a part.
+    #[must_use]
+    pub fn writes(&self, function: &Function, part: Part) -> bool {
+        self.writes_in(&function.body, part)
+    }
+
+    fn writes_in(&self, body: &[Statement], part: Part) -> bool {
+        body.iter().any(|statement| match statement {
+            Statement::Set(Place::Member(to, _) | Place::MemberElement(to, ..), _) => *to == part,
+            Statement::If(_, then, otherwise) => {
+                self.writes_in(then, part) || self.writes_in(otherwise, part)
+            }
+            Statement::For(.., body) => self.writes_in(body, part),
+            Statement::Call(name, _) => {
+                self.function(name).is_some_and(|called| self.writes(called, part))
+            }
+            // What answers a value writes into nothing but arrays of its caller.
+            Statement::Set(..)
+            | Statement::Remark(_)
+            | Statement::Let(..)
+            | Statement::Array(..)
+            | Statement::Return(_) => false,
+        })
+    }
+
     /// The function of that name.
     #[must_use]
     pub fn function(&self, name: &str) -> Option<&Function> {

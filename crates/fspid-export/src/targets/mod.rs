@@ -33,6 +33,11 @@ impl Target {
         }
     }
 
+    /// True if its vectors hold more than steps.
+    pub(crate) const fn has_events(self) -> bool {
+        matches!(self, Self::C | Self::Lua)
+    }
+
     /// What is written for it.
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Vec<File> {
         match self {

@@ -189,10 +189,7 @@ impl Writer<'_> {
             .iter()
             .map(|part| {
                 let name = part_name(*part);
-                let constant = match part {
-                    Part::Configuration | Part::Sample => "const ",
-                    Part::State | Part::Answer => "",
-                };
+                let constant = if self.program.writes(function, *part) { "" } else { "const " };
                 format!("{constant}{prefix}_{name} *{name}")
             })
             .collect();
@@ -337,7 +334,7 @@ impl Dialect for Writer<'_> {
 
 /// What others may call.
 fn is_public(function: &Function) -> bool {
-    matches!(function.name, "reset" | "step" | "hold")
+    matches!(function.name, "reset" | "step" | "hold" | "track" | "saturated" | "faults")
 }
 
 fn comment(page: &mut Page, text: &str) {

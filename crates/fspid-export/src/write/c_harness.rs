@@ -18,19 +18,22 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
     }
     page.line(&format!("#include \"{prefix}.h\""));
     page.line("");
-    page.line(&format!("static const {bits} vectors[{count}][7] = {{"));
+    page.line("/* Sample, what is given with the event, answer. */");
+    page.line(&format!("static const {bits} vectors[{count}][8] = {{"));
     page.inside(|page| {
         for vector in vectors {
-            let values = vector.sample.iter().chain(&vector.answer);
+            let given = vector.event.given();
+            let values = vector.sample.iter().chain([&given]).chain(&vector.answer);
             let values: Vec<String> = values.map(|value| hex(*value, is_single)).collect();
             page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
     page.line("};");
-    page.line(&format!("static const uint8_t marks[{count}][2] = {{"));
+    page.line("/* Saturated, faults, event. */");
+    page.line(&format!("static const uint8_t marks[{count}][3] = {{"));
     page.inside(|page| {
-        for vector in vectors {
-            page.line(&format!("{{ {}U, {}U }},", u8::from(vector.saturated), vector.faults));
+        for Vector { saturated, faults, event, .. } in vectors {
+            page.line(&format!("{{ {}U, {faults}U, {}U }},", u8::from(*saturated), event.number()));
         }
     });
     page.line("};");
@@ -43,11 +46,11 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         ),
     ];
     unions.iter().for_each(|line| page.line(line));
-    main(&mut page, program, prefix, count);
+    main(&mut page, program, prefix, (count, real));
     page.text
 }
 
-fn main(page: &mut Page, program: &Program, prefix: &str, count: usize) {
+fn main(page: &mut Page, program: &Program, prefix: &str, (count, real): (usize, &str)) {
     page.line("");
     page.line("int main(void)");
     page.line("{");
@@ -62,14 +65,15 @@ fn main(page: &mut Page, program: &Program, prefix: &str, count: usize) {
             for (index, member) in program.members(Part::Sample).iter().enumerate() {
                 page.line(&format!("sample.{} = real(vectors[k][{index}]);", member.name));
             }
-            page.line(&format!("{prefix}_step(&{prefix}_design, &state, &sample, &answer);"));
+            page.line(&format!("const {real} given = real(vectors[k][3]);"));
+            events(page, program, prefix);
             let command = &program.members(Part::Answer)[0].name;
             let same: Vec<String> = [command.as_str(), "kp", "ki", "kd"]
                 .iter()
-                .zip(3..)
+                .zip(4..)
                 .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"))
                 .chain([
-                    "answer.saturated == marks[k][0]".to_owned(),
+                    format!("{prefix}_saturated(&answer) == marks[k][0]"),
                     "answer.faults == marks[k][1]".to_owned(),
                 ])
                 .collect();
@@ -85,6 +89,32 @@ fn main(page: &mut Page, program: &Program, prefix: &str, count: usize) {
         page.line("return different == 0U ? 0 : 1;");
     });
     page.line("}");
+}
+
+/// What is done at a vector.
+fn events(page: &mut Page, program: &Program, prefix: &str) {
+    let call =
+        |name: &str, more: &str| format!("{prefix}_{name}(&{prefix}_design, &state, {more}&answer");
+    let has = |name: &str| program.members(Part::State).iter().any(|member| member.name == name);
+    page.line("switch (marks[k][2]) {");
+    page.line(&format!("case 1U: {prefix}_reset(&{prefix}_design, &state); break;"));
+    page.line("case 4U:");
+    let all = format!("{prefix}_faults(&state) != (k > 0U ? marks[k - 1U][1] : 0U)");
+    page.line(&format!("    if ({all}) {{ ++different; }}"));
+    page.line("    break;");
+    for (name, number) in [("command_rad", 5), ("integral", 6)] {
+        if has(name) {
+            page.line(&format!("case {number}U: state.{name} = given; break;"));
+        }
+    }
+    page.line("default: break;");
+    page.line("}");
+    page.line(&format!("if (marks[k][2] == 2U) {{ {}, 1U); }}", call("hold", "")));
+    page.line(&format!(
+        "else if (marks[k][2] == 3U) {{ {}, given); }}",
+        call("track", "&sample, ")
+    ));
+    page.line(&format!("else {{ {}); }}", call("step", "&sample, ")));
 }
 
 fn hex<R: Real>(value: R, is_single: bool) -> String {

@@ -4,7 +4,7 @@ use fspid_numeric::Real;
 
 use super::decimal;
 use crate::program::{Part, Precision, Program};
-use crate::vectors::Vector;
+use crate::vectors::{Event, Vector};
 
 /// One line a sample, numbers with the digits that read back as the same bits.
 #[must_use]
@@ -12,7 +12,11 @@ pub fn csv<R: Real>(program: &Program, vectors: &[Vector<R>]) -> String {
     let is_single = program.precision == Precision::Single;
     let names = |part| program.members(part).iter().map(|member| member.name.as_str());
     let inputs = names(Part::Sample).count();
-    let header: Vec<&str> = names(Part::Sample).chain(names(Part::Answer)).collect();
+    let has_events = vectors.iter().any(|vector| vector.event != Event::Step);
+    let mut header: Vec<&str> = names(Part::Sample).chain(names(Part::Answer)).collect();
+    if has_events {
+        header.extend(["event", "given"]);
+    }
     let mut text = header.join(",");
     text.push('\n');
     for vector in vectors {
@@ -23,6 +27,10 @@ pub fn csv<R: Real>(program: &Program, vectors: &[Vector<R>]) -> String {
         let saturated = if vector.saturated { "1," } else { "0," };
         text.push_str(saturated);
         text.push_str(&vector.faults.to_string());
+        if has_events {
+            let given = any(vector.event.given().to_f64(), is_single);
+            text.push_str(&format!(",{},{given}", vector.event.name()));
+        }
         text.push('\n');
     }
     text

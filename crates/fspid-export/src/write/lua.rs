@@ -7,7 +7,7 @@ use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
-/// The program as a module that answers `{ design, reset, step, hold }`. It has the bits of its precision where Lua's
+/// The program as a module that answers `{ design, reset, step, hold, track, saturated, faults }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
 pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
@@ -21,7 +21,10 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    page.line("return { design = design, reset = reset, step = step, hold = hold }");
+    page.line("return {");
+    page.line("    design = design, reset = reset, step = step, hold = hold, track = track,");
+    page.line("    saturated = saturated, faults = faults");
+    page.line("}");
     page.text
 }
 
@@ -35,9 +38,22 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
     page.line("local state, answer, different = {}, {}, 0");
     page.line("controller.reset(controller.design, state)");
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
-    page.line("local function check(sample, command, kp, ki, kd, saturated, faults)");
+    let call = |name: &str| format!("controller.{name}(controller.design, state");
+    page.line("local latched = 0");
+    page.line("local function check(event, given, sample, command, kp, ki, kd, saturated, faults)");
     page.inside(|page| {
-        page.line("controller.step(controller.design, state, sample, answer)");
+        page.line(&format!("if event == 1 then {}) end", call("reset")));
+        page.line("if event == 4 and controller.faults(state) ~= latched then different = different + 1 end");
+        page.line("if event == 5 then state.command_rad = given end");
+        page.line("if event == 6 then state.integral = given end");
+        page.line("if event == 2 then");
+        page.line(&format!("    {}, answer, 1)", call("hold")));
+        page.line("elseif event == 3 then");
+        page.line(&format!("    {}, sample, answer, given)", call("track")));
+        page.line("else");
+        page.line(&format!("    {}, sample, answer)", call("step")));
+        page.line("end");
+        page.line("latched = faults");
         let command = &program.members(Part::Answer)[0].name;
         page.line(&format!("local good = same(answer.{command}, command) and same(answer.kp, kp)"));
         page.line("good = good and same(answer.ki, ki) and same(answer.kd, kd)");
@@ -56,7 +72,9 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
         let answer: Vec<String> =
             vector.answer.iter().map(|value| writer.any(value.to_f64())).collect();
         page.line(&format!(
-            "check({{ {} }}, {}, {}, {})",
+            "check({}, {}, {{ {} }}, {}, {}, {})",
+            vector.event.number(),
+            writer.any(vector.event.given().to_f64()),
             sample.join(", "),
             answer.join(", "),
             vector.saturated,
