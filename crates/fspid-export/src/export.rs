@@ -100,8 +100,13 @@ fn exported<R: Real>(
         precision: precision_of::<R>(),
         angles: request.angles,
     };
-    let source =
-        Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
+    let source = Source {
+        program: &program,
+        controller,
+        prefix: &prefix,
+        heading: &heading,
+        vectors: &vectors,
+    };
     let mut files = request.target.files(&source);
     files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
     Ok(Export { prefix, files, notes })

@@ -345,10 +345,16 @@ impl<S: Scalar> PidEquations<S> {
     /// small for any sum to make that term.
     #[inline(always)]
     fn remembered(&self, term_rad: S, ki: S, otherwise: S, follows: impl Fn(S) -> S) -> S {
-        let memory = match self.structure.integral {
-            IntegralForm::Bumpless => term_rad,
-            IntegralForm::Literal => term_rad / (ki * self.numbers.dt_s),
-        };
-        memory.abs().if_less(S::constant(f64::INFINITY), follows(memory), otherwise)
+        let infinity = S::constant(f64::INFINITY);
+        let finite = |memory: S| memory.abs().if_less(infinity, follows(memory), otherwise);
+        match self.structure.integral {
+            IntegralForm::Bumpless => finite(term_rad),
+            IntegralForm::Literal => {
+                // Nothing is divided by zero, not even to be thrown away.
+                let (zero, divisor) = (S::zero(), ki * self.numbers.dt_s);
+                let safe = zero.if_less(divisor.abs(), divisor, S::one());
+                zero.if_less(divisor.abs(), finite(term_rad / safe), otherwise)
+            }
+        }
     }
 }

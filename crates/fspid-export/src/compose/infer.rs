@@ -15,7 +15,7 @@ use crate::program::{
 };
 
 /// Name of the gains, in the order of the increments.
-pub(super) const GAINS: [&str; 3] = ["kp", "ki", "kd"];
+pub(crate) const GAINS: [&str; 3] = ["kp", "ki", "kd"];
 /// Sets of an input.
 const SETS: i32 = 7;
 

@@ -6,6 +6,8 @@ mod members;
 mod prune;
 mod step;
 
+pub(crate) use infer::GAINS;
+
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;
 

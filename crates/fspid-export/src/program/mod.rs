@@ -72,6 +72,14 @@ pub struct Member {
     pub value: Value,
 }
 
+impl Member {
+    /// True for what the rules R1 to R49 conclude, in this order.
+    #[must_use]
+    pub fn is_rules(&self) -> bool {
+        self.name.starts_with("rules_")
+    }
+}
+
 /// What a member holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {

@@ -6,11 +6,15 @@ use super::{File, Source};
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
-    let Source { program, prefix, heading, vectors } = source;
+    let Source { program, controller, prefix, heading, vectors } = source;
     let written = write::c(program, prefix, heading);
     vec![
         File::text(format!("{prefix}.h"), written.header),
         File::text(format!("{prefix}.c"), written.source),
+        File::text(
+            format!("{prefix}_selftest.c"),
+            write::c_selftest(program, controller, prefix, heading),
+        ),
         File::text(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
     ]
 }

@@ -5,6 +5,7 @@
 mod c;
 mod lua;
 
+use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::program::Program;
@@ -50,6 +51,7 @@ impl Target {
 /// What a target is written from.
 pub(crate) struct Source<'a, R> {
     pub(crate) program: &'a Program,
+    pub(crate) controller: &'a Controller<R>,
     /// What every name begins with.
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,

@@ -117,7 +117,8 @@ fn events(page: &mut Page, program: &Program, prefix: &str) {
     page.line(&format!("else {{ {}); }}", call("step", "&sample, ")));
 }
 
-fn hex<R: Real>(value: R, is_single: bool) -> String {
+/// The bits of a number.
+pub(super) fn hex<R: Real>(value: R, is_single: bool) -> String {
     #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
     let single = value.to_f64() as f32;
     if is_single {

@@ -2,6 +2,7 @@
 
 mod c;
 mod c_harness;
+mod c_selftest;
 mod csv;
 mod dialect;
 mod heading;
@@ -9,6 +10,7 @@ mod lua;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
+pub use c_selftest::c_selftest;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
