@@ -49,7 +49,7 @@ pub(super) fn functions<R: Real>(
         None => {
             functions.push(exponential::function::<R>());
             functions.push(labels::grades(configuration, supervisor));
-            functions.push(centroid::function::<R>(supervisor.defuzzifier())?);
+            functions.push(centroid::function::<R>(supervisor.defuzzifier(), policy)?);
             body.extend(labels::body(configuration, supervisor));
         }
     }

@@ -287,6 +287,11 @@ impl Dialect for Writer<'_> {
         format!("{}_magnitude({value})", self.prefix)
     }
 
+    /// Two comparisons tell a proof in intervals where the value lies; the magnitude does not.
+    fn within(&self, value: &str, most: &str) -> Option<String> {
+        Some(format!("(-{most} <= {value}) && ({value} <= {most})"))
+    }
+
     fn bits(&self, left: &str, right: &str) -> String {
         format!("(uint8_t)({left} | {right})")
     }
