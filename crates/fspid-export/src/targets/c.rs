@@ -14,6 +14,8 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
         File::text(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
     ];
     if let Some(flown) = flown {
+        let selftest = write::c_selftest(program, flown.controller, prefix, heading);
+        files.push(File::text(format!("{prefix}_selftest.c"), selftest));
         let period_s = flown.controller.config().dt_s.to_f64();
         let adapter = write::c_external(program, prefix, period_s, heading);
         files.extend([
