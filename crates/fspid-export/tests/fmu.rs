@@ -25,6 +25,7 @@ fn fmu(controller: &Controller<f64>, target: Target, precision: Precision) -> Ve
         precision,
         angles: Angles::Radians,
         samples: 10,
+        points: fspid_export::table::POINTS,
         digest: "0",
     };
     let exported = export(controller, &request).expect("nothing here is refused");
@@ -117,8 +118,7 @@ fn words<R: Real>(description: &str, programs: [&Program; 2], rows: [&[Vector<R>
     }
     for vector in rows.into_iter().flatten() {
         vector.sample.iter().chain(&vector.answer).for_each(|value| word(value.to_f64().to_bits()));
-        word(u64::from(vector.saturated));
-        word(u64::from(vector.faults));
+        vector.marks.iter().for_each(|mark| word(u64::from(*mark)));
     }
     words
 }
