@@ -80,8 +80,8 @@ impl Target {
             Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
             Self::Table => return table::files(source),
-            Self::Fmu2 => return Ok(fmu::files(source, Version::Two)),
-            Self::Fmu3 => return Ok(fmu::files(source, Version::Three)),
+            Self::Fmu2 => return fmu::files(source, Version::Two),
+            Self::Fmu3 => return fmu::files(source, Version::Three),
         };
         Ok(Written { files, notes: Vec::new() })
     }
