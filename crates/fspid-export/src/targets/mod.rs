@@ -9,6 +9,7 @@ mod rust;
 mod structured_text;
 mod table;
 
+use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::compose::Refusal;
@@ -16,7 +17,6 @@ use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
 use crate::write::fmu::Version;
-use fspid_core::Controller;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,11 @@ impl Target {
             }
             Self::Fmu2 | Self::Fmu3 => Precision::Double,
         }
+    }
+
+    /// True if its vectors hold more than steps.
+    pub(crate) const fn has_events(self) -> bool {
+        matches!(self, Self::C | Self::Lua)
     }
 
     /// What is written for it.

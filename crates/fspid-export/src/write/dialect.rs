@@ -64,6 +64,12 @@ pub(super) trait Dialect {
         text
     }
 
+    /// True where a value, which is written twice, lies between the negative of a number and the number; `None` for a
+    /// language that asks for the magnitude.
+    fn within(&self, _value: &str, _most: &str) -> Option<String> {
+        None
+    }
+
     /// A value of the function, as it is called in this language.
     fn local(&self, name: &str) -> String {
         name.to_owned()
@@ -134,12 +140,31 @@ fn place(dialect: &impl Dialect, place: &Place) -> String {
 
 /// An expression that needs no brackets around it.
 fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+    if let Some(text) = within(dialect, value) {
+        return text;
+    }
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
             format!("{left} {} {right}", sign(dialect, *operator))
         }
         value => expression(dialect, value),
+    }
+}
+
+/// A magnitude that is compared, where the language has a way of its own.
+fn within(dialect: &impl Dialect, value: &Expression) -> Option<String> {
+    let Expression::Binary(Operator::LessOrEqual, left, most) = value else { return None };
+    let (Expression::Magnitude(value), Expression::Number(_) | Expression::Read(Place::Member(..))) =
+        (&**left, &**most)
+    else {
+        return None;
+    };
+    match &**value {
+        Expression::Read(Place::Local(name)) => {
+            dialect.within(&dialect.local(name), &expression(dialect, most))
+        }
+        _ => None,
     }
 }
 

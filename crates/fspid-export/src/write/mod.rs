@@ -2,7 +2,9 @@
 
 mod ardupilot;
 mod c;
+mod c_external;
 mod c_harness;
+mod c_selftest;
 mod csv;
 mod dialect;
 pub(crate) mod fmu;
@@ -18,7 +20,9 @@ mod table;
 
 pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
+pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
+pub use c_selftest::c_selftest;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
