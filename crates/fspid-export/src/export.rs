@@ -151,6 +151,12 @@ fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
     Some(way)
 }
 
+/// Libraries that Lua has loaded before it looks for a file, and headers of C that a file must not hide.
+const TAKEN: &str = "bit32 coroutine debug io math os package string table utf8 \
+                     assert complex ctype errno fenv float inttypes iso646 limits locale setjmp signal stdalign \
+                     stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn tgmath threads time uchar \
+                     wchar wctype";
+
 /// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn identifier(name: &str) -> String {
@@ -163,6 +169,9 @@ pub fn identifier(name: &str) -> String {
         }
     }
     let text = text.trim_matches('_');
+    if TAKEN.split_whitespace().any(|taken| taken == text) {
+        return format!("controller_{text}");
+    }
     match text.chars().next() {
         Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
         Some(_) => format!("controller_{text}"),

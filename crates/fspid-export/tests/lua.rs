@@ -6,7 +6,7 @@ use fspid_core::Controller;
 use fspid_export::program::Precision;
 use fspid_export::vectors::vectors;
 use fspid_export::write::{Heading, lua, lua_harness};
-use fspid_export::{Angles, precision_of, program};
+use fspid_export::{Angles, Request, Target, export, precision_of, program};
 use fspid_numeric::Real;
 use proptest::prelude::*;
 
@@ -84,4 +84,27 @@ fn a_module_with_another_rule_or_number_answers_differently() {
         let told = printed(&run(Precision::Single, folder.path(), "check.lua"));
         assert!(!told.contains(" 0 different"), "{new}: {told}");
     }
+}
+
+/// `require("math")` answers Lua's own library, whatever file lies there.
+#[test]
+fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
+    let request = Request {
+        name: "Math",
+        target: Target::Lua,
+        precision: Precision::Double,
+        angles: Angles::Radians,
+        samples: 50,
+        points: 25,
+        digest: "0",
+    };
+    let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");
+    assert_eq!(exported.prefix, "controller_math");
+    assert!(exported.notes.iter().any(|note| note.contains("`Math` is called `controller_math`")));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for file in &exported.files {
+        std::fs::write(folder.path().join(&file.name), &file.bytes).expect("a temporary file");
+    }
+    let told = printed(&run(Precision::Double, folder.path(), "controller_math_check.lua"));
+    assert_eq!(told, "50 samples, 0 different\n");
 }
