@@ -4,7 +4,9 @@
 
 mod c;
 mod lua;
+mod matlab;
 mod rust;
+mod simulink;
 mod structured_text;
 mod table;
 
@@ -29,11 +31,23 @@ pub enum Target {
     Rust,
     /// The supervisor's surface as a table in C and CSV.
     Table,
+    /// A function of MATLAB, and the supervisor as a `.fis`.
+    Matlab,
+    /// An S-function around the C.
+    Simulink,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::C, Self::Lua, Self::StructuredText, Self::Rust, Self::Table];
+    pub const ALL: [Self; 7] = [
+        Self::C,
+        Self::Lua,
+        Self::StructuredText,
+        Self::Rust,
+        Self::Table,
+        Self::Matlab,
+        Self::Simulink,
+    ];
 
     /// Its name on the command line.
     #[must_use]
@@ -44,6 +58,8 @@ impl Target {
             Self::StructuredText => "st",
             Self::Rust => "rust",
             Self::Table => "table",
+            Self::Matlab => "matlab",
+            Self::Simulink => "simulink",
         }
     }
 
@@ -54,6 +70,8 @@ impl Target {
             Self::Lua => lua::files(source),
             Self::StructuredText => structured_text::files(source),
             Self::Rust => rust::files(source)?,
+            Self::Simulink => simulink::files(source)?,
+            Self::Matlab => return matlab::files(source),
             Self::Table => return table::files(source),
         };
         Ok(Written { files, notes: Vec::new() })

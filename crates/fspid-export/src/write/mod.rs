@@ -2,25 +2,31 @@
 
 mod c;
 mod c_harness;
+mod c_projects;
 mod csv;
 mod dialect;
 mod heading;
 mod lua;
+mod matlab;
 mod rust;
 mod rust_harness;
 mod rust_rules;
 mod rust_text;
+mod simulink;
 mod structured_text;
 mod structured_text_check;
 mod table;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
+pub use c_projects::{cmake, platformio, sketch};
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
+pub use matlab::{matlab, matlab_harness, words};
 pub use rust::rust;
 pub use rust_harness::rust_harness;
+pub use simulink::{simulink, simulink_build};
 pub use structured_text::structured_text;
 pub use structured_text_check::structured_text_check;
 pub use table::{TableFiles, table, table_csv, table_harness};
