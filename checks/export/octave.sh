@@ -22,7 +22,7 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml; do
         real=$([[ $numbers == single ]] && echo float || echo double)
         asked=(--controller FSPID --numbers "$numbers" --angles degrees)
         "$FSPID" export "$design" "${asked[@]}" --to matlab --samples 2000 --out "$work/$name-$numbers-m" &> "$work/told"
-            said="$(cd "$work/$name-$numbers-m" && octave --no-gui --quiet --eval fspid_check 2> /dev/null)"
+        said="$(cd "$work/$name-$numbers-m" && octave --no-gui --quiet --eval fspid_check 2> /dev/null)"
         echo "$name, $numbers, function: $said"
         [[ $said == *" 0 different"* ]] || bad=1
         "$FSPID" export "$design" "${asked[@]}" --to simulink --out "$work/$name-$numbers-s" &> "$work/told"
@@ -34,5 +34,22 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml; do
             echo "$name, $numbers, S-function: compiled by Octave's mex"
         )
     done
+done
+
+# Options that the shipped designs have not.
+controller=controller.FSPID
+sampled=(--set "$controller.supervisor.defuzzifier=endpoints:31" --set "$controller.supervisor.out_of_range=evaluate"
+    --set "$controller.anti_windup.kind=conditional" --set "$controller.output_limits_deg=[-10, 10]")
+remembered=(--set "$controller.law=accumulating" --set "$controller.leakage_per_s=0.5" --set "$controller.integral=literal"
+    --set "$controller.dead_zone.error_deg=1" --set "$controller.dead_zone.change_deg_s=5" --set "$controller.rate_gain=0.1"
+    --set "$controller.slew_limit_deg_s=60" --set "$controller.supervisor.out_of_range=error"
+    --set "$controller.anti_windup.kind=back-calculation" --set "$controller.anti_windup.tracking_s=0.5"
+    --set "$controller.gain_coupling.setpoint_weight_per_kp=0.1")
+for options in sampled remembered; do
+    declare -n given="$options"
+    "$FSPID" export data/designs/navion-paper.toml --controller FSPID --to matlab --samples 1000 --out "$work/$options" "${given[@]}" &> "$work/told" || cat "$work/told"
+    said="$(cd "$work/$options" && octave --no-gui --quiet --eval fspid_check 2> /dev/null)"
+    echo "$options, function: $said"
+    [[ $said == *" 0 different"* ]] || bad=1
 done
 exit "$bad"
