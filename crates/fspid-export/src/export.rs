@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::program::Precision;
 use crate::targets::{File, Flown, Source, Target, Written};
-use crate::vectors::vectors;
+use crate::vectors::{eventful, vectors};
 use crate::write::{self, Heading};
 
 /// What is asked for.
@@ -85,7 +85,8 @@ fn exported<R: Real>(
     let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
     let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
-    let vectors = vectors(controller, request.angles, SEED, request.samples);
+    let drawn = if request.target.has_events() { eventful } else { vectors };
+    let vectors = drawn(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());

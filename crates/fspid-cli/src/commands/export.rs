@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
@@ -29,7 +30,8 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding), lua (5.3), rust (a constant of fspid-core) or table (the supervisor alone, in C and CSV).
+    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), table (the
+    /// supervisor alone, in C and CSV), fmu2 or fmu3 (functional mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -38,9 +40,9 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
-    /// The digits of the numbers.
-    #[arg(long, value_enum, default_value_t = Numbers::Single)]
-    numbers: Numbers,
+    /// The digits of the numbers; double for fmu2 and fmu3 if left out, else single.
+    #[arg(long, value_enum)]
+    numbers: Option<Numbers>,
     /// The unit of the angles that go in and come out.
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
@@ -85,14 +87,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
+    leave_out(&study.scenario, arguments.controller.as_deref())?;
     let named = chosen(&study, arguments.controller.as_deref())?;
     tuned(&study, &named.name)?;
     let request = Request {
         name: &named.name,
         target: arguments.to,
         precision: match arguments.numbers {
-            Numbers::Single => Precision::Single,
-            Numbers::Double => Precision::Double,
+            Some(Numbers::Single) => Precision::Single,
+            Some(Numbers::Double) => Precision::Double,
+            None => arguments.to.usual_precision(),
         },
         angles: match arguments.angles {
             Unit::Radians => Angles::Radians,

@@ -3,14 +3,19 @@
 mod exponential;
 mod infer;
 mod members;
+mod observe;
 mod prune;
 mod step;
+
+pub(crate) use infer::GAINS;
 
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;
 
 use crate::program::{Precision, Program};
 use fspid_core::Controller;
+
+pub(crate) use observe::{STRENGTHS, observed};
 
 /// The unit of the angles that go in and come out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,6 +3,7 @@
 //! A new target: a variant, its name, and a function in a file of its own that answers its files.
 
 mod c;
+mod fmu;
 mod lua;
 mod matlab;
 mod rust;
@@ -10,13 +11,14 @@ mod simulink;
 mod structured_text;
 mod table;
 
+use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::compose::Refusal;
-use crate::program::Program;
+use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
-use fspid_core::Controller;
+use crate::write::fmu::Version;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,11 +37,15 @@ pub enum Target {
     Matlab,
     /// An S-function around the C.
     Simulink,
+    /// A functional mock-up unit, FMI 2.0.
+    Fmu2,
+    /// A functional mock-up unit, FMI 3.0.
+    Fmu3,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::C,
         Self::Lua,
         Self::StructuredText,
@@ -47,6 +53,8 @@ impl Target {
         Self::Table,
         Self::Matlab,
         Self::Simulink,
+        Self::Fmu2,
+        Self::Fmu3,
     ];
 
     /// Its name on the command line.
@@ -60,19 +68,39 @@ impl Target {
             Self::Table => "table",
             Self::Matlab => "matlab",
             Self::Simulink => "simulink",
+            Self::Fmu2 => "fmu2",
+            Self::Fmu3 => "fmu3",
         }
+    }
+
+    /// The digits that its users expect: those of a chip, or of a simulator.
+    #[must_use]
+    pub const fn usual_precision(self) -> Precision {
+        match self {
+            Self::C | Self::Lua | Self::StructuredText | Self::Rust | Self::Table => {
+                Precision::Single
+            }
+            Self::Matlab | Self::Simulink | Self::Fmu2 | Self::Fmu3 => Precision::Double,
+        }
+    }
+
+    /// True if its vectors hold more than steps.
+    pub(crate) const fn has_events(self) -> bool {
+        matches!(self, Self::C | Self::Lua)
     }
 
     /// What is written for it.
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
         let files = match self {
             Self::C => c::files(source),
-            Self::Lua => lua::files(source),
-            Self::StructuredText => structured_text::files(source),
+            Self::Lua => return Ok(lua::files(source)),
+            Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
             Self::Simulink => simulink::files(source)?,
             Self::Matlab => return matlab::files(source),
             Self::Table => return table::files(source),
+            Self::Fmu2 => return Ok(fmu::files(source, Version::Two)),
+            Self::Fmu3 => return Ok(fmu::files(source, Version::Three)),
         };
         Ok(Written { files, notes: Vec::new() })
     }

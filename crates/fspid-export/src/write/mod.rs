@@ -1,10 +1,14 @@
 //! Programs as text in other languages.
 
+mod ardupilot;
 mod c;
+mod c_external;
 mod c_harness;
 mod c_projects;
+mod c_selftest;
 mod csv;
 mod dialect;
+pub(crate) mod fmu;
 mod heading;
 mod lua;
 mod matlab;
@@ -17,9 +21,12 @@ mod structured_text;
 mod structured_text_check;
 mod table;
 
+pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
+pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
 pub use c_projects::{cmake, platformio, sketch};
+pub use c_selftest::c_selftest;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
