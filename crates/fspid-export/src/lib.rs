@@ -3,6 +3,7 @@
 //! Not here: scenarios and designs, which `fspid-scenario` reads; flights; the files' places.
 
 mod compose;
+mod evidence;
 mod export;
 pub mod interpret;
 pub mod program;

@@ -9,7 +9,7 @@ use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, Request, Target, export};
+use fspid_export::{Angles, Export, File, Request, Target, export};
 use fspid_scenario::file::{self, Study};
 use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
@@ -47,6 +47,10 @@ pub(crate) struct Arguments {
     /// How many samples the vectors have.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     samples: u32,
+    /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
+    /// script that makes the rest; for c, takes a minute.
+    #[arg(long, value_name = "DIR")]
+    evidence: Option<Folder>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -97,10 +101,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         samples: arguments.samples as usize,
         digest: &study.digest,
+        evidence: evidence(arguments)?.is_some(),
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;
     empty(&arguments.out, arguments.force)?;
-    write(&exported, &arguments.out)?;
+    write(&exported.files, &arguments.out)?;
+    if let Some(folder) = &arguments.evidence {
+        write(&exported.evidence, folder)?;
+    }
     match arguments.format {
         Format::Text => {
             exported.notes.iter().for_each(|it| note(format_args!("{it}")));
@@ -159,8 +167,19 @@ fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
-    for file in &exported.files {
+/// The folder of the evidence, if the target has some and the folder may be written into.
+fn evidence(arguments: &Arguments) -> Result<Option<&Path>, Failure> {
+    let Some(folder) = &arguments.evidence else { return Ok(None) };
+    if arguments.to != Target::C {
+        let to = arguments.to.name();
+        return Err(Failure::input(format_args!("{to} has no evidence; --to c has")));
+    }
+    empty(folder, arguments.force)?;
+    Ok(Some(folder))
+}
+
+fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
+    for file in files {
         let path = folder.join(&file.name);
         output::make_folder(path.parent().unwrap_or(folder))?;
         output::write(&path, &file.bytes)?;

@@ -120,7 +120,7 @@ fn place(dialect: &impl Dialect, place: &Place) -> String {
 }
 
 /// An expression that needs no brackets around it.
-fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+pub(super) fn outer(dialect: &impl Dialect, value: &Expression) -> String {
     if let Some(text) = within(dialect, value) {
         return text;
     }

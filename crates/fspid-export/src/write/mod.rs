@@ -9,6 +9,7 @@ mod heading;
 mod lua;
 
 pub use c::{CFiles, c};
+pub(crate) use c::{c_expression, c_number};
 pub use c_harness::c_harness;
 pub use c_selftest::c_selftest;
 pub use csv::csv;
