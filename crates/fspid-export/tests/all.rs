@@ -1,5 +1,6 @@
 //! All tests of this crate from outside, as one program.
 
 mod c;
+mod evidence;
 mod same_bits;
 mod track;

@@ -9,7 +9,7 @@ use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, File, Request, Target, export};
+use fspid_export::{Angles, File, Request, Target, export};
 use fspid_scenario::file::{self, Study};
 use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
@@ -112,7 +112,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.format {
         Format::Text => {
             exported.notes.iter().for_each(|it| note(format_args!("{it}")));
-            print(&told(&exported, &arguments.out))
+            let evidence = arguments.evidence.as_ref().map(|it| told(&exported.evidence, it));
+            print(&(told(&exported.files, &arguments.out) + &evidence.unwrap_or_default()))
         }
         Format::Json => print(&json_text(&json!({
             "schema": 1,
@@ -121,6 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "prefix": exported.prefix,
             "folder": arguments.out.display().to_string(),
             "files": exported.files.iter().map(|it| &it.name).collect::<Vec<_>>(),
+            "evidence": exported.evidence.iter().map(|it| &it.name).collect::<Vec<_>>(),
             "notes": exported.notes,
         }))),
     }
@@ -187,7 +189,7 @@ fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn told(exported: &Export, folder: &Path) -> String {
+fn told(files: &[File], folder: &Path) -> String {
     let line = |name: &String| format!("{}\n", folder.join(name).display());
-    exported.files.iter().map(|file| line(&file.name)).collect()
+    files.iter().map(|file| line(&file.name)).collect()
 }
