@@ -3,6 +3,7 @@
 mod ardupilot;
 mod c;
 mod common;
+mod evidence;
 mod fmu;
 mod lua;
 mod lua_interpreter;

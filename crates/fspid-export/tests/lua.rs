@@ -97,6 +97,7 @@ fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
         samples: 50,
         points: 25,
         digest: "0",
+        evidence: false,
     };
     let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");
     assert_eq!(exported.prefix, "controller_math");
