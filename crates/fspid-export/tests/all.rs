@@ -9,6 +9,7 @@ mod lua_interpreter;
 mod moved;
 mod rust;
 mod same_bits;
+mod simulink;
 mod structured_text;
 mod table;
 mod track;

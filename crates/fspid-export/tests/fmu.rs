@@ -19,8 +19,17 @@ use crate::unpacked::unpacked;
 const SAMPLES: usize = 240;
 
 fn fmu(controller: &Controller<f64>, target: Target, precision: Precision) -> Vec<u8> {
+    called("Pitch hold", controller, target, precision)
+}
+
+fn called(
+    name: &str,
+    controller: &Controller<f64>,
+    target: Target,
+    precision: Precision,
+) -> Vec<u8> {
     let request = Request {
-        name: "Pitch hold",
+        name,
         target,
         precision,
         angles: Angles::Radians,
@@ -34,7 +43,7 @@ fn fmu(controller: &Controller<f64>, target: Target, precision: Precision) -> Ve
         "the tests need a C compiler: {:?}",
         exported.notes
     );
-    let file = exported.files.into_iter().find(|file| file.name == "pitch_hold.fmu");
+    let file = exported.files.into_iter().find(|file| file.name.ends_with(".fmu"));
     file.expect("the archive").bytes
 }
 
@@ -248,7 +257,7 @@ fn a_description_names_every_output_once_each_unit_and_each_source() {
             assert!(!text(&files, &format!("sources/{source}")).is_empty());
         }
         if target == Target::Fmu2 {
-            assert_eq!(named("File", "name"), ["pitch_hold.c", "fmi2.c"]);
+            assert_eq!(named("File", "name"), ["pitch_hold.c", "fmu-2.c"]);
         }
     }
 }
@@ -272,4 +281,16 @@ fn a_description_has_strengths_of_rules_gains_and_limits_with_what_they_start_fr
         Some("Strength of rule R49: error PB, change PB; 0 where nothing is inferred.")
     );
     assert!(reference(&variables, "dt_s").is_none(), "others follow from the period");
+}
+
+#[test]
+fn a_controller_may_have_any_name() {
+    // Names of the C around it, and what XML does not take.
+    for name in ["model", "fmi3", "state", "double", "a\"<&>\u{1}*/ \u{ffff}b"] {
+        let files = unpacked(&called(name, &paper(), Target::Fmu3, Precision::Double));
+        let description = text(&files, "modelDescription.xml");
+        let document = Document::parse(&description).expect("XML");
+        let told = document.root_element().attribute("modelName").unwrap_or_default();
+        assert_eq!(told, name.replace(['\u{1}', '\u{ffff}'], " "));
+    }
 }

@@ -31,6 +31,6 @@ impl Host for ProcessHost {
 
 /// Serves nothing here.
 #[must_use]
-pub fn serve(_: &Path) -> ExitCode {
+pub fn serve(_: &str, _: &Path, _: f64) -> ExitCode {
     ExitCode::FAILURE
 }

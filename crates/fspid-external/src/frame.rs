@@ -88,6 +88,17 @@ pub(crate) fn read_sample(from: &mut impl Read) -> io::Result<Sample<f64>> {
     Ok(Sample { setpoint_rad, measurement_rad, rate_rad_s })
 }
 
+/// The number of no sample: there is a status in place of an answer.
+const REFUSED: u64 = u64::MAX;
+
+/// That there is no answer, and the status with which.
+pub(crate) fn write_refusal(to: &mut impl Write, status: i32) -> io::Result<()> {
+    let mut bytes = [0; ANSWER];
+    let all = REFUSED.to_ne_bytes().into_iter().chain(status.to_ne_bytes());
+    bytes.iter_mut().zip(all).for_each(|(place, byte)| *place = byte);
+    to.write_all(&bytes)
+}
+
 /// The answer to the sample of that number.
 pub(crate) fn write_answer(to: &mut impl Write, number: u64, step: &Step<f64>) -> io::Result<()> {
     let Gains { kp, ki, kd } = step.gains;
@@ -100,13 +111,16 @@ pub(crate) fn write_answer(to: &mut impl Write, number: u64, step: &Step<f64>) -
     to.write_all(&bytes)
 }
 
-/// The next answer and the number of its sample.
-pub(crate) fn read_answer(from: &mut impl Read) -> io::Result<(u64, Step<f64>)> {
+/// The next answer and the number of its sample, or the status in its place.
+pub(crate) fn read_answer(from: &mut impl Read) -> io::Result<Result<(u64, Step<f64>), i32>> {
     let bytes = read::<ANSWER>(from)?;
     let word = |at: usize| {
         let bytes = bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
         u32::from_ne_bytes(bytes.unwrap_or_default())
     };
+    if bytes.starts_with(&REFUSED.to_ne_bytes()) {
+        return Ok(Err(i32::from_ne_bytes(word(8).to_ne_bytes())));
+    }
     let [number, command_rad, kp, ki, kd] = numbers(&bytes);
     let step = Step {
         command_rad,
@@ -114,7 +128,7 @@ pub(crate) fn read_answer(from: &mut impl Read) -> io::Result<(u64, Step<f64>)> 
         saturated: word(40) != 0,
         faults: Faults::from_bits((word(44) & 0xff) as u8),
     };
-    Ok((number.to_bits(), step))
+    Ok(Ok((number.to_bits(), step)))
 }
 
 #[cfg(test)]
@@ -132,7 +146,10 @@ mod tests {
         let step = Step { command_rad: -0.3, gains, saturated: true, faults };
         bytes.clear();
         write_answer(&mut bytes, 7, &step).expect("memory");
-        assert_eq!(read_answer(&mut bytes.as_slice()).expect("an answer"), (7, step));
+        assert_eq!(read_answer(&mut bytes.as_slice()).expect("a frame"), Ok((7, step)));
+        bytes.clear();
+        write_refusal(&mut bytes, 3).expect("memory");
+        assert_eq!(read_answer(&mut bytes.as_slice()).expect("a frame"), Err(3));
     }
 
     #[test]

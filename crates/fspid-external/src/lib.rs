@@ -5,6 +5,14 @@
 //!
 //! No features. Not here: what is made of the answers (`fspid-sim`, `fspid-study`).
 
+#[cfg(unix)]
+mod archive;
+#[cfg(unix)]
+mod description;
+#[cfg(unix)]
+mod fmi;
+#[cfg(unix)]
+mod fmu;
 mod frame;
 #[cfg(unix)]
 mod library;

@@ -1,4 +1,4 @@
-//! A shared library with the functions of `fspid_external.h`: the one place where C is called.
+//! A shared library with the functions of `fspid_external.h`: where their C is called.
 #![allow(unsafe_code, reason = "calling C is; every call says why it may be made")]
 
 use std::ffi::c_void;
@@ -125,17 +125,18 @@ fn require_all(library: &Library) -> Result<(), Refusal> {
         return Ok(());
     }
     let reason = format!("has no function {}", missing.join(", "));
-    Err((reason, format!("all of {}, as fspid_external.h declares them", NAMES.join(", "))))
+    Err((reason, "the five functions that fspid_external.h declares".to_owned()))
 }
 
-fn function<F: Copy>(library: &Library, name: &str) -> Result<F, Refusal> {
-    // SAFETY: the type is that of the function in the header, which the library says that it keeps to.
+/// The function of that name; who calls it says that it is of this type.
+pub(crate) fn function<F: Copy>(library: &Library, name: &str) -> Result<F, Refusal> {
+    // SAFETY: the type is that of the function in its header, which the library says that it keeps to.
     let found: Result<Symbol<'_, F>, _> = unsafe { library.get(name.as_bytes()) };
     found.map(|symbol| *symbol).map_err(|error| (words(&error), format!("a function {name}")))
 }
 
 /// What the loader of the system says.
-fn words(error: &libloading::Error) -> String {
+pub(crate) fn words(error: &libloading::Error) -> String {
     let source = std::error::Error::source(error);
     source.map_or_else(|| error.to_string(), ToString::to_string)
 }

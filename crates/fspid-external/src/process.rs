@@ -6,14 +6,16 @@ use std::net::Shutdown;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
 use fspid_sim::external::{Answers, Host};
-use fspid_sim::{ControllerLoss, External, SimError};
+use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
+use tempfile::TempDir;
 
+use crate::archive::unpack;
 use crate::frame::{Start, read_answer, write_sample};
 
 /// The longest time for loading a controller: no library of a controller takes as many seconds, however busy a machine is.
@@ -26,6 +28,17 @@ const ENDING_PAUSE: Duration = Duration::from_millis(2);
 /// Of the period: how far a controller's may lie beside the scenario's. A period in 32 bits is near enough.
 const SAME_PERIOD: f64 = 1e-6;
 
+/// What a process is told that its controller is.
+pub(crate) const LIBRARY: &str = "library";
+pub(crate) const FMU: &str = "fmu";
+
+/// The folder of an unpacked FMU.
+fn unpacked(path: &Path) -> io::Result<TempDir> {
+    let folder = tempfile::tempdir()?;
+    unpack(&std::fs::read(path)?, folder.path())?;
+    Ok(folder)
+}
+
 /// Starts a process of a program for each flight.
 #[derive(Clone, Debug)]
 pub struct ProcessHost {
@@ -34,7 +47,8 @@ pub struct ProcessHost {
 }
 
 impl ProcessHost {
-    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the path that follows them.
+    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period and the path
+    /// that follow them.
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
         Self { program, arguments: arguments.iter().map(OsString::from).collect() }
@@ -42,16 +56,29 @@ impl ProcessHost {
 
     fn spawn(&self, external: &External) -> io::Result<Process> {
         let (stream, theirs) = UnixStream::pair()?;
+        let (kind, folder) = match &external.source {
+            ExternalSource::Library(_) => (LIBRARY, None),
+            ExternalSource::Fmu(path) => (FMU, Some(unpacked(path)?)),
+        };
+        let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
         let child = Command::new(&self.program)
             .args(&self.arguments)
-            .arg(external.source.path())
+            .args([kind, &format!("{:?}", external.dt_s)])
+            .arg(path)
             .stdin(Stdio::from(OwnedFd::from(theirs)))
             // Standard output holds our own answers.
             .stdout(Stdio::from(io::stderr()))
             // Ctrl-C is for us: a flight that was begun is no crash of its controller.
             .process_group(0)
             .spawn()?;
-        Ok(Process { child, stream, sample: 0, limit_s: external.answer_limit_s, is_lost: false })
+        Ok(Process {
+            child,
+            stream,
+            sample: 0,
+            limit_s: external.answer_limit_s,
+            is_lost: false,
+            _folder: folder,
+        })
     }
 }
 
@@ -66,7 +93,8 @@ impl Host for ProcessHost {
             Ok((process, start))
         });
         let (process, start) = spawned.map_err(|error| {
-            refused(format!("no process can be started for it: {error}"), "a free process".into())
+            let allowed = "a file that can be read, and a process that can be started";
+            refused(error.to_string(), allowed.to_owned())
         })?;
         match start {
             Ok(Start::Ready { period_s }) if is_period(period_s, external.dt_s) => {
@@ -102,6 +130,8 @@ struct Process {
     limit_s: f64,
     /// True once there is nothing more to wait for.
     is_lost: bool,
+    /// What an FMU was unpacked into, removed behind it.
+    _folder: Option<TempDir>,
 }
 
 impl Process {
@@ -151,7 +181,8 @@ impl Answers for Process {
         let limit_s = self.limit_s;
         let written = write_sample(&mut self.stream, &sample);
         let read = written.and_then(|()| read_answer(&mut self.stream));
-        let (number, step) = read.map_err(|error| self.lost(&error, limit_s))?;
+        let answer = read.map_err(|error| self.lost(&error, limit_s))?;
+        let (number, step) = answer.map_err(|status| ControllerLoss::Refused { status })?;
         if number != self.sample {
             self.is_lost = true;
             return Err(ControllerLoss::NoAnswer);

@@ -27,6 +27,8 @@ pub struct External {
 pub enum ExternalSource {
     /// A shared library with the functions of `fspid_external.h`.
     Library(PathBuf),
+    /// An FMU for co-simulation, FMI 2.0 or 3.0.
+    Fmu(PathBuf),
 }
 
 impl ExternalSource {
@@ -34,7 +36,7 @@ impl ExternalSource {
     #[must_use]
     pub fn path(&self) -> &std::path::Path {
         match self {
-            Self::Library(path) => path,
+            Self::Library(path) | Self::Fmu(path) => path,
         }
     }
 }
@@ -66,6 +68,11 @@ pub enum ControllerLoss {
         /// The longest time for an answer, s.
         limit_s: f64,
     },
+    /// It said that it cannot: an FMU with a status of its standard beyond a warning.
+    Refused {
+        /// The status.
+        status: i32,
+    },
     /// It answered a command that is NaN or infinite.
     NotFinite,
     /// What came was no answer.
@@ -80,6 +87,7 @@ impl ControllerLoss {
             Self::Crashed { .. } => "crashed",
             Self::Ended { .. } => "ended",
             Self::Silent { .. } => "silent",
+            Self::Refused { .. } => "refused",
             Self::NotFinite => "not finite",
             Self::NoAnswer => "no answer",
         }
@@ -108,6 +116,7 @@ impl fmt::Display for ControllerLoss {
             },
             Self::Ended { code } => write!(f, "ended its process with code {code}"),
             Self::Silent { limit_s } => write!(f, "gave no answer within {limit_s:?} s"),
+            Self::Refused { status } => write!(f, "refused with FMI status {status}"),
             Self::NotFinite => f.write_str("answered a command that is not finite"),
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
         }

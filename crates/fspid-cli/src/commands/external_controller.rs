@@ -16,11 +16,15 @@ use fspid_sim::external::set_host;
 /// The name of this command.
 const NAME: &str = "external-controller";
 
-/// Answer samples with a controller of a shared library; `fspid` starts this for itself.
+/// Answer samples with an external controller; `fspid` starts this for itself.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The library.
-    library: PathBuf,
+    /// `library` or `fmu`.
+    kind: String,
+    /// Time from sample to sample, s.
+    dt_s: f64,
+    /// The library, or the folder of the FMU.
+    path: PathBuf,
 }
 
 /// Controllers that fly beside those of the scenario.
@@ -29,18 +33,22 @@ pub(crate) struct Beside {
     /// Fly a shared library as one more controller, called as its file is; it runs as you do. Once for each.
     #[arg(long = "library", value_name = "FILE.so")]
     libraries: Vec<NamedFile>,
+    /// Fly an FMU for co-simulation as one more controller, called as its file is. Once for each.
+    #[arg(long = "fmu", value_name = "FILE.fmu")]
+    fmus: Vec<NamedFile>,
 }
 
 impl Beside {
     /// The changes of a scenario behind those that are given: an entry of its controllers for each.
     pub(crate) fn overrides(&self, given: &[String]) -> Result<Vec<String>, Failure> {
-        let added = self.libraries.iter().map(|file| entry(file));
+        let added = self.libraries.iter().map(|file| entry("library", file));
+        let added = added.chain(self.fmus.iter().map(|file| entry("fmu", file)));
         given.iter().cloned().map(Ok).chain(added).collect()
     }
 
     /// True if there is one.
     pub(crate) fn is_given(&self) -> bool {
-        !self.libraries.is_empty()
+        !self.libraries.is_empty() || !self.fmus.is_empty()
     }
 }
 
@@ -58,16 +66,16 @@ pub(crate) fn leave_out(scenario: &Scenario, asked: Option<&str>) -> Result<(), 
     Ok(())
 }
 
-fn entry(file: &Path) -> Result<String, Failure> {
+fn entry(key: &str, file: &Path) -> Result<String, Failure> {
     let refused = |reason: &dyn std::fmt::Display| {
         Failure::input(format_args!("{}: cannot be read: {reason}", file.display()))
     };
     let path = file.canonicalize().map_err(|error| refused(&unread_in_words(&error)))?;
-    let name = file.file_name().unwrap_or_default();
+    let name = path.file_name().unwrap_or_default();
     match (name.to_str(), path.to_str()) {
-        (Some(name), Some(path)) => Ok(format!(
-            "controller[]={{ name = {name:?}, kind = \"external\", library = {path:?} }}"
-        )),
+        (Some(name), Some(path)) => {
+            Ok(format!("controller[]={{ name = {name:?}, kind = \"external\", {key} = {path:?} }}"))
+        }
         _ => Err(refused(&"its path is no text")),
     }
 }
@@ -80,7 +88,7 @@ pub(crate) fn host() {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match serve(&arguments.library) {
+    match serve(&arguments.kind, &arguments.path, arguments.dt_s) {
         ExitCode::SUCCESS => Ok(()),
         _ => {
             Err(Failure::input("this command is for `fspid` itself: a scenario names the library"))

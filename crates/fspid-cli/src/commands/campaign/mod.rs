@@ -153,7 +153,7 @@ impl Planned {
     fn given(&self) -> Option<&'static str> {
         let options = [
             (!self.overrides.is_empty(), "--set"),
-            (self.beside.is_given(), "--library"),
+            (self.beside.is_given(), "--library or --fmu"),
             (self.runs.is_some(), "--runs"),
             (self.seed.is_some(), "--seed"),
             (self.sampling.is_some(), "--sampling"),

@@ -117,18 +117,24 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
         ),
         variant(
             ControllerKind::External.name(),
-            plain(
+            choosing(
                 "A program that answers samples: an export, or one of your own. It runs as you do.",
-                &[&[&LIBRARY, &ANSWER_LIMIT_S]],
+                &[&[&LIBRARY, &FMU, &ANSWER_LIMIT_S]],
+                &[one_of!(LIBRARY, FMU)],
             ),
         ),
     ],
 );
 
-pub(crate) const LIBRARY: Key<str> = required(
+pub(crate) const LIBRARY: Key<str> = optional(
     "library",
     FILE_PATH,
     "A shared library with the functions of `fspid_external.h`, relative to this file.",
+);
+pub(crate) const FMU: Key<str> = optional(
+    "fmu",
+    FILE_PATH,
+    "An FMU for co-simulation (FMI 2.0 or 3.0) with the variables of `fspid export --to fmu2`, relative to this file.",
 );
 pub(crate) const ANSWER_LIMIT_S: Key<f64> = defaulted(
     "answer_limit_s",
