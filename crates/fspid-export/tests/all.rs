@@ -1,11 +1,15 @@
 //! All tests of this crate from outside, as one program.
 
+mod ardupilot;
 mod c;
+mod common;
 mod fmu;
+mod lua;
+mod lua_interpreter;
 mod moved;
 mod rust;
 mod same_bits;
-
 mod structured_text;
 mod table;
+mod track;
 mod unpacked;

@@ -109,8 +109,7 @@ fn words<R: Real>(description: &str, programs: [&Program; 2], rows: [&[Vector<R>
     };
     let [own, other] = programs;
     let inputs = own.members(Part::Sample);
-    let is_parameter =
-        |node: &&Node<'_, '_>| node.attribute("causality") == Some("parameter");
+    let is_parameter = |node: &&Node<'_, '_>| node.attribute("causality") == Some("parameter");
     let parameters: Vec<&str> =
         variables.iter().filter(is_parameter).filter_map(|node| node.attribute("name")).collect();
     word(real(own, "dt_s").expect("a period").to_bits());
@@ -239,7 +238,8 @@ fn a_description_names_every_output_once_each_unit_and_each_source() {
             .collect();
         let known = match target {
             Target::Fmu2 => named("Unknown", "index"),
-            _ => [named("Output", "valueReference"), named("InitialUnknown", "valueReference")].concat(),
+            _ => [named("Output", "valueReference"), named("InitialUnknown", "valueReference")]
+                .concat(),
         };
         assert_eq!(known, [outputs.clone(), outputs].concat());
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
@@ -86,6 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
+    leave_out(&study.scenario, arguments.controller.as_deref())?;
     let named = chosen(&study, arguments.controller.as_deref())?;
     tuned(&study, &named.name)?;
     let request = Request {

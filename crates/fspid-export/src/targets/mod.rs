@@ -9,6 +9,7 @@ mod rust;
 mod structured_text;
 mod table;
 
+use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::compose::Refusal;
@@ -16,7 +17,6 @@ use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
 use crate::write::fmu::Version;
-use fspid_core::Controller;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,12 +67,17 @@ impl Target {
         }
     }
 
+    /// True if its vectors hold more than steps.
+    pub(crate) const fn has_events(self) -> bool {
+        matches!(self, Self::C | Self::Lua)
+    }
+
     /// What is written for it.
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
         let files = match self {
             Self::C => c::files(source),
-            Self::Lua => lua::files(source),
-            Self::StructuredText => structured_text::files(source),
+            Self::Lua => return Ok(lua::files(source)),
+            Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
             Self::Table => return table::files(source),
             Self::Fmu2 => return fmu::files(source, Version::Two),

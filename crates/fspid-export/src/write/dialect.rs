@@ -39,6 +39,10 @@ pub(super) trait Dialect {
     /// A call for what it does.
     fn run(&self, page: &mut Page, call: &str);
     fn when(&self, condition: &str) -> String;
+    /// The line, or lines, that a condition stands in.
+    fn open(&self, page: &mut Page, text: &str) {
+        page.line(text);
+    }
     fn otherwise(&self) -> &'static str;
     fn repeat(&self, name: &str, first: i32, last: i32) -> String;
     fn end(&self, block: Block) -> &'static str;
@@ -58,6 +62,12 @@ pub(super) trait Dialect {
     /// What stands somewhere, as a value.
     fn read(&self, _: &Place, text: String) -> String {
         text
+    }
+
+    /// True where a value, which is written twice, lies between the negative of a number and the number; `None` for a
+    /// language that asks for the magnitude.
+    fn within(&self, _value: &str, _most: &str) -> Option<String> {
+        None
     }
 
     /// A value of the function, as it is called in this language.
@@ -84,7 +94,7 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             dialect.assign(page, &place(dialect, at), &outer(dialect, value));
         }
         Statement::If(condition, then, otherwise) => {
-            page.line(&dialect.when(&outer(dialect, condition)));
+            dialect.open(page, &dialect.when(&outer(dialect, condition)));
             page.inside(|page| block(dialect, page, then));
             if !otherwise.is_empty() {
                 page.line(dialect.otherwise());
@@ -130,12 +140,31 @@ fn place(dialect: &impl Dialect, place: &Place) -> String {
 
 /// An expression that needs no brackets around it.
 fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+    if let Some(text) = within(dialect, value) {
+        return text;
+    }
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
             format!("{left} {} {right}", sign(dialect, *operator))
         }
         value => expression(dialect, value),
+    }
+}
+
+/// A magnitude that is compared, where the language has a way of its own.
+fn within(dialect: &impl Dialect, value: &Expression) -> Option<String> {
+    let Expression::Binary(Operator::LessOrEqual, left, most) = value else { return None };
+    let (Expression::Magnitude(value), Expression::Number(_) | Expression::Read(Place::Member(..))) =
+        (&**left, &**most)
+    else {
+        return None;
+    };
+    match &**value {
+        Expression::Read(Place::Local(name)) => {
+            dialect.within(&dialect.local(name), &expression(dialect, most))
+        }
+        _ => None,
     }
 }
 

@@ -1,7 +1,10 @@
 //! Programs as text in other languages.
 
+mod ardupilot;
 mod c;
+mod c_external;
 mod c_harness;
+mod c_selftest;
 mod csv;
 mod dialect;
 pub(crate) mod fmu;
@@ -15,8 +18,11 @@ mod structured_text;
 mod structured_text_check;
 mod table;
 
+pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
+pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
+pub use c_selftest::c_selftest;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
