@@ -25,7 +25,7 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
             "$fspid" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out" > "$out.told" 2>&1
             "$fspid" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out.again" > "$out.told" 2>&1
             cmp "$out/fspid.fmu" "$out.again/fspid.fmu"
-            python checks/export/fmu.py "$out/fspid.fmu" "$out/vectors.csv" > "$out.log" 2>&1 || { failed=1; cat "$out.log"; }
+            python checks/export/fmu.py "$out/fspid.fmu" "$out/vectors.csv" "$numbers" > "$out.log" 2>&1 || { failed=1; cat "$out.log"; }
             echo "$name, $numbers: $(grep "^FMI" "$out.log" || echo "no answer")"
         done
     done
