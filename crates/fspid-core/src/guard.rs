@@ -59,6 +59,11 @@ impl Faults {
         self.0 == 0
     }
 
+    /// True if one of them holds the command.
+    pub(crate) const fn is_held(self) -> bool {
+        self.0 & (Self::NOT_FINITE.0 | Self::IMPLAUSIBLE.0 | Self::OVERFLOW.0) != 0
+    }
+
     pub(crate) fn latch(&mut self, fault: Self) {
         self.0 |= fault.0;
     }
@@ -110,6 +115,14 @@ impl<R: Real> Guard<R> {
             return Some(Faults::NOT_FINITE);
         }
         values.iter().any(|value| value.abs() > self.limit).then_some(Faults::IMPLAUSIBLE)
+    }
+
+    /// The fault of one angle, if it has one.
+    pub(crate) fn fault_of(&self, angle_rad: R) -> Option<Faults> {
+        if !angle_rad.is_finite() {
+            return Some(Faults::NOT_FINITE);
+        }
+        (angle_rad.abs() > self.limit).then_some(Faults::IMPLAUSIBLE)
     }
 }
 

@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::program::Precision;
 use crate::targets::{File, Flown, Source, Target, Written};
-use crate::vectors::vectors;
+use crate::vectors::{eventful, vectors};
 use crate::write::{self, Heading};
 
 /// What is asked for.
@@ -85,7 +85,8 @@ fn exported<R: Real>(
     let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
     let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
-    let vectors = vectors(controller, request.angles, SEED, request.samples);
+    let drawn = if request.target.has_events() { eventful } else { vectors };
+    let vectors = drawn(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
@@ -150,6 +151,12 @@ fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
     Some(way)
 }
 
+/// Libraries that Lua has loaded before it looks for a file, and headers of C that a file must not hide.
+const TAKEN: &str = "bit32 coroutine debug io math os package string table utf8 \
+                     assert complex ctype errno fenv float inttypes iso646 limits locale setjmp signal stdalign \
+                     stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn tgmath threads time uchar \
+                     wchar wctype";
+
 /// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn identifier(name: &str) -> String {
@@ -162,6 +169,9 @@ pub fn identifier(name: &str) -> String {
         }
     }
     let text = text.trim_matches('_');
+    if TAKEN.split_whitespace().any(|taken| taken == text) {
+        return format!("controller_{text}");
+    }
     match text.chars().next() {
         Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
         Some(_) => format!("controller_{text}"),

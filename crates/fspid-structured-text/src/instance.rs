@@ -22,6 +22,11 @@ impl Library {
         Ok(Self { codes: compile(&parse(text)?)? })
     }
 
+    /// The names of its function blocks and programs in their order, in capitals.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.codes.iter().map(|code| code.name.as_str())
+    }
+
     /// A new instance of a function block or program, in any case of its letters.
     ///
     /// # Errors
@@ -55,6 +60,14 @@ impl Instance<'_> {
             }
             (_, kind) => Err(Mistake::Type(kind, value.kind()).at(0)),
         }
+    }
+
+    /// The type of a variable.
+    ///
+    /// # Errors
+    /// [`Mistake::Undeclared`] if it has no such variable.
+    pub fn kind(&self, name: &str) -> Result<Kind, Problem> {
+        self.slot(name, None).map(|(_, kind)| kind)
     }
 
     /// What a variable holds.

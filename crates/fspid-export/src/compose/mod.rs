@@ -7,6 +7,8 @@ mod observe;
 mod prune;
 mod step;
 
+pub(crate) use infer::GAINS;
+
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;
 

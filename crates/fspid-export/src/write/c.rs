@@ -71,6 +71,13 @@ impl Writer<'_> {
             page.line(&format!("{};", self.signature(function)));
         }
         page.line("");
+        comment(&mut page, super::c_selftest::DOC);
+        let asked = format!("const {prefix}_configuration *configuration");
+        page.line(&format!("uint16_t {prefix}_selftest({asked});"));
+        page.line("");
+        page.line("/* As before the first sample, with the design as it was tuned. */");
+        page.line(&format!("void {prefix}_init({prefix}_state *state);"));
+        page.line("");
         page.line("#ifdef __cplusplus");
         page.line("}");
         page.line("#endif");
@@ -125,6 +132,11 @@ impl Writer<'_> {
             page.line("");
             self.function(&mut page, function);
         }
+        page.line("");
+        page.line(&format!("void {prefix}_init({prefix}_state *state)"));
+        page.line("{");
+        page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
+        page.line("}");
         page.text
     }
 
@@ -132,14 +144,22 @@ impl Writer<'_> {
         page.line(&format!("const {0}_configuration {0}_design = {{", self.prefix));
         page.inside(|page| {
             for member in &self.program.configuration {
+                let rule = |(text, place): (String, usize)| {
+                    let rule = place + 1;
+                    if member.is_rules() { format!("/* R{rule} */ {text}") } else { text }
+                };
                 let value = match &member.value {
                     Value::Real(value) => self.number(*value),
-                    Value::Byte(value) => value.to_string(),
-                    Value::Truth(value) => u8::from(*value).to_string(),
+                    Value::Byte(value) => self.byte(*value),
+                    Value::Truth(value) => self.truth(*value),
                     Value::Reals(values) => {
-                        listed(values.iter().map(|value| self.number(*value)).collect())
+                        let texts = values.iter().map(|value| self.number(*value));
+                        listed(texts.zip(0..).map(rule).collect())
                     }
-                    Value::Bytes(values) => listed(values.iter().map(u8::to_string).collect()),
+                    Value::Bytes(values) => {
+                        let texts = values.iter().map(|value| self.byte(*value));
+                        listed(texts.zip(0..).map(rule).collect())
+                    }
                 };
                 page.line(&format!("/* {} */", member.name));
                 for line in format!("{value},").lines() {
@@ -189,10 +209,7 @@ impl Writer<'_> {
             .iter()
             .map(|part| {
                 let name = part_name(*part);
-                let constant = match part {
-                    Part::Configuration | Part::Sample => "const ",
-                    Part::State | Part::Answer => "",
-                };
+                let constant = if self.program.writes(function, *part) { "" } else { "const " };
                 format!("{constant}{prefix}_{name} *{name}")
             })
             .collect();
@@ -270,6 +287,11 @@ impl Dialect for Writer<'_> {
         format!("{}_magnitude({value})", self.prefix)
     }
 
+    /// Two comparisons tell a proof in intervals where the value lies; the magnitude does not.
+    fn within(&self, value: &str, most: &str) -> Option<String> {
+        Some(format!("(-{most} <= {value}) && ({value} <= {most})"))
+    }
+
     fn bits(&self, left: &str, right: &str) -> String {
         format!("(uint8_t)({left} | {right})")
     }
@@ -337,7 +359,8 @@ impl Dialect for Writer<'_> {
 
 /// What others may call.
 fn is_public(function: &Function) -> bool {
-    matches!(function.name, "reset" | "step" | "hold") || function.parts.contains(&Part::Answer)
+    matches!(function.name, "reset" | "step" | "hold" | "track" | "saturated" | "faults")
+        || function.parts.contains(&Part::Answer)
 }
 
 fn comment(page: &mut Page, text: &str) {

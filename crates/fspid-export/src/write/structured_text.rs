@@ -15,9 +15,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     let writer = Writer { program, flat: &flat };
     let mut page = Page::default();
     heading.lines().iter().for_each(|line| remark(&mut page, line));
-    let about = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer is that \
-                 to a first sample.";
-    remark(&mut page, about);
+    if program.function("reset").is_some() {
+        remark(&mut page, ABOUT);
+    }
     page.line(&format!("FUNCTION_BLOCK FB_{prefix}"));
     writer.inputs_and_outputs(&mut page);
     writer.configuration(&mut page);
@@ -26,6 +26,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     page.line("END_FUNCTION_BLOCK");
     page.text
 }
+
+const ABOUT: &str = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer \
+                     is that to a first sample.";
 
 /// A real with its type; it must be finite.
 pub(super) fn real_literal(value: f64, precision: Precision) -> String {
@@ -41,6 +44,16 @@ pub(super) fn real(precision: Precision) -> &'static str {
     }
 }
 
+/// The name of an input or output. Those of a controller are no word of any compiler; those of a fuzzy system are its
+/// user's, and get a part in front.
+pub(super) fn visible_name(program: &Program, part: Part, name: &str) -> String {
+    match part {
+        _ if program.entry() == "step" => name.to_owned(),
+        Part::Sample => format!("in_{name}"),
+        _ => format!("out_{name}"),
+    }
+}
+
 /// A remark in the brackets that every compiler knows.
 pub(super) fn remark(page: &mut Page, text: &str) {
     for line in wrapped(&text.replace('`', "'"), 92) {
@@ -48,11 +61,23 @@ pub(super) fn remark(page: &mut Page, text: &str) {
     }
 }
 
-/// `ARRAY[..] OF kind := [..]`, seven values a line.
+/// `ARRAY[..] OF kind := [..]`, some values a line.
 pub(super) fn array(kind: &str, values: &[String]) -> String {
-    let rows: Vec<String> = values.chunks(7).map(|row| format!("    {}", row.join(", "))).collect();
+    // Reals of seventeen digits are too wide for seven in a row.
+    let in_row = if kind == "LREAL" { 3 } else { 7 };
+    let rows: Vec<String> =
+        values.chunks(in_row).map(|row| format!("    {}", row.join(", "))).collect();
     let last = values.len().saturating_sub(1);
     format!("ARRAY[0..{last}] OF {kind} := [\n{}\n]", rows.join(",\n"))
+}
+
+/// A statement on as many lines as it needs.
+pub(super) fn statement(page: &mut Page, text: &str) {
+    let lines = wrapped(text, 92);
+    if let Some((first, rest)) = lines.split_first() {
+        page.line(first);
+        page.inside(|page| rest.iter().for_each(|line| page.line(line)));
+    }
 }
 
 struct Writer<'a> {
@@ -67,10 +92,12 @@ impl Writer<'_> {
 
     fn inputs_and_outputs(&self, page: &mut Page) {
         page.line("VAR_INPUT");
-        page.inside(|page| {
-            remark(page, "Forget everything first.");
-            page.line("reset : BOOL;");
-        });
+        if self.program.function("reset").is_some() {
+            page.inside(|page| {
+                remark(page, "Forget everything first.");
+                page.line("reset : BOOL;");
+            });
+        }
         self.members(page, Part::Sample);
         page.line("END_VAR");
         page.line("VAR_OUTPUT");
@@ -105,9 +132,11 @@ impl Writer<'_> {
     }
 
     fn memory(&self, page: &mut Page) {
-        page.line("VAR");
-        self.members(page, Part::State);
-        page.line("END_VAR");
+        if !self.program.state.is_empty() {
+            page.line("VAR");
+            self.members(page, Part::State);
+            page.line("END_VAR");
+        }
         page.line("VAR_TEMP");
         page.inside(|page| {
             for (name, kind) in &self.flat.values {
@@ -167,13 +196,15 @@ impl Writer<'_> {
         match part {
             Part::Configuration => format!("design_{name}"),
             Part::State => format!("state_{name}"),
-            Part::Sample | Part::Answer => name.to_owned(),
+            Part::Sample | Part::Answer => visible_name(self.program, part, name),
         }
     }
 
     fn body(&self, page: &mut Page) {
-        let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
-        block(self, page, &[reset]);
+        if !self.flat.reset.is_empty() {
+            let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
+            block(self, page, &[reset]);
+        }
         block(self, page, &self.flat.step);
     }
 
@@ -264,7 +295,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn assign(&self, page: &mut Page, place: &str, value: &str) {
-        page.line(&format!("{place} := {value};"));
+        statement(page, &format!("{place} := {value};"));
     }
 
     fn run(&self, page: &mut Page, call: &str) {
@@ -273,6 +304,10 @@ impl Dialect for Writer<'_> {
 
     fn when(&self, condition: &str) -> String {
         format!("IF {condition} THEN")
+    }
+
+    fn open(&self, page: &mut Page, text: &str) {
+        statement(page, text);
     }
 
     fn otherwise(&self) -> &'static str {

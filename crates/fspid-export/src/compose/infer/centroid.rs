@@ -1,25 +1,33 @@
 //! The centre of gravity of seven triangles, cut at the strengths of their labels.
 
-use fspid_core::fuzzy::Defuzzifier;
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange};
 use fspid_numeric::Real;
 
 use super::super::Refusal;
+use super::limited;
 use crate::program::{
     Expression, Function, Kind, Operator, Parameter, Statement, element, local, number, whole,
 };
 
 /// The function `centroid`.
-pub(super) fn function<R: Real>(defuzzifier: Defuzzifier) -> Result<Function, Refusal> {
+pub(super) fn function<R: Real>(
+    defuzzifier: Defuzzifier,
+    policy: OutOfRange,
+) -> Result<Function, Refusal> {
     let sampled = |count, cells, offset, end_weight| Grid { count, cells, offset, end_weight };
     let (doc, body) = match defuzzifier {
         Defuzzifier::Exact => (
             "Centre of gravity of the cut triangles in closed form, in spacings from the middle.",
-            exact::<R>(),
+            bounded(policy, exact::<R>()),
         ),
-        Defuzzifier::Endpoints(n) => (SAMPLED, sampled(n, n - 1, 0.0, 1.0).body::<R>()),
-        Defuzzifier::Trapezoid(n) => (SAMPLED, sampled(n, n - 1, 0.0, 0.5).body::<R>()),
-        Defuzzifier::Midpoint(n) => (SAMPLED, sampled(n, n, 0.5, 1.0).body::<R>()),
-        Defuzzifier::LeftEnd(n) => (SAMPLED, sampled(n, n, 0.0, 1.0).body::<R>()),
+        Defuzzifier::Endpoints(n) => {
+            (SAMPLED, bounded(policy, sampled(n, n - 1, 0.0, 1.0).body::<R>()))
+        }
+        Defuzzifier::Trapezoid(n) => {
+            (SAMPLED, bounded(policy, sampled(n, n - 1, 0.0, 0.5).body::<R>()))
+        }
+        Defuzzifier::Midpoint(n) => (SAMPLED, bounded(policy, sampled(n, n, 0.5, 1.0).body::<R>())),
+        Defuzzifier::LeftEnd(n) => (SAMPLED, bounded(policy, sampled(n, n, 0.0, 1.0).body::<R>())),
         Defuzzifier::Vertices(_) => return Err(Refusal::Defuzzifier(defuzzifier)),
     };
     Ok(Function {
@@ -31,6 +39,23 @@ pub(super) fn function<R: Real>(defuzzifier: Defuzzifier) -> Result<Function, Re
         body,
     })
 }
+
+/// The centre lies between the outermost ones, and the area is not small where an input is within its range: said so that
+/// a proof in intervals sees it. It changes no bit.
+fn bounded(policy: OutOfRange, mut body: Vec<Statement>) -> Vec<Statement> {
+    let Some(Statement::Return(Some(Expression::Binary(_, moment, area)))) = body.pop() else {
+        return body;
+    };
+    // Outside of the range there are areas of every size.
+    let is_bounded = policy != OutOfRange::Evaluate;
+    let area = if is_bounded { area.larger(number(SMALL_AREA)) } else { *area };
+    let centre = limited(local("centre"), number(-3.0), number(3.0));
+    body.extend([Statement::real("centre", *moment / area), Statement::Return(Some(centre))]);
+    body
+}
+
+/// Far below the area of any set that is cut where the weakest of all strongest rules cuts it.
+const SMALL_AREA: f64 = 1.0 / (1_u64 << 40) as f64;
 
 const SAMPLED: &str =
     "Centre of gravity of the cut triangles by samples, in spacings from the middle.";
