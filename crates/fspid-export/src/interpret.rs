@@ -267,6 +267,7 @@ fn joined<R: Real>(operator: Operator, left: &Cell<R>, right: &Cell<R>) -> Cell<
             Operator::Add => Cell::Whole(left + right),
             Operator::Multiply => Cell::Whole(left * right),
             Operator::Equal => Cell::Truth(left == right),
+            Operator::Less => Cell::Truth(left < right),
             other => panic!("{other:?} does not join whole numbers"),
         },
         (Cell::Byte(left), Cell::Byte(right)) => match operator {

@@ -6,6 +6,7 @@ mod compose;
 mod export;
 pub mod interpret;
 pub mod program;
+mod systems;
 mod targets;
 mod trace;
 pub mod vectors;
@@ -14,4 +15,8 @@ pub mod write;
 pub use compose::{Angles, Refusal, precision_of, program};
 pub use export::{Export, ExportError, Request, export, identifier};
 pub use fspid_core::Controller;
+pub use systems::{
+    NOT_FINITE, Names, OUT_OF_RANGE, SystemProgram, SystemRefusal, SystemRequest, export_system,
+    source_code, system_program, system_vectors,
+};
 pub use targets::{File, Target};

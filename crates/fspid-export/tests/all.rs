@@ -2,3 +2,4 @@
 
 mod c;
 mod same_bits;
+mod systems;

@@ -1,10 +1,12 @@
 //! From a controller to its program.
 
-mod exponential;
+pub(crate) mod exponential;
 mod infer;
-mod members;
-mod prune;
+pub(crate) mod members;
+pub(crate) mod prune;
 mod step;
+
+pub(crate) use infer::centroid;
 
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;
