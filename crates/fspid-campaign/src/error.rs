@@ -7,7 +7,7 @@ use fspid_scenario::file::Problems;
 use fspid_study::output::{OutputError, in_words};
 use thiserror::Error;
 
-use crate::plan::Range;
+use crate::range::Range;
 use crate::sample::SampleError;
 use crate::table::TableError;
 

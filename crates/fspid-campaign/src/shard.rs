@@ -9,7 +9,8 @@ use fspid_study::output;
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
-use crate::plan::{Plan, Range};
+use crate::plan::Plan;
+use crate::range::Range;
 use crate::table::{ColumnTable, Reader, Writer};
 
 /// Key of the metadata that names the campaign.

@@ -6,7 +6,8 @@ use crate::equations::PidEquations;
 use crate::gains::Gains;
 use crate::pid::{Fspid, Pid};
 use crate::pid_config::PidConfig;
-use crate::state::{Sample, State, Step};
+use crate::sample::Sample;
+use crate::state::{State, Step};
 
 /// A controller of the loop; it sees radians and answers radians.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::program::Precision;
-use crate::targets::{File, Source, Target};
+use crate::targets::{File, Flown, Source, Target, Written};
 use crate::vectors::vectors;
 use crate::write::{self, Heading};
 
@@ -22,6 +22,8 @@ pub struct Request<'a> {
     pub angles: Angles,
     /// How many samples the vectors have.
     pub samples: usize,
+    /// How many points a table has along each input.
+    pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
 }
@@ -80,8 +82,8 @@ fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
 ) -> Result<Export, ExportError> {
-    let program = program(controller, request.angles)
-        .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
+    let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
+    let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
     let vectors = vectors(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::from_iter(renamed(request.name, &prefix));
@@ -96,17 +98,27 @@ fn exported<R: Real>(
         precision: precision_of::<R>(),
         angles: Some(request.angles),
     };
-    let source =
-        Source { program: &program, prefix: &prefix, heading: &heading, vectors: &vectors };
-    let files = written(request.target, &source);
+    let source = Source {
+        program: &program,
+        prefix: &prefix,
+        heading: &heading,
+        vectors: &vectors,
+        flown: Some(Flown { controller, points: request.points }),
+    };
+    let written = written(request.target, &source).map_err(refused)?;
+    notes.extend(written.notes);
+    let files = written.files;
     Ok(Export { prefix, files, notes })
 }
 
 /// The files of the target, and the vectors.
-pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Vec<File> {
-    let mut files = target.files(source);
-    files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
-    files
+pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result<Written, Refusal> {
+    let mut written = target.files(source)?;
+    // A table is no controller.
+    if target != Target::Table {
+        written.files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
+    }
+    Ok(written)
 }
 
 /// That a name is another one in the code, if it is.

@@ -2,15 +2,19 @@
 //!
 //! Not here: scenarios and designs, which `fspid-scenario` reads; flights; the files' places.
 
+mod compile;
 mod compose;
 mod export;
+mod flat;
 pub mod interpret;
 pub mod program;
 mod systems;
+pub mod table;
 mod targets;
 mod trace;
 pub mod vectors;
 pub mod write;
+mod zip;
 
 pub use compose::{Angles, Refusal, precision_of, program};
 pub use export::{Export, ExportError, Request, export, identifier};

@@ -56,7 +56,7 @@ impl Draw {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn around(&mut self, size: f64) -> f64 {
+    pub(crate) fn around(&mut self, size: f64) -> f64 {
         (2.0 * self.unit() - 1.0) * size
     }
 

@@ -1,5 +1,6 @@
 //! The loop itself: measure, decide, move.
 
+use crate::instant::Instant;
 use std::ops::ControlFlow;
 
 use fspid_core::{Faults, Gains, Sample, State, Step};
@@ -14,27 +15,6 @@ use crate::scenario::{Prepared, Scenario};
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
-
-/// Everything observable at one sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instant {
-    /// Index of the sample.
-    pub k: usize,
-    /// Commanded pitch, rad.
-    pub setpoint_rad: f64,
-    /// Pitch angle, rad; of an aircraft its change from the trim.
-    pub theta_rad: f64,
-    /// Pitch rate, rad/s.
-    pub q_rad_s: f64,
-    /// Elevator in the plant's own sign, rad.
-    pub elevator_rad: f64,
-    /// Pitch angle, rad, and pitch rate, rad/s, as the controller saw them.
-    pub measured: [f64; 2],
-    /// What an aircraft shows beyond pitch.
-    pub aircraft: Option<AircraftSample>,
-    /// What the controller answered.
-    pub step: Step<f64>,
-}
 
 /// A scenario's flights: the trace of each controller, in the scenario's order.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};
 
 use crate::aircraft::AIRCRAFT_COLUMNS;
-use crate::closed_loop::Instant;
+use crate::instant::Instant;
 use crate::scenario::Prepared;
 use crate::timing::Timing;
 

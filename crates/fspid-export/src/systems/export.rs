@@ -37,17 +37,24 @@ pub fn export_system(
     system: &System,
     request: &SystemRequest<'_>,
 ) -> Result<Export, SystemRefusal> {
+    if !matches!(request.target, Target::C | Target::Lua) {
+        return Err(SystemRefusal {
+            place: "the target".to_owned(),
+            problem: format!("{} is not written of fuzzy systems", request.target.name()),
+            possible: WRITTEN.to_owned(),
+        });
+    }
     match request.precision {
         Precision::Double => {
             let program = system_program::<f64>(system)?;
             let vectors = system_vectors(system, SEED, request.samples);
-            Ok(exported(system, request, &program, &vectors, Vec::new()))
+            exported(system, request, &program, &vectors, Vec::new())
         }
         Precision::Single => {
             let program = system_program::<f32>(system)?;
             let vectors = single_vectors(system, &program, SEED, request.samples);
             let notes = measured(system, &vectors);
-            Ok(exported(system, request, &program, &vectors, notes))
+            exported(system, request, &program, &vectors, notes)
         }
     }
 }
@@ -58,7 +65,7 @@ fn exported<R: Real>(
     program: &SystemProgram,
     vectors: &[Vector<R>],
     more: Vec<String>,
-) -> Export {
+) -> Result<Export, SystemRefusal> {
     let prefix = identifier(request.name);
     let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     let changed = program.names.changed(system.parts());
@@ -71,10 +78,23 @@ fn exported<R: Real>(
         precision: request.precision,
         angles: None,
     };
-    let source = Source { program: &program.program, prefix: &prefix, heading: &heading, vectors };
-    let files = written(request.target, &source);
-    Export { prefix, files, notes }
+    let source = Source {
+        program: &program.program,
+        prefix: &prefix,
+        heading: &heading,
+        vectors,
+        flown: None,
+    };
+    let written = written(request.target, &source).map_err(|reason| SystemRefusal {
+        place: "the target".to_owned(),
+        problem: reason.to_string(),
+        possible: WRITTEN.to_owned(),
+    })?;
+    notes.extend(written.notes);
+    Ok(Export { prefix, files: written.files, notes })
 }
+
+const WRITTEN: &str = "possible are c and lua";
 
 /// What 32 bits make of the answers.
 fn measured(system: &System, vectors: &[Vector<f32>]) -> Vec<String> {

@@ -6,7 +6,7 @@ use super::{File, Source};
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
-    let Source { program, prefix, heading, vectors } = source;
+    let Source { program, prefix, heading, vectors, .. } = source;
     let written = write::c(program, prefix, heading);
     vec![
         File::text(format!("{prefix}.h"), written.header),

@@ -45,6 +45,21 @@ pub(super) trait Dialect {
     /// The lines that end a function.
     fn answer(&self, value: Option<&str>) -> Vec<String>;
 
+    /// A whole number.
+    fn whole(&self, value: i32) -> String {
+        value.to_string()
+    }
+
+    /// The sign between what is compared.
+    fn equal(&self) -> &'static str {
+        "=="
+    }
+
+    /// What stands somewhere, as a value.
+    fn read(&self, _: &Place, text: String) -> String {
+        text
+    }
+
     /// A value of the function, as it is called in this language.
     fn local(&self, name: &str) -> String {
         name.to_owned()
@@ -118,13 +133,14 @@ fn outer(dialect: &impl Dialect, value: &Expression) -> String {
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
-            format!("{left} {} {right}", sign(&dialect.truths(), *operator))
+            format!("{left} {} {right}", sign(dialect, *operator))
         }
         value => expression(dialect, value),
     }
 }
 
-fn sign(truths: &Truths, operator: Operator) -> &'static str {
+fn sign(dialect: &impl Dialect, operator: Operator) -> &'static str {
+    let truths = dialect.truths();
     match operator {
         Operator::Add => "+",
         Operator::Subtract => "-",
@@ -132,7 +148,7 @@ fn sign(truths: &Truths, operator: Operator) -> &'static str {
         Operator::Divide => "/",
         Operator::Less => "<",
         Operator::LessOrEqual => "<=",
-        Operator::Equal => "==",
+        Operator::Equal => dialect.equal(),
         Operator::NotEqual => truths.not_equal,
         Operator::And => truths.and,
         Operator::Or => truths.or,
@@ -144,10 +160,10 @@ fn expression(dialect: &impl Dialect, value: &Expression) -> String {
     let of = |value: &Expression| expression(dialect, value);
     match value {
         Expression::Number(value) => dialect.number(*value),
-        Expression::Whole(value) => value.to_string(),
+        Expression::Whole(value) => dialect.whole(*value),
         Expression::Byte(value) => dialect.byte(*value),
         Expression::Truth(value) => dialect.truth(*value),
-        Expression::Read(at) => place(dialect, at),
+        Expression::Read(at) => dialect.read(at, place(dialect, at)),
         Expression::Negative(value) => format!("-{}", of(value)),
         Expression::Magnitude(value) => dialect.magnitude(&outer(dialect, value)),
         Expression::Not(value) => dialect.not(&of(value)),

@@ -4,14 +4,27 @@ mod c;
 mod c_harness;
 mod csv;
 mod dialect;
+pub(crate) mod fmu;
 mod heading;
 mod lua;
+mod rust;
+mod rust_harness;
+mod rust_rules;
+mod rust_text;
+mod structured_text;
+mod structured_text_check;
+mod table;
 
 pub use c::{CFiles, c};
 pub use c_harness::c_harness;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
+pub use rust::rust;
+pub use rust_harness::rust_harness;
+pub use structured_text::structured_text;
+pub use structured_text_check::structured_text_check;
+pub use table::{TableFiles, table, table_csv, table_harness};
 
 /// Text with its indentation.
 #[derive(Debug, Default)]

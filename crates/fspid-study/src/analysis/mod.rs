@@ -18,6 +18,7 @@ mod frozen;
 mod json;
 mod loops;
 mod nonlinear_parts;
+mod rank;
 mod step;
 mod text;
 

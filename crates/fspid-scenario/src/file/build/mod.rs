@@ -6,7 +6,9 @@ mod airframe;
 mod controller;
 pub(crate) mod data;
 mod derived;
+mod ends;
 mod flight;
+mod flown;
 mod linear_aircraft;
 mod loading;
 mod lqi;
@@ -19,7 +21,7 @@ mod timing;
 
 pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
-use flight::Flown;
+use flown::Flown;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
 use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
