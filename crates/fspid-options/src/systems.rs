@@ -231,8 +231,13 @@ impl Draw {
         let universe = self.universe();
         let (conclusions, defuzzifier) = self.conclusions(universe, inputs);
         let plain = [SNormKind::Maximum, SNormKind::UnboundedSum, SNormKind::BoundedSum];
-        let aggregation =
-            if self.chance(0.7) { self.pick(&plain) } else { self.pick(SNormKind::ALL) };
+        let aggregation = if self.chance(0.4) {
+            SNormKind::Maximum
+        } else if self.chance(0.6) {
+            self.pick(&plain)
+        } else {
+            self.pick(SNormKind::ALL)
+        };
         let value = [FallbackValue::Middle, FallbackValue::Number(0.25), FallbackValue::Nothing];
         let named = |(term, conclusion)| OutputTerm { name: format!("t{term}"), conclusion };
         Output {
@@ -326,8 +331,13 @@ impl Draw {
 
     fn block(&mut self, inputs: &[Input], outputs: &[Output]) -> RuleBlock {
         let implication = [TNormKind::Minimum, TNormKind::AlgebraicProduct];
-        let implication =
-            if self.chance(0.8) { self.pick(&implication) } else { self.pick(TNormKind::ALL) };
+        let implication = if self.chance(0.5) {
+            TNormKind::Minimum
+        } else if self.chance(0.6) {
+            self.pick(&implication)
+        } else {
+            self.pick(TNormKind::ALL)
+        };
         let count = 1 + self.below(8);
         let chained = self.chance(0.2);
         RuleBlock {

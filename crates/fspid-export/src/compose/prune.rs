@@ -25,9 +25,9 @@ fn size(program: &Program) -> usize {
     functions + program.configuration.len() + program.state.len()
 }
 
-/// Removes functions that `entry` does not call, directly or through others.
-pub(crate) fn remove_uncalled(program: &mut Program, entry: &'static str) {
-    let mut called = BTreeSet::from([entry]);
+/// Removes functions that `entries` do not call, directly or through others.
+pub(crate) fn remove_uncalled(program: &mut Program, entries: &[&'static str]) {
+    let mut called: BTreeSet<&str> = entries.iter().copied().collect();
     // One is called only below where it stands.
     for function in program.functions.iter().rev().filter(|it| !it.body.is_empty()) {
         if called.contains(function.name) {

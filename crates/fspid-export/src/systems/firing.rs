@@ -36,14 +36,7 @@ impl<R: Real> Composer<'_, R> {
                 "possible is the same system with the upper sets alone",
             );
         }
-        match parts.outputs.iter().find(|output| output.fallback.previous) {
-            Some(output) => Err(Trouble::Said(
-                "it keeps its previous answer where no rule fires, and an exported system remembers nothing",
-                "possible is a fallback to the middle or a number",
-            )
-            .at(format!("output `{}`", output.name))),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// Inputs as they are used, and what is wrong with them.

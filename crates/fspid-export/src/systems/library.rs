@@ -96,7 +96,7 @@ impl Library {
         x: Expression,
     ) -> Result<Expression, Trouble> {
         let Some(name) = shape_function(kind, params)? else { return Ok(number(1.0)) };
-        let names = names_of(kind);
+        let names = names_of(kind, params);
         let mut parameters = vec!["x"];
         parameters.extend(used(kind, params).into_iter().map(|position| names[position]));
         let equation = || Some(kind.grade(&lifted(kind, params), Traced::read(local("x"))));
@@ -115,7 +115,7 @@ impl Library {
     ) -> Result<Expression, Trouble> {
         let name = inverse_name(kind).ok_or(Trouble::Foreign("an inverse"));
         let mut parameters = vec!["grade"];
-        let names = names_of(kind);
+        let names = names_of(kind, params);
         parameters.extend(names.iter().copied());
         let equation = || kind.inverse(&lifted(kind, params), Traced::read(local("grade")));
         let doc = "The value that has a grade in a rising or falling fuzzy set.";
@@ -191,7 +191,7 @@ pub(super) fn called(
 
 /// Parameters as the function reads them.
 fn lifted(kind: ShapeKind, params: &[f64]) -> Vec<Traced> {
-    let (names, used) = (names_of(kind), used(kind, params));
+    let (names, used) = (names_of(kind, params), used(kind, params));
     let lift = |(position, value): (usize, &f64)| match used.contains(&position) {
         true => Traced::read(local(names[position])),
         false => Traced::constant(*value),
@@ -199,8 +199,27 @@ fn lifted(kind: ShapeKind, params: &[f64]) -> Vec<Traced> {
     params.iter().enumerate().map(lift).collect()
 }
 
+/// Functions of sets given by points, by how many there are, with the names of their parameters.
+const POINTS: [[&str; 3]; 12] = [
+    ["points_1", "at_1", "grade_1"],
+    ["points_2", "at_2", "grade_2"],
+    ["points_3", "at_3", "grade_3"],
+    ["points_4", "at_4", "grade_4"],
+    ["points_5", "at_5", "grade_5"],
+    ["points_6", "at_6", "grade_6"],
+    ["points_7", "at_7", "grade_7"],
+    ["points_8", "at_8", "grade_8"],
+    ["points_9", "at_9", "grade_9"],
+    ["points_10", "at_10", "grade_10"],
+    ["points_11", "at_11", "grade_11"],
+    ["points_12", "at_12", "grade_12"],
+];
+
 /// The names of a shape's parameters, as every language takes them.
-fn names_of(kind: ShapeKind) -> Vec<&'static str> {
+fn names_of(kind: ShapeKind, params: &[f64]) -> Vec<&'static str> {
+    if kind.repeats() {
+        return POINTS.iter().flat_map(|[_, at, grade]| [*at, *grade]).take(params.len()).collect();
+    }
     let name = |name| if name == "end" { "last" } else { name };
     kind.params().iter().map(|param| name(param.name)).collect()
 }
@@ -208,7 +227,11 @@ fn names_of(kind: ShapeKind) -> Vec<&'static str> {
 /// The function of a shape; nothing for one that holds everything.
 fn shape_function(kind: ShapeKind, params: &[f64]) -> Result<Option<&'static str>, Trouble> {
     if kind.repeats() {
-        return Err(Trouble::Foreign("a count").of("the membership function", kind.name()));
+        let function = POINTS.get((params.len() / 2).saturating_sub(1));
+        return function.map(|[name, ..]| Some(*name)).ok_or(Trouble::Said(
+            "a set has more than twelve points",
+            "possible are twelve, or several sets",
+        ));
     }
     let used = used(kind, params);
     let has_left = used.first() == Some(&0);

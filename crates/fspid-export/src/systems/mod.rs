@@ -143,7 +143,32 @@ pub fn system_program<R: Real>(system: &System) -> Result<SystemProgram, SystemR
 }
 
 const ENTRY: &[Part] = &[Part::Configuration, Part::Sample, Part::Answer];
+const ENTRY_WITH_STATE: &[Part] = &[Part::Configuration, Part::State, Part::Sample, Part::Answer];
 const ENTRY_WITHOUT_CONFIGURATION: &[Part] = &[Part::Sample, Part::Answer];
+
+/// The name of the state's member that says whether there was an answer.
+fn known(output: &str) -> String {
+    format!("{output}_known")
+}
+
+/// The function that forgets the previous answers.
+fn reset(state: &[Member]) -> Function {
+    let begin = |it: &Member| {
+        let value = match it.value {
+            Value::Truth(value) => Expression::Truth(value),
+            _ => crate::program::number(0.0),
+        };
+        Statement::set_member(Part::State, &it.name, value)
+    };
+    Function {
+        name: "reset",
+        doc: "Forgets the previous answers.",
+        parts: &[Part::State],
+        parameters: Vec::new(),
+        answers: None,
+        body: state.iter().map(begin).collect(),
+    }
+}
 
 impl<R: Real> Composer<'_, R> {
     /// The name of the configuration's member that is there for something: the wanted one if it is free.
@@ -169,10 +194,23 @@ impl<R: Real> Composer<'_, R> {
         let Self { system, names, configuration, mut library, body, .. } = self;
         library.helpers::<R>(&body);
         let mut functions = library.functions;
+        let remembering = system.parts().outputs.iter().zip(&names.outputs);
+        let remembering = remembering.filter(|(output, _)| output.fallback.previous);
+        let state: Vec<Member> = remembering
+            .flat_map(|(_, name)| {
+                let value =
+                    member(name, format!("The previous answer of {name}."), Value::Real(0.0));
+                let doc = format!("There is a previous answer of {name}.");
+                [value, member(&known(name), doc, Value::Truth(false))]
+            })
+            .collect();
+        if !state.is_empty() {
+            functions.push(reset(&state));
+        }
         functions.push(Function {
             name: "infer",
             doc: "The outputs at these inputs, and for each of them where its value comes from.",
-            parts: ENTRY,
+            parts: if state.is_empty() { ENTRY } else { ENTRY_WITH_STATE },
             parameters: Vec::new(),
             answers: None,
             body,
@@ -194,7 +232,7 @@ impl<R: Real> Composer<'_, R> {
         let mut program = Program {
             precision: precision_of::<R>(),
             configuration: configuration.members(),
-            state: Vec::new(),
+            state,
             sample: parts.inputs.iter().zip(&names.inputs).map(input).collect(),
             answer,
             functions,
@@ -207,8 +245,9 @@ impl<R: Real> Composer<'_, R> {
             prune::remove_unread_arrays(&mut entry.body);
             prune::prune(&mut program);
         }
-        prune::remove_uncalled(&mut program, "infer");
+        prune::remove_uncalled(&mut program, &["reset", "infer"]);
         if program.configuration.is_empty()
+            && program.state.is_empty()
             && let Some(entry) = program.functions.last_mut()
         {
             entry.parts = ENTRY_WITHOUT_CONFIGURATION;
@@ -217,7 +256,8 @@ impl<R: Real> Composer<'_, R> {
     }
 }
 
-const SOURCES: &str = "0 there is none, 1 the rules, 2 the middle of the range, 3 the default";
+const SOURCES: &str = "0 there is none, 1 the rules, 2 the middle of the range, 3 the default, 4 the previous \
+                       answer";
 const FAULTS: &str = "What is wrong with the inputs, as bits: 1 one is not finite, 2 one is outside of a range that may \
                       not be left; then there is no value.";
 

@@ -9,13 +9,15 @@ use super::firing::clamped;
 use super::{Composer, SystemRefusal, Trouble, at, count_of, index_of, put, root};
 use crate::compose::{centroid, precision_of};
 use crate::program::{
-    Argument, Expression, Operator, Part, Statement, Value, element, local, member_element, number,
+    Argument, Expression, Operator, Part, Statement, Value, element, local, member, member_element,
+    number,
 };
 
 /// Codes of where a value comes from.
 const RULES: u8 = 1;
 const MIDDLE: u8 = 2;
 const DEFAULT: u8 = 3;
+const PREVIOUS: u8 = 4;
 
 impl<R: Real> Composer<'_, R> {
     /// Every output, one after the other; answers which way each is computed.
@@ -49,6 +51,7 @@ impl<R: Real> Composer<'_, R> {
             .less(at("found", 0))
             .and(value().magnitude().at_most(number(precision_of::<R>().largest())));
         let given = self.given(index, &name, output, value(), RULES);
+        let remembers = output.fallback.previous;
         let fallback = match (output.fallback.value, output.universe) {
             (FallbackValue::Middle, Some(universe)) => {
                 self.given(index, &name, output, number(universe.middle()), MIDDLE)
@@ -58,7 +61,22 @@ impl<R: Real> Composer<'_, R> {
             }
             _ => Vec::new(),
         };
+        if !remembers {
+            self.body.push(Statement::If(is_good, given, fallback));
+            return Ok(way);
+        }
+        let known = super::known(&name);
+        let previous = member(Part::State, &name);
+        let kept = self.given(index, &name, output, previous, PREVIOUS);
+        let fallback = vec![Statement::If(member(Part::State, &known), kept, fallback)];
+        let from = member(Part::Answer, &self.names.sources[index]);
+        let nothing = Expression::binary(Operator::Equal, from, Expression::Byte(0));
+        let remembered = vec![
+            Statement::set_member(Part::State, &name, member(Part::Answer, &name)),
+            Statement::set_member(Part::State, &known, Expression::Truth(true)),
+        ];
         self.body.push(Statement::If(is_good, given, fallback));
+        self.body.push(Statement::when(nothing.negated(), remembered));
         Ok(way)
     }
 

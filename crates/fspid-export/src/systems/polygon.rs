@@ -103,11 +103,11 @@ impl<R: Real> Composer<'_, R> {
         let mut room = Room::default();
         let mut joins = Vec::new();
         for (index, output) in self.system.parts().outputs.iter().enumerate() {
-            let Some(Way::Polygon { cells, join, .. }) =
-                self.system.way(index).filter(|_| output.enabled)
-            else {
-                continue;
-            };
+            let way = self.system.way(index).filter(|_| output.enabled);
+            if let Some(Way::Sampled(_)) = way {
+                room.pieces = room.pieces.max(super::sampled::pieces(output.defuzzifier));
+            }
+            let Some(Way::Polygon { cells, join, .. }) = way else { continue };
             let actors = self.terms_of_actors(index);
             let counts: Vec<usize> = cells.iter().map(|it| slots(it, &actors).len()).collect();
             room.lines = room.lines.max(counts.iter().copied().max().unwrap_or(0)).max(1);
@@ -116,11 +116,14 @@ impl<R: Real> Composer<'_, R> {
             joins.push(join);
         }
         self.room = room;
-        if joins.is_empty() {
+        if room.pieces == 0 {
             return;
         }
+        // What is not read in the end is removed again.
         let declare = |(name, count): (&str, usize)| Statement::Array(name.to_owned(), count);
-        self.body.extend(room.arrays().map(declare));
+        self.body.extend(room.arrays().into_iter().filter(|(_, count)| *count > 0).map(declare));
+        self.library.square_root::<R>();
+        self.library.functions.push(reading::halfway(room));
         let largest = precision_of::<R>().largest();
         let functions = &mut self.library.functions;
         functions.extend([place_between(), line_that_fires(room, largest), grade_at()]);

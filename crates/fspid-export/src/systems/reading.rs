@@ -48,13 +48,6 @@ pub(super) fn read(
     };
     let name = function.name;
     if !library.functions.iter().any(|known| known.name == name) {
-        if matches!(method, Defuzzifier::Bisector(_)) {
-            match precision {
-                Precision::Single => library.square_root::<f32>(),
-                Precision::Double => library.square_root::<f64>(),
-            }
-            library.functions.push(halfway(room));
-        }
         library.functions.push(function);
     }
     let top = || element("pieces", room.top());
@@ -166,7 +159,7 @@ fn bisector(room: Room) -> Function {
 }
 
 /// `reached` of `joined.rs`, from either side.
-fn halfway(room: Room) -> Function {
+pub(super) fn halfway(room: Room) -> Function {
     let turned = || number(0.5).less(local("turned"));
     let from_right = {
         let less = Expression::binary(Operator::Multiply, local("walked"), whole(-1));

@@ -135,3 +135,83 @@ fn quartered(precision: Precision) -> Vec<Statement> {
     let below = Statement::when(local("part").less(two_to(below.0)), times(below.1));
     std::iter::once(below).chain(even.iter().map(up)).chain(even.iter().map(down)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compose::precision_of;
+    use crate::interpret::{Cell, Machine};
+    use crate::program::{Member, Part, Program, Value, member};
+    use crate::vectors::Draw;
+    use fspid_numeric::Real;
+
+    /// A program whose `infer` answers what a function of `x` does.
+    fn asks(function: Function) -> Program {
+        let call = super::super::library::called(function.name, [member(Part::Sample, "x")]);
+        let real = |name: &str| Member {
+            name: name.to_owned(),
+            doc: String::new(),
+            value: Value::Real(0.0),
+        };
+        let infer = Function {
+            name: "infer",
+            doc: "",
+            parts: &[Part::Sample, Part::Answer],
+            parameters: Vec::new(),
+            answers: None,
+            body: vec![Statement::set_member(Part::Answer, "y", call)],
+        };
+        Program {
+            precision: Precision::Double,
+            configuration: Vec::new(),
+            state: Vec::new(),
+            sample: vec![real("x")],
+            answer: vec![real("y")],
+            functions: vec![function, infer],
+        }
+    }
+
+    fn answers<R: Real>(machine: &mut Machine<'_, R>, x: R) -> R {
+        machine.set(Part::Sample, "x", Cell::Real(x));
+        machine.run("infer");
+        match machine.member(Part::Answer, "y") {
+            Some(Cell::Real(y)) => *y,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_square_root_has_the_bits_of_ieee_754_in_both_precisions() {
+        let double = asks(function(precision_of::<f64>()));
+        let single = asks(function(precision_of::<f32>()));
+        let mut double = Machine::<f64>::new(&double);
+        let mut single = Machine::<f32>::new(&single);
+        let mut draw = Draw(1);
+        for k in 0..20_000_u64 {
+            let bits = (draw.unit() * (1_u64 << 53) as f64) as u64 * 1023 + k;
+            // Every exponent, and mantissas near the ends, where roots lie near the middles.
+            let x = f64::from_bits(if k % 3 == 0 { bits | 0x000F_FFFF_FFFF_FF00 } else { bits });
+            if x >= 0.0 && x.is_finite() {
+                assert_eq!(answers(&mut double, x).to_bits(), libm::sqrt(x).to_bits(), "{x:e}");
+            }
+            let x = f32::from_bits((bits >> 20) as u32 & 0x7F7F_FFFF);
+            assert_eq!(answers(&mut single, x).to_bits(), libm::sqrtf(x).to_bits(), "{x:e}");
+        }
+        for x in
+            [0.0, -0.0, f64::from_bits(1), f64::MIN_POSITIVE, 1.0, 4.0, f64::MAX, f64::INFINITY]
+        {
+            assert_eq!(answers(&mut double, x).to_bits(), libm::sqrt(x).to_bits(), "{x:e}");
+        }
+        assert!(answers(&mut double, -1.0).is_nan() && answers(&mut double, f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn a_scale_brings_every_normal_number_between_one_and_two() {
+        let program = asks(scale(Precision::Double));
+        let mut machine = Machine::<f64>::new(&program);
+        for exponent in -1022..1023 {
+            let x = 1.7 * f64::from(exponent).exp2();
+            assert!((1.0..2.0).contains(&(x * answers(&mut machine, x))), "{x:e}");
+        }
+    }
+}

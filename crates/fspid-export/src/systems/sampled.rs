@@ -5,10 +5,13 @@ use fspid_fuzzy::norm::TNormKind;
 use fspid_fuzzy::system::{Conclusion, Defuzzifier, Output, Sampling};
 use fspid_numeric::Real;
 
-use super::outputs::{FORMULA, VERTICES, repeat};
+use super::outputs::{FORMULA, VERTICES, flat, repeat};
+use super::polygon::PIECE;
 use super::{Composer, Trouble, at, count_of, put};
 use crate::compose::precision_of;
-use crate::program::{Expression, Operator, Statement, element, local, number, whole};
+use crate::program::{
+    Argument, Expression, Kind, Operator, Statement, element, local, number, whole,
+};
 
 /// Most samples that are kept for the bisector, which walks over them twice: 8 KiB of stack with 64 bits (assumed to be there).
 const MOST_KEPT: u32 = 1024;
@@ -205,12 +208,10 @@ impl<R: Real> Composer<'_, R> {
                 "possible are fewer samples, or the centroid",
             ));
         }
-        let Sampling::Endpoints(_) = sampling else {
-            return Err(Trouble::Said(
-                "a bisector by cells or lines is read as a polygon, which is not written yet",
-                "possible is --defuzzifier endpoints:N, or the exact bisector of straight-sided sets",
-            ));
-        };
+        if !matches!(sampling, Sampling::Endpoints(_)) {
+            self.bisector_of_pieces(sampling, samples, sample);
+            return Ok(());
+        }
         let kept = samples.name("kept");
         self.body.push(Statement::Array(kept.clone(), samples.count as usize));
         self.body.extend(["top", "sum", "below"].map(|name| samples.begin(name)));
@@ -235,6 +236,87 @@ impl<R: Real> Composer<'_, R> {
         let walk = samples.each(walk);
         self.body.push(Statement::when(least.at_most(samples.real("top")), vec![walk]));
         Ok(())
+    }
+}
+
+/// How many pieces a bisector reads off samples: a cell for each, or a line between two.
+pub(super) fn pieces(defuzzifier: Defuzzifier) -> usize {
+    match defuzzifier {
+        Defuzzifier::Bisector(Sampling::Midpoint(n) | Sampling::LeftEnd(n)) => n as usize,
+        Defuzzifier::Bisector(Sampling::Trapezoid(n)) => n as usize - 1,
+        _ => 0,
+    }
+}
+
+impl<R: Real> Composer<'_, R> {
+    /// The bisector of cells of equal height, or of straight lines between samples.
+    fn bisector_of_pieces(
+        &mut self,
+        sampling: Sampling,
+        samples: &Samples,
+        mut sample: Vec<Statement>,
+    ) {
+        let is_line = matches!(sampling, Sampling::Trapezoid(_));
+        let number_of = Expression::ToReal(Box::new(samples.real("sample")));
+        let edge = |cell: Expression| samples.place(cell);
+        let [left, right, begin] = match is_line {
+            true => ["x_before", "x", "grade_before"].map(|name| samples.real(name)),
+            false => {
+                let next = number_of.clone() + number(1.0);
+                [edge(number_of), edge(next), samples.real("grade")]
+            }
+        };
+        let row = if is_line { samples.name("line") } else { samples.name("sample") };
+        let put = |column, value| {
+            Statement::set_element("pieces", flat(local(&row), PIECE, column), value)
+        };
+        let half = |name: &str| number(0.5) * local(name);
+        let names = ["left", "right", "begin", "end_"].map(|name| samples.name(name));
+        let [from, to, first, last] = &names;
+        let mut piece = vec![
+            Statement::real(from, left),
+            Statement::real(to, right),
+            Statement::real(first, begin),
+            Statement::real(last, samples.real("grade")),
+        ];
+        piece.extend(names.iter().zip(0..).map(|(name, column)| put(column, local(name))));
+        let area = (local(to) - local(from)) * (half(first) + half(last));
+        piece.push(samples.set("sum", samples.real("sum") + area));
+        let higher = samples.real("top").less(samples.real("grade"));
+        sample.push(Statement::when(higher, vec![samples.set("top", samples.real("grade"))]));
+        self.body.extend(["top", "sum"].map(|name| samples.begin(name)));
+        if is_line {
+            self.body.extend(["x_before", "grade_before"].map(|name| samples.begin(name)));
+            let line = Expression::binary(Operator::Add, samples.real("sample"), whole(-1));
+            piece.insert(0, Statement::Let(row.clone(), Kind::Whole, line));
+            let is_later = whole(0).less(samples.real("sample"));
+            sample.push(Statement::when(is_later, piece));
+            sample.push(samples.set("x_before", samples.real("x")));
+            sample.push(samples.set("grade_before", samples.real("grade")));
+        } else {
+            sample.extend(piece);
+        }
+        self.body.push(samples.each(sample));
+        let count = whole(count_of(samples.count as usize) - i32::from(is_line));
+        let from_side = |turned| {
+            let values = [count.clone(), number(1.0), samples.real("sum"), number(turned)];
+            let mut given = vec![Argument::Array("pieces".to_owned())];
+            given.extend(values.map(Argument::Value));
+            Expression::Call("halfway", given)
+        };
+        let sides = ["from_left", "from_right"].map(|name| samples.name(name));
+        let [from_left, from_right] = &sides;
+        let middle = number(0.5) * local(from_left) + number(0.5) * local(from_right);
+        let found = vec![
+            Statement::real(from_left, from_side(0.0)),
+            Statement::real(from_right, from_side(1.0)),
+            super::put("found", 0, number(1.0)),
+            super::put("found", 1, middle),
+        ];
+        let least = number(super::library::least(precision_of::<R>()));
+        let has_area =
+            least.at_most(samples.real("top")).and(number(0.0).less(samples.real("sum")));
+        self.body.push(Statement::when(has_area, found));
     }
 }
 

@@ -33,12 +33,16 @@ pub const fn source_code(source: Source) -> u8 {
 #[must_use]
 pub fn system_vectors(system: &System, seed: u64, count: usize) -> Vec<Vector<f64>> {
     let mut workspace = system.workspace();
+    let mut previous = Vec::new();
     let answered = |inputs: Vec<f64>| {
         let outputs = system.parts().outputs.len();
         let faults = faults(system, &inputs);
         let nothing = Answer { value: None, error_bound: 0.0, source: Source::Nothing };
-        let answers = match system.evaluate(&inputs, &mut workspace) {
-            Ok(answers) => answers.to_vec(),
+        let answers = match system.evaluate_after(&inputs, &previous, &mut workspace) {
+            Ok(answers) => {
+                previous = answers.iter().map(|it| it.value).collect();
+                answers.to_vec()
+            }
             Err(_) => vec![nothing; outputs],
         };
         let mut marks: Vec<u8> = answers.iter().map(|it| source_code(it.source)).collect();
@@ -84,10 +88,12 @@ pub(super) fn single_vectors(
 pub(super) fn difference(system: &System, single: &[Vector<f32>]) -> (Vec<f64>, usize) {
     let mut workspace = system.workspace();
     let mut largest = vec![0.0_f64; system.parts().outputs.len()];
-    let mut elsewhere = 0;
+    let (mut elsewhere, mut previous) = (0, Vec::new());
     for vector in single {
         let inputs: Vec<f64> = vector.sample.iter().map(|value| f64::from(*value)).collect();
-        let Ok(answers) = system.evaluate(&inputs, &mut workspace) else { continue };
+        let answers = system.evaluate_after(&inputs, &previous, &mut workspace);
+        let Ok(answers) = answers else { continue };
+        previous = answers.iter().map(|it| it.value).collect();
         for (index, answer) in answers.iter().enumerate() {
             if vector.marks[index] != source_code(answer.source) {
                 elsewhere += 1;
