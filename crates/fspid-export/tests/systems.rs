@@ -5,9 +5,10 @@ use std::process::Command;
 
 use fspid_export::interpret::{Cell, Machine};
 use fspid_export::program::{Part, Precision};
+use fspid_export::write::{Heading, structured_text};
 use fspid_export::{
     NOT_FINITE, OUT_OF_RANGE, SystemProgram, SystemRequest, Target, export_system, source_code,
-    system_program,
+    system_program, system_vectors,
 };
 use fspid_fuzzy::system::System;
 use proptest::prelude::*;
@@ -117,5 +118,42 @@ proptest! {
             let text = ran(&system, precision, folder.path());
             prop_assert!(text.is_none_or(|text| text == "300 samples, 0 different\n"));
         }
+    }
+}
+
+/// How many answers of the function block have other bits.
+fn different(system: &System) -> Option<usize> {
+    use fspid_structured_text::{Library, Value};
+    let program = system_program::<f64>(system).ok()?;
+    let heading = Heading { name: "a", digest: "0", precision: Precision::Double, angles: None };
+    let text = structured_text(&program.program, "a", &heading);
+    let library = Library::read(&text).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+    let mut block = library.instance("FB_a").unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+    let names = &program.names;
+    let mut different = 0;
+    for vector in system_vectors(system, 3, 60) {
+        let inputs = names.inputs.iter().zip(&vector.sample);
+        inputs.for_each(|(name, value)| block.set(name, Value::Lreal(*value)).expect("an input"));
+        block.call().unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+        let same_values = names.outputs.iter().zip(&vector.answer).all(|(name, value)| {
+            matches!(block.get(name), Ok(Value::Lreal(found)) if found.to_bits() == value.to_bits())
+        });
+        let marks = names.sources.iter().chain([&names.faults]).zip(&vector.marks);
+        let same_marks = marks.into_iter().all(
+            |(name, mark)| matches!(block.get(name), Ok(Value::Byte(found)) if found == *mark),
+        );
+        different += usize::from(!(same_values && same_marks));
+    }
+    Some(different)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_structured_text_of_any_system_answers_as_the_system(
+        system in fspid_options::any_system(),
+    ) {
+        prop_assert!(different(&system).is_none_or(|count| count == 0), "{:#?}", system.parts());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::program::{Argument, Expression, Part, Place, Program, Statement};
+use crate::program::{Argument, Expression, Kind, Part, Place, Program, Statement};
 
 /// Removes values and members of configuration and state that are not read, with what is written into them.
 pub(crate) fn prune(program: &mut Program) {
@@ -39,7 +39,8 @@ pub(crate) fn remove_uncalled(program: &mut Program, entries: &[&'static str]) {
     program.functions.retain(|function| called.contains(function.name));
 }
 
-/// Removes arrays that are filled and never read.
+/// Removes arrays that are filled and never read, and reals that are never read; for programs in which a function that
+/// answers a real does nothing else.
 pub(crate) fn remove_unread_arrays(body: &mut Vec<Statement>) {
     let mut before = usize::MAX;
     while statements(body) < before {
@@ -50,6 +51,7 @@ pub(crate) fn remove_unread_arrays(body: &mut Vec<Statement>) {
             Statement::Array(name, _) | Statement::Set(Place::Element(name, _), _) => {
                 reads.contains(&(LOCAL, name.clone()))
             }
+            Statement::Let(name, Kind::Real, _) => reads.contains(&(LOCAL, name.clone())),
             _ => true,
         });
     }

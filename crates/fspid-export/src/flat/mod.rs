@@ -21,7 +21,7 @@ pub(crate) struct Flat {
     pub(crate) powers: Option<(&'static str, Value)>,
     /// What `reset` does.
     pub(crate) reset: Vec<Statement>,
-    /// What `step` does; it may end early.
+    /// What `step`, or `infer` of a fuzzy system, does; it may end early.
     pub(crate) step: Vec<Statement>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) const POWERS: &str = "powers_of_two";
 /// The functions of a program, flat.
 pub(crate) fn flatten(program: &Program) -> Flat {
     let mut flattener = Flattener { program, values: Vec::new(), hoisted: 0, needs_powers: false };
-    let [reset, step] = ["reset", "step"].map(|name| flattener.whole_function(name));
+    let [reset, step] = ["reset", program.entry()].map(|name| flattener.whole_function(name));
     let powers = flattener.needs_powers.then(|| {
         let powers = doublings(program.precision).map(|exponent| f64::exp2(f64::from(exponent)));
         (POWERS, Value::Reals(powers.collect()))

@@ -37,7 +37,7 @@ pub fn export_system(
     system: &System,
     request: &SystemRequest<'_>,
 ) -> Result<Export, SystemRefusal> {
-    if !matches!(request.target, Target::C | Target::Lua) {
+    if !matches!(request.target, Target::C | Target::Lua | Target::StructuredText) {
         return Err(SystemRefusal {
             place: "the target".to_owned(),
             problem: format!("{} is not written of fuzzy systems", request.target.name()),
@@ -94,7 +94,7 @@ fn exported<R: Real>(
     Ok(Export { prefix, files: written.files, notes })
 }
 
-const WRITTEN: &str = "possible are c and lua";
+const WRITTEN: &str = "possible are c, lua and st";
 
 /// What 32 bits make of the answers.
 fn measured(system: &System, vectors: &[Vector<f32>]) -> Vec<String> {

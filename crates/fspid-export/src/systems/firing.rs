@@ -251,6 +251,7 @@ impl<R: Real> Composer<'_, R> {
                 let mut joined: Option<Expression> = None;
                 for part in all {
                     let part = self.antecedent(part, block, own)?;
+                    let part = self.operand(part);
                     joined = Some(match joined {
                         None => part,
                         Some(joined) if is_and => {
@@ -262,6 +263,18 @@ impl<R: Real> Composer<'_, R> {
                 Ok(joined.unwrap_or(number(1.0)))
             }
         }
+    }
+
+    /// An operand that is called for has a name first: where calls are written out, as in Structured Text, a function has
+    /// one set of values.
+    fn operand(&mut self, value: Expression) -> Expression {
+        if !matches!(value, Expression::Call(..)) {
+            return value;
+        }
+        self.operands += 1;
+        let name = format!("operand_{}", self.operands);
+        self.body.push(Statement::real(&name, value));
+        local(&name)
     }
 
     fn condition(&mut self, condition: &Condition, own: usize) -> Result<Expression, Trouble> {

@@ -56,8 +56,8 @@ impl Library {
         if let Some(foreign) = listing.foreign() {
             return Err(Trouble::Foreign(foreign));
         }
-        let mut body = listing.values(&[("answer_", value)]);
-        body.push(Statement::Return(Some(local("answer_"))));
+        let mut body = listing.values(&[("outcome", value)]);
+        body.push(Statement::Return(Some(local("outcome"))));
         self.helpers::<R>(&body);
         let real = |name: &&'static str| Parameter { name, kind: Kind::Real, written: false };
         self.functions.push(Function {

@@ -106,6 +106,8 @@ struct Composer<'a, R> {
     conclusions: Vec<[usize; 3]>,
     /// True if some rule asks about an output.
     chained: bool,
+    /// How many operands of antecedents have names.
+    operands: usize,
     /// How much room outlines need.
     room: polygon::Room,
     /// What `infer` does.
@@ -127,6 +129,7 @@ pub fn system_program<R: Real>(system: &System) -> Result<SystemProgram, SystemR
         conditions: rules.conditions,
         conclusions: rules.conclusions,
         chained: rules.chained,
+        operands: 0,
         room: polygon::Room::default(),
         names: Names::of(system.parts()),
         configuration: Configuration::default(),

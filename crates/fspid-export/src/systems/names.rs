@@ -29,7 +29,7 @@ const KEPT: &str = "and array asm at auto begin bool break by byte case catch ch
     protected pub public raise ref register repeat restrict retain return sample self short signed sizeof spmd state \
     static string struct super switch task template then this throw time to tod trait true try type typedef typename union \
     unsafe unsigned until use using var virtual void volatile wchar when where while with word xor yield answer infer int8 \
-    real lreal sint usint uint dint udint lint ulint dword lword any";
+    real reset lreal sint usint uint dint udint lint ulint dword lword any";
 
 /// A name that is none of `taken`, by the rule; `taken` has it then.
 pub(super) fn unique(name: &str, taken: &mut Vec<String>) -> String {

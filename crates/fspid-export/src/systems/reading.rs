@@ -75,13 +75,13 @@ fn scale(room: Room) -> Statement {
 fn grades() -> [Statement; 3] {
     [
         Statement::real("begin", piece(2) * local("scaled")),
-        Statement::real("end_", piece(3) * local("scaled")),
+        Statement::real("ending", piece(3) * local("scaled")),
         Statement::real("width", piece(1) - piece(0)),
     ]
 }
 
 fn half_sum() -> Expression {
-    number(0.5) * local("begin") + number(0.5) * local("end_")
+    number(0.5) * local("begin") + number(0.5) * local("ending")
 }
 
 fn found(value: Expression) -> Vec<Statement> {
@@ -90,7 +90,7 @@ fn found(value: Expression) -> Vec<Statement> {
 
 fn centroid(room: Room) -> Function {
     let off = |column| number(0.5) * (piece(column) - local("middle"));
-    let tilt = local("width") * (local("end_") - local("begin")) / number(12.0);
+    let tilt = local("width") * (local("ending") - local("begin")) / number(12.0);
     let mut one: Vec<Statement> = grades().into();
     one.extend([
         set("area", local("area") + local("width") * half_sum()),
@@ -167,7 +167,7 @@ pub(super) fn halfway(room: Room) -> Function {
         Expression::binary(Operator::Add, last, less)
     };
     let column = |left, right| turned().select(piece(right), piece(left));
-    let (begin, end) = (|| local("begin"), || local("end_"));
+    let (begin, end) = (|| local("begin"), || local("ending"));
     let root = begin() * begin() + number(2.0) * local("slope") * local("left");
     let distance = vec![
         Statement::real("slope", (end() - begin()) / local("width").magnitude()),
@@ -180,12 +180,12 @@ pub(super) fn halfway(room: Room) -> Function {
         Statement::If(
             local("from").less(local("to")),
             vec![
-                Statement::real("place", local("from") + local("along")),
-                Statement::Return(Some(local("place").smaller(local("to")))),
+                set("place", local("from") + local("along")),
+                set("place", local("place").smaller(local("to"))),
             ],
             vec![
-                Statement::real("place", local("from") - local("along")),
-                Statement::Return(Some(local("place").larger(local("to")))),
+                set("place", local("from") - local("along")),
+                set("place", local("place").larger(local("to"))),
             ],
         ),
     ];
@@ -195,20 +195,19 @@ pub(super) fn halfway(room: Room) -> Function {
         Statement::real("from", column(0, 1)),
         Statement::real("to", column(1, 0)),
         Statement::real("begin", column(2, 3) * local("scaled")),
-        Statement::real("end_", column(3, 2) * local("scaled")),
+        Statement::real("ending", column(3, 2) * local("scaled")),
         Statement::real("width", local("to") - local("from")),
         Statement::real("own", (local("width") * half_sum()).magnitude()),
+        // The end of the piece, unless the half is reached before it.
+        set("place", local("to")),
+        set("reached", (local("left") - slack()).at_most(local("own"))),
         Statement::when((local("left") + slack()).less(local("own")), distance),
-        Statement::when(
-            (local("left") - slack()).at_most(local("own")),
-            vec![Statement::Return(Some(local("to")))],
-        ),
         set("left", local("left") - local("own")),
-        set("last", local("to")),
     ];
+    let open = is_less(local("walked"), local("count")).and(local("reached").negated());
     let walk = vec![
         Statement::Let("piece".into(), Kind::Whole, local("walked")),
-        Statement::when(is_less(local("walked"), local("count")), one),
+        Statement::when(open, one),
     ];
     let mut parameters = vec![room.parameter("pieces", false), counted("count")];
     parameters.extend(["scaled", "area", "turned"].map(real));
@@ -220,9 +219,10 @@ pub(super) fn halfway(room: Room) -> Function {
         answers: Some(Kind::Real),
         body: vec![
             Statement::real("left", number(0.5) * local("area")),
-            Statement::real("last", number(0.0)),
+            Statement::real("place", number(0.0)),
+            Statement::Let("reached".into(), Kind::Truth, Expression::Truth(false)),
             repeat("walked", room.pieces, walk),
-            Statement::Return(Some(local("last"))),
+            Statement::Return(Some(local("place"))),
         ],
     }
 }

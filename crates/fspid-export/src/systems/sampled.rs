@@ -271,7 +271,7 @@ impl<R: Real> Composer<'_, R> {
             Statement::set_element("pieces", flat(local(&row), PIECE, column), value)
         };
         let half = |name: &str| number(0.5) * local(name);
-        let names = ["left", "right", "begin", "end_"].map(|name| samples.name(name));
+        let names = ["left", "right", "begin", "ending"].map(|name| samples.name(name));
         let [from, to, first, last] = &names;
         let mut piece = vec![
             Statement::real(from, left),
