@@ -12,6 +12,7 @@ mod rust;
 mod same_bits;
 mod simulink;
 mod structured_text;
+mod systems;
 mod table;
 mod track;
 mod unpacked;
