@@ -114,7 +114,7 @@ fn fly<R: Real>(controller: &Controller<R>, angles: Angles) -> Result<(), TestCa
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 25, max_shrink_iters: 30, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 16, max_shrink_iters: 30, ..ProptestConfig::default() })]
 
     #[test]
     fn the_structured_text_of_any_controller_answers_as_the_controller_in_both_precisions(
