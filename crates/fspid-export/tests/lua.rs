@@ -33,7 +33,7 @@ fn checked<R: Real>(controller: &Controller<R>, angles: Angles) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 25, max_shrink_iters: 8, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 16, max_shrink_iters: 8, ..ProptestConfig::default() })]
 
     #[test]
     fn the_lua_of_any_controller_answers_as_the_controller_in_both_kinds_of_lua(
