@@ -3,13 +3,16 @@
 mod ardupilot;
 mod c;
 mod common;
+mod evidence;
 mod fmu;
 mod lua;
 mod lua_interpreter;
 mod moved;
 mod rust;
 mod same_bits;
+mod simulink;
 mod structured_text;
+mod systems;
 mod table;
 mod track;
 mod unpacked;

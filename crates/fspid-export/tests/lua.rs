@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fspid_core::Controller;
 use fspid_export::program::Precision;
-use fspid_export::vectors::vectors;
+use fspid_export::vectors::eventful;
 use fspid_export::write::{Heading, lua, lua_harness};
 use fspid_export::{Angles, Request, Target, export, precision_of, program};
 use fspid_numeric::Real;
@@ -17,7 +17,7 @@ fn write<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) {
     let program = program(controller, angles).expect("nothing here is refused");
     let heading =
         Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
-    let vectors = vectors(controller, angles, 1, 400);
+    let vectors = eventful(controller, angles, 1, 400);
     for (name, text) in [
         ("pitch.lua", lua(&program, &heading)),
         ("check.lua", lua_harness(&program, "pitch", &vectors)),
@@ -97,6 +97,7 @@ fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
         samples: 50,
         points: 25,
         digest: "0",
+        evidence: false,
     };
     let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");
     assert_eq!(exported.prefix, "controller_math");

@@ -12,7 +12,12 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
         File::text(format!("{prefix}.h"), written.header),
         File::text(format!("{prefix}.c"), written.source),
         File::text(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
+        File::text("CMakeLists.txt", write::cmake(prefix)),
+        File::text("library.json", write::platformio(prefix)),
     ];
+    if let Some(sketch) = write::sketch(program, prefix, heading) {
+        files.push(File::text(format!("arduino/{prefix}_sketch/{prefix}_sketch.ino"), sketch));
+    }
     if let Some(flown) = flown {
         let selftest = write::c_selftest(program, flown.controller, prefix, heading);
         files.push(File::text(format!("{prefix}_selftest.c"), selftest));

@@ -5,7 +5,9 @@
 mod c;
 mod fmu;
 mod lua;
+mod matlab;
 mod rust;
+mod simulink;
 mod structured_text;
 mod table;
 
@@ -31,6 +33,10 @@ pub enum Target {
     Rust,
     /// The supervisor's surface as a table in C and CSV.
     Table,
+    /// A function of MATLAB, and the supervisor as a `.fis`.
+    Matlab,
+    /// An S-function around the C.
+    Simulink,
     /// A functional mock-up unit, FMI 2.0.
     Fmu2,
     /// A functional mock-up unit, FMI 3.0.
@@ -39,8 +45,17 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::C, Self::Lua, Self::StructuredText, Self::Rust, Self::Table, Self::Fmu2, Self::Fmu3];
+    pub const ALL: [Self; 9] = [
+        Self::C,
+        Self::Lua,
+        Self::StructuredText,
+        Self::Rust,
+        Self::Table,
+        Self::Matlab,
+        Self::Simulink,
+        Self::Fmu2,
+        Self::Fmu3,
+    ];
 
     /// Its name on the command line.
     #[must_use]
@@ -51,6 +66,8 @@ impl Target {
             Self::StructuredText => "st",
             Self::Rust => "rust",
             Self::Table => "table",
+            Self::Matlab => "matlab",
+            Self::Simulink => "simulink",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",
         }
@@ -63,7 +80,7 @@ impl Target {
             Self::C | Self::Lua | Self::StructuredText | Self::Rust | Self::Table => {
                 Precision::Single
             }
-            Self::Fmu2 | Self::Fmu3 => Precision::Double,
+            Self::Matlab | Self::Simulink | Self::Fmu2 | Self::Fmu3 => Precision::Double,
         }
     }
 
@@ -79,6 +96,8 @@ impl Target {
             Self::Lua => return Ok(lua::files(source)),
             Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
+            Self::Simulink => simulink::files(source)?,
+            Self::Matlab => return matlab::files(source),
             Self::Table => return table::files(source),
             Self::Fmu2 => return fmu::files(source, Version::Two),
             Self::Fmu3 => return fmu::files(source, Version::Three),

@@ -64,6 +64,16 @@ pub(super) trait Dialect {
         text
     }
 
+    /// A value of an array.
+    fn element(&self, array: &str, index: &str) -> String {
+        format!("{array}[{index}]")
+    }
+
+    /// Writes a statement that this language has a way of its own for; false if it has none.
+    fn own(&self, _: &mut Page, _: &Statement) -> bool {
+        false
+    }
+
     /// True where a value, which is written twice, lies between the negative of a number and the number; `None` for a
     /// language that asks for the magnitude.
     fn within(&self, _value: &str, _most: &str) -> Option<String> {
@@ -84,6 +94,9 @@ pub(super) fn block(dialect: &impl Dialect, page: &mut Page, body: &[Statement])
 }
 
 fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
+    if dialect.own(page, statement) {
+        return;
+    }
     match statement {
         Statement::Remark(text) => dialect.remark(page, text),
         Statement::Let(name, kind, value) => {
@@ -107,8 +120,8 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             page.inside(|page| block(dialect, page, body));
             page.line(dialect.end(Block::For));
         }
-        Statement::Call(name, arguments) => {
-            dialect.run(page, &dialect.call(name, given(dialect, arguments)));
+        Statement::Call(name, given) => {
+            dialect.run(page, &dialect.call(name, arguments(dialect, given)));
         }
         Statement::Return(value) => {
             let value = value.as_ref().map(|value| outer(dialect, value));
@@ -117,29 +130,30 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
     }
 }
 
-fn given(dialect: &impl Dialect, arguments: &[Argument]) -> Vec<String> {
+/// What a function is called with, as text.
+pub(super) fn arguments(dialect: &impl Dialect, given: &[Argument]) -> Vec<String> {
     let text = |argument: &Argument| match argument {
         Argument::Value(value) => outer(dialect, value),
         Argument::Array(name) => dialect.local(name),
     };
-    arguments.iter().map(text).collect()
+    given.iter().map(text).collect()
 }
 
-fn place(dialect: &impl Dialect, place: &Place) -> String {
+pub(super) fn place(dialect: &impl Dialect, place: &Place) -> String {
     match place {
         Place::Local(name) => dialect.local(name),
         Place::Element(name, index) => {
-            format!("{}[{}]", dialect.local(name), outer(dialect, index))
+            dialect.element(&dialect.local(name), &outer(dialect, index))
         }
         Place::Member(part, name) => dialect.member(*part, name),
         Place::MemberElement(part, name, index) => {
-            format!("{}[{}]", dialect.member(*part, name), outer(dialect, index))
+            dialect.element(&dialect.member(*part, name), &outer(dialect, index))
         }
     }
 }
 
 /// An expression that needs no brackets around it.
-fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+pub(super) fn outer(dialect: &impl Dialect, value: &Expression) -> String {
     if let Some(text) = within(dialect, value) {
         return text;
     }
@@ -203,6 +217,6 @@ fn expression(dialect: &impl Dialect, value: &Expression) -> String {
         }
         Expression::ToReal(value) => dialect.to_real(&of(value)),
         Expression::PowerOfTwo(value) => dialect.power_of_two(&outer(dialect, value)),
-        Expression::Call(name, arguments) => dialect.call(name, given(dialect, arguments)),
+        Expression::Call(name, given) => dialect.call(name, arguments(dialect, given)),
     }
 }
