@@ -21,6 +21,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
         let found = names.len();
         problems.push(format!("it has {found} controller; a contest needs two or more"));
     }
+    problems.extend(study.scenario.start_externals().err().map(|error| error.to_string()));
     let Some(rules) = study.contest.clone() else {
         problems.push("it has no [[contest.case]]: what the controllers are judged on".to_owned());
         return Err(refused(source, problems));
