@@ -211,6 +211,8 @@ fn taking_over<R: Real>(flight: &mut Flight<'_, R>) {
         let mut sample = good;
         sample[place] = f64::NAN;
         flight.track(0.1, sample);
+        // A fault that is latched is no reason not to go on.
+        flight.track(0.07, good);
         flight.event(Event::Faults, good);
     }
     flight.reset(good);
