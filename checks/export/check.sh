@@ -27,7 +27,7 @@ on_a_board() {
         mps2-an386) flags=(-mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16) ;;
         *) flags=(-mcpu=cortex-m3) ;;
     esac
-    arm-none-eabi-gcc "$level" "${plain[@]}" -Wno-error "${flags[@]}" -mthumb --specs=rdimon.specs fspid.c "$file" "$here/start.c" \
+    arm-none-eabi-gcc "$level" "${plain[@]}" -Wno-error "${flags[@]}" -mthumb --specs=rdimon.specs fspid.c fspid_selftest.c "$file" "$here/start.c" \
         -I. -Wl,--section-start=.vectors=0 -Wl,-Tdata=0x20000000 -o board.elf 2> /dev/null
     timeout 120 qemu-system-arm -machine "$board" -nographic -semihosting -icount shift=0 -kernel board.elf 2>&1 | tail -1
 }
@@ -51,6 +51,7 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
                 echo "$name, $board $level: $(on_a_board "$board" "$level" fspid_check.c)"
             done
             echo "$name, $board -O2: $(on_a_board "$board" -O2 "$here/count.c")"
+            echo "$name, $board -O2: $(on_a_board "$board" -O2 "$here/count_selftest.c")"
         done
         arm-none-eabi-gcc -Os "${plain[@]}" -mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16 -mthumb -fstack-usage -c fspid.c
         echo "$name, flash at -Os: $(arm-none-eabi-size fspid.o | awk 'NR == 2 { print $1 }') bytes; deepest frames: $(sort -t "$(printf '\t')" -k2 -n -r fspid.su | head -2 | awk '{ printf "%s ", $2 }')bytes"

@@ -122,6 +122,7 @@ struct Known<'a> {
     /// What never goes the other way.
     one_way: &'a [(&'a str, String, bool)],
     is_mirrored: bool,
+    has_numbers: bool,
 }
 
 impl Known<'_> {
@@ -176,11 +177,14 @@ impl Known<'_> {
             () if compares && (text.contains('?') || text.contains("if (strengths")) => {
                 "both ways answer the same number where the two sides are equal"
             }
+            () if element == "infer" && self.has_numbers && text.contains("->range") => {
+                "the inputs are limited once more behind it, in spacings"
+            }
             () if compares && text.contains("->range") => {
                 "the end of the range is moved onto itself"
             }
             () if asks => "what is asked here never goes the other way: coverage.csv",
-            () if self.is_mirrored && matches!(element, "sign" | "fill_grades") => {
+            () if self.is_mirrored && matches!(element, "sign" | "fill_grades" | "spacing") => {
                 "the rules conclude the same for both inputs turned"
             }
             () if element == "set_sigma" && change == "the other sign" => "squared",
@@ -216,6 +220,7 @@ pub(super) fn front<R: Real>(subject: &Subject<'_, R>, findings: &[Finding], bas
         lines: source.lines().collect(),
         one_way: &one_way,
         is_mirrored: is_mirrored(subject.program),
+        has_numbers: subject.program.function("lower_set").is_some(),
     };
     let row = |what: &str, (found, all): (usize, usize)| format!("| {what} | {all} | {found} |\n");
     let is_rule = |it: &Finding| it.mutant.is_design && it.mutant.element.contains(" of ");
@@ -333,6 +338,7 @@ None that is mandatory or required. Advisory ones, and why they stay:
 | --- | --- |
 | 8.7 | what others call has external linkage, whether or not this program calls it |
 | 8.9 | the tables of the self test stand outside of the one function that reads them, so that they can be read |
+| 12.1 | every operation stands in brackets; the addon misses those behind a `?` |
 | 15.5 | a sample that cannot be used ends the step at once |
 | 19.2 | the bits of a number are read and made by a union: C has no other way without a library |
 
