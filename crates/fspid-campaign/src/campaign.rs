@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use crate::draws::Draws;
 use crate::engine::{self, Memory};
 use crate::error::CampaignError;
-use crate::plan::{Plan, Range};
+use crate::plan::Plan;
+use crate::range::Range;
 use crate::rows::{Rows, Run};
 use crate::table::ColumnTable;
 

@@ -15,7 +15,8 @@ use fspid_scenario::file::read_text;
 use fspid_study::output::{self, UNFINISHED};
 
 use crate::error::CampaignError;
-use crate::plan::{Plan, Range};
+use crate::plan::Plan;
+use crate::range::Range;
 
 /// A campaign's folder.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,13 +3,13 @@
 //! A plan is a file `campaign.json` in the campaign's folder. Everything that decides about results
 //! goes into [`Plan::id`]; the size of shards does not.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use fspid_scenario::file::{Extra, Template};
 use serde_json::{Value, json};
 
 use crate::error::CampaignError;
+use crate::range::Range;
 use crate::rows;
 use crate::sample::Sampling;
 use crate::table::Digest;
@@ -24,21 +24,6 @@ pub const MOST_SHARD_RUNS: u64 = 65_536;
 pub const SHARD_RUNS: u64 = 8192;
 /// The same for flights that are flown one by one.
 pub const SLOW_SHARD_RUNS: u64 = 256;
-
-/// Runs from the first up to, and without, the end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Range {
-    /// The first run.
-    pub first: u64,
-    /// The run after the last.
-    pub end: u64,
-}
-
-impl fmt::Display for Range {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "runs {} to {}", self.first, self.end.saturating_sub(1))
-    }
-}
 
 /// A campaign as it is planned.
 #[derive(Clone, Debug, PartialEq, Eq)]

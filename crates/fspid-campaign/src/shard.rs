@@ -9,7 +9,8 @@ use fspid_study::output;
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
-use crate::plan::{Plan, Range};
+use crate::plan::Plan;
+use crate::range::Range;
 use crate::table::{ColumnTable, Reader, Writer};
 
 /// Key of the metadata that names the campaign.
@@ -48,6 +49,7 @@ pub fn fly(
         progress.add_found(range.end - range.first);
         return Ok(Done::Found);
     }
+    campaign.template().study().scenario.start_externals()?;
     let table = campaign.fly(range, progress)?;
     write(&path, campaign, range, &table)?;
     Ok(Done::Flown)

@@ -7,7 +7,8 @@ use crate::gains::Gains;
 use crate::guard::Faults;
 use crate::pid::{Fspid, Pid};
 use crate::pid_config::{PidConfig, may_be_remembered};
-use crate::state::{Sample, State, Step};
+use crate::sample::Sample;
+use crate::state::{State, Step};
 
 /// A controller of the loop; it sees radians and answers radians.
 #[derive(Clone, Copy, Debug, PartialEq)]

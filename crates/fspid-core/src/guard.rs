@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 
 use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, positive};
-use crate::state::Sample;
+use crate::sample::Sample;
 
 /// Faults that a controller has met, latched until they are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,6 +39,12 @@ impl Faults {
     #[must_use]
     pub const fn bits(self) -> u8 {
         self.0
+    }
+
+    /// Those that a number's bits stand for; bits of no fault are left out.
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits & 0x1f)
     }
 
     /// True if every fault of `other` is among these.
@@ -89,6 +95,12 @@ impl<R: Real> Guard<R> {
     /// [`ConfigError::Number`] unless the limit is finite and positive.
     pub fn new(limit_rad: R) -> Result<Self, ConfigError> {
         Ok(Self { limit: positive(ControllerSetting::SampleGuard, limit_rad)? })
+    }
+
+    /// The limit of a guard that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(limit_rad: R) -> Self {
+        Self { limit: limit_rad }
     }
 
     /// The largest sample that is believed, rad.

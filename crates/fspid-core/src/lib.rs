@@ -55,6 +55,7 @@ pub mod paper;
 mod pid;
 mod pid_config;
 mod rounded;
+mod sample;
 mod second_input;
 mod state;
 mod tuner;
@@ -68,8 +69,9 @@ pub use integral::{AntiWindup, IntegralForm};
 pub use limits::Limits;
 pub use pid::{Fspid, Pid};
 pub use pid_config::{Derivative, PidConfig, SetpointWeights, largest_remembered};
+pub use sample::Sample;
 pub use second_input::{ModelState, ReferenceModel, SecondInput, SetCentres};
-pub use state::{Previous, Sample, State, Step};
+pub use state::{Previous, State, Step};
 pub use tuner::{
     Change, DeadZone, ErrorSign, GainCoupling, InputScale, InputSets, Law, SelfTuner, TunerSettings,
 };

@@ -25,6 +25,12 @@ impl<R: Real> Limits<R> {
         Err(ConfigError::EmptyRange { what, lower, upper })
     }
 
+    /// The ends of an interval that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(lower: R, upper: R) -> Self {
+        Self { lower, upper }
+    }
+
     /// Lower end.
     pub fn lower(&self) -> R {
         self.lower

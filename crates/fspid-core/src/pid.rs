@@ -6,8 +6,9 @@ use crate::equations::{PidEquations, TunerEquations};
 use crate::error::ConfigError;
 use crate::gains::Gains;
 use crate::pid_config::{Moment, PidConfig, SetpointWeights};
+use crate::sample::Sample;
 use crate::second_input::ModelState;
-use crate::state::{Sample, State, Step};
+use crate::state::{State, Step};
 use crate::tuner::{GainCoupling, SelfTuner};
 
 /// A PID controller with fixed gains (`ki = kd = 0`: the paper's proportional controller).
@@ -28,6 +29,17 @@ impl<R: Real> Pid<R> {
         let gains = gains.checked()?;
         let equations = PidEquations::new(&config, gains, GainCoupling::NONE);
         Ok(Self { gains, config, equations })
+    }
+
+    /// The parts of a controller that was built, as a constant: an export writes them. Nothing is checked and nothing
+    /// derived; [`Controller::rounded`](crate::Controller::rounded) does both again.
+    #[must_use]
+    pub const fn new_unchecked(
+        gains: Gains<R>,
+        config: PidConfig<R>,
+        equations: PidEquations<R>,
+    ) -> Self {
+        Self { gains, config, equations }
     }
 
     /// The gains.
@@ -85,6 +97,17 @@ impl<R: Real> Fspid<R> {
         let equations = PidEquations::new(&config, nominal, settings.gain_coupling);
         let tuner_equations = TunerEquations::new(settings, nominal, config.dt_s);
         Ok(Self { tuner, config, equations, tuner_equations })
+    }
+
+    /// As [`Pid::new_unchecked`].
+    #[must_use]
+    pub const fn new_unchecked(
+        tuner: SelfTuner<R>,
+        config: PidConfig<R>,
+        equations: PidEquations<R>,
+        tuner_equations: TunerEquations<R>,
+    ) -> Self {
+        Self { tuner, config, equations, tuner_equations }
     }
 
     /// Where the gains come from.

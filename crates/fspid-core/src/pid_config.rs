@@ -9,8 +9,9 @@ use crate::gains::Gains;
 use crate::guard::{Faults, Guard};
 use crate::integral::{AntiWindup, IntegralForm};
 use crate::limits::Limits;
+use crate::sample::Sample;
 use crate::second_input::ModelState;
-use crate::state::{Previous, Sample, State, Step};
+use crate::state::{Previous, State, Step};
 
 /// Weights of the set-point in the proportional and derivative terms; 1 for plain error feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -138,6 +138,12 @@ impl<R: Real> SetCentres<R> {
         Ok(Self { small, medium })
     }
 
+    /// The centres of sets that were built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(small: R, medium: R) -> Self {
+        Self { small, medium }
+    }
+
     /// Of the small sets.
     pub fn small(&self) -> R {
         self.small

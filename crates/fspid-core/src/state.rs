@@ -1,22 +1,12 @@
-//! What goes into a step, what comes out of it, and what is remembered from one to the next.
+//! What comes out of a step, and what is remembered from one to the next.
 
 use fspid_numeric::Real;
 
 use crate::equations::{Memory, PidEquations};
 use crate::gains::Gains;
 use crate::guard::Faults;
+use crate::sample::Sample;
 use crate::second_input::ModelState;
-
-/// What a controller is given at a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample<R> {
-    /// Commanded pitch, rad.
-    pub setpoint_rad: R,
-    /// Measured pitch, rad.
-    pub measurement_rad: R,
-    /// Measured pitch rate, rad/s; ignored by a controller without a rate loop.
-    pub rate_rad_s: R,
-}
 
 /// What a controller answers.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use crate::equations::{Memory, TunerEquations};
 use crate::error::{ConfigError, allowed_if, finite, not_negative};
 use crate::gains::{GainLimits, Gains};
 use crate::guard::Faults;
+use crate::sample::Sample;
 use crate::second_input::{SecondInput, SetCentres};
-use crate::state::Sample;
 
 /// Which difference the supervisor sees as its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -221,6 +221,16 @@ impl<R: Real> SelfTuner<R> {
             limits.check(nominal)?;
         }
         Ok(Self { nominal, supervisor, settings })
+    }
+
+    /// The parts of a tuner that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(
+        nominal: Gains<R>,
+        supervisor: Supervisor<R>,
+        settings: TunerSettings<R>,
+    ) -> Self {
+        Self { nominal, supervisor, settings }
     }
 
     /// The nominal gains $k'$.

@@ -6,7 +6,7 @@ use fspid_numeric::Real;
 use crate::compose::{Angles, Refusal, precision_of, program};
 use crate::evidence::{self, Subject};
 use crate::program::Precision;
-use crate::targets::{File, Source, Target};
+use crate::targets::{File, Flown, Source, Target, Written};
 use crate::vectors::{eventful, vectors};
 use crate::write::{self, Heading};
 
@@ -23,6 +23,8 @@ pub struct Request<'a> {
     pub angles: Angles,
     /// How many samples the vectors have.
     pub samples: usize,
+    /// How many points a table has along each input.
+    pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
     /// Data for a review is asked for, which takes a minute; C has it.
@@ -85,15 +87,12 @@ fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
 ) -> Result<Export, ExportError> {
-    let program = program(controller, request.angles)
-        .map_err(|reason| ExportError::Refused { name: request.name.to_owned(), reason })?;
+    let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
+    let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
     let drawn = if request.target.has_events() { eventful } else { vectors };
     let vectors = drawn(controller, request.angles, SEED, request.samples);
-    let mut notes = Vec::new();
-    if prefix != request.name {
-        notes.push(format!("`{}` is called `{prefix}` in the code", request.name));
-    }
+    let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
     if request.precision == Precision::Single {
@@ -103,17 +102,18 @@ fn exported<R: Real>(
         name: request.name,
         digest: request.digest,
         precision: precision_of::<R>(),
-        angles: request.angles,
+        angles: Some(request.angles),
     };
     let source = Source {
         program: &program,
-        controller,
         prefix: &prefix,
         heading: &heading,
         vectors: &vectors,
+        flown: Some(Flown { controller, points: request.points }),
     };
-    let mut files = request.target.files(&source);
-    files.push(File::text("vectors.csv", write::csv(&program, &vectors)));
+    let written = written(request.target, &source).map_err(refused)?;
+    notes.extend(written.notes);
+    let files = written.files;
     let subject = Subject {
         program: &program,
         controller,
@@ -125,6 +125,21 @@ fn exported<R: Real>(
     let has_evidence = request.evidence && request.target == Target::C;
     let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
     Ok(Export { prefix: prefix.clone(), files, evidence, notes })
+}
+
+/// The files of the target, and the vectors.
+pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result<Written, Refusal> {
+    let mut written = target.files(source)?;
+    // A table is no controller.
+    if target != Target::Table {
+        written.files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
+    }
+    Ok(written)
+}
+
+/// That a name is another one in the code, if it is.
+pub(crate) fn renamed(name: &str, called: &str) -> Option<String> {
+    (name != called).then(|| format!("`{name}` is called `{called}` in the code"))
 }
 
 const NOT_JUDGED: &str =
@@ -151,6 +166,12 @@ fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
     Some(way)
 }
 
+/// Libraries that Lua has loaded before it looks for a file, and headers of C that a file must not hide.
+const TAKEN: &str = "bit32 coroutine debug io math os package string table utf8 \
+                     assert complex ctype errno fenv float inttypes iso646 limits locale setjmp signal stdalign \
+                     stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn tgmath threads time uchar \
+                     wchar wctype";
+
 /// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn identifier(name: &str) -> String {
@@ -163,6 +184,9 @@ pub fn identifier(name: &str) -> String {
         }
     }
     let text = text.trim_matches('_');
+    if TAKEN.split_whitespace().any(|taken| taken == text) {
+        return format!("controller_{text}");
+    }
     match text.chars().next() {
         Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
         Some(_) => format!("controller_{text}"),

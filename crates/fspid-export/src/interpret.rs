@@ -360,6 +360,7 @@ fn joined<R: Real>(operator: Operator, left: Single<R>, right: Single<R>) -> Sin
             Operator::Multiply => Single::Whole(left * right),
             Operator::Equal => Single::Truth(left == right),
             Operator::NotEqual => Single::Truth(left != right),
+            Operator::Less => Single::Truth(left < right),
             other => panic!("{other:?} does not join whole numbers"),
         },
         (Single::Byte(left), Single::Byte(right)) => match operator {

@@ -12,7 +12,7 @@ use fspid_numeric::Real;
 use fspid_numeric::lanes::Lanes;
 use fspid_numeric::scalar::Scalar;
 
-use crate::program::{Expression, Operator, Precision, Statement, local, number};
+use crate::program::{Argument, Expression, Operator, Precision, Statement, local, number};
 
 /// A step of a computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,6 +31,10 @@ enum Step {
     /// The third where the first is less than the second, else the fourth.
     IfLess(Traced, Traced, Traced, Traced),
     PowerOfTwo(Traced),
+    /// What a function of the program answers.
+    Call(&'static str, Traced),
+    /// What only the platform's mathematics could compute.
+    Foreign(&'static str),
 }
 
 thread_local! {
@@ -48,9 +52,9 @@ fn step(step: Step) -> Traced {
     })
 }
 
-fn infinite(traced: Traced) -> Option<f64> {
+fn constant(traced: Traced) -> Option<f64> {
     STEPS.with_borrow(|steps| match steps.get(traced.0) {
-        Some(Step::Constant(value)) if value.is_infinite() => Some(*value),
+        Some(Step::Constant(value)) => Some(*value),
         _ => None,
     })
 }
@@ -58,6 +62,27 @@ fn infinite(traced: Traced) -> Option<f64> {
 /// True for the constant 0, which is not -0.
 fn is_zero(traced: Traced) -> bool {
     matches!(get(traced), Step::Constant(value) if value.to_bits() == 0)
+}
+
+fn infinite(traced: Traced) -> Option<f64> {
+    constant(traced).filter(|value| value.is_infinite())
+}
+
+/// A constant that no finite number is beyond.
+fn endless(traced: Traced) -> Option<f64> {
+    constant(traced).filter(|value| value.abs() >= f64::MAX)
+}
+
+/// Whether one is less than another, where one of them is endless and the other is a constant too, or what the program
+/// reads or computes: a number that is no NaN and, unless an equation asks just that, finite.
+fn is_less(value: Traced, bound: Traced) -> Option<bool> {
+    match (endless(value), endless(bound)) {
+        (None, None) => None,
+        (Some(value), Some(bound)) => Some(value < bound),
+        (Some(value), None) => Some(value < 0.0),
+        // Below the upper end is what is finite: that is asked.
+        (None, Some(bound)) => (bound < 0.0).then_some(false),
+    }
 }
 
 impl Traced {
@@ -116,11 +141,11 @@ impl Neg for Traced {
     }
 }
 
-/// No controller flies with these.
-macro_rules! not_flown {
+/// No controller flies with these, and no exported system may ask for them.
+macro_rules! foreign {
     ($($name:ident),+) => {
         $(fn $name(self) -> Self {
-            step(Step::Constant(f64::NAN))
+            step(Step::Foreign(stringify!($name)))
         })+
     };
 }
@@ -144,16 +169,28 @@ impl Scalar for Traced {
 
     fn if_less(self, bound: Self, then: Self, otherwise: Self) -> Self {
         // Nothing is below the lower infinity and nothing above the upper one.
-        let never =
-            infinite(bound) == Some(f64::NEG_INFINITY) || infinite(self) == Some(f64::INFINITY);
-        if never { otherwise } else { step(Step::IfLess(self, bound, then, otherwise)) }
+        match is_less(self, bound) {
+            Some(true) => then,
+            Some(false) => otherwise,
+            // The smaller of a number and infinity.
+            None if then == self && otherwise == bound && endless(bound).is_some() => self,
+            None => step(Step::IfLess(self, bound, then, otherwise)),
+        }
+    }
+
+    fn exp(self) -> Self {
+        step(Step::Call("exponential", self))
+    }
+
+    fn sqrt(self) -> Self {
+        step(Step::Call("square_root", self))
     }
 
     fn pow(self, _: Self) -> Self {
-        step(Step::Constant(f64::NAN))
+        step(Step::Foreign("pow"))
     }
 
-    not_flown!(exp, ln, sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, floor);
+    foreign!(ln, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, floor);
 }
 
 /// A traced number of a precision.
@@ -257,6 +294,12 @@ impl Listing {
         statements
     }
 
+    /// The first function that only the platform's mathematics could compute, among all that was asked for.
+    pub(crate) fn foreign(&self) -> Option<&'static str> {
+        let name = |step: &Step| if let Step::Foreign(name) = step { Some(*name) } else { None };
+        STEPS.with_borrow(|steps| steps.iter().find_map(name))
+    }
+
     /// Values of these names do not stand any more: their block has ended.
     pub(crate) fn forget(&mut self, names: &[String]) {
         self.named.retain(|_, name| !names.contains(name) && !name.starts_with("part_"));
@@ -294,8 +337,11 @@ impl Listing {
             Step::Negative(value) => -of(value),
             Step::Magnitude(value) => of(value).magnitude(),
             Step::PowerOfTwo(value) => Expression::PowerOfTwo(Box::new(of(value))),
+            Step::Call(name, value) => Expression::Call(name, vec![Argument::Value(of(value))]),
+            Step::Foreign(_) => number(f64::NAN),
             Step::IfLess(value, bound, then, otherwise) => {
-                let is_less = match infinite(bound) {
+                let beyond = |end: &f64| *end > self.precision.largest();
+                let is_less = match constant(bound).filter(beyond) {
                     Some(_) => of(value).at_most(number(self.precision.largest())),
                     None => of(value).less(of(bound)),
                 };
@@ -311,8 +357,11 @@ fn get(traced: Traced) -> Step {
 
 fn operands(step: &Step) -> Vec<Traced> {
     match *step {
-        Step::Constant(_) | Step::Read(_) => Vec::new(),
-        Step::Negative(value) | Step::Magnitude(value) | Step::PowerOfTwo(value) => vec![value],
+        Step::Constant(_) | Step::Read(_) | Step::Foreign(_) => Vec::new(),
+        Step::Negative(value)
+        | Step::Magnitude(value)
+        | Step::PowerOfTwo(value)
+        | Step::Call(_, value) => vec![value],
         Step::Binary(_, left, right) => vec![left, right],
         Step::IfLess(value, bound, then, otherwise) => vec![value, bound, then, otherwise],
     }

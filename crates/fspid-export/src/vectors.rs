@@ -1,4 +1,5 @@
-//! Samples that go to the places where something may be wrong, drawn ones behind them, and what a controller answers.
+//! Samples that go to the places where something may be wrong, drawn ones behind them, and what a controller answers;
+//! those of systems are in `systems`.
 //!
 //! Directed are: every rule at the centres of its sets and between them, both ends of every limit, wind-up and the way
 //! out of it, dead zone, guard, numbers that are none, memories that nobody has written, taking over. Drawn are
@@ -13,6 +14,7 @@ use fspid_numeric::Real;
 
 use crate::Angles;
 use crate::compose::GAINS;
+pub(crate) use drawn::Draw;
 pub use drawn::samples;
 
 /// What is done with a controller at a vector.
@@ -85,18 +87,16 @@ pub enum Remembered {
 }
 
 /// What is done, a sample and its answer, in the units of the export.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Vector<R> {
-    /// What is done.
+    /// What is done; a fuzzy system only steps.
     pub event: Event<R>,
-    /// Set-point, measurement and rate.
-    pub sample: [R; 3],
-    /// Command and the three gains.
-    pub answer: [R; 4],
-    /// The command was cut.
-    pub saturated: bool,
-    /// The faults latched so far, as bits.
-    pub faults: u8,
+    /// What goes in: the members of the sample in their order, of a controller always with the rate.
+    pub sample: Vec<R>,
+    /// The reals that come out, in the order of the answer's members.
+    pub answer: Vec<R>,
+    /// The truths and bytes that come out, behind the reals: of a controller, whether the command was cut, and its faults.
+    pub marks: Vec<u8>,
 }
 
 /// What a controller answers to `count` samples, from a reset on, with nothing but steps.
@@ -127,7 +127,11 @@ fn flown<R: Real>(mut flight: Flight<'_, R>, seed: u64) -> Vec<Vector<R>> {
     flight.vectors.truncate(flight.count - flight.count / 4);
     let (controller, angles, count) = (flight.controller, flight.angles, flight.count);
     let mut again = Flight::new(controller, angles, flight.has_events, count);
-    flight.vectors.iter().for_each(|vector| again.again(vector));
+    for vector in &flight.vectors {
+        if let [setpoint, measurement, rate] = *vector.sample {
+            again.again(vector.event, [setpoint, measurement, rate]);
+        }
+    }
     drawn::fly(&mut again, seed);
     again.vectors
 }
@@ -166,8 +170,7 @@ impl<'a, R: Real> Flight<'a, R> {
         let per_radian = self.angles.per_radian().map_or(R::ONE, R::from_f64);
         let sample = sample.map(|value| R::from_f64(value) * per_radian);
         if self.has_events || event == Event::Step {
-            let empty = Vector { event, sample, answer: [R::ZERO; 4], saturated: false, faults: 0 };
-            self.again(&empty);
+            self.again(event, sample);
         }
     }
 
@@ -177,17 +180,17 @@ impl<'a, R: Real> Flight<'a, R> {
         self.event(Event::Track(R::from_f64(command_rad) * per_radian), sample);
     }
 
-    /// What is done at a vector, done now.
-    fn again(&mut self, vector: &Vector<R>) {
+    /// An event, with a sample in the unit of the export.
+    fn again(&mut self, event: Event<R>, given: [R; 3]) {
         if self.is_full() {
             return;
         }
         let radians = self.angles.radians().map_or(R::ONE, R::from_f64);
         let per_radian = self.angles.per_radian().map_or(R::ONE, R::from_f64);
-        let [setpoint_rad, measurement_rad, rate_rad_s] = vector.sample.map(|it| it * radians);
+        let [setpoint_rad, measurement_rad, rate_rad_s] = given.map(|it| it * radians);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
         let (controller, state) = (self.controller, &mut self.state);
-        match vector.event {
+        match event {
             Event::Step | Event::Hold | Event::Track(_) => {}
             Event::Reset => *state = State::new(),
             Event::Faults => {
@@ -202,13 +205,17 @@ impl<'a, R: Real> Flight<'a, R> {
                 }
             }
         }
-        let step = match vector.event {
+        let step = match event {
             Event::Hold => controller.hold(state, Faults::NOT_FINITE),
             Event::Track(command) => controller.track(state, sample, command * radians),
             _ => controller.step(state, sample),
         };
         let Step { command_rad, gains, saturated, faults } = step;
-        let answer = [command_rad * per_radian, gains.kp, gains.ki, gains.kd];
-        self.vectors.push(Vector { answer, saturated, faults: faults.bits(), ..*vector });
+        self.vectors.push(Vector {
+            event,
+            sample: given.to_vec(),
+            answer: vec![command_rad * per_radian, gains.kp, gains.ki, gains.kd],
+            marks: vec![u8::from(saturated), faults.bits()],
+        });
     }
 }

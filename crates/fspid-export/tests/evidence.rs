@@ -20,6 +20,7 @@ fn exported() -> Export {
         precision: Precision::Single,
         angles: Angles::Degrees,
         samples: 2500,
+        points: fspid_export::table::POINTS,
         digest: "0",
         evidence: true,
     };

@@ -47,20 +47,31 @@ pub(crate) struct Consequents {
 }
 
 impl Consequents {
-    pub(crate) fn new(grid: &Grid) -> Self {
+    // Counting loops, so that the compiler can sort the rules of a constant, which has no iterators.
+    pub(crate) const fn new(grid: &Grid) -> Self {
         let mut sorted =
             Self { groups: [[Rule::R00; GROUP]; GROUP_COUNT], counts: [0; LABEL_COUNT] };
-        let mut groups = sorted.groups.iter_mut();
-        for (label, count) in Label::ALL.into_iter().zip(&mut sorted.counts) {
-            let mut rules = rules_of(grid, label);
-            while let Some(first) = rules.next() {
-                let Some(group) = groups.next() else { break };
-                *group = [first; GROUP];
-                for (place, rule) in group.iter_mut().skip(1).zip(&mut rules) {
-                    *place = rule;
+        // The next group to begin.
+        let mut next = 0;
+        let mut label = 0;
+        while label < LABEL_COUNT {
+            let (mut found, mut rule) = (0, 0);
+            while rule < RULE_COUNT {
+                let (row, column) = (rule / LABEL_COUNT, rule % LABEL_COUNT);
+                if grid.at(Label::ALL[row], Label::ALL[column]).index() == label {
+                    // Asked for although it holds, so that no path leads to a panic.
+                    if found % GROUP == 0 && next < GROUP_COUNT {
+                        sorted.groups[next] = [Rule::ALL[rule]; GROUP];
+                        sorted.counts[label] += 1;
+                        next += 1;
+                    } else if next > 0 && next <= GROUP_COUNT {
+                        sorted.groups[next - 1][found % GROUP] = Rule::ALL[rule];
+                    }
+                    found += 1;
                 }
-                *count += 1;
+                rule += 1;
             }
+            label += 1;
         }
         sorted
     }
@@ -93,14 +104,6 @@ impl Consequents {
         }
         strengths
     }
-}
-
-/// The rules of a grid that conclude a label.
-fn rules_of(grid: &Grid, label: Label) -> impl Iterator<Item = Rule> {
-    let labels = Label::ALL
-        .into_iter()
-        .flat_map(move |error| Label::ALL.into_iter().map(move |change| grid.at(error, change)));
-    Rule::ALL.into_iter().zip(labels).filter(move |&(_, at)| at == label).map(|(rule, _)| rule)
 }
 
 /// Firing strength of each rule.

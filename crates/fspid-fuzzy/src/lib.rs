@@ -59,4 +59,6 @@ pub use number_table::{NumberGrid, NumberTable};
 
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 
-pub use supervisor::{Increments, Inference, InferenceError, OutOfRange, Supervisor};
+pub use supervisor::{
+    Increments, Inference, InferenceError, OutOfRange, Supervisor, SupervisorNumbers,
+};

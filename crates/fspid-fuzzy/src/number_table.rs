@@ -47,6 +47,12 @@ impl<R: Real> NumberTable<R> {
         }
     }
 
+    /// The table of the grids of one that was built, as a constant; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(grids: [NumberGrid<R>; 3]) -> Self {
+        Self { grids }
+    }
+
     /// The numbers of one output.
     #[must_use]
     pub const fn grid(&self, output: Output) -> &NumberGrid<R> {

@@ -113,6 +113,21 @@ pub struct Supervisor<R> {
     out_of_range: OutOfRange,
 }
 
+/// The numbers of a supervisor, as one that was built has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupervisorNumbers<R> {
+    /// Centre and sigma of each input set; of a triangle centre and half the base.
+    pub sets: [[R; 2]; LABEL_COUNT],
+    /// Half range of inputs and outputs.
+    pub range: R,
+    /// Distance of the sets' centres.
+    pub spacing: R,
+    /// The rule for the centre of gravity.
+    pub defuzzifier: Defuzzifier,
+    /// What happens to an input beyond the range.
+    pub out_of_range: OutOfRange,
+}
+
 /// What the rules conclude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(
@@ -157,6 +172,33 @@ impl<R: Real> Supervisor<R> {
         let built = Self::built(rules, range, R::ONE, Defuzzifier::Exact, out_of_range)?;
         table.check_within(range)?;
         Ok(built)
+    }
+
+    /// A supervisor of labels as a constant, of the [numbers](Self::parts) of one that was built; nothing is checked.
+    #[must_use]
+    pub const fn new_unchecked(table: &RuleTable, parts: SupervisorNumbers<R>) -> Self {
+        let [kp, ki, kd] = Output::ALL;
+        let grids = [table.grid(kp), table.grid(ki), table.grid(kd)];
+        let [kp, ki, kd] = grids;
+        let sorted = [Consequents::new(kp), Consequents::new(ki), Consequents::new(kd)];
+        Self::of_parts(Rules::Labels(sorted), parts)
+    }
+
+    /// As [`new_unchecked`](Self::new_unchecked) for rules that conclude numbers.
+    #[must_use]
+    pub const fn of_numbers_unchecked(table: NumberTable<R>, parts: SupervisorNumbers<R>) -> Self {
+        Self::of_parts(Rules::Numbers(table), parts)
+    }
+
+    const fn of_parts(rules: Rules<R>, parts: SupervisorNumbers<R>) -> Self {
+        let SupervisorNumbers { sets, range, spacing, defuzzifier, out_of_range } = parts;
+        Self { rules, sets, range, spacing, defuzzifier, out_of_range }
+    }
+
+    /// Everything but the rules, in numbers.
+    pub fn parts(&self) -> SupervisorNumbers<R> {
+        let Self { rules: _, sets, range, spacing, defuzzifier, out_of_range } = *self;
+        SupervisorNumbers { sets, range, spacing, defuzzifier, out_of_range }
     }
 
     /// A supervisor whose sets have this width in spacings.

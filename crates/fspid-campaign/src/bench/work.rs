@@ -12,7 +12,8 @@ use fspid_sim::{Controller, Prepared, fly};
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
-use crate::plan::{MOST_RUNS, Plan, Range};
+use crate::plan::{MOST_RUNS, Plan};
+use crate::range::Range;
 use crate::sample::Sampling;
 use crate::table::ColumnTable;
 

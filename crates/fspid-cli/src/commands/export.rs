@@ -1,35 +1,40 @@
-//! `fspid export`: a controller in another language.
+//! `fspid export`: a controller, or a fuzzy system, in another language.
+
+mod system;
 
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, File, Request, Target, export};
+use fspid_export::{Angles, Export, File, Request, Target, export};
 use fspid_scenario::file::{self, Study};
+use fspid_scenario::fuzzy_system;
 use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
 use fspid_study::output;
 
-/// Write a controller in another language: the same bits as the simulator, with vectors that show it.
+/// Write a controller or a fuzzy system in another language: the same bits as the simulator, with vectors that show it.
 ///
 /// The folder holds the code, `vectors.csv` with drawn samples, good and bad ones, and their answers, and a program that asks
 /// the code for the answers and counts those with other bits. Whether the loop is good is not asked: `verify` and `certify` do.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
+    after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  fspid export tip.toml --to c --out tip\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
 )]
 pub(crate) struct Arguments {
-    /// The scenario or design file.
+    /// The scenario or design, or a fuzzy system (.toml, .fis, .fcl, .fll, .xml), which c and lua can say.
     file: InFile,
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding) or lua (5.3).
+    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), table (the
+    /// supervisor alone, in C and CSV), fmu2 or fmu3 (functional mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -38,19 +43,26 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
-    /// The digits of the numbers.
-    #[arg(long, value_enum, default_value_t = Numbers::Single)]
-    numbers: Numbers,
+    /// The digits of the numbers; double for fmu2, fmu3 and fuzzy systems if left out, else single.
+    #[arg(long, value_enum)]
+    numbers: Option<Numbers>,
     /// The unit of the angles that go in and come out.
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
     /// How many samples the vectors have.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     samples: u32,
+    /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
+    #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
+    points: usize,
     /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
     /// script that makes the rest; for c, takes a minute.
     #[arg(long, value_name = "DIR")]
     evidence: Option<Folder>,
+    /// How integrals of a fuzzy system are computed: `exact`, `endpoints:N`, `midpoint:N`, `trapezoid:N` or `left-end:N`; as
+    /// its file says if left out.
+    #[arg(long, value_name = "RULE")]
+    defuzzifier: Option<String>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -82,28 +94,44 @@ fn target(name: &str) -> Result<Target, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if fuzzy_system::is_system(&arguments.file) {
+        return system::run(arguments);
+    }
+    if arguments.defuzzifier.is_some() {
+        return Err(Failure::input(
+            "--defuzzifier goes with a fuzzy system; a controller says its own",
+        ));
+    }
     let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
+    leave_out(&study.scenario, arguments.controller.as_deref())?;
     let named = chosen(&study, arguments.controller.as_deref())?;
     tuned(&study, &named.name)?;
     let request = Request {
         name: &named.name,
         target: arguments.to,
         precision: match arguments.numbers {
-            Numbers::Single => Precision::Single,
-            Numbers::Double => Precision::Double,
+            Some(Numbers::Single) => Precision::Single,
+            Some(Numbers::Double) => Precision::Double,
+            None => arguments.to.usual_precision(),
         },
         angles: match arguments.angles {
             Unit::Radians => Angles::Radians,
             Unit::Degrees => Angles::Degrees,
         },
         samples: arguments.samples as usize,
+        points: arguments.points,
         digest: &study.digest,
         evidence: evidence(arguments)?.is_some(),
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;
+    answer(arguments, ["controller", &named.name], &exported)
+}
+
+/// Writes the files and tells them; `what` is what was exported, and its name.
+fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(), Failure> {
     empty(&arguments.out, arguments.force)?;
     write(&exported.files, &arguments.out)?;
     if let Some(folder) = &arguments.evidence {
@@ -117,7 +145,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Format::Json => print(&json_text(&json!({
             "schema": 1,
-            "controller": named.name,
+            what[0]: what[1],
             "target": arguments.to.name(),
             "prefix": exported.prefix,
             "folder": arguments.out.display().to_string(),
@@ -126,6 +154,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "notes": exported.notes,
         }))),
     }
+}
+
+/// The file's name without its ending.
+fn file_stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "system".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The controller that is meant.

@@ -6,7 +6,7 @@ use super::{Memory, ends, limited, numbers};
 use crate::gains::Gains;
 use crate::integral::{AntiWindup, IntegralForm};
 use crate::pid_config::PidConfig;
-use crate::state::Sample;
+use crate::sample::Sample;
 use crate::tuner::GainCoupling;
 
 /// [`AntiWindup`] without its numbers.

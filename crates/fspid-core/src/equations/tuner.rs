@@ -4,8 +4,8 @@ use fspid_numeric::{Real, Scalar};
 
 use super::{Memory, ends, limited, numbers};
 use crate::gains::Gains;
+use crate::sample::Sample;
 use crate::second_input::{ModelState, ReferenceModel, SecondInput};
-use crate::state::Sample;
 use crate::tuner::{Change, ErrorSign, Law, TunerSettings};
 
 /// [`SecondInput`] without its numbers.

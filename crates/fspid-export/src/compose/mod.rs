@@ -1,18 +1,22 @@
 //! From a controller to its program.
 
-mod exponential;
+pub(crate) mod exponential;
 mod infer;
-mod members;
-mod prune;
+pub(crate) mod members;
+mod observe;
+pub(crate) mod prune;
 mod step;
 
 pub(crate) use infer::GAINS;
+pub(crate) use infer::centroid;
 
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;
 
 use crate::program::{Precision, Program};
 use fspid_core::Controller;
+
+pub(crate) use observe::{STRENGTHS, observed};
 
 /// The unit of the angles that go in and come out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +36,30 @@ pub enum Refusal {
         "the defuzzifier {0} cannot be exported; allowed are exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N"
     )]
     Defuzzifier(Defuzzifier),
+    /// A fuzzy system of its own, where a target is of controllers alone.
+    #[error("this target is written of controllers alone; --to c writes a fuzzy system")]
+    NoController,
+    /// Nothing that a table could be of.
+    #[error(
+        "it has no supervisor, so that there is no surface to write as a table; allowed is a self-tuning controller"
+    )]
+    NoSupervisor,
+    /// Settings that do not survive rounding.
+    #[error("its settings do not survive rounding to 32 bits, which tables have")]
+    NotSingle,
+    /// No table over the range has what lies beyond it.
+    #[error(
+        "its rules are evaluated beyond their range, where no table ends; out_of_range = \"clamp\" or \"error\" has one"
+    )]
+    BeyondRange,
+    /// Points that would miss the centres of sets.
+    #[error(
+        "{found} points along an input; allowed are 6m + 1 from 7 to 127, which keep the centres of the sets"
+    )]
+    Points {
+        /// What was asked for.
+        found: usize,
+    },
 }
 
 /// The precision that a number type is.

@@ -274,7 +274,7 @@ fn about<R: Real>(subject: &Subject<'_, R>) -> String {
         subject.heading.digest,
         env!("CARGO_PKG_VERSION"),
         numbers,
-        if subject.heading.angles == crate::Angles::Degrees { "degrees" } else { "radians" },
+        if subject.heading.angles == Some(crate::Angles::Degrees) { "degrees" } else { "radians" },
         subject.vectors.len()
     )
 }

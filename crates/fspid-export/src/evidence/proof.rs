@@ -166,8 +166,11 @@ fn main<R: Real>(subject: &Subject<'_, R>) -> String {
     let command = &program.members(Part::Answer)[0].name;
     let [least, most] = bounds(subject, "command_rad");
     // Degrees are rounded once more.
-    let unit =
-        subject.heading.angles.per_radian().map_or(1.0, |per_radian| per_radian * (1.0 + 1e-6));
+    let unit = subject
+        .heading
+        .angles
+        .and_then(crate::Angles::per_radian)
+        .map_or(1.0, |per_radian| per_radian * (1.0 + 1e-6));
     if subject.controller.config().limits.is_some() {
         let [least, most] = [least * unit, most * unit].map(number);
         let _ = writeln!(

@@ -43,8 +43,8 @@ impl<'a, R: Real> Asked<'a, R> {
 
     /// True if the answer to the next vector is the one that it holds.
     fn answers(&mut self, vector: &Vector<R>) -> bool {
-        for (name, value) in self.sample.iter().zip(vector.sample) {
-            self.machine.set(Part::Sample, name, Cell::Real(value));
+        for (name, value) in self.sample.iter().zip(&vector.sample) {
+            self.machine.set(Part::Sample, name, Cell::Real(*value));
         }
         let given = Cell::Real(vector.event.given());
         let machine = &mut self.machine;
@@ -64,14 +64,14 @@ impl<'a, R: Real> Asked<'a, R> {
                 machine.run("step");
             }
         }
-        self.latched = vector.faults;
+        self.latched = vector.marks[1];
         let names = [self.command, "kp", "ki", "kd"];
-        let saturated = machine.ask("saturated", &[]) == Some(Cell::Truth(vector.saturated));
-        let faults = machine.member(Part::Answer, "faults") == Some(&Cell::Byte(vector.faults));
-        let same = |(name, expected): (&str, R)| match machine.member(Part::Answer, name) {
+        let saturated = machine.ask("saturated", &[]) == Some(Cell::Truth(vector.marks[0] == 1));
+        let faults = machine.member(Part::Answer, "faults") == Some(&Cell::Byte(vector.marks[1]));
+        let same = |(name, expected): (&str, &R)| match machine.member(Part::Answer, name) {
             Some(Cell::Real(found)) => found.to_f64().to_bits() == expected.to_f64().to_bits(),
             _ => false,
         };
-        good && saturated && faults && names.into_iter().zip(vector.answer).all(same)
+        good && saturated && faults && names.into_iter().zip(&vector.answer).all(same)
     }
 }

@@ -1,4 +1,4 @@
-//! What a controller does in a sample, as a small program that every language here can be written in.
+//! What a controller or a fuzzy system does in a sample, as a small program that every language here can be written in.
 //!
 //! Numbers are reals of one precision, whole numbers that count, and truths; there are loops of a constant count, no
 //! recursion, no pointer and no heap. A [`Program`] is what the writers and the interpreter share, so that a
@@ -122,6 +122,21 @@ impl Program {
             Part::Sample => &self.sample,
             Part::Answer => &self.answer,
         }
+    }
+
+    /// The function that answers a sample: `step` of a controller, `infer` of a fuzzy system.
+    #[must_use]
+    pub fn entry(&self) -> &'static str {
+        if self.function("step").is_some() { "step" } else { "infer" }
+    }
+
+    /// The names of the answer's members: reals, then truths and bytes, as they stand in vectors.
+    #[must_use]
+    pub fn answers(&self) -> [Vec<&str>; 2] {
+        [true, false].map(|reals| {
+            let of_kind = |it: &&Member| matches!(it.value, Value::Real(_)) == reals;
+            self.answer.iter().filter(of_kind).map(|it| it.name.as_str()).collect()
+        })
     }
 
     /// True if a function, or one that it calls, puts something into a part.

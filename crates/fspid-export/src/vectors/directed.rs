@@ -5,7 +5,7 @@ use fspid_core::{Controller, Fspid, Limits, SecondInput};
 use fspid_numeric::Real;
 
 use super::drawn::BAD;
-use super::{Event, Flight, Remembered};
+use super::{Event, Flight, Remembered, Vector};
 use crate::precision_of;
 
 /// Errors from a tenth of a degree to more than a quarter turn, rad.
@@ -138,7 +138,8 @@ fn gain_limits<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
             let mut ways = [[0.0; 3]; 2];
             if let [.., before, last] = flight.vectors.as_slice() {
                 let radians = flight.angles.radians().unwrap_or(1.0);
-                ways = [before, last].map(|it| it.sample.map(|value| value.to_f64() * radians));
+                let radians = |it: &Vector<R>| [0, 1, 2].map(|k| it.sample[k].to_f64() * radians);
+                ways = [before, last].map(radians);
             }
             while flight.vectors.len() < start + LONG && !flight.is_full() {
                 stay(flight, fspid, furthest, ways);

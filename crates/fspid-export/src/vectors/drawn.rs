@@ -6,21 +6,21 @@ use fspid_numeric::Real;
 use super::{Event, Flight};
 
 /// Numbers that are the same in each run.
-struct Draw(u64);
+pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
     /// From 0 to 1.
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn around(&mut self, size: f64) -> f64 {
+    pub(crate) fn around(&mut self, size: f64) -> f64 {
         (2.0 * self.unit() - 1.0) * size
     }
 
-    fn bad(&mut self) -> f64 {
+    pub(crate) fn bad(&mut self) -> f64 {
         BAD[(self.unit() * 8.0) as usize % 8]
     }
 }

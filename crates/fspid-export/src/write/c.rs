@@ -70,7 +70,7 @@ impl Writer<'_> {
         page.line("#ifdef __cplusplus");
         page.line("extern \"C\" {");
         page.line("#endif");
-        for part in PARTS {
+        for part in PARTS.into_iter().filter(|part| !self.program.members(*part).is_empty()) {
             page.line("");
             self.structure(&mut page, part);
         }
@@ -372,6 +372,7 @@ impl Dialect for Writer<'_> {
 /// What others may call.
 fn is_public(function: &Function) -> bool {
     matches!(function.name, "reset" | "step" | "hold" | "track" | "saturated" | "faults")
+        || function.parts.contains(&Part::Answer)
 }
 
 fn comment(page: &mut Page, text: &str) {

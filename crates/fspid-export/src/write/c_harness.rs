@@ -12,28 +12,36 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
     let is_single = program.precision == Precision::Single;
     let (real, bits) = if is_single { ("float", "uint32_t") } else { ("double", "uint64_t") };
     let count = vectors.len();
+    let [reals, marks] = program.answers();
+    // The vectors of a controller hold the rate also where it is not asked for.
+    let inputs = vectors.first().map_or(0, |vector| vector.sample.len());
     let mut page = Page::default();
     for line in ["#include <stdint.h>", "#include <stdio.h>"] {
         page.line(line);
     }
     page.line(&format!("#include \"{prefix}.h\""));
     page.line("");
-    page.line("/* Sample, what is given with the event, answer. */");
-    page.line(&format!("static const {bits} vectors[{count}][8] = {{"));
+    let steps = is_controller(program);
+    page.line("/* Sample, of a controller what is given with the event, answer. */");
+    let columns = inputs + usize::from(steps) + reals.len();
+    page.line(&format!("static const {bits} vectors[{count}][{columns}] = {{"));
     page.inside(|page| {
         for vector in vectors {
-            let given = vector.event.given();
-            let values = vector.sample.iter().chain([&given]).chain(&vector.answer);
+            let given = steps.then(|| vector.event.given());
+            let values = vector.sample.iter().chain(&given).chain(&vector.answer);
             let values: Vec<String> = values.map(|value| hex(*value, is_single)).collect();
             page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
     page.line("};");
-    page.line("/* Saturated, faults, event. */");
-    page.line(&format!("static const uint8_t marks[{count}][3] = {{"));
+    page.line("/* Truths and bytes of the answer, event. */");
+    page.line(&format!("static const uint8_t marks[{count}][{}] = {{", marks.len() + 1));
     page.inside(|page| {
-        for Vector { saturated, faults, event, .. } in vectors {
-            page.line(&format!("{{ {}U, {faults}U, {}U }},", u8::from(*saturated), event.number()));
+        for vector in vectors {
+            let event = vector.event.number();
+            let marks = vector.marks.iter().chain([&event]);
+            let values: Vec<String> = marks.map(|mark| format!("{mark}U")).collect();
+            page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
     page.line("};");
@@ -46,38 +54,48 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         ),
     ];
     unions.iter().for_each(|line| page.line(line));
-    main(&mut page, program, prefix, (count, real));
+    main(&mut page, program, prefix, ([count, inputs], real));
     page.text
 }
 
-fn main(page: &mut Page, program: &Program, prefix: &str, (count, real): (usize, &str)) {
+/// True of a program that does more than to answer samples.
+fn is_controller(program: &Program) -> bool {
+    program.entry() == "step"
+}
+
+fn main(
+    page: &mut Page,
+    program: &Program,
+    prefix: &str,
+    ([count, inputs], real): ([usize; 2], &str),
+) {
     page.line("");
     page.line("int main(void)");
     page.line("{");
     page.inside(|page| {
-        page.line(&format!("{prefix}_state state;"));
+        if !program.state.is_empty() {
+            page.line(&format!("{prefix}_state state;"));
+        }
         page.line(&format!("{prefix}_sample sample;"));
         page.line(&format!("{prefix}_answer answer;"));
         page.line("unsigned different = 0U;");
-        page.line(&format!("{prefix}_reset(&{prefix}_design, &state);"));
+        if program.function("reset").is_some() {
+            page.line(&called(program, prefix, "reset"));
+        }
         page.line(&format!("for (unsigned k = 0U; k < {count}U; ++k) {{"));
         page.inside(|page| {
             for (index, member) in program.members(Part::Sample).iter().enumerate() {
                 page.line(&format!("sample.{} = real(vectors[k][{index}]);", member.name));
             }
-            page.line(&format!("const {real} given = real(vectors[k][3]);"));
-            events(page, program, prefix);
-            let command = &program.members(Part::Answer)[0].name;
-            let same: Vec<String> = [command.as_str(), "kp", "ki", "kd"]
-                .iter()
-                .zip(4..)
-                .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"))
-                .chain([
-                    format!("{prefix}_saturated(&answer) == marks[k][0]"),
-                    "answer.faults == marks[k][1]".to_owned(),
-                ])
-                .collect();
-            page.line(&format!("if (!({})) {{", same.join(" && ")));
+            let answers = if is_controller(program) {
+                page.line(&format!("const {real} given = real(vectors[k][{inputs}]);"));
+                events(page, program, prefix);
+                inputs + 1
+            } else {
+                page.line(&called(program, prefix, program.entry()));
+                inputs
+            };
+            page.line(&format!("if (!({})) {{", same(program, prefix, answers)));
             page.inside(|page| {
                 page.line("if (different == 0U) { printf(\"first at sample %u\\n\", k); }");
                 page.line("++different;");
@@ -89,6 +107,32 @@ fn main(page: &mut Page, program: &Program, prefix: &str, (count, real): (usize,
         page.line("return different == 0U ? 0 : 1;");
     });
     page.line("}");
+}
+
+/// A call of a function that is given parts alone.
+fn called(program: &Program, prefix: &str, name: &str) -> String {
+    let parts = program.function(name).map_or(&[] as &[Part], |function| function.parts);
+    let given = parts.iter().map(|part| match part {
+        Part::Configuration => format!("&{prefix}_design"),
+        Part::State => "&state".to_owned(),
+        Part::Sample => "&sample".to_owned(),
+        Part::Answer => "&answer".to_owned(),
+    });
+    format!("{prefix}_{name}({});", given.collect::<Vec<_>>().join(", "))
+}
+
+/// True where every member of the answer is the one of the vector.
+fn same(program: &Program, prefix: &str, first: usize) -> String {
+    let [reals, marks] = program.answers();
+    let reals = reals
+        .iter()
+        .zip(first..)
+        .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"));
+    let marks = marks.iter().zip(0..).map(|(name, index)| match *name {
+        "saturated" => format!("{prefix}_saturated(&answer) == marks[k][{index}]"),
+        name => format!("answer.{name} == marks[k][{index}]"),
+    });
+    reals.chain(marks).collect::<Vec<_>>().join(" && ")
 }
 
 /// What is done at a vector.

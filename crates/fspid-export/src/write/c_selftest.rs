@@ -33,7 +33,7 @@ pub fn c_selftest<R: Real>(
     page.line(&format!("#include \"{prefix}.h\""));
     page.line("");
     let rules: Vec<&Member> = program.configuration.iter().filter(|it| it.is_rules()).collect();
-    let asked = Asked::of(controller, heading.angles);
+    let asked = heading.angles.and_then(|angles| Asked::of(controller, angles));
     for member in &rules {
         let (kind, values) = expected(&member.value, is_single);
         page.line(&format!("static const {kind} expected_{}[49] = {{", member.name));

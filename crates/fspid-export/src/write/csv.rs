@@ -20,17 +20,14 @@ pub fn csv<R: Real>(program: &Program, vectors: &[Vector<R>]) -> String {
     let mut text = header.join(",");
     text.push('\n');
     for vector in vectors {
-        for value in vector.sample.iter().take(inputs).chain(&vector.answer) {
-            text.push_str(&any(value.to_f64(), is_single));
-            text.push(',');
-        }
-        let saturated = if vector.saturated { "1," } else { "0," };
-        text.push_str(saturated);
-        text.push_str(&vector.faults.to_string());
+        let reals = vector.sample.iter().take(inputs).chain(&vector.answer);
+        let reals = reals.map(|value| any(value.to_f64(), is_single));
+        let mut cells: Vec<String> = reals.chain(vector.marks.iter().map(u8::to_string)).collect();
         if has_events {
-            let given = any(vector.event.given().to_f64(), is_single);
-            text.push_str(&format!(",{},{given}", vector.event.name()));
+            cells.push(vector.event.name().to_owned());
+            cells.push(any(vector.event.given().to_f64(), is_single));
         }
+        text.push_str(&cells.join(","));
         text.push('\n');
     }
     text

@@ -39,11 +39,40 @@ pub(super) trait Dialect {
     /// A call for what it does.
     fn run(&self, page: &mut Page, call: &str);
     fn when(&self, condition: &str) -> String;
+    /// The line, or lines, that a condition stands in.
+    fn open(&self, page: &mut Page, text: &str) {
+        page.line(text);
+    }
     fn otherwise(&self) -> &'static str;
     fn repeat(&self, name: &str, first: i32, last: i32) -> String;
     fn end(&self, block: Block) -> &'static str;
     /// The lines that end a function.
     fn answer(&self, value: Option<&str>) -> Vec<String>;
+
+    /// A whole number.
+    fn whole(&self, value: i32) -> String {
+        value.to_string()
+    }
+
+    /// The sign between what is compared.
+    fn equal(&self) -> &'static str {
+        "=="
+    }
+
+    /// What stands somewhere, as a value.
+    fn read(&self, _: &Place, text: String) -> String {
+        text
+    }
+
+    /// A value of an array.
+    fn element(&self, array: &str, index: &str) -> String {
+        format!("{array}[{index}]")
+    }
+
+    /// Writes a statement that this language has a way of its own for; false if it has none.
+    fn own(&self, _: &mut Page, _: &Statement) -> bool {
+        false
+    }
 
     /// True where a value, which is written twice, lies between the negative of a number and the number; `None` for a
     /// language that asks for the magnitude.
@@ -65,6 +94,9 @@ pub(super) fn block(dialect: &impl Dialect, page: &mut Page, body: &[Statement])
 }
 
 fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
+    if dialect.own(page, statement) {
+        return;
+    }
     match statement {
         Statement::Remark(text) => dialect.remark(page, text),
         Statement::Let(name, kind, value) => {
@@ -75,7 +107,7 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             dialect.assign(page, &place(dialect, at), &outer(dialect, value));
         }
         Statement::If(condition, then, otherwise) => {
-            page.line(&dialect.when(&outer(dialect, condition)));
+            dialect.open(page, &dialect.when(&outer(dialect, condition)));
             page.inside(|page| block(dialect, page, then));
             if !otherwise.is_empty() {
                 page.line(dialect.otherwise());
@@ -88,8 +120,8 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             page.inside(|page| block(dialect, page, body));
             page.line(dialect.end(Block::For));
         }
-        Statement::Call(name, arguments) => {
-            dialect.run(page, &dialect.call(name, given(dialect, arguments)));
+        Statement::Call(name, given) => {
+            dialect.run(page, &dialect.call(name, arguments(dialect, given)));
         }
         Statement::Return(value) => {
             let value = value.as_ref().map(|value| outer(dialect, value));
@@ -98,23 +130,24 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
     }
 }
 
-fn given(dialect: &impl Dialect, arguments: &[Argument]) -> Vec<String> {
+/// What a function is called with, as text.
+pub(super) fn arguments(dialect: &impl Dialect, given: &[Argument]) -> Vec<String> {
     let text = |argument: &Argument| match argument {
         Argument::Value(value) => outer(dialect, value),
         Argument::Array(name) => dialect.local(name),
     };
-    arguments.iter().map(text).collect()
+    given.iter().map(text).collect()
 }
 
-fn place(dialect: &impl Dialect, place: &Place) -> String {
+pub(super) fn place(dialect: &impl Dialect, place: &Place) -> String {
     match place {
         Place::Local(name) => dialect.local(name),
         Place::Element(name, index) => {
-            format!("{}[{}]", dialect.local(name), outer(dialect, index))
+            dialect.element(&dialect.local(name), &outer(dialect, index))
         }
         Place::Member(part, name) => dialect.member(*part, name),
         Place::MemberElement(part, name, index) => {
-            format!("{}[{}]", dialect.member(*part, name), outer(dialect, index))
+            dialect.element(&dialect.member(*part, name), &outer(dialect, index))
         }
     }
 }
@@ -127,7 +160,7 @@ pub(super) fn outer(dialect: &impl Dialect, value: &Expression) -> String {
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
-            format!("{left} {} {right}", sign(&dialect.truths(), *operator))
+            format!("{left} {} {right}", sign(dialect, *operator))
         }
         value => expression(dialect, value),
     }
@@ -149,7 +182,8 @@ fn within(dialect: &impl Dialect, value: &Expression) -> Option<String> {
     }
 }
 
-fn sign(truths: &Truths, operator: Operator) -> &'static str {
+fn sign(dialect: &impl Dialect, operator: Operator) -> &'static str {
+    let truths = dialect.truths();
     match operator {
         Operator::Add => "+",
         Operator::Subtract => "-",
@@ -157,7 +191,7 @@ fn sign(truths: &Truths, operator: Operator) -> &'static str {
         Operator::Divide => "/",
         Operator::Less => "<",
         Operator::LessOrEqual => "<=",
-        Operator::Equal => "==",
+        Operator::Equal => dialect.equal(),
         Operator::NotEqual => truths.not_equal,
         Operator::And => truths.and,
         Operator::Or => truths.or,
@@ -169,10 +203,10 @@ fn expression(dialect: &impl Dialect, value: &Expression) -> String {
     let of = |value: &Expression| expression(dialect, value);
     match value {
         Expression::Number(value) => dialect.number(*value),
-        Expression::Whole(value) => value.to_string(),
+        Expression::Whole(value) => dialect.whole(*value),
         Expression::Byte(value) => dialect.byte(*value),
         Expression::Truth(value) => dialect.truth(*value),
-        Expression::Read(at) => place(dialect, at),
+        Expression::Read(at) => dialect.read(at, place(dialect, at)),
         Expression::Negative(value) => format!("-{}", of(value)),
         Expression::Magnitude(value) => dialect.magnitude(&outer(dialect, value)),
         Expression::Not(value) => dialect.not(&of(value)),
@@ -183,6 +217,6 @@ fn expression(dialect: &impl Dialect, value: &Expression) -> String {
         }
         Expression::ToReal(value) => dialect.to_real(&of(value)),
         Expression::PowerOfTwo(value) => dialect.power_of_two(&outer(dialect, value)),
-        Expression::Call(name, arguments) => dialect.call(name, given(dialect, arguments)),
+        Expression::Call(name, given) => dialect.call(name, arguments(dialect, given)),
     }
 }

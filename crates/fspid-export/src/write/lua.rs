@@ -7,7 +7,8 @@ use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
-/// The program as a module that answers `{ design, reset, step, hold, track, saturated, faults }`. It has the bits of its precision where Lua's
+/// The program as a module that answers `{ design, reset, step, hold, track, saturated, faults }`, of a fuzzy system
+/// `{ design, infer }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
 pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
@@ -21,10 +22,10 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    page.line("return {");
-    page.line("    design = design, reset = reset, step = step, hold = hold, track = track,");
-    page.line("    saturated = saturated, faults = faults");
-    page.line("}");
+    let names = ["reset", "step", "hold", "track", "saturated", "faults", "infer"];
+    let functions = names.into_iter().filter(|name| program.function(name).is_some());
+    let fields = ["design"].into_iter().chain(functions).map(|name| format!("{name} = {name}"));
+    page.line(&format!("return {{ {} }}", fields.collect::<Vec<_>>().join(", ")));
     page.text
 }
 
@@ -35,6 +36,45 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
     let writer = Writer { program };
     let mut page = Page::default();
     page.line(&format!("local controller = require(\"{name}\")"));
+    if program.entry() == "step" {
+        check_of_controller(&mut page, program);
+    } else {
+        check_of_system(&mut page, program);
+    }
+    let names: Vec<&str> =
+        program.members(Part::Sample).iter().map(|member| member.name.as_str()).collect();
+    let [_, marked] = program.answers();
+    for vector in vectors {
+        let sample: Vec<String> = names
+            .iter()
+            .zip(&vector.sample)
+            .map(|(name, value)| format!("{name} = {}", writer.any(value.to_f64())))
+            .collect();
+        let reals = vector.answer.iter().map(|value| writer.any(value.to_f64()));
+        let marks = marked.iter().zip(&vector.marks).map(|(name, mark)| {
+            let holds_truth = program
+                .answer
+                .iter()
+                .any(|member| member.name == *name && matches!(member.value, Value::Truth(_)));
+            if holds_truth { (*mark != 0).to_string() } else { mark.to_string() }
+        });
+        let answer: Vec<String> = reals.chain(marks).collect();
+        let event = if program.entry() == "step" {
+            let given = writer.any(vector.event.given().to_f64());
+            format!("{}, {given}, ", vector.event.number())
+        } else {
+            String::new()
+        };
+        page.line(&format!("check({event}{{ {} }}, {})", sample.join(", "), answer.join(", ")));
+    }
+    page.line(&format!(
+        "print(string.format(\"{} samples, %d different\", different))",
+        vectors.len()
+    ));
+    page.text
+}
+
+fn check_of_controller(page: &mut Page, program: &Program) {
     page.line("local state, answer, different = {}, {}, 0");
     page.line("controller.reset(controller.design, state)");
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
@@ -64,31 +104,37 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
         page.line("if not good then different = different + 1 end");
     });
     page.line("end");
-    let names: Vec<&str> =
-        program.members(Part::Sample).iter().map(|member| member.name.as_str()).collect();
-    for vector in vectors {
-        let sample: Vec<String> = names
-            .iter()
-            .zip(vector.sample)
-            .map(|(name, value)| format!("{name} = {}", writer.any(value.to_f64())))
-            .collect();
-        let answer: Vec<String> =
-            vector.answer.iter().map(|value| writer.any(value.to_f64())).collect();
-        page.line(&format!(
-            "check({}, {}, {{ {} }}, {}, {}, {})",
-            vector.event.number(),
-            writer.any(vector.event.given().to_f64()),
-            sample.join(", "),
-            answer.join(", "),
-            vector.saturated,
-            vector.faults
-        ));
+}
+
+fn check_of_system(page: &mut Page, program: &Program) {
+    let [reals, marks] = program.answers();
+    let given = |name: &str| {
+        let parts = program.function(name).map_or(&[] as &[Part], |function| function.parts);
+        let words = parts.iter().map(|part| match part {
+            Part::Configuration => "controller.design",
+            other => part_name(*other),
+        });
+        format!("controller.{name}({})", words.collect::<Vec<_>>().join(", "))
+    };
+    page.line("local state, answer, different = {}, {}, 0");
+    if program.function("reset").is_some() {
+        page.line(&given("reset"));
     }
-    page.line(&format!(
-        "print(string.format(\"{} samples, %d different\", different))",
-        vectors.len()
-    ));
-    page.text
+    page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
+    page.line("local function check(sample, ...)");
+    page.inside(|page| {
+        page.line(&given("infer"));
+        page.line("local wanted = { ... }");
+        page.line("local good = true");
+        for (name, index) in reals.iter().zip(1..) {
+            page.line(&format!("good = good and same(answer.{name}, wanted[{index}])"));
+        }
+        for (name, index) in marks.iter().zip(1 + reals.len()..) {
+            page.line(&format!("good = good and answer.{name} == wanted[{index}]"));
+        }
+        page.line("if not good then different = different + 1 end");
+    });
+    page.line("end");
 }
 
 struct Writer<'a> {

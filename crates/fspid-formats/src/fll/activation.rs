@@ -2,8 +2,7 @@
 
 use fspid_fuzzy::system::{Activation, Comparison};
 
-use super::lines::{Line, numbers};
-use super::sections::whole;
+use super::lines::{Line, numbers, whole};
 use crate::number::written as number;
 use crate::report::Report;
 use crate::vocabulary::known;

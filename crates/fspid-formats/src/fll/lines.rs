@@ -112,3 +112,9 @@ pub(super) fn numbers<'a>(mut tokens: Tokens<'a>, report: &mut Report) -> Option
     }
     found
 }
+
+/// A count.
+pub(super) fn whole(number: f64) -> Option<u32> {
+    let fits = number >= 0.0 && number <= f64::from(u32::MAX) && number.fract() == 0.0;
+    fits.then_some(number as u32)
+}

@@ -17,6 +17,7 @@ mod lines;
 mod output;
 mod read;
 mod sections;
+mod term;
 mod write;
 
 pub(crate) use output::is_monotone;

@@ -7,9 +7,9 @@ use fspid_fuzzy::system::{
 use fspid_fuzzy::{MAX_SAMPLES, SNormKind};
 
 use super::RESOLUTION;
-use super::lines::{Line, numbers};
-use super::read::{TermLine, membership, needs, terms};
-use super::sections::{FllSection, defuzzifiers, whole};
+use super::lines::{Line, numbers, whole};
+use super::sections::{FllSection, defuzzifiers};
+use super::term::{TermLine, membership, needs, terms};
 use crate::lexer::{Kind, Token};
 use crate::report::Report;
 use crate::term;

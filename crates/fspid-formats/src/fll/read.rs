@@ -1,21 +1,18 @@
 //! Reading.
 
-use std::collections::BTreeSet;
-
-use fspid_fuzzy::system::{Input, Membership, Parts, Rule, RuleBlock, Term};
+use fspid_fuzzy::system::{Input, Parts, Rule, RuleBlock, Term};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
-use super::lines::{self, Line, numbers};
+use super::lines::{self};
+use super::output;
 use super::sections::{FllSection, HEADINGS, Kindred};
-use super::{output, readable};
+use super::term::{distinct, membership, needs, terms};
 use crate::cursor::Cursor;
-use crate::lexer::{Kind, Lexer, Token};
+use crate::lexer::{Kind, Lexer};
 use crate::names::Names;
 use crate::note::Reading;
 use crate::report::Report;
-use crate::term::{formula, shape};
 use crate::tokens::Tokens;
-use crate::vocabulary::shapes::{self, FUZZYLITE};
 use crate::vocabulary::{known, norms};
 use crate::{check, rule, term};
 use fspid_diagnostics::Problems;
@@ -116,70 +113,6 @@ fn engine<'s, 'a: 's>(
     }
 }
 
-/// Names that are there twice, and names that no rule could use.
-pub(super) fn distinct<'a>(names: impl Iterator<Item = Cursor<'a>>, report: &mut Report) {
-    let mut seen = BTreeSet::new();
-    for name in names {
-        let text = name.rest();
-        if !readable(text) {
-            let expected = "one word without brackets and commas that means nothing in rules";
-            report.problem(name.place(), text, "cannot be a name", expected);
-        } else if !seen.insert(text) {
-            report.problem(name.place(), text, "is there twice", "names that differ");
-        }
-    }
-}
-
-/// A term's line: its name, its class, and what follows.
-#[derive(Clone, Copy)]
-pub(super) struct TermLine<'a> {
-    pub(super) name: Token<'a>,
-    pub(super) class: Token<'a>,
-    pub(super) rest: Tokens<'a>,
-}
-
-/// The terms of a section; lines without name and class are reported.
-pub(super) fn terms<'a>(section: &FllSection<'a>, report: &mut Report) -> Vec<TermLine<'a>> {
-    let mut found = Vec::new();
-    for line in &section.terms {
-        let mut rest = line.tokens();
-        let (name, class) = (rest.advance(), rest.advance());
-        if class.kind == Kind::End {
-            line.wrong("not a term", "a name, a class and its parameters", report);
-        } else {
-            found.push(TermLine { name, class, rest });
-        }
-    }
-    distinct(found.iter().map(|term| only(term.name)), report);
-    found
-}
-
-/// The token alone, without what follows it.
-fn only(token: Token) -> Cursor {
-    let mut after = token.start;
-    after.take_while(|next| !next.is_whitespace() && next != '(' && next != ',');
-    token.start.up_to(after)
-}
-
-/// A fuzzy set: a shape, or a function of `x`, the inputs and the outputs.
-pub(super) fn membership(
-    term: &TermLine,
-    with_x: &[&str],
-    report: &mut Report,
-) -> Option<Membership> {
-    let TermLine { class, mut rest, .. } = *term;
-    if class.is("Function") {
-        let formula = formula(rest.take_raw('\n'), with_x, report)?;
-        return Some(Membership::Formula { formula, height: 1.0 });
-    }
-    let Some(row) = shapes::of_word(FUZZYLITE, class.text) else {
-        let expected = known(FUZZYLITE.iter().map(|row| row.word).chain(["Function"]), class.text);
-        report.problem(class.place(), class.text, "not known as a fuzzy set", expected);
-        return None;
-    };
-    shape(row, class, &numbers(rest, report)?, report)
-}
-
 fn input(section: &FllSection, with_x: &[&str], report: &mut Report) -> Input {
     let mut found = Vec::new();
     for term in terms(section, report) {
@@ -242,14 +175,4 @@ fn rules(section: &FllSection, names: &Names, report: &mut Report) -> Vec<Rule> 
         needs(section.heading, "has no disjunction, but its rules say `or`", s_norms, report);
     }
     rules
-}
-
-/// A norm is missing.
-pub(super) fn needs(
-    heading: Line,
-    message: &str,
-    words: impl Iterator<Item = &'static str> + Clone,
-    report: &mut Report,
-) {
-    report.problem(heading.start.place(), heading.text(), message, known(words, ""));
 }

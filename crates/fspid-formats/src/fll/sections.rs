@@ -185,12 +185,6 @@ fn activation<'a>(section: &mut FllSection<'a>, line: Line<'a>, report: &mut Rep
     }
 }
 
-/// A count.
-pub(super) fn whole(number: f64) -> Option<u32> {
-    let fits = number >= 0.0 && number <= f64::from(u32::MAX) && number.fract() == 0.0;
-    fits.then_some(number as u32)
-}
-
 /// The defuzzifiers, for a message.
 pub(super) fn defuzzifiers(found: &str) -> String {
     known(methods::classes().chain(["none"]), found)

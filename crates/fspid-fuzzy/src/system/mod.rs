@@ -35,7 +35,7 @@ pub use evaluate::{Answer, InputError, Source};
 pub(crate) use firing::hedged;
 pub use gradient::{Differentiator, Gradient, GradientError, Parameter};
 pub use norms::{SNorm, TNorm};
-pub use output::{AggregatedSet, Piece};
+pub use output::{Actor, AggregatedSet, Cell, Join, Line, Piece, Way};
 pub use parts::{
     Activation, Antecedent, Comparison, Conclusion, Consequent, Fallback, FallbackValue, Input,
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,

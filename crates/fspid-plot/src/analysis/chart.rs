@@ -1,7 +1,8 @@
 //! A plot area of an analysis: axes, curves that are cut to it, arrows and labels.
 
 use super::clip;
-use super::label::{Labels, Point};
+use super::clip::Point;
+use super::label::Labels;
 use crate::axis::Axis;
 use crate::page::{self, LABEL_PX};
 use crate::plot::{self, Content, Frame};

@@ -1,6 +1,5 @@
 //! Lines cut to a window before they are drawn, so that far points neither bend nor bloat them.
 
-use super::label::Point;
 use crate::svg::Rect;
 use crate::thin;
 
@@ -97,6 +96,9 @@ fn apart(run: &[Point]) -> Vec<Point> {
     }
     kept
 }
+
+/// A place on the canvas (px).
+pub(super) type Point = (f64, f64);
 
 #[cfg(test)]
 mod tests {

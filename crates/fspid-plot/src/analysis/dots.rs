@@ -1,7 +1,7 @@
 //! Dots along curves that tell the frequency there.
 
 use super::chart::{Chart, distance};
-use super::label::Point;
+use super::clip::Point;
 use super::response::{LoopCurve, round_frequencies};
 use crate::axis::{extent, short_number};
 use crate::sign::Sign;

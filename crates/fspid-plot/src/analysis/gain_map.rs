@@ -1,7 +1,7 @@
 //! Margins over the inputs of the supervisor, the gains frozen at each node: a map of tiles.
 
 use super::clip;
-use super::label::Point;
+use super::clip::Point;
 use super::map_cells::{Grading, coarse};
 use super::notes::Notes;
 use crate::axis::{Axis, extent, short_number};

@@ -1,8 +1,8 @@
 //! The gains for which a certificate speaks, seen along each of the three axes.
 
 use super::chart::Chart;
+use super::clip::Point;
 use super::cover;
-use super::label::Point;
 use super::notes::Notes;
 use crate::axis::{Axis, extent};
 use crate::page::{self, EDGE, Entry, LABEL_PX, Swatch};

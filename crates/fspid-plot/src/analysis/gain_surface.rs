@@ -1,7 +1,7 @@
 //! A gain over the inputs of the supervisor, seen in space and coloured by the margin there.
 
+use super::clip::Point;
 use super::gain_map::{GainMap, MapCell};
-use super::label::Point;
 use super::map_cells::{Grading, worse};
 use super::notes::Notes;
 use crate::axis::{Axis, extent};

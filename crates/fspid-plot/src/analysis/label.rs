@@ -1,12 +1,10 @@
 //! Where labels stand: inside the plot area, off each other and, where there is room, off the lines.
 
+use super::clip::Point;
 use crate::plot::TICK_PX;
 use crate::style::Role;
 use crate::svg::{Anchor, Canvas, Font, Paint, Rect};
 use crate::text::text_width;
-
-/// A place on the canvas (px).
-pub(super) type Point = (f64, f64);
 
 /// What labels of one plot area must keep clear of.
 #[derive(Debug, Clone)]

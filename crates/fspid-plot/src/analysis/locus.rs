@@ -1,7 +1,7 @@
 //! Closed-loop poles over the loop gain.
 
 use super::chart::{Chart, distance};
-use super::label::Point;
+use super::clip::Point;
 use super::z_plane::{self, ZPlane};
 use crate::axis::short_number;
 use crate::page::{Entry, Swatch};

@@ -2,7 +2,7 @@
 
 use super::bode::critical_phases;
 use super::chart::{self, Chart};
-use super::label::Point;
+use super::clip::Point;
 use super::response::{LoopCurve, Polar, polar_at};
 use super::{dots, frequency};
 use crate::axis::{Axis, extent, short_number};

@@ -1,7 +1,7 @@
 //! Open loops in the complex plane near the critical point.
 
 use super::chart::{self, Chart};
-use super::label::Point;
+use super::clip::Point;
 use super::response::LoopCurve;
 use super::{dots, frequency};
 use crate::page::{self, EDGE, Entry, Legend, Swatch};

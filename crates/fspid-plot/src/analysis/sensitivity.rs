@@ -1,8 +1,8 @@
 //! Sensitivity and complementary sensitivity over frequency.
 
 use super::chart::Chart;
+use super::clip::Point;
 use super::frequency::{self, nyquist_line};
-use super::label::Point;
 use super::response::{LoopCurve, LoopPoint};
 use super::stack::{Panel, Stack};
 use crate::axis::{Axis, extent, short_number};

@@ -1,7 +1,7 @@
 //! The plane of $z$ with the unit circle and lines of equal damping and frequency, whole and near 1.
 
 use super::chart::{self, Chart};
-use super::label::Point;
+use super::clip::Point;
 use crate::axis::short_number;
 use crate::page::{self, EDGE, Entry, Legend, Swatch};
 use crate::plot::TICK_PX;

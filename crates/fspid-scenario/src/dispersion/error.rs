@@ -160,7 +160,7 @@ impl fmt::Display for DispersionError {
             Self::NothingInside { mean, standard_deviation, lower, upper, probability } => write!(
                 f,
                 "of a normal distribution with mean {mean} and standard deviation {standard_deviation} the share between {lower} and {upper} is {probability:e}; to be drawn from it must be at least {:e}",
-                super::normal::LEAST_INSIDE
+                super::standard_normal::LEAST_INSIDE
             ),
             Self::TwoSigns { lower, upper } => write!(
                 f,

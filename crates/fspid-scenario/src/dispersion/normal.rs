@@ -1,10 +1,7 @@
 //! Normal numbers, truncated or not.
 
 use super::error::DispersionError;
-use super::standard_normal::{above, below, quantile};
-
-/// Share of a distribution that must lie between its limits. Below it numbers lose their digits.
-pub(super) const LEAST_INSIDE: f64 = 1e-300;
+use super::standard_normal::{LEAST_INSIDE, above, below, quantile};
 
 /// Standard deviations beyond which no number goes: the probability of one that does, 5e-308, is
 /// about the smallest that has all its digits.

@@ -119,6 +119,9 @@ const FAR_UNDER: [f64; 8] = [
     2.0442631033899397e-15,
 ];
 
+/// Share of a distribution that must lie between its limits. Below it numbers lose their digits.
+pub(super) const LEAST_INSIDE: f64 = 1e-300;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ use fspid_numeric::InstructionSet;
 
 use super::lane::{Lanes, Mask, NO, YES, mask};
 use super::memory::Memories;
-use super::pid_lanes::{FAR, Samples};
+use super::samples::{FAR, Samples};
 
 /// The equations of a lane that answers zeros by zeros.
 fn parked() -> TunerEquations<f64> {

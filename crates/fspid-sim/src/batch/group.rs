@@ -4,10 +4,11 @@ use fspid_numeric::InstructionSet;
 
 use super::Entrant;
 use super::lane::{Lanes, Mask, NO, YES, all, mask};
-use super::pid_lanes::{Controllers, Samples};
+use super::pid_lanes::Controllers;
 use super::plant::Plants;
 use super::refusal::Refusal;
 use super::row::BatchRow;
+use super::samples::Samples;
 use crate::error::SimError;
 use crate::propagation::{DIVERGED_RAD, Propagation};
 use crate::propagator::Propagator;

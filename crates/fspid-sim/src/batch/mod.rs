@@ -28,6 +28,7 @@ mod pid_lanes;
 mod plant;
 mod refusal;
 mod row;
+mod samples;
 #[cfg(test)]
 mod tests;
 
@@ -37,9 +38,9 @@ pub use row::BatchRow;
 
 use fearless_simd::dispatch;
 
-use crate::closed_loop::Instant;
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::instant::Instant;
 use crate::scenario::Prepared;
 use crate::trace::Outcome;
 use group::Group;

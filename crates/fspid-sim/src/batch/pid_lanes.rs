@@ -1,5 +1,6 @@
 //! The controllers of all lanes.
 
+use super::samples::{FAR, Samples};
 use fspid_core::equations::{AntiWindupKind, Memory, PidEquations, PidNumbers, PidStructure};
 use fspid_core::{Faults, GainCoupling, Gains, IntegralForm, PidConfig, Sample, Step};
 use fspid_numeric::InstructionSet;
@@ -9,11 +10,6 @@ use super::lane::{Lanes, Mask, NO, YES, all, mask};
 use super::memory::Memories;
 use super::refusal::Refusal;
 use crate::controller::Controller;
-
-/// Numbers up to this are far from overflow: products and quotients that a sample makes of them stay
-/// below the bounds at which a single controller holds its output (above 10²⁸⁹). Beyond it a lane is
-/// answered by a single controller.
-pub(super) const FAR: f64 = 1e200;
 
 /// Which samples are answered side by side, and what of them.
 #[derive(Clone, Debug)]
@@ -70,25 +66,6 @@ impl<const W: usize> Admission<W> {
 /// The equations of a lane that answers zeros by zeros.
 fn parked() -> PidEquations<f64> {
     PidEquations::new(&PidConfig::sampled_every(1.0), Gains::ZERO, GainCoupling::NONE)
-}
-
-/// What all lanes see at a sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Samples<'a, const W: usize> {
-    pub(super) setpoint_rad: &'a Lanes<W>,
-    pub(super) measurement_rad: &'a Lanes<W>,
-    pub(super) rate_rad_s: &'a Lanes<W>,
-}
-
-impl<const W: usize> Samples<'_, W> {
-    #[inline(always)]
-    pub(super) fn of(&self, lane: usize) -> Sample<f64> {
-        Sample {
-            setpoint_rad: self.setpoint_rad[lane],
-            measurement_rad: self.measurement_rad[lane],
-            rate_rad_s: self.rate_rad_s[lane],
-        }
-    }
 }
 
 /// What all lanes answer to it, as [`Step`].

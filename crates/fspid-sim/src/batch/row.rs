@@ -3,7 +3,7 @@
 use fspid_core::{Faults, Gains, Step};
 
 use super::lane::{Lanes, Mask, YES};
-use crate::closed_loop::Instant;
+use crate::instant::Instant;
 
 /// Everything observable of a group at one sample, one entry a lane. What stands in a lane that does
 /// not fly means nothing.

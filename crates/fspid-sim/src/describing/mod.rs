@@ -20,7 +20,9 @@ mod cycles;
 mod path;
 mod response;
 mod scan;
+mod search;
 
-pub use cycles::{LimitCycle, LimitCycles, Search, limit_cycles, limit_cycles_at};
+pub use cycles::{LimitCycle, LimitCycles, limit_cycles, limit_cycles_at};
 pub use path::LimitedPath;
 pub use response::{OpenLoop, Response};
+pub use search::Search;

@@ -17,6 +17,7 @@
 //! loop.
 
 mod assembly;
+mod break_point;
 #[cfg(test)]
 mod from_the_core;
 mod memory;
@@ -36,8 +37,8 @@ use crate::law::LinearStep;
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
+pub use break_point::BreakPoint;
 pub use memory::Memory;
-pub use opening::BreakPoint;
 pub(crate) use parts::LoopParts;
 pub use sensing::Sensing;
 

@@ -6,9 +6,9 @@ use fspid_lti::{Complex, TransferFunction};
 use serde_json::{Value, json};
 
 use super::condition::Question;
+use super::polynomial;
 use super::state_model::StateModel;
 use super::trim::{Trimmed, trim};
-use super::{plant_file, polynomial};
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::aircraft::units::Units;
@@ -118,12 +118,6 @@ impl Linear {
             "lateral": self.lateral.as_ref().map(|lateral| lateral.json(self.units)),
             "theta_over_elevator": plant,
         })
-    }
-
-    /// The model as a plant file, which a scenario names under `[plant]` as `file`.
-    #[must_use]
-    pub fn plant_file(&self) -> String {
-        plant_file::text(self)
     }
 }
 

@@ -5,8 +5,16 @@ use fspid_aircraft::data::{LinearCondition, LinearElevator, ModelData};
 use super::linearise::Linear;
 use super::trim::Trimmed;
 
+impl Linear {
+    /// The model as a plant file, which a scenario names under `[plant]` as `file`.
+    #[must_use]
+    pub fn plant_file(&self) -> String {
+        text(self)
+    }
+}
+
 /// The file: what a scenario reads, with the flight and the source in it.
-pub(super) fn text(linear: &Linear) -> String {
+fn text(linear: &Linear) -> String {
     let coefficients = linear.plant.numerator().coefficients();
     let numerator = list(coefficients);
     let denominator = list(linear.plant.denominator().coefficients());

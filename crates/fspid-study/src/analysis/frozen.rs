@@ -8,7 +8,7 @@ use fspid_sim::{LinearPlant, Scenario, SimError};
 
 use super::Question;
 use super::answer::Margins;
-use super::loops::{judged, rank};
+use super::rank::{judged, rank};
 use crate::metrics::Absent;
 
 /// A gain triple and its margins.

@@ -1,7 +1,8 @@
 //! One controller with every plant that it has to hold.
 
+use super::rank::{judged, rank, rank_without_margins};
 use fspid_core::Gains;
-use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins, Stability};
+use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins};
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::{
     AircraftPlant, Controller, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side,
@@ -234,22 +235,6 @@ impl PlantLoop {
     }
 }
 
-/// Margins of a loop. One of which rounding hides whether it is stable has none, and neither has one whose peaks nothing
-/// bounds.
-pub(super) fn judged(open: &SampledLoop) -> Result<Result<Box<SampledMargins>, Absent>, SimError> {
-    match open.margins() {
-        Ok(Stability::Stable(margins)) => Ok(Ok(margins)),
-        Ok(Stability::Unstable { spectral_radius, .. }) => {
-            Ok(Err(Absent::Unstable { spectral_radius }))
-        }
-        Err(LtiError::Blurred { spectral_radius, .. }) => {
-            Ok(Err(Absent::Undecided { spectral_radius }))
-        }
-        Err(LtiError::Unproved { order }) => Ok(Err(Absent::NotProved { order })),
-        Err(error) => Err(error.into()),
-    }
-}
-
 /// Whether a plant that lasts is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Held {
@@ -320,27 +305,6 @@ fn verdict(open: &SampledLoop) -> Result<Result<(), Absent>, SimError> {
             Ok(Err(Absent::Undecided { spectral_radius }))
         }
         Err(error) => Err(error.into()),
-    }
-}
-
-/// How bad margins are: the smaller, the worse; unstable before all others.
-pub(super) fn rank(margins: &Result<Margins, Absent>) -> f64 {
-    match margins {
-        Ok(margins) => margins.disk_margin,
-        Err(reason) => rank_without_margins(*reason),
-    }
-}
-
-/// How bad it is that there are no margins, below 0: a stable loop without proved margins, then what is not known, and
-/// before all others what is known to be unstable, the faster the worse.
-fn rank_without_margins(reason: Absent) -> f64 {
-    match reason {
-        Absent::Unstable { spectral_radius } if spectral_radius.is_finite() => {
-            -3.0 - spectral_radius
-        }
-        Absent::Unstable { .. } => f64::NEG_INFINITY,
-        Absent::NotProved { .. } => -1.0,
-        _ => -2.0,
     }
 }
 

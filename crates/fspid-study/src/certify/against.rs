@@ -1,8 +1,8 @@
 //! What is certified beside what a scenario flies, field by field.
 
+use super::comparison::{Comparison, Difference};
 use fspid_proof::{Asked, LoopDescription};
 use fspid_sim::SimError;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::asked;
@@ -14,37 +14,6 @@ use fspid_scenario::file::Study;
 
 /// What stands in for something that is not there.
 const NOTHING: &str = "nothing";
-
-/// A certificate beside a scenario.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Comparison {
-    /// Name of the scenario.
-    pub scenario: String,
-    /// Everything in which what flies is not what is certified.
-    pub differences: Vec<Difference>,
-    /// Digests of the scenario's text, certified and now, where they differ. The text may have changed where
-    /// nothing of the loop stands.
-    pub other_text: Option<[String; 2]>,
-}
-
-/// A field that differs.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Difference {
-    /// Its path in the certificate.
-    pub path: String,
-    /// What is certified.
-    pub certified: String,
-    /// What flies.
-    pub flown: String,
-}
-
-impl Comparison {
-    /// True if what flies is what is certified.
-    #[must_use]
-    pub fn is_same(&self) -> bool {
-        self.differences.is_empty()
-    }
-}
 
 impl CheckedFile {
     /// Compares with what a scenario flies: its controller of that name, with the lasting plant that is

@@ -1,12 +1,11 @@
 //! A certificate read and proved anew, and what that comes to.
 
-use std::fmt;
+use super::no_certificate::NoCertificate;
 
 use fspid_proof::{Bearing, Certificate, RecheckError, Rechecked};
 
-use super::against::Comparison;
+use super::comparison::Comparison;
 use super::file::{self, Origin, Seal};
-use super::shape::Wrong;
 
 /// A certificate that was checked.
 #[derive(Clone, Debug)]
@@ -88,30 +87,6 @@ impl CheckedFile {
         self.result.as_ref().ok().map(|rechecked| self.certificate.bearing(rechecked))
     }
 }
-
-/// Why a text is no certificate: everything that is wrong with it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoCertificate {
-    /// Each with its place; never empty.
-    pub problems: Vec<Wrong>,
-}
-
-impl NoCertificate {
-    pub(super) fn of(problem: Wrong) -> Self {
-        Self { problems: vec![problem] }
-    }
-}
-
-impl fmt::Display for NoCertificate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (place, problem) in self.problems.iter().enumerate() {
-            write!(f, "{}{problem}", if place == 0 { "" } else { "\n" })?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for NoCertificate {}
 
 /// Proves the claim of a certificate anew.
 ///

@@ -2,8 +2,8 @@
 
 use fspid_proof::{Certificate, Claim, Kept, Rechecked};
 
-use super::against::Comparison;
 use super::checked::{Answer, CheckedFile};
+use super::comparison::Comparison;
 use super::file::Seal;
 use super::scope::Told;
 use super::text::{push_claim, push_rechecked, range, refuted, sentence};

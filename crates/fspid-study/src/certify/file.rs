@@ -8,11 +8,11 @@ use fspid_proof::{BoundedRate, Certificate, Claim, LeftOut, Range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::NoCertificate;
 use super::controller_file::ControllerFile;
 use super::digest::digest;
 use super::json_text;
 use super::loop_file::LoopFile;
+use super::no_certificate::NoCertificate;
 use super::shape::{self, CERTIFICATE, Wrong};
 
 /// First words of every certificate.

@@ -6,6 +6,7 @@
 mod against;
 mod checked;
 mod checked_text;
+mod comparison;
 mod controller_file;
 mod coverage;
 mod digest;
@@ -13,6 +14,7 @@ mod file;
 mod json;
 mod json_text;
 mod loop_file;
+mod no_certificate;
 mod scope;
 mod shape;
 #[cfg(test)]
@@ -29,10 +31,11 @@ use fspid_scenario::file::Study;
 
 pub use fspid_proof::Effort;
 
-pub use against::{Comparison, Difference};
-pub use checked::{Answer, CheckedFile, NoCertificate, check_text};
+pub use checked::{Answer, CheckedFile, check_text};
+pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
 pub use file::{Origin, Seal, from_text, to_text};
+pub use no_certificate::NoCertificate;
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 

@@ -4,6 +4,7 @@ mod adapt;
 mod norm;
 mod options;
 mod set;
+mod statement;
 mod text;
 
 use fspid_fuzzy::system::Parts;

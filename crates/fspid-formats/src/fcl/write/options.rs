@@ -3,7 +3,7 @@
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{FallbackValue, Input, Output, Parts, Sampling};
 
-use super::text::{range, statement};
+use super::statement::{range, statement};
 use crate::fcl::option::OUT_OF_RANGE;
 use crate::number::written as number;
 

@@ -1,10 +1,11 @@
 //! The text of a system that a dialect can say.
 
 use fspid_fuzzy::system::{
-    Conclusion, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling, Universe,
+    Conclusion, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
+use super::statement::{range, statement};
 use super::{options, set};
 use crate::adapt::{check_formula, formula_names};
 use crate::fcl::Dialect;
@@ -202,10 +203,6 @@ impl Writer<'_> {
     }
 }
 
-pub(super) fn statement(begin: &str, end: &str) -> String {
-    format!("  {begin}{end};\n")
-}
-
 fn declarations<'n>(keyword: &str, names: impl Iterator<Item = &'n String>) -> String {
     let lines: String = names.map(|name| format!("  {name} : REAL;\n")).collect();
     format!("\n{keyword}\n{lines}END_VAR\n")
@@ -214,11 +211,6 @@ fn declarations<'n>(keyword: &str, names: impl Iterator<Item = &'n String>) -> S
 fn switches(enabled: bool, locked: bool) -> String {
     let enabled = if enabled { String::new() } else { statement("ENABLED : ", "FALSE") };
     enabled + &if locked { statement("LOCK : ", "RANGE") } else { String::new() }
-}
-
-pub(super) fn range(universe: Option<Universe>) -> String {
-    let ends = universe.map_or([f64::NEG_INFINITY, f64::INFINITY], |u| [u.lower, u.upper]);
-    format!("({})", ends.map(number).join(" .. "))
 }
 
 /// The default as the dialect has it: a number, `NC`, or both in fuzzylite's.

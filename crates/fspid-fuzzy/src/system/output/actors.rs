@@ -81,6 +81,14 @@ impl Activations {
         &self.list
     }
 
+    /// The conclusions of each actor: their positions in the output's list.
+    pub(super) fn conclusions(&self) -> impl Iterator<Item = &[usize]> {
+        let begins = core::iter::once(0).chain(self.ends.iter().copied());
+        begins
+            .zip(&self.ends)
+            .map(|(begin, &end)| self.conclusions.get(begin..end).unwrap_or_default())
+    }
+
     /// Positions of the actors of a term.
     #[inline]
     pub(crate) fn about(&self, term: usize) -> Range<usize> {

@@ -10,6 +10,7 @@ mod maximum;
 mod outline;
 mod partition;
 mod sampled;
+mod way;
 mod weighted;
 
 use alloc::vec;
@@ -27,6 +28,7 @@ pub use joined::{AggregatedSet, Piece};
 pub(crate) use outline::{Outline, Room};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
+pub use way::{Actor, Cell, Join, Line, Way};
 pub(crate) use weighted::value;
 
 /// How the number of one output is found.

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::super::defuzzifier::Defuzzifier;
 use super::super::parts::{Conclusion, Membership, Output, OutputTerm};
 use super::actors::{Activations, Level};
+use super::way::Way;
 use crate::centroid::centroid;
 use crate::defuzzifier;
 use crate::membership::ShapeKind;
@@ -51,6 +52,12 @@ impl Partition {
         });
         let own = order.iter().map(|&term| actors.about(term).next()).collect();
         fits.then_some(Self { rule, actors: own, middle, spacing })
+    }
+
+    /// What it does, in public words.
+    pub(super) fn way(&self) -> Way {
+        let Self { rule, ref actors, middle, spacing } = *self;
+        Way::Partition { rule, actors: actors.clone(), middle, spacing }
     }
 
     /// The centroid, given the level of each actor; nothing if none fires. `sorted` has room for as

@@ -6,7 +6,7 @@ use fspid_sim::air::{
 };
 use fspid_sim::{Plant, Weather};
 
-use super::flight::{Flown, Way};
+use super::flown::{Flown, Way};
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
 use crate::file::files::Files;

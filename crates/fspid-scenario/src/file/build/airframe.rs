@@ -3,7 +3,7 @@
 use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
 use fspid_sim::Scenario;
 
-use super::flight::Flown;
+use super::flown::Flown;
 use crate::file::files::Files;
 use crate::file::spec::data::{CONDITION, SPEED_M_S};
 use crate::file::spec::scenario as keys;

@@ -1,5 +1,6 @@
 //! The aircraft of a scenario: read, trimmed, and flown nonlinear or linear.
 
+use super::flown::{Flown, Way};
 use std::path::Path;
 
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
@@ -19,26 +20,6 @@ use crate::file::spec::scenario::{AIRCRAFT, PLANT};
 use crate::flyer::flyer;
 use crate::keyed::{Key, Section};
 use fspid_diagnostics::Report;
-
-/// A plant and what the air around it depends on.
-pub(super) struct Flown {
-    pub(super) plant: Plant,
-    /// Where it flies, and its span; for an aircraft.
-    pub(super) way: Option<Way>,
-}
-
-/// The way of an aircraft.
-#[derive(Clone, Copy)]
-pub(super) struct Way {
-    pub(super) course: Course,
-    /// `None` where the aircraft's file has none.
-    pub(super) span_m: Option<f64>,
-    pub(super) gravity_m_s2: f64,
-    /// At the trim, before any wind.
-    pub(super) dynamic_pressure_pa: f64,
-    /// Whether airspeed and altitude are the scenario's alone, since the aircraft's file has no condition.
-    pub(super) assumed: bool,
-}
 
 /// What flies, of the scenario's `plant` or `aircraft`.
 pub(super) fn flown(

@@ -4,7 +4,8 @@ use fspid_aircraft::data::{LinearCondition, LinearData, LinearElevator};
 use fspid_aircraft::{Environment, TrimTarget};
 use fspid_sim::{ElevatorSign, LinearPlant};
 
-use super::flight::{self, Flown, Way};
+use super::flight;
+use super::flown::{Flown, Way};
 use super::judged;
 use crate::file::aircraft::unit_size;
 use crate::file::spec::flight as keys;

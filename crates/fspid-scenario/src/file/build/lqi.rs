@@ -4,7 +4,7 @@ use fspid_core::{Gains, Pid, PidConfig, SetpointWeights};
 use fspid_lti::{DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator};
 use fspid_sim::Controller;
 
-use super::controller::{ends, placed};
+use super::ends::{ends, placed};
 use crate::file::spec::lqi as keys;
 use crate::keyed::Section;
 use fspid_diagnostics::Report;

@@ -2,7 +2,7 @@
 
 use fspid_core::{Gains, PidConfig};
 
-use super::flight::Flown;
+use super::flown::Flown;
 use super::judged;
 use crate::file::spec::scenario::PLANT;
 use crate::file::spec::schedule as keys;

@@ -7,11 +7,12 @@ use fspid_core::{Faults, Fspid, Gains, Law, Sample};
 
 use super::controller::{Done, Inputs, Places, Twin};
 use super::gains::{IncrementSlopes, TunerSlopes, system_of};
-use crate::closed_loop::{Coming, Instant, fly, watch};
+use crate::closed_loop::{Coming, fly, watch};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::flown::empirical::gains_around_rest;
+use crate::instant::Instant;
 use crate::loop_model::{LoopModel, LoopParts, LoopSettings, Memory};
 use crate::propagation::Propagation;
 use crate::scenario::{Prepared, Scenario};

@@ -16,19 +16,11 @@ use super::super::parts::Output;
 use super::actors::{Activations, Level};
 use super::joined::AggregatedSet;
 use super::roomy_clone;
+use super::way::{self, Join, Way};
 use crate::membership::Vertex;
 use crate::norm::{SNormKind, TNormKind};
 use cells::{Cell, Line, cells, polyline};
 use edge::{Active, Edge, highest, sum};
-
-/// How conclusions are joined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Join {
-    Maximum,
-    Sum,
-    /// The sum, but no more than 1.
-    BoundedSum,
-}
 
 impl Join {
     fn of(norm: &SNorm) -> Option<Self> {
@@ -87,6 +79,17 @@ impl Outline {
         let scales = scales.collect::<Option<_>>()?;
         let (cells, lines) = cells([universe.lower, universe.upper], &polylines);
         Some(Self { join, cells, lines, scales, middle: universe.middle() })
+    }
+
+    /// What it does, in public words.
+    pub(super) fn way(&self) -> Way {
+        let line = |line: &Line| way::Line { term: line.term, grade: line.grade };
+        let cell = |cell: &Cell| {
+            let lines = self.lines.get(cell.lines.clone()).unwrap_or_default();
+            way::Cell { x: cell.x, lines: lines.iter().map(line).collect() }
+        };
+        let cells = self.cells.iter().map(cell).collect();
+        Way::Polygon { join: self.join, cells, scales: self.scales.clone(), middle: self.middle }
     }
 
     /// Makes room for it.

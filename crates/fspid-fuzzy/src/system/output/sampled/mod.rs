@@ -88,6 +88,10 @@ impl Sampled {
         Some(own)
     }
 
+    pub(super) fn sampling(&self) -> Sampling {
+        self.sampling
+    }
+
     fn tabulate(&mut self, output: &Output) {
         let fixed = output.terms.iter().all(|term| {
             matches!(&term.conclusion, Conclusion::Set { membership: Membership::Shape { .. }, .. })
