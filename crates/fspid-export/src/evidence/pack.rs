@@ -166,14 +166,14 @@ impl Known<'_> {
         let (element, change) = (finding.mutant.element.as_str(), finding.mutant.change.as_str());
         let asks = self.one_way.iter().any(|(_, asked, _)| text.contains(asked.as_str()));
         let compares = matches!(change, "<= for <" | "< for <=");
-        let is_sample = element == "track" && text.contains("setpoint_rad");
+        let above = &self.lines[line.saturating_sub(3)..line.min(self.lines.len())];
+        let asks_sample = |it: &&str| it.contains("if (") && it.contains("setpoint_rad");
+        let is_sample = element == "track" && above.iter().any(asks_sample);
         if self.is_unreached(line) {
             return "stands where no vector goes: coverage.csv";
         }
         match () {
-            () if is_sample && text.contains("if (") => {
-                "the step behind it holds such a sample alike"
-            }
+            () if is_sample => "the step behind it holds such a sample alike",
             () if compares && (text.contains('?') || text.contains("if (strengths")) => {
                 "both ways answer the same number where the two sides are equal"
             }
