@@ -40,7 +40,7 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
     grep -qv " 0 different" vectors.txt && wrong "$name: vectors"
     grep -q "^warnings: 0" warnings.txt || wrong "$name: warnings"
     # The advisory rules that README.md of a pack gives reasons for.
-    grep -v -E 'misra-c2012-(8\.7|8\.9|15\.5|19\.2)$' misra-counts.txt && wrong "$name: MISRA"
+    grep -v -E 'misra-c2012-(8\.7|8\.9|12\.1|15\.5|19\.2)$' misra-counts.txt && wrong "$name: MISRA"
     awk -F 'self test ' '/cortex-m4 gcc -O2/ { split($2, of, ","); exit of[1] > 210000 }' boards.txt || wrong "$name: self test"
     cd - > /dev/null
 done

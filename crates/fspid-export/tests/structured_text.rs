@@ -68,6 +68,9 @@ fn different<R: Real>(
         match vector.event {
             Event::Memory(Remembered::Command, value) => write(block, "state_command_rad", value)?,
             Event::Memory(Remembered::Integral, value) => write(block, "state_integral", value)?,
+            Event::Memory(Remembered::Gain(gain), value) => {
+                write(block, ["state_kp", "state_ki", "state_kd"][gain], value)?;
+            }
             _ => {}
         }
         for (name, value) in text.inputs.iter().zip(&vector.sample) {

@@ -8,7 +8,7 @@ use fspid_numeric::Real;
 use super::run::Ran;
 use super::{Finding, Subject, proof};
 use crate::interpret::Branch;
-use crate::program::Precision;
+use crate::program::{Precision, Program, Value};
 use crate::targets::File;
 use crate::write;
 
@@ -121,6 +121,8 @@ struct Known<'a> {
     lines: Vec<&'a str>,
     /// What never goes the other way.
     one_way: &'a [(&'a str, String, bool)],
+    is_mirrored: bool,
+    has_numbers: bool,
 }
 
 impl Known<'_> {
@@ -140,33 +142,71 @@ impl Known<'_> {
         })
     }
 
+    /// True where what a line writes is written again before it is read.
+    fn is_overwritten(&self, line: usize) -> bool {
+        let Some((left, _)) = self.lines.get(line - 1).and_then(|it| it.split_once(" = ")) else {
+            return false;
+        };
+        let indentation = left.len() - left.trim_start().len();
+        let name = left.split_whitespace().next_back().unwrap_or_default();
+        let words =
+            |it: &str| it.split(|c: char| !c.is_alphanumeric() && c != '_').any(|it| it == name);
+        let next = self.lines[line..].iter().find(|it| words(it));
+        next.is_some_and(|it| {
+            let written = it.trim_start().strip_prefix(name).and_then(|it| it.strip_prefix(" = "));
+            written.is_some_and(|value| !words(value))
+                && it.len() - it.trim_start().len() == indentation
+        })
+    }
+
     /// Why a change is not found, as far as it can be told without running it.
     fn reason(&self, finding: &Finding) -> &'static str {
         let line = finding.line();
         let text = self.lines.get(line.wrapping_sub(1)).copied().unwrap_or_default();
-        let change = finding.mutant.change.as_str();
+        let (element, change) = (finding.mutant.element.as_str(), finding.mutant.change.as_str());
         let asks = self.one_way.iter().any(|(_, asked, _)| text.contains(asked.as_str()));
         let compares = matches!(change, "<= for <" | "< for <=");
+        let above = &self.lines[line.saturating_sub(3)..line.min(self.lines.len())];
+        let asks_sample = |it: &&str| it.contains("if (") && it.contains("setpoint_rad");
+        let is_sample = element == "track" && above.iter().any(asks_sample);
         if self.is_unreached(line) {
-            "stands where no vector goes: coverage.csv"
-        } else if compares && (text.contains('?') || text.contains("if (strengths")) {
-            "both ways answer the same number where the two sides are equal"
-        } else if asks {
-            "what is asked here never goes the other way: coverage.csv"
-        } else if text.contains("* 0.0") {
-            "times 0: this controller has no rate"
-        } else if finding.mutant.element == "reset" {
-            "written again before it is read: nothing has started"
-        } else if compares {
-            "no vector meets the very end with another answer"
-        } else if text.contains("saturated = 0") {
-            "nothing sets it before"
-        } else if change.starts_with("a thousandth") {
-            "no vector tells a thousandth apart here"
-        } else {
-            "not told apart by these vectors"
+            return "stands where no vector goes: coverage.csv";
+        }
+        match () {
+            () if is_sample => "the step behind it holds such a sample alike",
+            () if compares && (text.contains('?') || text.contains("if (strengths")) => {
+                "both ways answer the same number where the two sides are equal"
+            }
+            () if element == "infer" && self.has_numbers && text.contains("->range") => {
+                "the inputs are limited once more behind it, in spacings"
+            }
+            () if compares && text.contains("->range") => {
+                "the end of the range is moved onto itself"
+            }
+            () if asks => "what is asked here never goes the other way: coverage.csv",
+            () if self.is_mirrored && matches!(element, "sign" | "fill_grades" | "spacing") => {
+                "the rules conclude the same for both inputs turned"
+            }
+            () if element == "set_sigma" && change == "the other sign" => "squared",
+            () if element == "reset" => "written again before it is read: nothing has started",
+            () if self.is_overwritten(line) => "written again before it is read",
+            () if text.contains("| fault") => "no fault comes here that is not held",
+            () if text.contains("saturated = 0") => "nothing sets it before",
+            () if compares => "no vector meets the very end with another answer",
+            () if change.starts_with("a thousandth") => "no vector tells a thousandth apart here",
+            () => "not told apart by these vectors",
         }
     }
+}
+
+/// True where every rule concludes what the rule for both inputs turned concludes.
+fn is_mirrored(program: &Program) -> bool {
+    let tables = program.configuration.iter().filter(|it| it.is_rules());
+    tables.map(|it| &it.value).all(|value| match value {
+        Value::Bytes(cells) => cells.iter().eq(cells.iter().rev()),
+        Value::Reals(cells) => cells.iter().eq(cells.iter().rev()),
+        Value::Real(_) | Value::Byte(_) | Value::Truth(_) => false,
+    })
 }
 
 /// The first page.
@@ -176,7 +216,12 @@ pub(super) fn front<R: Real>(subject: &Subject<'_, R>, findings: &[Finding], bas
     let one_way: Vec<(&str, String, bool)> =
         one_way.map(|it| (it.function, asked(it), it.held > 0)).collect();
     let source = write::c(subject.program, subject.prefix, subject.heading).source;
-    let known = Known { lines: source.lines().collect(), one_way: &one_way };
+    let known = Known {
+        lines: source.lines().collect(),
+        one_way: &one_way,
+        is_mirrored: is_mirrored(subject.program),
+        has_numbers: subject.program.function("lower_set").is_some(),
+    };
     let row = |what: &str, (found, all): (usize, usize)| format!("| {what} | {all} | {found} |\n");
     let is_rule = |it: &Finding| it.mutant.is_design && it.mutant.element.contains(" of ");
     let is_comparison = |it: &Finding| {
@@ -293,6 +338,7 @@ None that is mandatory or required. Advisory ones, and why they stay:
 | --- | --- |
 | 8.7 | what others call has external linkage, whether or not this program calls it |
 | 8.9 | the tables of the self test stand outside of the one function that reads them, so that they can be read |
+| 12.1 | every operation stands in brackets; the addon misses those behind a `?` |
 | 15.5 | a sample that cannot be used ends the step at once |
 | 19.2 | the bits of a number are read and made by a union: C has no other way without a library |
 

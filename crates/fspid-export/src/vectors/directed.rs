@@ -28,6 +28,7 @@ pub(super) fn fly<R: Real>(flight: &mut Flight<'_, R>) {
     if let Controller::SelfTuning(fspid) = flight.controller
         && fspid.tuner_equations().structure.law == LawKind::Accumulating
     {
+        gains(flight, fspid);
         gain_limits(flight, fspid);
     }
 }
@@ -76,6 +77,28 @@ fn rules<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
     for error in &errors {
         for second in &seconds {
             seek(flight, fspid, [*error, *second]);
+        }
+    }
+    // Close to the centres, on both sides.
+    let near = 0.0004 * fspid.tuner().supervisor().range().to_f64();
+    for (error, second) in errors.iter().zip(&seconds).take(7) {
+        for side in [[near, near], [-near, -near], [near, -near], [-near, near]] {
+            seek(flight, fspid, [error + side[0], second + side[1]]);
+        }
+    }
+}
+
+/// Gains that no step has left, beyond both of their limits and at the edge of overflow.
+fn gains<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let good = [0.05, 0.02, 0.01];
+    for (gain, numbers) in fspid.tuner_equations().gains.iter().enumerate() {
+        let [lower, upper] = [numbers.lower, numbers.upper].map(Real::to_f64);
+        let beyond = [lower - 1.0, upper + 1.0, lower + 1e-4, upper - 1e-4];
+        let largest = largest::<R>();
+        for value in beyond.into_iter().chain([-largest, largest]).filter(|it| it.is_finite()) {
+            flight.reset(good);
+            flight.event(Event::Memory(Remembered::Gain(gain), R::from_f64(value)), good);
+            flight.step(good);
         }
     }
 }
@@ -208,10 +231,15 @@ fn taking_over<R: Real>(flight: &mut Flight<'_, R>) {
         flight.event(Event::Faults, good);
         flight.step(good);
     }
-    for place in 0..3 {
+    for (place, bad) in
+        [f64::NAN, guard * 1.001].into_iter().flat_map(|bad| (0..3).map(move |it| (it, bad)))
+    {
         let mut sample = good;
-        sample[place] = f64::NAN;
+        sample[place] = bad;
+        flight.reset(good);
         flight.track(0.1, sample);
+        // A fault that is latched is no reason not to go on.
+        flight.track(0.07, good);
         flight.event(Event::Faults, good);
     }
     flight.reset(good);

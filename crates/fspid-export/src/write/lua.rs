@@ -86,6 +86,9 @@ fn check_of_controller(page: &mut Page, program: &Program) {
         page.line("if event == 4 and controller.faults(state) ~= latched then different = different + 1 end");
         page.line("if event == 5 then state.command_rad = given end");
         page.line("if event == 6 then state.integral = given end");
+        for (gain, event) in ["kp", "ki", "kd"].iter().zip(7..) {
+            page.line(&format!("if event == {event} then state.{gain} = given end"));
+        }
         page.line("if event == 2 then");
         page.line(&format!("    {}, answer, 1)", call("hold")));
         page.line("elseif event == 3 then");
