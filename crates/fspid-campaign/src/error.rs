@@ -21,6 +21,9 @@ pub enum CampaignError {
     /// The scenario cannot be read.
     #[error("{0}")]
     Unreadable(#[from] fspid_scenario::file::LoadError),
+    /// An external controller cannot be started.
+    #[error(transparent)]
+    NotStarted(#[from] fspid_sim::SimError),
     /// Nothing differs from run to run.
     #[error(
         "{path}: nothing differs from run to run\n    add what shall, for instance:\n\n        [[dispersion]]\n        path = \"controller[0].kp\"\n        distribution = \"uniform\"\n        lower = 0.8\n        upper = 1.2\n        relative = true\n"

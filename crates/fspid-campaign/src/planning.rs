@@ -40,7 +40,8 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
     let template = Template::parse(&text, &path, Some(home), &extra)
         .map_err(|problems| CampaignError::Unreadable(LoadError::Problems(problems)))?;
     // Flights side by side are some hundred times as fast as six degrees of freedom.
-    let side_by_side = template.study().scenario.flies_side_by_side();
+    let side_by_side = template.study().scenario.flies_side_by_side()
+        && template.study().scenario.externals.is_empty();
     let usual = if side_by_side { SHARD_RUNS } else { SLOW_SHARD_RUNS };
     let shard_runs = question.shard_runs.unwrap_or(usual);
     check("the number of runs in a shard", shard_runs, MOST_SHARD_RUNS)?;

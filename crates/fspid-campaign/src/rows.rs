@@ -19,6 +19,9 @@ use crate::table::{Cell, Column, ColumnTable, Kind, MAX_TEXT_BYTES, Schema, Tabl
 /// The verdict on a flight that ended at the ground.
 pub const HIT_GROUND: &str = "hit the ground";
 
+/// The verdict on a flight whose external controller gave no answer.
+pub const CONTROLLER_LOST: &str = "controller lost";
+
 /// Version of the rows.
 pub const FORMAT: u32 = 1;
 
@@ -170,7 +173,7 @@ impl Rows {
         columns.extend(requirements.iter().flat_map(asked));
         Ok(Self {
             schema: Arc::new(Schema::new(columns)?),
-            controllers: study.scenario.controllers.iter().map(|it| it.name.clone()).collect(),
+            controllers: study.scenario.flyers().map(|it| it.name().to_owned()).collect(),
             requirements: requirements.clone(),
         })
     }

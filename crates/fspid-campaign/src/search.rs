@@ -108,8 +108,7 @@ struct Target<'a> {
 impl<'a> Target<'a> {
     fn of(campaign: &'a Campaign, question: &'a Question) -> Result<Self, CampaignError> {
         let study = campaign.template().study();
-        let controllers = &study.scenario.controllers;
-        let names: Vec<&str> = controllers.iter().map(|named| named.name.as_str()).collect();
+        let names: Vec<&str> = study.scenario.flyers().map(|flyer| flyer.name()).collect();
         let place = match &question.controller {
             None => Some(0),
             Some(name) => names.iter().position(|known| known == name),

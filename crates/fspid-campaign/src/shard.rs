@@ -49,6 +49,7 @@ pub fn fly(
         progress.add_found(range.end - range.first);
         return Ok(Done::Found);
     }
+    campaign.template().study().scenario.start_externals()?;
     let table = campaign.fly(range, progress)?;
     write(&path, campaign, range, &table)?;
     Ok(Done::Flown)

@@ -50,10 +50,13 @@ enum Command {
     Aircraft(commands::aircraft::Arguments),
     Bench(commands::bench::Arguments),
     Schema(commands::schema::Arguments),
+    #[command(hide = true)]
+    ExternalController(commands::external_controller::Arguments),
 }
 
 fn main() -> ExitCode {
     commands::interrupt::listen();
+    commands::external_controller::host();
     let done = match line::parsed::<Arguments>() {
         Ok(arguments) => run(arguments.command),
         Err(end) => end.map_or(Ok(()), Err),
@@ -90,5 +93,6 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
+        Command::ExternalController(arguments) => commands::external_controller::run(&arguments),
     }
 }

@@ -7,6 +7,8 @@ use crate::repository::repository;
 
 /// What the documents write before the program's own words.
 const PROGRAM: &str = "cargo run --release -- ";
+/// What else is run: building what the next command flies.
+const COMPILER: &str = "cc -shared ";
 /// Commands that are not run here, each with the reason.
 const NOT_RUN: [(&str, &str); 6] = [
     ("reproduce", "the end-to-end check runs it"),
@@ -17,7 +19,8 @@ const NOT_RUN: [(&str, &str); 6] = [
     ("aircraft trim f16.toml", "NASA's files are not kept here"),
 ];
 /// Commands that do not end with 0, and what they end with.
-const CODES: [(&str, i32); 1] = [("aircraft trim navion --speed 60kt", 2)];
+const CODES: [(&str, i32); 2] =
+    [("aircraft trim navion --speed 60kt", 2), ("verify pitch.toml --library mine.so", 1)];
 
 /// Blocks between fences: language and lines.
 fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {
@@ -37,6 +40,19 @@ fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {
     found
 }
 
+/// The file that a block of C is, if its first line says so.
+fn named_source(line: &str) -> Option<&str> {
+    line.strip_prefix("/* ")?.strip_suffix(" */").filter(|name| name.ends_with(".c"))
+}
+
+/// Builds as a line says.
+fn compile(line: &str, folder: &Path) {
+    let words = line.split_whitespace().skip(1);
+    let built = std::process::Command::new("cc").args(words).current_dir(folder).output();
+    let built = built.expect("the compiler that links Rust");
+    assert!(built.status.success(), "{line}\n{}", text(&built.stderr));
+}
+
 /// Runs the commands of a page in its order, in a folder that looks like the repository; how many.
 fn run(page: &Path, folder: &Path) -> usize {
     let document = std::fs::read_to_string(page).expect("a page");
@@ -51,10 +67,17 @@ fn run(page: &Path, folder: &Path) -> usize {
                 );
             }
         }
+        if let Some(name) = lines.first().and_then(|line| named_source(line)) {
+            std::fs::write(folder.join(name), lines.join("\n")).expect("written");
+        }
         if language != "sh" {
             continue;
         }
-        for command in lines.iter().filter_map(|line| line.strip_prefix(PROGRAM)) {
+        for line in lines {
+            if line.starts_with(COMPILER) {
+                compile(line, folder);
+            }
+            let Some(command) = line.strip_prefix(PROGRAM) else { continue };
             let command = command.split(" #").next().unwrap_or_default().trim();
             skipped = NOT_RUN.iter().any(|(start, _)| command.starts_with(start));
             if skipped {

@@ -41,6 +41,12 @@ impl Faults {
         self.0
     }
 
+    /// Those that a number's bits stand for; bits of no fault are left out.
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits & 0x1f)
+    }
+
     /// True if every fault of `other` is among these.
     #[must_use]
     pub const fn contains(self, other: Self) -> bool {
@@ -51,6 +57,11 @@ impl Faults {
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// True if one of them holds the command.
+    pub(crate) const fn is_held(self) -> bool {
+        self.0 & (Self::NOT_FINITE.0 | Self::IMPLAUSIBLE.0 | Self::OVERFLOW.0) != 0
     }
 
     pub(crate) fn latch(&mut self, fault: Self) {
@@ -104,6 +115,14 @@ impl<R: Real> Guard<R> {
             return Some(Faults::NOT_FINITE);
         }
         values.iter().any(|value| value.abs() > self.limit).then_some(Faults::IMPLAUSIBLE)
+    }
+
+    /// The fault of one angle, if it has one.
+    pub(crate) fn fault_of(&self, angle_rad: R) -> Option<Faults> {
+        if !angle_rad.is_finite() {
+            return Some(Faults::NOT_FINITE);
+        }
+        (angle_rad.abs() > self.limit).then_some(Faults::IMPLAUSIBLE)
     }
 }
 

@@ -43,6 +43,11 @@ fn leave<R: Real>(room: f64, values: [R; 2]) -> bool {
     values.iter().all(|value| value.abs() <= largest)
 }
 
+/// True for an integral that leaves the next sample an answer.
+pub(crate) fn may_be_remembered<R: Real>(integral: R) -> bool {
+    leave(INTEGRAL_ROOM, [integral, integral])
+}
+
 /// The largest rates and the largest integral with which a sample is answered and not held as an overflow.
 pub fn largest_remembered<R: Real>() -> [R; 2] {
     [RATE_ROOM, INTEGRAL_ROOM].map(|room| R::from_f64(room) / R::MIN_POSITIVE)

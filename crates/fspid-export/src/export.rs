@@ -4,9 +4,10 @@ use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, precision_of, program};
+use crate::evidence::{self, Subject};
 use crate::program::Precision;
 use crate::targets::{File, Flown, Source, Target, Written};
-use crate::vectors::vectors;
+use crate::vectors::{eventful, vectors};
 use crate::write::{self, Heading};
 
 /// What is asked for.
@@ -26,6 +27,8 @@ pub struct Request<'a> {
     pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
+    /// Data for a review is asked for, which takes a minute; C has it.
+    pub evidence: bool,
 }
 
 /// Why there is no export.
@@ -58,6 +61,8 @@ pub struct Export {
     pub prefix: String,
     /// The files.
     pub files: Vec<File>,
+    /// The files of the evidence, where it is asked for and the target has some.
+    pub evidence: Vec<File>,
     /// What was chosen, and why.
     pub notes: Vec<String>,
 }
@@ -85,7 +90,8 @@ fn exported<R: Real>(
     let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
     let program = program(controller, request.angles).map_err(refused)?;
     let prefix = identifier(request.name);
-    let vectors = vectors(controller, request.angles, SEED, request.samples);
+    let drawn = if request.target.has_events() { eventful } else { vectors };
+    let vectors = drawn(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::from_iter(renamed(request.name, &prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
@@ -108,7 +114,17 @@ fn exported<R: Real>(
     let written = written(request.target, &source).map_err(refused)?;
     notes.extend(written.notes);
     let files = written.files;
-    Ok(Export { prefix, files, notes })
+    let subject = Subject {
+        program: &program,
+        controller,
+        prefix: &prefix,
+        heading: &heading,
+        vectors: &vectors,
+        code: &files,
+    };
+    let has_evidence = request.evidence && request.target == Target::C;
+    let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
+    Ok(Export { prefix: prefix.clone(), files, evidence, notes })
 }
 
 /// The files of the target, and the vectors.
@@ -150,6 +166,12 @@ fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
     Some(way)
 }
 
+/// Libraries that Lua has loaded before it looks for a file, and headers of C that a file must not hide.
+const TAKEN: &str = "bit32 coroutine debug io math os package string table utf8 \
+                     assert complex ctype errno fenv float inttypes iso646 limits locale setjmp signal stdalign \
+                     stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn tgmath threads time uchar \
+                     wchar wctype";
+
 /// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn identifier(name: &str) -> String {
@@ -162,6 +184,9 @@ pub fn identifier(name: &str) -> String {
         }
     }
     let text = text.trim_matches('_');
+    if TAKEN.split_whitespace().any(|taken| taken == text) {
+        return format!("controller_{text}");
+    }
     match text.chars().next() {
         Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
         Some(_) => format!("controller_{text}"),

@@ -4,6 +4,7 @@
 
 mod compile;
 mod compose;
+mod evidence;
 mod export;
 mod flat;
 pub mod interpret;

@@ -1,16 +1,91 @@
-//! Drawn samples, good and bad ones, and what a controller answers to them; those of systems are in `systems`.
+//! Samples that go to the places where something may be wrong, drawn ones behind them, and what a controller answers;
+//! those of systems are in `systems`.
 //!
-//! Set-points jump by up to 0.6 rad, the pitch follows with noise. Which of a controller's limits and rules this reaches is
-//! not measured here.
+//! Directed are: every rule at the centres of its sets and between them, both ends of every limit, wind-up and the way
+//! out of it, dead zone, guard, numbers that are none, memories that nobody has written, taking over. Drawn are
+//! set-points that jump by up to 0.6 rad and a pitch that follows with noise. What of a program they reach is counted by
+//! [`Machine::branches`](crate::interpret::Machine::branches), what they find by [`evidence`](crate::evidence).
 
-use fspid_core::{Controller, Sample, State, Step};
+mod directed;
+mod drawn;
+
+use fspid_core::{Controller, Faults, Sample, State, Step};
 use fspid_numeric::Real;
 
 use crate::Angles;
+pub(crate) use drawn::Draw;
+pub use drawn::samples;
 
-/// A sample and its answer, in the units of the export.
+/// What is done with a controller at a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event<R> {
+    /// A step.
+    Step,
+    /// It begins anew, then a step.
+    Reset,
+    /// It is told to hold, with the fault of a sample that is not finite.
+    Hold,
+    /// Another commands, in the unit of the export.
+    Track(R),
+    /// The faults are read and cleared, then a step.
+    Faults,
+    /// A number of the memory, in SI units, is written over, then a step.
+    Memory(Remembered, R),
+}
+
+impl<R: Real> Event<R> {
+    /// Its name in tables.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Step => "step",
+            Self::Reset => "reset",
+            Self::Hold => "hold",
+            Self::Track(_) => "track",
+            Self::Faults => "faults",
+            Self::Memory(Remembered::Command, _) => "command_rad",
+            Self::Memory(Remembered::Integral, _) => "integral",
+        }
+    }
+
+    /// Its number in programs.
+    #[must_use]
+    pub const fn number(&self) -> u8 {
+        match self {
+            Self::Step => 0,
+            Self::Reset => 1,
+            Self::Hold => 2,
+            Self::Track(_) => 3,
+            Self::Faults => 4,
+            Self::Memory(Remembered::Command, _) => 5,
+            Self::Memory(Remembered::Integral, _) => 6,
+        }
+    }
+
+    /// The number that comes with it; 0 where none does.
+    #[must_use]
+    pub fn given(&self) -> R {
+        match *self {
+            Self::Track(value) | Self::Memory(_, value) => value,
+            Self::Step | Self::Reset | Self::Hold | Self::Faults => R::ZERO,
+        }
+    }
+}
+
+/// A member of the memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remembered {
+    /// The last command.
+    Command,
+    /// The integral.
+    Integral,
+}
+
+/// What is done, a sample and its answer, in the units of the export.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vector<R> {
+    /// What is done; a fuzzy system only steps.
+    pub event: Event<R>,
     /// What goes in: the members of the sample in their order, of a controller always with the rate.
     pub sample: Vec<R>,
     /// The reals that come out, in the order of the answer's members.
@@ -19,7 +94,7 @@ pub struct Vector<R> {
     pub marks: Vec<u8>,
 }
 
-/// What a controller answers to `count` samples that are drawn from a seed, from a reset on.
+/// What a controller answers to `count` samples, from a reset on, with nothing but steps.
 #[must_use]
 pub fn vectors<R: Real>(
     controller: &Controller<R>,
@@ -27,67 +102,109 @@ pub fn vectors<R: Real>(
     seed: u64,
     count: usize,
 ) -> Vec<Vector<R>> {
-    let radians = angles.radians().map_or(R::ONE, R::from_f64);
-    let per_radian = angles.per_radian().map_or(R::ONE, R::from_f64);
-    let mut state = State::new();
-    let answered = |sample: Sample<R>| {
-        let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
-        let given = [setpoint_rad, measurement_rad, rate_rad_s].map(|value| value * per_radian);
-        let [setpoint_rad, measurement_rad, rate_rad_s] = given.map(|value| value * radians);
+    flown(Flight::new(controller, angles, false, count), seed)
+}
+
+/// The same with every [event](Event) among the steps.
+#[must_use]
+pub fn eventful<R: Real>(
+    controller: &Controller<R>,
+    angles: Angles,
+    seed: u64,
+    count: usize,
+) -> Vec<Vector<R>> {
+    flown(Flight::new(controller, angles, true, count), seed)
+}
+
+fn flown<R: Real>(mut flight: Flight<'_, R>, seed: u64) -> Vec<Vector<R>> {
+    directed::fly(&mut flight);
+    // Few samples are no reason to draw none.
+    flight.vectors.truncate(flight.count - flight.count / 4);
+    let (controller, angles, count) = (flight.controller, flight.angles, flight.count);
+    let mut again = Flight::new(controller, angles, flight.has_events, count);
+    for vector in &flight.vectors {
+        if let [setpoint, measurement, rate] = *vector.sample {
+            again.again(vector.event, [setpoint, measurement, rate]);
+        }
+    }
+    drawn::fly(&mut again, seed);
+    again.vectors
+}
+
+/// A controller and what it has answered.
+struct Flight<'a, R> {
+    controller: &'a Controller<R>,
+    angles: Angles,
+    has_events: bool,
+    count: usize,
+    state: State<R>,
+    vectors: Vec<Vector<R>>,
+}
+
+impl<'a, R: Real> Flight<'a, R> {
+    fn new(controller: &'a Controller<R>, angles: Angles, has_events: bool, count: usize) -> Self {
+        Self { controller, angles, has_events, count, state: State::new(), vectors: Vec::new() }
+    }
+
+    fn is_full(&self) -> bool {
+        self.vectors.len() >= self.count
+    }
+
+    /// A step with a sample in radians.
+    fn step(&mut self, sample: [f64; 3]) {
+        self.event(Event::Step, sample);
+    }
+
+    /// As before the first sample, where there are events; a step follows.
+    fn reset(&mut self, sample: [f64; 3]) {
+        self.event(if self.has_events { Event::Reset } else { Event::Step }, sample);
+    }
+
+    /// An event, where there are events, with a sample in radians.
+    fn event(&mut self, event: Event<R>, sample: [f64; 3]) {
+        let per_radian = self.angles.per_radian().map_or(R::ONE, R::from_f64);
+        let sample = sample.map(|value| R::from_f64(value) * per_radian);
+        if self.has_events || event == Event::Step {
+            self.again(event, sample);
+        }
+    }
+
+    /// Another commands, rad.
+    fn track(&mut self, command_rad: f64, sample: [f64; 3]) {
+        let per_radian = self.angles.per_radian().map_or(R::ONE, R::from_f64);
+        self.event(Event::Track(R::from_f64(command_rad) * per_radian), sample);
+    }
+
+    /// An event, with a sample in the unit of the export.
+    fn again(&mut self, event: Event<R>, given: [R; 3]) {
+        if self.is_full() {
+            return;
+        }
+        let radians = self.angles.radians().map_or(R::ONE, R::from_f64);
+        let per_radian = self.angles.per_radian().map_or(R::ONE, R::from_f64);
+        let [setpoint_rad, measurement_rad, rate_rad_s] = given.map(|it| it * radians);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
-        let Step { command_rad, gains, saturated, faults } = controller.step(&mut state, sample);
-        Vector {
+        let (controller, state) = (self.controller, &mut self.state);
+        match event {
+            Event::Step | Event::Hold | Event::Track(_) => {}
+            Event::Reset => *state = State::new(),
+            Event::Faults => {
+                state.take_faults();
+            }
+            Event::Memory(Remembered::Command, value) => state.command_rad = value,
+            Event::Memory(Remembered::Integral, value) => state.integral = value,
+        }
+        let step = match event {
+            Event::Hold => controller.hold(state, Faults::NOT_FINITE),
+            Event::Track(command) => controller.track(state, sample, command * radians),
+            _ => controller.step(state, sample),
+        };
+        let Step { command_rad, gains, saturated, faults } = step;
+        self.vectors.push(Vector {
+            event,
             sample: given.to_vec(),
             answer: vec![command_rad * per_radian, gains.kp, gains.ki, gains.kd],
             marks: vec![u8::from(saturated), faults.bits()],
-        }
-    };
-    samples(seed, count).into_iter().map(answered).collect()
-}
-
-/// Numbers that are the same in each run.
-pub(crate) struct Draw(pub(crate) u64);
-
-impl Draw {
-    /// From 0 to 1.
-    pub(crate) fn unit(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        });
     }
-
-    pub(crate) fn around(&mut self, size: f64) -> f64 {
-        (2.0 * self.unit() - 1.0) * size
-    }
-
-    pub(crate) fn bad(&mut self) -> f64 {
-        const BAD: [f64; 8] =
-            [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 3e38, -3e38, 1e30, -0.0, 1e-40];
-        BAD[(self.unit() * 8.0) as usize % 8]
-    }
-}
-
-/// A set-point that jumps, a pitch that follows it with noise, and now and then something that is no pitch.
-pub fn samples<R: Real>(seed: u64, count: usize) -> Vec<Sample<R>> {
-    let mut draw = Draw(seed);
-    let (mut setpoint, mut pitch) = (0.0, 0.0);
-    let mut samples = Vec::with_capacity(count);
-    for _ in 0..count {
-        if draw.unit() < 0.02 {
-            setpoint = draw.around(0.6);
-        }
-        let before = pitch;
-        pitch += 0.08 * (setpoint - pitch) + draw.around(0.01);
-        let rate = (pitch - before) / 0.01;
-        let mut values = [setpoint, pitch, rate];
-        if draw.unit() < 0.02 {
-            values[(draw.unit() * 3.0) as usize % 3] = draw.bad();
-        }
-        if draw.unit() < 0.01 {
-            values[1] = draw.around(4.0);
-        }
-        let [setpoint_rad, measurement_rad, rate_rad_s] = values.map(R::from_f64);
-        samples.push(Sample { setpoint_rad, measurement_rad, rate_rad_s });
-    }
-    samples
 }

@@ -4,41 +4,112 @@ use std::path::Path;
 use std::process::Command;
 
 use fspid_core::Controller;
-use fspid_export::vectors::vectors;
-use fspid_export::write::{Heading, c, c_harness};
+use fspid_export::program::Value;
+use fspid_export::vectors::eventful;
+use fspid_export::write::{Heading, c, c_harness, c_selftest};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
 use proptest::prelude::*;
 
-fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
-    let program = program(controller, angles).expect("nothing here is refused");
-    let heading =
-        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
-    let files = c(&program, "pitch", &heading);
-    let vectors = vectors(controller, angles, 1, 400);
-    let harness = c_harness(&program, "pitch", &vectors);
-    for (name, text) in
-        [("pitch.h", &files.header), ("pitch.c", &files.source), ("main.c", &harness)]
-    {
-        std::fs::write(folder.join(name), text).expect("a temporary file");
-    }
+const FLAGS: [&str; 8] = [
+    "-std=c99",
+    "-O1",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Wfloat-equal",
+    "-Werror",
+    "-ffp-contract=off",
+];
+
+/// What a program of these sources prints.
+fn built_and_run(folder: &Path, sources: &[&str]) -> String {
     let built = Command::new("cc")
-        .args([
-            "-std=c99",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Wconversion",
-            "-Werror",
-            "-ffp-contract=off",
-        ])
-        .args(["pitch.c", "main.c", "-o", "main"])
+        .args(FLAGS)
+        .args(sources)
+        .args(["-o", "main"])
         .current_dir(folder)
         .output()
         .expect("the compiler that links Rust");
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
     let ran = Command::new(folder.join("main")).output().expect("what was built");
     String::from_utf8_lossy(&ran.stdout).into_owned()
+}
+
+fn write_all<R: Real>(
+    controller: &Controller<R>,
+    angles: Angles,
+    folder: &Path,
+    main: Option<&str>,
+) {
+    let program = program(controller, angles).expect("nothing here is refused");
+    let heading =
+        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
+    let files = c(&program, "pitch", &heading);
+    let vectors = eventful(controller, angles, 1, 3000);
+    let harness = c_harness(&program, "pitch", &vectors);
+    let selftest = c_selftest(&program, controller, "pitch", &heading);
+    for (name, text) in [
+        ("pitch.h", files.header.as_str()),
+        ("pitch.c", &files.source),
+        ("pitch_selftest.c", &selftest),
+        ("main.c", main.unwrap_or(&harness)),
+    ] {
+        std::fs::write(folder.join(name), text).expect("a temporary file");
+    }
+}
+
+fn run<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
+    write_all(controller, angles, folder, None);
+    built_and_run(folder, &["pitch.c", "main.c"])
+}
+
+/// Asks the self test of the design, of each rule that says something else, and of a number that is another one.
+const WRONG: &str = r#"
+#include <stdio.h>
+#include "pitch.h"
+int main(void)
+{
+    unsigned missed = 0U;
+    pitch_configuration other = pitch_design;
+    if (pitch_selftest(&pitch_design) != 0U) { printf("the design: %u\n", pitch_selftest(&pitch_design)); }
+#ifdef RULES
+    for (unsigned rule = 0U; rule < 49U; ++rule) {
+        for (unsigned label = 1U; label < 7U; ++label) {
+            other = pitch_design;
+            CHANGE(other.rules_kp[rule]);
+            missed += pitch_selftest(&other) != rule + 1U;
+            other = pitch_design;
+            CHANGE(other.rules_ki[rule]);
+            missed += pitch_selftest(&other) != rule + 101U;
+            other = pitch_design;
+            CHANGE(other.rules_kd[rule]);
+            missed += pitch_selftest(&other) != rule + 201U;
+        }
+    }
+#endif
+    other = pitch_design;
+    other.dt_s += other.dt_s / 1000000;
+    missed += pitch_selftest(&other) != 300U;
+    printf("%u missed\n", missed);
+    return 0;
+}
+"#;
+
+/// What a self test of this controller does not find.
+fn self_tested<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -> String {
+    let program = program(controller, angles).expect("nothing here is refused");
+    let rules = program.configuration.iter().find(|member| member.name == "rules_kp");
+    let change = match rules.map(|member| &member.value) {
+        None => "",
+        Some(Value::Bytes(_)) => {
+            "#define RULES\n#define CHANGE(cell) cell = (uint8_t)((cell + label) % 7U)\n"
+        }
+        Some(_) => "#define RULES\n#define CHANGE(cell) cell += (cell / 1000000) + 1\n",
+    };
+    let main = change.to_owned() + WRONG;
+    write_all(controller, angles, folder, Some(&main));
+    built_and_run(folder, &["pitch.c", "pitch_selftest.c", "main.c"])
 }
 
 proptest! {
@@ -51,9 +122,22 @@ proptest! {
     ) {
         let angles = if degrees { Angles::Degrees } else { Angles::Radians };
         let folder = tempfile::tempdir().expect("a temporary folder");
-        prop_assert_eq!(run(&controller, angles, folder.path()), "400 samples, 0 different\n");
+        prop_assert_eq!(run(&controller, angles, folder.path()), "3000 samples, 0 different\n");
         if let Ok(single) = controller.rounded::<f32>() {
-            prop_assert_eq!(run(&single, angles, folder.path()), "400 samples, 0 different\n");
+            prop_assert_eq!(run(&single, angles, folder.path()), "3000 samples, 0 different\n");
+        }
+    }
+
+    #[test]
+    fn the_self_test_names_the_rule_that_is_wrong(
+        controller in fspid_options::any_controller(),
+        degrees in any::<bool>(),
+    ) {
+        let angles = if degrees { Angles::Degrees } else { Angles::Radians };
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        prop_assert_eq!(self_tested(&controller, angles, folder.path()), "0 missed\n");
+        if let Ok(single) = controller.rounded::<f32>() {
+            prop_assert_eq!(self_tested(&single, angles, folder.path()), "0 missed\n");
         }
     }
 }

@@ -7,7 +7,7 @@ use fspid_export::{Angles, program};
 use fspid_numeric::Real;
 use proptest::prelude::*;
 
-use fspid_export::vectors::samples;
+use fspid_export::vectors::{Event, eventful, samples};
 
 fn real<R: Real>(machine: &Machine<'_, R>, part: Part, name: &str) -> R {
     match machine.member(part, name) {
@@ -46,6 +46,46 @@ fn fly<R: Real>(controller: &Controller<R>, samples: &[Sample<R>]) -> Result<(),
     Ok(())
 }
 
+/// What the machine answers to vectors is what they say.
+fn eventful_flight<R: Real>(
+    controller: &Controller<R>,
+    angles: Angles,
+) -> Result<(), TestCaseError> {
+    let program = program(controller, angles).expect("no sampled vertices are drawn");
+    let mut machine = Machine::new(&program);
+    let names = |part| program.members(part).iter().map(|member| member.name.clone());
+    let (sample, answer): (Vec<_>, Vec<_>) =
+        (names(Part::Sample).collect(), names(Part::Answer).collect());
+    machine.run("reset");
+    for (k, vector) in eventful(controller, angles, 7, 1500).iter().enumerate() {
+        for (name, value) in sample.iter().zip(&vector.sample) {
+            machine.set(Part::Sample, name, Cell::Real(*value));
+        }
+        let given = Cell::Real(vector.event.given());
+        match vector.event {
+            Event::Hold => drop(machine.ask("hold", &[Cell::Byte(1)])),
+            Event::Track(_) => drop(machine.ask("track", &[given])),
+            event => {
+                match event {
+                    Event::Reset => machine.run("reset"),
+                    Event::Faults => machine.run("faults"),
+                    Event::Memory(..) => machine.set(Part::State, event.name(), given),
+                    _ => {}
+                }
+                machine.run("step");
+            }
+        }
+        let found = [0, 1, 2, 3]
+            .map(|it| real::<R>(&machine, Part::Answer, &answer[it]).to_f64().to_bits());
+        let expected: Vec<u64> = vector.answer.iter().map(|it| it.to_f64().to_bits()).collect();
+        prop_assert_eq!(found.to_vec(), expected, "{}: {:?}", k, vector);
+        let marks = [Cell::Truth(vector.marks[0] == 1), Cell::Byte(vector.marks[1])];
+        let found = ["saturated", "faults"].map(|it| machine.member(Part::Answer, it).cloned());
+        prop_assert_eq!(found, marks.map(Some), "{}: {:?}", k, vector);
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
@@ -57,6 +97,22 @@ proptest! {
         fly(&controller, &samples::<f64>(seed, 150))?;
         if let Ok(single) = controller.rounded::<f32>() {
             fly(&single, &samples::<f32>(seed, 150))?;
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn resets_holds_and_taking_over_are_those_of_the_controller_for_every_option(
+        controller in fspid_options::any_controller(),
+        degrees in any::<bool>(),
+    ) {
+        let angles = if degrees { Angles::Degrees } else { Angles::Radians };
+        eventful_flight(&controller, angles)?;
+        if let Ok(single) = controller.rounded::<f32>() {
+            eventful_flight(&single, angles)?;
         }
     }
 }

@@ -1,11 +1,11 @@
 //! The Structured Text that is written answers what the controller answers, bit for bit.
 
 use fspid_core::Controller;
-use fspid_export::vectors::{Vector, vectors};
+use fspid_export::vectors::{Event, Remembered, Vector, eventful};
 use fspid_export::write::{Heading, structured_text, structured_text_check};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
-use fspid_structured_text::{Instance, Library, Problem, Value};
+use fspid_structured_text::{Instance, Kind, Library, Mistake, Problem, Value};
 use proptest::prelude::*;
 
 /// A number as the language has it.
@@ -36,7 +36,8 @@ fn text<R: Real>(controller: &Controller<R>, angles: Angles, vectors: &[Vector<R
     let program = program(controller, angles).expect("nothing here is refused");
     let heading =
         Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
-    let samples: Vec<Vec<R>> = vectors.iter().map(|vector| vector.sample.clone()).collect();
+    let samples: Vec<Vec<R>> =
+        vectors.iter().take(40).map(|vector| vector.sample.clone()).collect();
     Text {
         block: structured_text(&program, "pitch", &heading),
         check: structured_text_check(&program, "pitch", &heading, &samples),
@@ -45,17 +46,34 @@ fn text<R: Real>(controller: &Controller<R>, angles: Angles, vectors: &[Vector<R
     }
 }
 
-/// How many answers have other bits.
+/// Writes over what is remembered, where that controller remembers it.
+fn write<R: Real>(block: &mut Instance<'_>, name: &str, value: R) -> Result<(), Problem> {
+    if block.kind(name).is_ok() { block.set(name, real(value)) } else { Ok(()) }
+}
+
+/// How many answers have other bits, the first one with a reset.
 fn different<R: Real>(
-    block: &mut Instance<'_>,
     text: &Text,
+    block: &mut Instance<'_>,
     vectors: &[Vector<R>],
 ) -> Result<usize, Problem> {
     let mut different = 0;
     let outputs = [text.command.as_str(), "kp", "ki", "kd"];
-    for vector in vectors {
+    for (k, vector) in vectors.iter().enumerate() {
+        let is = |event: bool| Value::Bool(event);
+        block.set("reset", is(k == 0 || vector.event == Event::Reset))?;
+        block.set("clear_faults", is(vector.event == Event::Faults))?;
+        block.set("track", is(matches!(vector.event, Event::Track(_))))?;
+        block.set(&format!("track_{}", text.command), real(vector.event.given()))?;
+        match vector.event {
+            Event::Memory(Remembered::Command, value) => write(block, "state_command_rad", value)?,
+            Event::Memory(Remembered::Integral, value) => write(block, "state_integral", value)?,
+            _ => {}
+        }
         for (name, value) in text.inputs.iter().zip(&vector.sample) {
-            block.set(name, real(*value))?;
+            // A sample that is no number is what a controller is told to hold by.
+            let nan = R::ZERO / R::ZERO;
+            block.set(name, real(if vector.event == Event::Hold { nan } else { *value }))?;
         }
         block.call()?;
         let mut is_same = block.get("saturated")? == Value::Bool(vector.marks[0] == 1)
@@ -68,26 +86,35 @@ fn different<R: Real>(
     Ok(different)
 }
 
-fn fly<R: Real>(
-    controller: &Controller<R>,
-    angles: Angles,
-    samples: usize,
-) -> Result<(), TestCaseError> {
-    let vectors = vectors(controller, angles, 1, samples);
+/// What the exported check counts: how many samples, how many different.
+fn counted(text: &Text) -> Result<(Value, Value), Problem> {
+    let library = Library::read(&format!("{}{}", text.block, text.check))?;
+    let mut check = library.instance("PRG_pitch_check")?;
+    // More cycles than samples: it stops by itself.
+    (0..60).try_for_each(|_| check.call())?;
+    Ok((check.get("check_index")?, check.get("check_different")?))
+}
+
+fn fly<R: Real>(controller: &Controller<R>, angles: Angles) -> Result<(), TestCaseError> {
+    let vectors = eventful(controller, angles, 1, 250);
     let text = text(controller, angles, &vectors);
     let told = |problem: Problem| TestCaseError::fail(format!("{problem}\n{}", text.block));
-    let library = Library::read(&format!("{}{}", text.block, text.check)).map_err(told)?;
+    let library = Library::read(&text.block).map_err(told)?;
     let mut block = library.instance("FB_pitch").map_err(told)?;
-    prop_assert_eq!(different(&mut block, &text, &vectors).map_err(told)?, 0);
-    // From a reset on it answers as at the beginning.
-    block.set("reset", Value::Bool(true)).map_err(told)?;
-    block.call().map_err(told)?;
-    block.set("reset", Value::Bool(false)).map_err(told)?;
+    prop_assert_eq!(different(&text, &mut block, &vectors).map_err(told)?, 0);
+    prop_assert_eq!(
+        different(&text, &mut block, &vectors[..50]).map_err(told)?,
+        0,
+        "after a reset"
+    );
+    let (asked, wrong) = counted(&text).map_err(told)?;
+    prop_assert!(matches!(asked, Value::Dint(30..=40)), "{asked:?}");
+    prop_assert_eq!(wrong, Value::Dint(0));
     Ok(())
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 30, max_shrink_iters: 30, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 25, max_shrink_iters: 30, ..ProptestConfig::default() })]
 
     #[test]
     fn the_structured_text_of_any_controller_answers_as_the_controller_in_both_precisions(
@@ -95,9 +122,61 @@ proptest! {
         degrees in any::<bool>(),
     ) {
         let angles = if degrees { Angles::Degrees } else { Angles::Radians };
-        fly(&controller, angles, 300)?;
+        fly(&controller, angles)?;
         if let Ok(single) = controller.rounded::<f32>() {
-            fly(&single, angles, 300)?;
+            fly(&single, angles)?;
         }
+    }
+}
+
+/// The paper's rules in 32 bits, and what they answer.
+fn paper(samples: usize) -> (Text, Vec<Vector<f32>>) {
+    let controller = crate::common::paper().rounded::<f32>().expect("small numbers");
+    let vectors = eventful(&controller, Angles::Degrees, 1, samples);
+    (text(&controller, Angles::Degrees, &vectors), vectors)
+}
+
+#[test]
+fn twenty_thousand_answers_of_the_papers_rules_have_the_same_bits() {
+    let (text, vectors) = paper(20_000);
+    let library = Library::read(&text.block).expect("what was written");
+    let mut block = library.instance("FB_pitch").expect("the block");
+    assert_eq!(different(&text, &mut block, &vectors), Ok(0));
+}
+
+/// What the interpreter says of a text in which the first `old` is `new`.
+fn broken(old: &str, new: &str) -> Result<usize, Mistake> {
+    let (mut text, vectors) = paper(3_000);
+    assert!(text.block.contains(old), "{old}");
+    text.block = text.block.replacen(old, new, 1);
+    let library = Library::read(&text.block).map_err(|problem| problem.mistake)?;
+    let mut block = library.instance("FB_pitch").map_err(|problem| problem.mistake)?;
+    different(&text, &mut block, &vectors).map_err(|problem| problem.mistake)
+}
+
+#[test]
+fn a_text_that_is_broken_on_purpose_is_refused_by_its_mistake() {
+    assert_eq!(broken("REAL#0.0", "0.0"), Err(Mistake::Untyped("0".to_owned())));
+    assert_eq!(broken("DINT#6", "6"), Err(Mistake::Untyped("6".to_owned())));
+    assert_eq!(broken("REAL#0.5", "LREAL#0.5"), Err(Mistake::Type(Kind::Real, Kind::Lreal)));
+    assert_eq!(broken("step_fault :", "step :"), Err(Mistake::Reserved("STEP".to_owned())));
+    assert_eq!(broken("infer_rule : DINT;", ""), Err(Mistake::Undeclared("INFER_RULE".to_owned())));
+    assert!(matches!(broken("END_IF;", "END_IF"), Err(Mistake::Missing { .. })));
+    assert!(matches!(broken("TO DINT#6", "TO DINT#7"), Err(Mistake::Index(..))));
+    assert_eq!(broken("infer_rule := DINT#0;", ""), Err(Mistake::Unset("INFER_RULE".to_owned())));
+    assert_eq!(broken("reset : BOOL;", "Kp : BOOL;"), Err(Mistake::Twice("KP".to_owned())));
+    assert_eq!(broken("(state_faults OR", "(reset OR"), Err(Mistake::Type(Kind::Bool, Kind::Byte)));
+}
+
+#[test]
+fn a_text_with_another_rule_number_or_sign_answers_differently() {
+    for (old, new) in [
+        // R25: both inputs around zero.
+        ("USINT#3, USINT#2, USINT#1, USINT#1,", "USINT#6, USINT#2, USINT#1, USINT#1,"),
+        ("design_nominal_kp : REAL := REAL#1.0", "design_nominal_kp : REAL := REAL#1.0000001"),
+        ("step_error_rad := step_setpoint_rad - ", "step_error_rad := step_setpoint_rad + "),
+        ("centroid_position := REAL#-3.0", "centroid_position := REAL#-2.9999998"),
+    ] {
+        assert!(matches!(broken(old, new), Ok(1..)), "{new}: {:?}", broken(old, new));
     }
 }

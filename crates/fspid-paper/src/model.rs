@@ -151,6 +151,7 @@ impl FlightModel {
             setpoint: Profile::new(radians(self.amplitude_deg()), shape)?,
             disturbances: Vec::new(),
             controllers: controllers.collect::<Result<_, SimError>>()?,
+            externals: Vec::new(),
             surroundings: Surroundings::default(),
         })
     }

@@ -42,6 +42,8 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         disturbances,
         // Covered one by one.
         controllers: _,
+        // Without equations, no loop of theirs is claimed.
+        externals: _,
         surroundings,
     } = scenario;
     let Surroundings { weather, pitch_sensor, rate_sensor } = surroundings;

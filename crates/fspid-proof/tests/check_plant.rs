@@ -52,6 +52,7 @@ fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, as_one: bool) -> SampledPlan
         setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller: Controller::Fixed(pid) }],
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     };
     let memory = Memory::of_gains(GAINS, &config);

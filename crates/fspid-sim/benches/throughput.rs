@@ -166,6 +166,7 @@ fn scenario(seed: u64) -> Scenario {
         timing: Timing::new(0.01, (SAMPLES - 1) as f64 * 0.01).expect("allowed"),
         setpoint: Profile::new(1.0, Shape::Noise { at_s: 0.0, seed }).expect("allowed"),
         disturbances: Vec::new(),
+        externals: Vec::new(),
         controllers: vec![
             named("FSPID", tuned(supervisor())),
             named("FSPID by numbers", tuned(numbers())),

@@ -9,9 +9,10 @@ use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::external::ControllerLoss;
 use crate::flown::Perturbation;
 use crate::propagation::{Motion, Propagation};
-use crate::scenario::{Prepared, Scenario};
+use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
@@ -28,17 +29,18 @@ pub struct Flight {
 /// Flies every controller of the scenario.
 ///
 /// # Errors
-/// [`SimError`] where the scenario's plants cannot be discretised; an unstable loop is no error but
-/// a trace that ends with [`Outcome::Diverged`], and the ground one that ends with [`Outcome::HitGround`].
+/// [`SimError`] where the scenario's plants cannot be discretised or an external controller cannot be started; an
+/// unstable loop is no error but a trace that ends with [`Outcome::Diverged`], and the ground one that ends with
+/// [`Outcome::HitGround`].
 pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
     let prepared = scenario.prepare()?;
-    let traces = scenario.controllers.iter().map(|named| record(&prepared, &named.controller));
+    let traces = scenario.flyers().map(|flyer| record(&prepared, flyer));
     Ok(Flight { traces: traces.collect::<Result<_, _>>()?, edges: prepared.edges })
 }
 
-fn record(prepared: &Prepared, controller: &Controller) -> Result<Trace, SimError> {
+fn record(prepared: &Prepared, flyer: Flyer<'_>) -> Result<Trace, SimError> {
     let mut trace = Trace::with_room(prepared);
-    let outcome = fly(prepared, controller, |instant| {
+    let outcome = flyer.respondent().fly(prepared, &Perturbation::NONE, |instant| {
         trace.push(prepared, &instant);
         ControlFlow::Continue(())
     })?;
@@ -72,6 +74,30 @@ pub fn fly_perturbed(
     watch(prepared, controller, perturbation, |instant, _| observer(instant))
 }
 
+impl Respondent<'_> {
+    /// Flies it, with equations as [`fly_perturbed`] does.
+    ///
+    /// # Errors
+    /// As [`fly_perturbed`]; where an external controller cannot be started.
+    pub fn fly(
+        self,
+        prepared: &Prepared,
+        perturbation: &Perturbation,
+        mut observer: impl FnMut(Instant) -> ControlFlow<()>,
+    ) -> Result<Outcome, SimError> {
+        match self {
+            Self::Equations(controller) => {
+                fly_perturbed(prepared, controller, perturbation, observer)
+            }
+            Self::External(external) => {
+                let mut started = external.start()?;
+                let answer = |sample| started.answer(sample);
+                watch_answers(prepared, answer, perturbation, |instant, _| observer(instant))
+            }
+        }
+    }
+}
+
 /// As [`fly`], with a function of what is seen in the controller's place: it answers commands in rad, nose up
 /// positive. For experiments such as a relay's.
 ///
@@ -82,11 +108,13 @@ pub fn fly_commanded(
     mut command_rad: impl FnMut(Sample<f64>) -> f64,
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
-    let answer = |sample| Step {
-        command_rad: command_rad(sample),
-        gains: Gains::ZERO,
-        saturated: false,
-        faults: Faults::NONE,
+    let answer = |sample| {
+        Ok(Step {
+            command_rad: command_rad(sample),
+            gains: Gains::ZERO,
+            saturated: false,
+            faults: Faults::NONE,
+        })
     };
     watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| observer(instant))
 }
@@ -108,14 +136,14 @@ pub(crate) fn watch(
     observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
-    let answer = |sample| controller.step(&mut memory, sample);
+    let answer = |sample| Ok(controller.step(&mut memory, sample));
     watch_answers(prepared, answer, perturbation, observer)
 }
 
 #[inline]
 fn watch_answers(
     prepared: &Prepared,
-    mut answer: impl FnMut(Sample<f64>) -> Step<f64>,
+    mut answer: impl FnMut(Sample<f64>) -> Result<Step<f64>, ControllerLoss>,
     perturbation: &Perturbation,
     mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
@@ -149,7 +177,12 @@ fn watch_answers(
         let measurement_rad = sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement);
         let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
-        let step = answer(sample);
+        let step = match answer(sample) {
+            Ok(step) => step,
+            Err(loss) => {
+                return Ok(Outcome::ControllerLost { at_s: prepared.timing.time_s(k), loss });
+            }
+        };
         let arriving_rad = delayed.pass(path.pass(step.command_rad));
         let command_rad = arriving_rad + at(&prepared.at_servo);
         stage.propagation.settle(&mut plant, command_rad);

@@ -76,6 +76,17 @@ pub enum SimError {
         /// The gain.
         found: f64,
     },
+    /// An external controller in a program that starts none.
+    NoHost,
+    /// An external controller that cannot fly.
+    NotStarted {
+        /// Its file.
+        file: String,
+        /// What is wrong.
+        reason: String,
+        /// What would be right.
+        allowed: String,
+    },
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -126,6 +137,12 @@ impl fmt::Display for SimError {
                 f,
                 "{key} is {found:e}; with it the sampled loop leaves the range of 64-bit numbers, allowed is a smaller one"
             ),
+            Self::NoHost => f.write_str(
+                "this program starts no external controllers; allowed are controllers with equations, or a program that calls `fspid_sim::external::set_host`, as `fspid` does",
+            ),
+            Self::NotStarted { file, reason, allowed } => {
+                write!(f, "external controller {file}: {reason}; allowed is {allowed}")
+            }
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),

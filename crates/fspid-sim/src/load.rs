@@ -246,6 +246,7 @@ mod tests {
             setpoint: Profile::new(0.0, crate::signal::Shape::Step { at_s: 0.0 }).expect("a step"),
             disturbances: Vec::new(),
             controllers: Vec::new(),
+            externals: Vec::new(),
             surroundings: crate::Surroundings::default(),
         }
     }

@@ -5,6 +5,7 @@ use crate::actuator::Actuator;
 use crate::aircraft::{AircraftFlight, AircraftPlant};
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::external::{External, NamedExternal};
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -21,6 +22,53 @@ pub struct NamedController {
     pub name: String,
     /// The controller.
     pub controller: Controller,
+}
+
+/// One of those who answer, with equations or without.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Flyer<'a> {
+    /// With equations.
+    Own(&'a NamedController),
+    /// Without.
+    External(&'a NamedExternal),
+}
+
+impl<'a> Flyer<'a> {
+    /// Name in traces and reports.
+    #[must_use]
+    pub fn name(self) -> &'a str {
+        match self {
+            Self::Own(named) => &named.name,
+            Self::External(named) => &named.name,
+        }
+    }
+
+    /// The same without its name.
+    #[must_use]
+    pub fn respondent(self) -> Respondent<'a> {
+        match self {
+            Self::Own(named) => Respondent::Equations(&named.controller),
+            Self::External(named) => Respondent::External(&named.external),
+        }
+    }
+
+    /// The equations, if there are any.
+    #[must_use]
+    pub fn controller(self) -> Option<&'a Controller> {
+        match self {
+            Self::Own(named) => Some(&named.controller),
+            Self::External(_) => None,
+        }
+    }
+}
+
+/// What answers samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Respondent<'a> {
+    /// Equations.
+    Equations(&'a Controller),
+    /// A program.
+    External(&'a External),
 }
 
 /// A flight to be simulated, once for each controller.
@@ -42,6 +90,8 @@ pub struct Scenario {
     pub disturbances: Vec<Disturbance>,
     /// Who answers.
     pub controllers: Vec<NamedController>,
+    /// Who answers without equations, and flies behind the others.
+    pub externals: Vec<NamedExternal>,
     /// Moving air and sensors; by default none.
     pub surroundings: Surroundings,
 }
@@ -59,6 +109,7 @@ impl Scenario {
             setpoint,
             disturbances: Vec::new(),
             controllers: Vec::new(),
+            externals: Vec::new(),
             surroundings: Surroundings::default(),
         }
     }
@@ -68,6 +119,20 @@ impl Scenario {
     pub fn with_controller(mut self, name: &str, controller: Controller) -> Self {
         self.controllers.push(NamedController { name: name.to_owned(), controller });
         self
+    }
+
+    /// Everybody who answers, in the order of the flights.
+    pub fn flyers(&self) -> impl Iterator<Item = Flyer<'_>> {
+        let externals = self.externals.iter().map(Flyer::External);
+        self.controllers.iter().map(Flyer::Own).chain(externals)
+    }
+
+    /// Starts every external controller once and lets it go.
+    ///
+    /// # Errors
+    /// [`SimError`] names the first that cannot fly.
+    pub fn start_externals(&self) -> Result<(), SimError> {
+        self.externals.iter().try_for_each(|named| named.external.start().map(drop))
     }
 
     /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.

@@ -4,6 +4,7 @@ use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};
 
 use crate::aircraft::AIRCRAFT_COLUMNS;
+use crate::external::ControllerLoss;
 use crate::instant::Instant;
 use crate::scenario::Prepared;
 use crate::timing::Timing;
@@ -23,6 +24,13 @@ pub enum Outcome {
     HitGround {
         /// Time of the first sample at or below the ground, s.
         at_s: f64,
+    },
+    /// An external controller gave no answer; the trace ends before.
+    ControllerLost {
+        /// Time of the first sample without an answer, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: ControllerLoss,
     },
 }
 

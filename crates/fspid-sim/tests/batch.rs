@@ -237,6 +237,7 @@ fn scenario(random: &mut Random, structure: Structure) -> Scenario {
             .expect("allowed"),
         disturbances: Vec::new(),
         controllers: Vec::new(),
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     };
     if structure.wild {

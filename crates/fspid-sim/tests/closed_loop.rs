@@ -41,6 +41,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         setpoint: Profile::new(setpoint_rad, STEP).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     }
 }

@@ -63,6 +63,7 @@ fn scenario(
         setpoint: Profile::new(kick_rad, kick).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     }
 }

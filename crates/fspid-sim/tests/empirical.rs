@@ -61,6 +61,7 @@ fn scenario(plant: LinearPlant, controller: Controller, duration_s: f64) -> Scen
         setpoint: Profile::new(5.0 * DEG, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     }
 }

@@ -55,6 +55,7 @@ fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -
             controller: Controller::Fixed(pid),
         }],
         surroundings: Surroundings { weather: Some(weather), ..Surroundings::default() },
+        externals: Vec::new(),
     };
     simulate(&scenario).expect("flies").traces.remove(0)
 }

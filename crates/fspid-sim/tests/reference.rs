@@ -45,6 +45,7 @@ fn scenario(plant: LinearPlant, controller: Controller) -> Scenario {
         setpoint: Profile::new(DEG, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: Vec::new(),
         controllers: vec![NamedController { name: "C".into(), controller }],
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     }
 }

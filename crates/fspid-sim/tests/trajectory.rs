@@ -96,6 +96,7 @@ impl Case {
             setpoint: Profile::new(4.0 * DEG, Shape::Step { at_s: 0.05 }).expect("allowed"),
             disturbances: Vec::new(),
             controllers: vec![named],
+            externals: Vec::new(),
             surroundings: self.surroundings.clone(),
         }
     }

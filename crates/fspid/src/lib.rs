@@ -40,6 +40,7 @@
 //! | [`study`] | measures, verdicts, margins, certificates, reports |
 //! | [`campaign`], [`tune`] | many flights; searches, classical rules, contests |
 //! | [`export`] | a controller in other languages, with the same bits |
+//! | [`external`] | controllers that are programs, flown in a process beside |
 //! | [`optimise`], [`plot`], [`page`] | optimisers, figures as SVG, pages of HTML: free of flights |
 //! | [`lti`], [`aircraft`], [`proof`], [`numeric`] | linear systems, aircraft, proofs, numbers |
 //!
@@ -49,6 +50,7 @@ pub use fspid_aircraft as aircraft;
 pub use fspid_campaign as campaign;
 pub use fspid_core as core;
 pub use fspid_export as export;
+pub use fspid_external as external;
 pub use fspid_fuzzy as fuzzy;
 pub use fspid_lti as lti;
 pub use fspid_numeric as numeric;

@@ -2,7 +2,7 @@
 
 use fspid_scenario::file::Study;
 use fspid_sim::batch::{BatchRow, Entrant, LANES, fly_group};
-use fspid_sim::{Controller, Prepared, SimError, Trace};
+use fspid_sim::{Flyer, Prepared, SimError, Trace};
 
 use super::memory::Memory;
 use super::single;
@@ -12,7 +12,7 @@ use super::single;
 struct Ready<'a> {
     place: usize,
     prepared: &'a Prepared,
-    controller: &'a Controller,
+    flyer: Flyer<'a>,
 }
 
 /// Flies the controller at `place` of each study; `None` where there is no flight.
@@ -23,8 +23,8 @@ pub(super) fn fly(
     place: usize,
 ) -> Vec<Option<Result<Trace, SimError>>> {
     let ready = studies.iter().zip(prepared).enumerate().filter_map(|(at, (study, prepared))| {
-        let controller = &study.scenario.controllers.get(place)?.controller;
-        Some(Ready { place: at, prepared: prepared.as_ref().ok()?, controller })
+        let flyer = study.scenario.flyers().nth(place)?;
+        Some(Ready { place: at, prepared: prepared.as_ref().ok()?, flyer })
     });
     let ready: Vec<Ready<'_>> = ready.collect();
     let mut traces: Vec<Option<Result<Trace, SimError>>> = vec![None; studies.len()];
@@ -41,7 +41,7 @@ fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, S
     in_lanes(memory, group).unwrap_or_else(|| {
         let alone = |flight: &Ready<'_>| {
             let trace = memory.empty_trace(flight.prepared.timing().rows());
-            single::record(trace, flight.prepared, flight.controller)
+            single::record(trace, flight.prepared, flight.flyer)
         };
         group.iter().map(alone).collect()
     })
@@ -50,8 +50,11 @@ fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, S
 fn in_lanes(memory: &mut Memory, group: &[Ready<'_>]) -> Option<Vec<Result<Trace, SimError>>> {
     let entrants: Vec<Entrant<'_>> = group
         .iter()
-        .map(|flight| Entrant { prepared: flight.prepared, controller: flight.controller })
-        .collect();
+        .map(|flight| {
+            let controller = flight.flyer.controller()?;
+            Some(Entrant { prepared: flight.prepared, controller })
+        })
+        .collect::<Option<_>>()?;
     let recorder = &mut memory.recorder;
     let rows = group.first()?.prepared.timing().rows();
     recorder.begin(rows);

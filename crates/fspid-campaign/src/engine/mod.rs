@@ -70,7 +70,7 @@ const MOST_NUMBERS: usize = 2 << 20;
 #[must_use]
 pub fn at_once(study: &Study) -> usize {
     let scenario = &study.scenario;
-    let numbers = scenario.timing.rows() * scenario.controllers.len() * recorder::COLUMNS;
+    let numbers = scenario.timing.rows() * scenario.flyers().count() * recorder::COLUMNS;
     (MOST_NUMBERS / numbers.max(1)).clamp(1, fspid_sim::batch::LANES)
 }
 
@@ -102,7 +102,7 @@ pub fn fly_judging(
         .iter()
         .map(|found| found.as_ref().map(|_| Vec::new()).map_err(Clone::clone))
         .collect();
-    let controllers = studies.iter().map(|study| study.scenario.controllers.len()).max();
+    let controllers = studies.iter().map(|study| study.scenario.flyers().count()).max();
     for place in 0..controllers.unwrap_or(0) {
         let flown = lanes::fly(memory, studies, &prepared, place);
         for (traces, flown) in traces.iter_mut().zip(flown) {
@@ -135,15 +135,16 @@ fn measure(
 ) -> Result<Vec<FlightResult>, SimError> {
     let prepared = prepared.as_ref().map_err(Clone::clone)?;
     let scenario = &study.scenario;
-    let results = scenario.controllers.iter().zip(traces).map(|(named, trace)| {
-        let at_rest = match judging.loads {
-            true => AtRest::of(scenario, &named.controller),
-            false => AtRest::stability(scenario, &named.controller),
+    let results = scenario.flyers().zip(traces).map(|(flyer, trace)| {
+        let at_rest = match (flyer.controller(), judging.loads) {
+            (None, _) => AtRest::unknown(),
+            (Some(controller), true) => AtRest::of(scenario, controller),
+            (Some(controller), false) => AtRest::stability(scenario, controller),
         };
         let unstable = at_rest.unstable.filter(|_| judging.stability == Stability::Analysed);
         let (edges, pushes_s) = (prepared.edges(), scenario.pushes_s());
         let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
-        let (name, range_rule) = (named.name.clone(), study.range_rule);
+        let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
         let duration_s = scenario.timing.end_s();
         Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
     });

@@ -1,17 +1,18 @@
-//! Flights that no lane can fly: nonlinear aircraft, actuators that are no first-order servo, gusts, sensors.
+//! Flights that no lane can fly: nonlinear aircraft, actuators that are no first-order servo, gusts, sensors, external
+//! controllers.
 
 use std::ops::ControlFlow;
 
-use fspid_sim::{Controller, Exit, Prepared, SimError, Trace, fly};
+use fspid_sim::{Exit, Flyer, Perturbation, Prepared, SimError, Trace};
 
 /// One flight, recorded in an empty trace as far as measures need it.
 pub(super) fn record(
     mut trace: Trace,
     prepared: &Prepared,
-    controller: &Controller,
+    flyer: Flyer<'_>,
 ) -> Result<Trace, SimError> {
     let timing = prepared.timing();
-    let outcome = fly(prepared, controller, |instant| {
+    let outcome = flyer.respondent().fly(prepared, &Perturbation::NONE, |instant| {
         trace.time_s.push(timing.time_s(instant.k));
         trace.setpoint_rad.push(instant.setpoint_rad);
         trace.theta_rad.push(instant.theta_rad);

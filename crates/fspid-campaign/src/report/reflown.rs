@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fspid_scenario::file::Study;
 use fspid_scenario::units::degrees;
-use fspid_sim::fly;
+use fspid_sim::Perturbation;
 use rayon::prelude::*;
 
 use super::Source;
@@ -139,7 +139,7 @@ fn how_many(study: &Study, runs: u64) -> u64 {
     let scenario = &study.scenario;
     let linear = scenario.plant.linear().is_some();
     let most = if linear { MOST_SAMPLES } else { MOST_AIRCRAFT_SAMPLES };
-    let one = scenario.timing.rows().max(1) * scenario.controllers.len().max(1);
+    let one = scenario.timing.rows().max(1) * scenario.flyers().count().max(1);
     runs.min(MOST_RUNS).min((most / one).max(1) as u64)
 }
 
@@ -179,9 +179,9 @@ fn of_study(study: &Study, grid: &Grid) -> Option<Vec<Curves>> {
     }
     let prepared = scenario.prepare().ok()?;
     let mut all = Vec::new();
-    for named in &scenario.controllers {
+    for flyer in scenario.flyers() {
         let mut curves = Curves::default();
-        let flown = fly(&prepared, &named.controller, |instant| {
+        let flown = flyer.respondent().fly(&prepared, &Perturbation::NONE, |instant| {
             if instant.k % grid.every == 0 && curves.pitch_deg.len() < grid.time_s.len() {
                 curves.pitch_deg.push(degrees(instant.theta_rad));
                 curves.elevator_deg.push(degrees(instant.elevator_rad));

@@ -45,7 +45,13 @@ pub(super) fn chapter(source: &Source<'_>) -> Chapter {
 fn worst(controller: &ControllerSummary) -> Vec<u64> {
     let mut runs: Vec<u64> = Vec::new();
     let is_lost = |it: &&FailedRun| {
-        matches!(it.severity, Severity::Diverged | Severity::HitGround | Severity::Unstable)
+        matches!(
+            it.severity,
+            Severity::Diverged
+                | Severity::HitGround
+                | Severity::ControllerLost
+                | Severity::Unstable
+        )
     };
     let lost = controller.failed_runs.iter().filter(is_lost).map(|it| it.run);
     let required = controller.requirements.iter().filter_map(|it| it.worst).map(|it| it.run);

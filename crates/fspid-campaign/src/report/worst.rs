@@ -62,6 +62,7 @@ fn severity(run: &FailedRun) -> String {
         }
         (Severity::Diverged, None) => "diverged".to_owned(),
         (Severity::HitGround, _) => "hit the ground".to_owned(),
+        (Severity::ControllerLost, _) => "controller lost".to_owned(),
         (Severity::Unstable, _) => "unstable loop".to_owned(),
         (Severity::LeftRange, _) => "left the range".to_owned(),
         (Severity::Refused, _) => "no scenario".to_owned(),

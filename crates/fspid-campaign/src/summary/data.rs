@@ -238,6 +238,8 @@ pub enum Severity {
     Diverged,
     /// The aircraft hit the ground.
     HitGround,
+    /// The external controller gave no answer.
+    ControllerLost,
     /// The loop is unstable at rest, which did not show in the flight.
     Unstable,
     /// It left the range of its aircraft's data, which its scenario does not allow.

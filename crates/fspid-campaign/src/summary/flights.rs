@@ -7,12 +7,22 @@ use fspid_study::metrics::LEFT_RANGE;
 use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
-use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT};
+use crate::rows::{
+    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT,
+};
 use crate::table::{ColumnTable, Kind, TableError, Values};
 
 /// Verdicts from good to bad.
-const VERDICTS: [&str; 7] =
-    ["settled", "flown", "not settled", REFUSED, "unstable", HIT_GROUND, "diverged"];
+const VERDICTS: [&str; 8] = [
+    "settled",
+    "flown",
+    "not settled",
+    REFUSED,
+    "unstable",
+    CONTROLLER_LOST,
+    HIT_GROUND,
+    "diverged",
+];
 
 /// How one controller's flights ended.
 #[derive(Default)]
@@ -141,6 +151,7 @@ impl Flights {
         let severity = match ending.verdict {
             "diverged" => Severity::Diverged,
             HIT_GROUND => Severity::HitGround,
+            CONTROLLER_LOST => Severity::ControllerLost,
             "unstable" => Severity::Unstable,
             REFUSED => Severity::Refused,
             // The column of the verdict says what the measures come to.

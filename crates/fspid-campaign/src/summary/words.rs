@@ -103,6 +103,7 @@ impl Severity {
         match self {
             Self::Diverged => "diverged",
             Self::HitGround => crate::rows::HIT_GROUND,
+            Self::ControllerLost => crate::rows::CONTROLLER_LOST,
             Self::Unstable => "unstable",
             Self::Refused => "refused",
             Self::LeftRange => "left the range",

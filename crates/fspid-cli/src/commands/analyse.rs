@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
+use super::external_controller::{Beside, leave_out};
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print, wrote};
@@ -21,6 +22,8 @@ pub(crate) struct Arguments {
     /// Set a value first, e.g. `--set controller.PID.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    #[command(flatten)]
+    beside: Beside,
     /// Where the loop is broken; the others stay closed.
     #[arg(long, value_enum, default_value_t = Point::Command)]
     broken_at: Point,
@@ -61,9 +64,13 @@ impl From<Point> for BreakPoint {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let overrides = arguments.beside.overrides(&arguments.overrides)?;
+    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
+    }
+    if study.scenario.controllers.is_empty() && !arguments.fly {
+        leave_out(&study.scenario, None)?;
     }
     let question = Question {
         point: arguments.broken_at.into(),

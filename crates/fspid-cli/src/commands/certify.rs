@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use super::external_controller::leave_out;
 use super::progress::{Telling, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
@@ -60,6 +61,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         note(format_args!("warning: {warning}"));
     }
     let only = arguments.controller.as_deref();
+    leave_out(&study.scenario, only)?;
     let names: Vec<&str> =
         study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
     if let Some(name) = only.filter(|name| !names.contains(name)) {

@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let mut text = format!(
             "{file}: good; {} with {}, {} samples of {} s, digest {}\n",
             scenario.name,
-            counted(scenario.controllers.len(), "controller"),
+            counted(scenario.flyers().count(), "controller"),
             timing.rows(),
             timing.dt_s(),
             study.digest,
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         text
     };
-    let names = scenario.controllers.iter().map(|named| named.name.as_str());
+    let names = scenario.flyers().map(|flyer| flyer.name());
     let json = || {
         json!({
             "schema": 1, "file": file.to_string(), "kind": "scenario", "good": true,

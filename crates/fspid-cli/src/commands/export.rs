@@ -7,11 +7,12 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, Request, Target, export};
+use fspid_export::{Angles, Export, File, Request, Target, export};
 use fspid_scenario::file::{self, Study};
 use fspid_scenario::fuzzy_system;
 use fspid_scenario::tuning::TunableParameter;
@@ -54,6 +55,10 @@ pub(crate) struct Arguments {
     /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
     #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
     points: usize,
+    /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
+    /// script that makes the rest; for c, takes a minute.
+    #[arg(long, value_name = "DIR")]
+    evidence: Option<Folder>,
     /// How integrals of a fuzzy system are computed: `exact`, `endpoints:N`, `midpoint:N`, `trapezoid:N` or `left-end:N`; as
     /// its file says if left out.
     #[arg(long, value_name = "RULE")]
@@ -101,6 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
+    leave_out(&study.scenario, arguments.controller.as_deref())?;
     let named = chosen(&study, arguments.controller.as_deref())?;
     tuned(&study, &named.name)?;
     let request = Request {
@@ -118,6 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: arguments.samples as usize,
         points: arguments.points,
         digest: &study.digest,
+        evidence: evidence(arguments)?.is_some(),
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;
     answer(arguments, ["controller", &named.name], &exported)
@@ -126,11 +133,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the files and tells them; `what` is what was exported, and its name.
 fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(), Failure> {
     empty(&arguments.out, arguments.force)?;
-    write(exported, &arguments.out)?;
+    write(&exported.files, &arguments.out)?;
+    if let Some(folder) = &arguments.evidence {
+        write(&exported.evidence, folder)?;
+    }
     match arguments.format {
         Format::Text => {
             exported.notes.iter().for_each(|it| note(format_args!("{it}")));
-            print(&told(exported, &arguments.out))
+            let evidence = arguments.evidence.as_ref().map(|it| told(&exported.evidence, it));
+            print(&(told(&exported.files, &arguments.out) + &evidence.unwrap_or_default()))
         }
         Format::Json => print(&json_text(&json!({
             "schema": 1,
@@ -139,6 +150,7 @@ fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(
             "prefix": exported.prefix,
             "folder": arguments.out.display().to_string(),
             "files": exported.files.iter().map(|it| &it.name).collect::<Vec<_>>(),
+            "evidence": exported.evidence.iter().map(|it| &it.name).collect::<Vec<_>>(),
             "notes": exported.notes,
         }))),
     }
@@ -190,8 +202,19 @@ fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
-    for file in &exported.files {
+/// The folder of the evidence, if the target has some and the folder may be written into.
+fn evidence(arguments: &Arguments) -> Result<Option<&Path>, Failure> {
+    let Some(folder) = &arguments.evidence else { return Ok(None) };
+    if arguments.to != Target::C {
+        let to = arguments.to.name();
+        return Err(Failure::input(format_args!("{to} has no evidence; --to c has")));
+    }
+    empty(folder, arguments.force)?;
+    Ok(Some(folder))
+}
+
+fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
+    for file in files {
         let path = folder.join(&file.name);
         output::make_folder(path.parent().unwrap_or(folder))?;
         output::write(&path, &file.bytes)?;
@@ -199,7 +222,7 @@ fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn told(exported: &Export, folder: &Path) -> String {
+fn told(files: &[File], folder: &Path) -> String {
     let line = |name: &String| format!("{}\n", folder.join(name).display());
-    exported.files.iter().map(|file| line(&file.name)).collect()
+    files.iter().map(|file| line(&file.name)).collect()
 }

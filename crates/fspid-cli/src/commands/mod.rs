@@ -12,6 +12,7 @@ pub(crate) mod convert;
 mod drawings;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod external_controller;
 pub(crate) mod fly;
 pub(crate) mod infer;
 pub(crate) mod init;

@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::external_controller::Beside;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
@@ -17,6 +18,8 @@ pub(crate) struct Arguments {
     /// Set a value before flying, e.g. `--set loop.sample_period_s=0.02`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    #[command(flatten)]
+    beside: Beside,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -29,7 +32,8 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let overrides = arguments.beside.overrides(&arguments.overrides)?;
+    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use super::external_controller::Beside;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
@@ -25,6 +26,8 @@ pub(crate) struct Arguments {
     /// `--set loop.sample_period_s=0.02`.
     #[arg(long = "set", value_name = "NAME | PATH=VALUE")]
     settings: Vec<String>,
+    #[command(flatten)]
+    beside: Beside,
     /// Add the requirements of a file with `[[requirement]]` entries.
     #[arg(long = "requirements", value_name = "FILE.toml")]
     requirement_files: Vec<InFile>,
@@ -90,9 +93,10 @@ Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the inp
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let requirement_files: Vec<&Path> =
         arguments.requirement_files.iter().map(AsRef::as_ref).collect();
+    let settings = arguments.beside.overrides(&arguments.settings)?;
     let question = Question {
         path: &arguments.file,
-        settings: &arguments.settings,
+        settings: &settings,
         requirement_files: &requirement_files,
     };
     let verification = verify(&question).map_err(Failure::input)?;

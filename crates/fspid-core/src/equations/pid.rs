@@ -279,6 +279,36 @@ impl<S: Scalar> PidEquations<S> {
         }
     }
 
+    /// A command that another gave, within this controller's limits.
+    #[inline(always)]
+    pub fn within_limits(&self, command_rad: S) -> S {
+        limited(command_rad, self.numbers.lower_rad, self.numbers.upper_rad)
+    }
+
+    /// The integral's memory from which the next sample continues at `command_rad`, from the memory that a step
+    /// to this sample has left: the term that fills what the other terms leave,
+    ///
+    /// $$ I = u - k_p (b r - y) - k_d d + k_r q $$
+    ///
+    /// within the limits of the term. Where $k_i$ is zero the memory stays as it is: nothing would bring it back.
+    #[inline(always)]
+    pub fn tracking(&self, memory: &Memory<S>, sample: &Sample<S>, command_rad: S) -> S {
+        let Sample { setpoint_rad, measurement_rad, rate_rad_s } = *sample;
+        let &Memory { kp, ki, kd, integral, derivative_rad_s, .. } = memory;
+        let (weight, rate_gain_s) = self.coupled(&Gains { kp, ki, kd });
+        let proportional_rad = kp * (weight * setpoint_rad - measurement_rad);
+        let rest_rad = proportional_rad + kd * derivative_rad_s - rate_gain_s * rate_rad_s;
+        let (n, term_rad) = (&self.numbers, command_rad - rest_rad);
+        let term_rad = match self.structure.anti_windup {
+            AntiWindupKind::Clamping => limited(term_rad, n.term_lower_rad, n.term_upper_rad),
+            AntiWindupKind::None
+            | AntiWindupKind::Conditional
+            | AntiWindupKind::BackCalculation => term_rad,
+        };
+        let moved = self.remembered(term_rad, ki, integral, |memory| memory);
+        S::zero().if_less(ki.abs(), moved, integral)
+    }
+
     /// The memory to keep: the wound one after anti-windup.
     #[inline(always)]
     fn unwound(&self, before: S, free: &Free<S>, excess_rad: S, ki: S) -> S {
@@ -315,10 +345,16 @@ impl<S: Scalar> PidEquations<S> {
     /// small for any sum to make that term.
     #[inline(always)]
     fn remembered(&self, term_rad: S, ki: S, otherwise: S, follows: impl Fn(S) -> S) -> S {
-        let memory = match self.structure.integral {
-            IntegralForm::Bumpless => term_rad,
-            IntegralForm::Literal => term_rad / (ki * self.numbers.dt_s),
-        };
-        memory.abs().if_less(S::constant(f64::INFINITY), follows(memory), otherwise)
+        let infinity = S::constant(f64::INFINITY);
+        let finite = |memory: S| memory.abs().if_less(infinity, follows(memory), otherwise);
+        match self.structure.integral {
+            IntegralForm::Bumpless => finite(term_rad),
+            IntegralForm::Literal => {
+                // Nothing is divided by zero, not even to be thrown away.
+                let (zero, divisor) = (S::zero(), ki * self.numbers.dt_s);
+                let safe = zero.if_less(divisor.abs(), divisor, S::one());
+                zero.if_less(divisor.abs(), finite(term_rad / safe), otherwise)
+            }
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::program::{
 };
 
 /// Name of the gains, in the order of the increments.
-pub(super) const GAINS: [&str; 3] = ["kp", "ki", "kd"];
+pub(crate) const GAINS: [&str; 3] = ["kp", "ki", "kd"];
 /// Sets of an input.
 const SETS: i32 = 7;
 
@@ -49,7 +49,7 @@ pub(super) fn functions<R: Real>(
         None => {
             functions.push(exponential::function::<R>());
             functions.push(labels::grades(configuration, supervisor));
-            functions.push(centroid::function::<R>(supervisor.defuzzifier())?);
+            functions.push(centroid::function::<R>(supervisor.defuzzifier(), policy)?);
             body.extend(labels::body(configuration, supervisor));
         }
     }

@@ -7,6 +7,7 @@ mod observe;
 pub(crate) mod prune;
 mod step;
 
+pub(crate) use infer::GAINS;
 pub(crate) use infer::centroid;
 
 use fspid_core::fuzzy::Defuzzifier;

@@ -5,12 +5,16 @@ use fspid_core::{Faults, Gains, InputSets, ModelState, Sample, SetCentres, large
 use fspid_numeric::Real;
 use fspid_numeric::scalar::Scalar as _;
 
+mod around;
+mod track;
+
+use self::around::nominal_gain;
 use super::infer::{self, GAINS};
 use super::members::Configuration;
 use super::{Angles, precision_of};
 use crate::program::{
-    Argument, Expression, Function, Kind, Member, Operator, Parameter, Part, Statement, Value,
-    element, local, member, number, whole,
+    Argument, Expression, Function, Kind, Member, Operator, Part, Statement, Value, element, local,
+    member, number, whole,
 };
 use crate::trace::{Listing, Traced};
 use fspid_core::Controller;
@@ -96,7 +100,7 @@ pub(super) fn state<R: Real>(controller: &Controller<R>) -> Vec<Member> {
     ]
 }
 
-/// The functions `hold` and `step`.
+/// The functions that others call.
 pub(super) fn functions<R: Real>(
     configuration: &mut Configuration,
     controller: &Controller<R>,
@@ -108,108 +112,19 @@ pub(super) fn functions<R: Real>(
     {
         functions.push(infer::warp_function::<R>());
     }
-    functions.push(reset(configuration, controller));
-    functions.push(hold(configuration, controller, angles));
+    functions.push(around::reset(configuration, controller));
+    functions.push(around::hold(configuration, controller, angles));
     let step =
         Composer { configuration, controller, angles, listing: Listing::new(precision_of::<R>()) };
     functions.push(step.step());
+    let step =
+        Composer { configuration, controller, angles, listing: Listing::new(precision_of::<R>()) };
+    functions.push(step.track());
+    functions.extend([track::saturated(), track::faults()]);
     functions
 }
 
 const PARTS: &[Part] = &[Part::Configuration, Part::State, Part::Sample, Part::Answer];
-
-/// The function that forgets everything.
-fn reset<R: Real>(configuration: &mut Configuration, controller: &Controller<R>) -> Function {
-    let begin = |member: Member| {
-        let value = match (GAINS.iter().position(|gain| *gain == member.name), member.value) {
-            (Some(gain), _) => nominal_gain(configuration, controller, gain),
-            (None, Value::Truth(value)) => Expression::Truth(value),
-            (None, Value::Byte(value)) => Expression::Byte(value),
-            (None, Value::Real(value)) => number(value),
-            (None, Value::Reals(_) | Value::Bytes(_)) => unreachable!("no list is remembered"),
-        };
-        Statement::set_member(Part::State, &member.name, value)
-    };
-    Function {
-        name: "reset",
-        doc: "Forgets everything: as before the first sample.",
-        parts: &[Part::Configuration, Part::State],
-        parameters: Vec::new(),
-        answers: None,
-        body: state(controller).into_iter().map(begin).collect(),
-    }
-}
-
-/// The function that answers a sample which cannot be used.
-fn hold<R: Real>(
-    configuration: &mut Configuration,
-    controller: &Controller<R>,
-    angles: Angles,
-) -> Function {
-    let state = |name: &str| member(Part::State, name);
-    let faults = Expression::binary(Operator::BitOr, state("faults"), local("fault"));
-    let mut command = state("command_rad");
-    if let Some(limits) = controller.config().limits {
-        // Only a memory that the step has not written can lie outside.
-        let last = || state("command_rad");
-        let end = |configuration: &mut Configuration, name, doc, value: R| {
-            let value = value.to_f64();
-            value.is_finite().then(|| configuration.real(name, doc, value))
-        };
-        let upper =
-            end(configuration, "upper_rad", "Upper limit of the command, rad.", limits.upper());
-        let lower =
-            end(configuration, "lower_rad", "Lower limit of the command, rad.", limits.lower());
-        if let Some(upper) = upper {
-            command = upper.clone().less(last()).select(upper, command);
-        }
-        if let Some(lower) = lower {
-            command = last().less(lower.clone()).select(lower, command);
-        }
-    }
-    let mut body = vec![
-        Statement::set_member(Part::State, "faults", faults),
-        Statement::real("held_rad", command),
-    ];
-    body.extend(answered(angles, "held_rad", |gain| {
-        gain_of_state(configuration, controller, gain)
-    }));
-    body.extend([
-        Statement::set_member(Part::Answer, "saturated", Expression::Truth(false)),
-        Statement::set_member(Part::Answer, "faults", state("faults")),
-    ]);
-    Function {
-        name: "hold",
-        doc: "Answers the last command to a sample that cannot be used, and latches the fault.",
-        parts: &[Part::Configuration, Part::State, Part::Answer],
-        parameters: vec![Parameter { name: "fault", kind: Kind::Byte, written: false }],
-        answers: None,
-        body,
-    }
-}
-
-/// The last gain: constant where the gains are.
-fn gain_of_state<R: Real>(
-    configuration: &mut Configuration,
-    controller: &Controller<R>,
-    gain: usize,
-) -> Expression {
-    match controller {
-        Controller::Fixed(_) => nominal_gain(configuration, controller, gain),
-        Controller::SelfTuning(_) => member(Part::State, GAINS[gain]),
-    }
-}
-
-fn nominal_gain<R: Real>(
-    configuration: &mut Configuration,
-    controller: &Controller<R>,
-    gain: usize,
-) -> Expression {
-    let Gains { kp, ki, kd } = controller.nominal();
-    let value = [kp, ki, kd][gain].to_f64();
-    let doc = ["Proportional gain.", "Integral gain, 1/s.", "Derivative gain, s."][gain];
-    configuration.real(&format!("nominal_{}", GAINS[gain]), doc, value)
-}
 
 /// Command and gains of the answer.
 fn answered(
@@ -250,23 +165,18 @@ fn both(truths: impl IntoIterator<Item = Expression>) -> Expression {
     all.unwrap_or(Expression::Truth(true))
 }
 
+/// Answers whether two finite numbers are not the same, without asking whether they are equal.
+fn cut(left: &Expression, right: &Expression) -> [Statement; 2] {
+    let mark = |is| Statement::set_member(Part::Answer, "saturated", Expression::Truth(is));
+    let differs = left.clone().less(right.clone()).or(right.clone().less(left.clone()));
+    [mark(false), Statement::when(differs, vec![mark(true)])]
+}
+
 impl<R: Real> Composer<'_, R> {
     fn step(mut self) -> Function {
         let mut body = self.believed();
         let (pid, tuner) = self.equations();
-        let sample = Sample {
-            setpoint_rad: read("setpoint_rad"),
-            measurement_rad: read("measurement_rad"),
-            rate_rad_s: if self.controller.uses_rate() {
-                read("rate_rad_s")
-            } else {
-                Traced::zero()
-            },
-        };
-        let nominal: Vec<Traced> = (0..3)
-            .map(|gain| Traced::read(nominal_gain(self.configuration, self.controller, gain)))
-            .collect();
-        let nominal = Gains { kp: nominal[0], ki: nominal[1], kd: nominal[2] };
+        let (sample, nominal) = (self.traced_sample(), self.nominal());
         let memory = self.memory(&mut body, &pid, &sample, &nominal);
         let (gains, model) = match &tuner {
             None => (nominal, None),
@@ -287,8 +197,8 @@ impl<R: Real> Composer<'_, R> {
         number(precision_of::<R>().largest())
     }
 
-    /// The sample in radians, and whether it is believed.
-    fn believed(&mut self) -> Vec<Statement> {
+    /// The names of what is sampled, and the sample in radians.
+    fn sampled(&self) -> (Vec<&'static str>, Vec<Statement>) {
         let unit = self.angles.unit();
         let mut names = vec![
             ("setpoint_rad", format!("setpoint_{unit}")),
@@ -297,25 +207,56 @@ impl<R: Real> Composer<'_, R> {
         if self.controller.uses_rate() {
             names.push(("rate_rad_s", format!("rate_{unit}_s")));
         }
-        let mut body = Vec::new();
-        for (name, given) in &names {
-            let given = member(Part::Sample, given);
-            let value = match self.angles.radians() {
-                Some(factor) => given * number(factor),
-                None => given,
-            };
-            body.push(Statement::real(name, value));
+        let read = |(name, given): &(&'static str, String)| {
+            Statement::real(name, self.in_radians(member(Part::Sample, given)))
+        };
+        (names.iter().map(|(name, _)| *name).collect(), names.iter().map(read).collect())
+    }
+
+    fn in_radians(&self, given: Expression) -> Expression {
+        match self.angles.radians() {
+            Some(factor) => given * number(factor),
+            None => given,
         }
-        let limit = self.controller.config().guard.limit_rad().to_f64();
-        let doc = "Largest sample that is believed, rad and rad/s.";
-        let limit = self.configuration.real("guard_rad", doc, limit);
+    }
+
+    /// The sample as the equations read it.
+    fn traced_sample(&self) -> Sample<Traced> {
+        let uses_rate = self.controller.uses_rate();
+        Sample {
+            setpoint_rad: read("setpoint_rad"),
+            measurement_rad: read("measurement_rad"),
+            rate_rad_s: if uses_rate { read("rate_rad_s") } else { Traced::zero() },
+        }
+    }
+
+    /// The nominal gains as the equations read them.
+    fn nominal(&mut self) -> Gains<Traced> {
+        let [kp, ki, kd] = [0, 1, 2]
+            .map(|gain| Traced::read(nominal_gain(self.configuration, self.controller, gain)));
+        Gains { kp, ki, kd }
+    }
+
+    /// The sample in radians, and whether it is believed.
+    fn believed(&mut self) -> Vec<Statement> {
+        let (names, mut body) = self.sampled();
+        let limit = self.guard();
         let within = |most: &Expression| {
-            both(names.iter().map(|(name, _)| local(name).magnitude().at_most(most.clone())))
+            both(names.iter().map(|name| local(name).magnitude().at_most(most.clone())))
         };
         body.push(Statement::Remark("A sample that cannot be believed holds the command.".into()));
         body.push(Statement::when(within(&self.largest()).negated(), held(NOT_FINITE)));
         body.push(Statement::when(within(&limit).negated(), held(IMPLAUSIBLE)));
         body
+    }
+
+    fn guard(&mut self) -> Expression {
+        let limit = self.controller.config().guard.limit_rad().to_f64();
+        self.configuration.real(
+            "guard_rad",
+            "Largest sample that is believed, rad and rad/s.",
+            limit,
+        )
     }
 
     /// The equations with their numbers in the configuration.
@@ -592,10 +533,8 @@ impl<R: Real> Composer<'_, R> {
             Controller::Fixed(_) => nominal_gain(configuration, controller, gain),
             Controller::SelfTuning(_) => local(GAINS[gain]),
         }));
-        let cut = Expression::binary(Operator::NotEqual, local("excess_rad"), number(0.0));
-        body.extend([
-            Statement::set_member(Part::Answer, "saturated", cut),
-            Statement::set_member(Part::Answer, "faults", member(Part::State, "faults")),
-        ]);
+        body.extend(cut(&local("excess_rad"), &number(0.0)));
+        let faults = member(Part::State, "faults");
+        body.push(Statement::set_member(Part::Answer, "faults", faults));
     }
 }

@@ -72,6 +72,14 @@ pub struct Member {
     pub value: Value,
 }
 
+impl Member {
+    /// True for what the rules R1 to R49 conclude, in this order.
+    #[must_use]
+    pub fn is_rules(&self) -> bool {
+        self.name.starts_with("rules_")
+    }
+}
+
 /// What a member holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -128,6 +136,31 @@ impl Program {
         [true, false].map(|reals| {
             let of_kind = |it: &&Member| matches!(it.value, Value::Real(_)) == reals;
             self.answer.iter().filter(of_kind).map(|it| it.name.as_str()).collect()
+        })
+    }
+
+    /// True if a function, or one that it calls, puts something into a part.
+    #[must_use]
+    pub fn writes(&self, function: &Function, part: Part) -> bool {
+        self.writes_in(&function.body, part)
+    }
+
+    fn writes_in(&self, body: &[Statement], part: Part) -> bool {
+        body.iter().any(|statement| match statement {
+            Statement::Set(Place::Member(to, _) | Place::MemberElement(to, ..), _) => *to == part,
+            Statement::If(_, then, otherwise) => {
+                self.writes_in(then, part) || self.writes_in(otherwise, part)
+            }
+            Statement::For(.., body) => self.writes_in(body, part),
+            Statement::Call(name, _) => {
+                self.function(name).is_some_and(|called| self.writes(called, part))
+            }
+            // What answers a value writes into nothing but arrays of its caller.
+            Statement::Set(..)
+            | Statement::Remark(_)
+            | Statement::Let(..)
+            | Statement::Array(..)
+            | Statement::Return(_) => false,
         })
     }
 

@@ -91,7 +91,7 @@ fn exported<R: Real>(
         possible: WRITTEN.to_owned(),
     })?;
     notes.extend(written.notes);
-    Ok(Export { prefix, files: written.files, notes })
+    Ok(Export { prefix, files: written.files, evidence: Vec::new(), notes })
 }
 
 const WRITTEN: &str = "possible are c, lua and st";

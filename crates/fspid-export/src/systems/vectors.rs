@@ -7,7 +7,7 @@ use fspid_numeric::Real;
 use super::{Names, SystemProgram};
 use crate::interpret::{Cell, Machine};
 use crate::program::Part;
-use crate::vectors::{Draw, Vector};
+use crate::vectors::{Draw, Event, Vector};
 
 /// The bit of an input that is not finite.
 pub const NOT_FINITE: u8 = 1;
@@ -48,7 +48,7 @@ pub fn system_vectors(system: &System, seed: u64, count: usize) -> Vec<Vector<f6
         let mut marks: Vec<u8> = answers.iter().map(|it| source_code(it.source)).collect();
         marks.push(faults);
         let answer = answers.iter().map(|it| it.value.unwrap_or(0.0)).collect();
-        Vector { sample: inputs, answer, marks }
+        Vector { event: Event::Step, sample: inputs, answer, marks }
     };
     inputs(system, seed, count).into_iter().map(answered).collect()
 }
@@ -78,7 +78,7 @@ pub(super) fn single_vectors(
         };
         let answer = outputs.iter().map(real).collect();
         let marks = sources.iter().chain([faults]).map(byte).collect();
-        Vector { sample, answer, marks }
+        Vector { event: Event::Step, sample, answer, marks }
     };
     inputs(system, seed, count).into_iter().map(answered).collect()
 }

@@ -1,7 +1,11 @@
 //! How far a bilinear table can be off its supervisor, by interval arithmetic and branch and bound.
 //!
-//! Over a box of inputs the supervisor is enclosed by [`Reach`], and the interpolation by its values in the four corners,
-//! where its extremes lie. Boxes in which the difference can be larger than what was seen somewhere are halved.
+//! Over a box with the middle m the difference $D = T - S$ of the table and the supervisor, in sides of a cell, lies in
+//!
+//! $$ D(m) + \sum_i \left( \frac{\partial T}{\partial x_i}(X) - \frac{\partial S}{\partial x_i}(X) \right) (X_i - m_i), $$
+//!
+//! where the supervisor's slopes are enclosed by [`Reach`] and the table's by its ends: where the surface is smooth, few boxes
+//! are needed. Boxes in which the difference can be larger than what was seen somewhere are halved.
 
 use fspid_core::fuzzy::Supervisor;
 use fspid_fuzzy::audit::Reach;
@@ -68,6 +72,17 @@ struct Square {
     open: [bool; 3],
 }
 
+impl Square {
+    fn middle(&self) -> [f64; 2] {
+        self.from.map(|from| from + 0.5 * self.side)
+    }
+}
+
+/// Enclosures of three outputs; of which nothing is known where there are not three.
+fn three(found: &[Interval]) -> [Interval; 3] {
+    found.try_into().unwrap_or([Interval::ENTIRE; 3])
+}
+
 struct Search<'a> {
     table: &'a SurfaceTable,
     supervisor: &'a Supervisor<f64>,
@@ -80,15 +95,10 @@ struct Search<'a> {
 impl Search<'_> {
     fn divide(&mut self, square: &Square) {
         self.boxes += 1;
-        let inputs = [0, 1].map(|axis: usize| {
-            let first = square.cell[axis] as f64 + square.from[axis];
-            let end = |at| position(self.table, at);
-            end(first).hull(end(first + square.side))
-        });
         let mut open = square.open;
-        let [kp, ki, kd] = *self.reach.over(&inputs) else { return self.give_up(square) };
-        for (k, exact) in [kp, ki, kd].into_iter().enumerate().filter(|(k, _)| square.open[*k]) {
-            let off = (interpolated(self.table, square, k) - exact).magnitude();
+        let enclosed = self.enclosed(square);
+        for (k, off) in enclosed.into_iter().enumerate().filter(|(k, _)| square.open[*k]) {
+            let off = off.magnitude().min(2.0 * self.supervisor.range());
             open[k] = off > self.seen[k] * (1.0 + TOLERANCE) && square.halvings < HALVINGS;
             if !open[k] {
                 self.bounds[k] = self.bounds[k].max(off);
@@ -100,11 +110,31 @@ impl Search<'_> {
         }
     }
 
-    /// Says of a part that nothing is known.
-    fn give_up(&mut self, square: &Square) {
-        for (bound, _) in self.bounds.iter_mut().zip(square.open).filter(|(_, open)| *open) {
-            *bound = bound.max(2.0 * self.supervisor.range());
+    /// The differences over a part, output by output.
+    fn enclosed(&mut self, square: &Square) -> [Interval; 3] {
+        let inputs = [0, 1].map(|axis: usize| {
+            let first = square.cell[axis] as f64 + square.from[axis];
+            position(self.table, first).hull(position(self.table, first + square.side))
+        });
+        let middle = [0, 1].map(|axis: usize| {
+            position(self.table, square.cell[axis] as f64 + square.middle()[axis])
+        });
+        let place = middle.map(|at| Interval::point(at.midpoint()));
+        let exact = three(self.reach.over(&place));
+        let at = Square { from: square.middle(), side: 0.0, ..*square };
+        let mut off = [0, 1, 2].map(|k: usize| interpolated(self.table, &at, k) - exact[k]);
+        let width = position(self.table, 1.0) - position(self.table, 0.0);
+        let half = Interval::between(-0.5 * square.side, 0.5 * square.side);
+        for axis in 0..2 {
+            let slopes = three(self.reach.slopes(&inputs, axis));
+            for (k, off) in off.iter_mut().enumerate() {
+                let of_table = slope(self.table, square, k, axis);
+                // The middle of the grid and of the inputs are rounded apart.
+                let apart = slopes[k] * (middle[axis] - place[axis]);
+                *off = *off + (of_table - width * slopes[k]) * half - apart;
+            }
         }
+        off
     }
 
     fn halve(&mut self, square: &Square, open: [bool; 3]) {
@@ -118,8 +148,7 @@ impl Search<'_> {
 
     /// Remembers the difference in the middle of a part.
     fn look(&mut self, square: &Square) {
-        let middle = [0, 1].map(|axis: usize| square.from[axis] + 0.5 * square.side);
-        let off = difference(self.table, self.supervisor, square.cell, middle);
+        let off = difference(self.table, self.supervisor, square.cell, square.middle());
         for (seen, off) in self.seen.iter_mut().zip(off) {
             *seen = seen.max(off);
         }
@@ -150,6 +179,19 @@ fn interpolated(table: &SurfaceTable, square: &Square, output: usize) -> Interva
         .hull(corner(row, right))
         .hull(corner(down, column))
         .hull(corner(down, right))
+}
+
+/// The slopes of the interpolation over a part of a cell, along an axis, per side of the cell: those at the two ends of the
+/// other axis and all in between.
+fn slope(table: &SurfaceTable, square: &Square, output: usize, axis: usize) -> Interval {
+    let at = square.cell[0] * table.points + square.cell[1];
+    let value = |at: usize| Interval::point(f64::from(table.values[at][output]));
+    let [along, across] = if axis == 0 { [table.points, 1] } else { [1, table.points] };
+    let first = value(at + along) - value(at);
+    let second = value(at + along + across) - value(at + across);
+    let from = square.from[1 - axis];
+    let end = |part: f64| first + (second - first) * Interval::point(part);
+    end(from).hull(end(from + square.side))
 }
 
 /// The difference in a place of a cell, as computed: only to know where to look.

@@ -4,12 +4,15 @@ use fspid_numeric::Real;
 
 use super::{File, Source, Written};
 use crate::compile::shared_library;
-use crate::compose::observed;
+use crate::compose::{Refusal, observed};
 use crate::write::fmu::{Fmu, Parts, Version, parts};
 use crate::zip::archive;
 
 /// The archive; what was left out of it is told.
-pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Written {
+pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Result<Written, Refusal> {
+    if source.flown.is_none() {
+        return Err(Refusal::NoController);
+    }
     let Source { program, prefix, heading, .. } = source;
     let program = observed((*program).clone());
     let Parts { mut texts, to_compile, sources } =
@@ -23,7 +26,7 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Writte
         Err(reason) => format!("the FMU holds its sources only: {reason}"),
     };
     let files = vec![File { name: format!("{prefix}.fmu"), bytes: archive(&texts) }];
-    Written { files, notes: vec![note] }
+    Ok(Written { files, notes: vec![note] })
 }
 
 /// The folder of this machine's libraries, and one.

@@ -5,10 +5,13 @@
 mod c;
 mod fmu;
 mod lua;
+mod matlab;
 mod rust;
+mod simulink;
 mod structured_text;
 mod table;
 
+use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::compose::Refusal;
@@ -16,7 +19,6 @@ use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
 use crate::write::fmu::Version;
-use fspid_core::Controller;
 
 /// A language that a controller can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +33,10 @@ pub enum Target {
     Rust,
     /// The supervisor's surface as a table in C and CSV.
     Table,
+    /// A function of MATLAB, and the supervisor as a `.fis`.
+    Matlab,
+    /// An S-function around the C.
+    Simulink,
     /// A functional mock-up unit, FMI 2.0.
     Fmu2,
     /// A functional mock-up unit, FMI 3.0.
@@ -39,8 +45,17 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::C, Self::Lua, Self::StructuredText, Self::Rust, Self::Table, Self::Fmu2, Self::Fmu3];
+    pub const ALL: [Self; 9] = [
+        Self::C,
+        Self::Lua,
+        Self::StructuredText,
+        Self::Rust,
+        Self::Table,
+        Self::Matlab,
+        Self::Simulink,
+        Self::Fmu2,
+        Self::Fmu3,
+    ];
 
     /// Its name on the command line.
     #[must_use]
@@ -51,6 +66,8 @@ impl Target {
             Self::StructuredText => "st",
             Self::Rust => "rust",
             Self::Table => "table",
+            Self::Matlab => "matlab",
+            Self::Simulink => "simulink",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",
         }
@@ -63,20 +80,27 @@ impl Target {
             Self::C | Self::Lua | Self::StructuredText | Self::Rust | Self::Table => {
                 Precision::Single
             }
-            Self::Fmu2 | Self::Fmu3 => Precision::Double,
+            Self::Matlab | Self::Simulink | Self::Fmu2 | Self::Fmu3 => Precision::Double,
         }
+    }
+
+    /// True if its vectors hold more than steps.
+    pub(crate) const fn has_events(self) -> bool {
+        matches!(self, Self::C | Self::Lua)
     }
 
     /// What is written for it.
     pub(crate) fn files<R: Real>(self, source: &Source<'_, R>) -> Result<Written, Refusal> {
         let files = match self {
             Self::C => c::files(source),
-            Self::Lua => lua::files(source),
-            Self::StructuredText => structured_text::files(source),
+            Self::Lua => return Ok(lua::files(source)),
+            Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
+            Self::Simulink => simulink::files(source)?,
+            Self::Matlab => return matlab::files(source),
             Self::Table => return table::files(source),
-            Self::Fmu2 => return Ok(fmu::files(source, Version::Two)),
-            Self::Fmu3 => return Ok(fmu::files(source, Version::Three)),
+            Self::Fmu2 => return fmu::files(source, Version::Two),
+            Self::Fmu3 => return fmu::files(source, Version::Three),
         };
         Ok(Written { files, notes: Vec::new() })
     }

@@ -2,17 +2,21 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source};
+use super::{File, Source, Written};
 use crate::write;
 
-pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
+pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Written {
     let Source { program, prefix, heading, vectors, .. } = source;
     let samples: Vec<Vec<R>> = vectors.iter().map(|vector| vector.sample.clone()).collect();
-    vec![
+    let files = vec![
         File::text(format!("{prefix}.st"), write::structured_text(program, prefix, heading)),
         File::text(
             format!("{prefix}_check.st"),
             write::structured_text_check(program, prefix, heading, &samples),
         ),
-    ]
+    ];
+    let notes = vec![format!(
+        "the function block is FB_{prefix}, the program that checks it PRG_{prefix}_check"
+    )];
+    Written { files, notes }
 }

@@ -2,7 +2,9 @@
 
 use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
-use crate::program::{Function, Kind, Member, Parameter, Part, Precision, Program, Value};
+use crate::program::{
+    Expression, Function, Kind, Member, Parameter, Part, Precision, Program, Value,
+};
 
 /// The text of both files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,6 +24,16 @@ pub fn c(program: &Program, prefix: &str, heading: &Heading<'_>) -> CFiles {
     let lines = heading.lines().join("\n * ");
     let head = format!("/* {lines} */\n");
     CFiles { header: head.clone() + &writer.header(), source: head + &writer.source() }
+}
+
+/// A number as it is written in C.
+pub(crate) fn c_number(program: &Program, value: f64) -> String {
+    Writer { program, prefix: "" }.number(value)
+}
+
+/// An expression as it is written in C.
+pub(crate) fn c_expression(program: &Program, prefix: &str, value: &Expression) -> String {
+    super::dialect::outer(&Writer { program, prefix }, value)
 }
 
 struct Writer<'a> {
@@ -70,6 +82,13 @@ impl Writer<'_> {
             comment(&mut page, function.doc);
             page.line(&format!("{};", self.signature(function)));
         }
+        page.line("");
+        comment(&mut page, super::c_selftest::DOC);
+        let asked = format!("const {prefix}_configuration *configuration");
+        page.line(&format!("uint16_t {prefix}_selftest({asked});"));
+        page.line("");
+        page.line("/* As before the first sample, with the design as it was tuned. */");
+        page.line(&format!("void {prefix}_init({prefix}_state *state);"));
         page.line("");
         page.line("#ifdef __cplusplus");
         page.line("}");
@@ -125,6 +144,11 @@ impl Writer<'_> {
             page.line("");
             self.function(&mut page, function);
         }
+        page.line("");
+        page.line(&format!("void {prefix}_init({prefix}_state *state)"));
+        page.line("{");
+        page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
+        page.line("}");
         page.text
     }
 
@@ -132,14 +156,22 @@ impl Writer<'_> {
         page.line(&format!("const {0}_configuration {0}_design = {{", self.prefix));
         page.inside(|page| {
             for member in &self.program.configuration {
+                let rule = |(text, place): (String, usize)| {
+                    let rule = place + 1;
+                    if member.is_rules() { format!("/* R{rule} */ {text}") } else { text }
+                };
                 let value = match &member.value {
                     Value::Real(value) => self.number(*value),
-                    Value::Byte(value) => value.to_string(),
-                    Value::Truth(value) => u8::from(*value).to_string(),
+                    Value::Byte(value) => self.byte(*value),
+                    Value::Truth(value) => self.truth(*value),
                     Value::Reals(values) => {
-                        listed(values.iter().map(|value| self.number(*value)).collect())
+                        let texts = values.iter().map(|value| self.number(*value));
+                        listed(texts.zip(0..).map(rule).collect())
                     }
-                    Value::Bytes(values) => listed(values.iter().map(u8::to_string).collect()),
+                    Value::Bytes(values) => {
+                        let texts = values.iter().map(|value| self.byte(*value));
+                        listed(texts.zip(0..).map(rule).collect())
+                    }
                 };
                 page.line(&format!("/* {} */", member.name));
                 for line in format!("{value},").lines() {
@@ -155,7 +187,7 @@ impl Writer<'_> {
         page.line(&format!("static {real} {}_magnitude({real} number)", self.prefix));
         page.line("{");
         page.inside(|page| {
-            page.line(&format!("return number > {zero} ? number : {zero} - number;"));
+            page.line(&format!("return (number > {zero}) ? number : ({zero} - number);"));
         });
         page.line("}");
     }
@@ -174,9 +206,8 @@ impl Writer<'_> {
         page.line("{");
         page.inside(|page| {
             page.line(&format!("union {{ uint{bits}_t bits; {real} number; }} power;"));
-            page.line(&format!(
-                "power.bits = (uint{bits}_t)(uint32_t)((int32_t)exponent + {bias}) << {shift};"
-            ));
+            page.line(&format!("const int32_t biased = (int32_t)exponent + {bias};"));
+            page.line(&format!("power.bits = (uint{bits}_t)biased << {shift};"));
             page.line("return power.number;");
         });
         page.line("}");
@@ -189,10 +220,7 @@ impl Writer<'_> {
             .iter()
             .map(|part| {
                 let name = part_name(*part);
-                let constant = match part {
-                    Part::Configuration | Part::Sample => "const ",
-                    Part::State | Part::Answer => "",
-                };
+                let constant = if self.program.writes(function, *part) { "" } else { "const " };
                 format!("{constant}{prefix}_{name} *{name}")
             })
             .collect();
@@ -270,6 +298,12 @@ impl Dialect for Writer<'_> {
         format!("{}_magnitude({value})", self.prefix)
     }
 
+    /// Two comparisons tell a proof in intervals where the value lies; the magnitude does not.
+    fn within(&self, value: &str, most: &str) -> Option<String> {
+        let least = most.strip_prefix('-').map_or_else(|| format!("-{most}"), str::to_owned);
+        Some(format!("({least} <= {value}) && ({value} <= {most})"))
+    }
+
     fn bits(&self, left: &str, right: &str) -> String {
         format!("(uint8_t)({left} | {right})")
     }
@@ -337,7 +371,8 @@ impl Dialect for Writer<'_> {
 
 /// What others may call.
 fn is_public(function: &Function) -> bool {
-    matches!(function.name, "reset" | "step" | "hold") || function.parts.contains(&Part::Answer)
+    matches!(function.name, "reset" | "step" | "hold" | "track" | "saturated" | "faults")
+        || function.parts.contains(&Part::Answer)
 }
 
 fn comment(page: &mut Page, text: &str) {

@@ -21,19 +21,26 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
     }
     page.line(&format!("#include \"{prefix}.h\""));
     page.line("");
-    page.line(&format!("static const {bits} vectors[{count}][{}] = {{", inputs + reals.len()));
+    let steps = is_controller(program);
+    page.line("/* Sample, of a controller what is given with the event, answer. */");
+    let columns = inputs + usize::from(steps) + reals.len();
+    page.line(&format!("static const {bits} vectors[{count}][{columns}] = {{"));
     page.inside(|page| {
         for vector in vectors {
-            let values = vector.sample.iter().chain(&vector.answer);
+            let given = steps.then(|| vector.event.given());
+            let values = vector.sample.iter().chain(&given).chain(&vector.answer);
             let values: Vec<String> = values.map(|value| hex(*value, is_single)).collect();
             page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
     page.line("};");
-    page.line(&format!("static const uint8_t marks[{count}][{}] = {{", marks.len()));
+    page.line("/* Truths and bytes of the answer, event. */");
+    page.line(&format!("static const uint8_t marks[{count}][{}] = {{", marks.len() + 1));
     page.inside(|page| {
         for vector in vectors {
-            let values: Vec<String> = vector.marks.iter().map(|mark| format!("{mark}U")).collect();
+            let event = vector.event.number();
+            let marks = vector.marks.iter().chain([&event]);
+            let values: Vec<String> = marks.map(|mark| format!("{mark}U")).collect();
             page.line(&format!("{{ {} }},", values.join(", ")));
         }
     });
@@ -47,11 +54,21 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         ),
     ];
     unions.iter().for_each(|line| page.line(line));
-    main(&mut page, program, prefix, [count, inputs]);
+    main(&mut page, program, prefix, ([count, inputs], real));
     page.text
 }
 
-fn main(page: &mut Page, program: &Program, prefix: &str, [count, inputs]: [usize; 2]) {
+/// True of a program that does more than to answer samples.
+fn is_controller(program: &Program) -> bool {
+    program.entry() == "step"
+}
+
+fn main(
+    page: &mut Page,
+    program: &Program,
+    prefix: &str,
+    ([count, inputs], real): ([usize; 2], &str),
+) {
     page.line("");
     page.line("int main(void)");
     page.line("{");
@@ -70,8 +87,15 @@ fn main(page: &mut Page, program: &Program, prefix: &str, [count, inputs]: [usiz
             for (index, member) in program.members(Part::Sample).iter().enumerate() {
                 page.line(&format!("sample.{} = real(vectors[k][{index}]);", member.name));
             }
-            page.line(&called(program, prefix, program.entry()));
-            page.line(&format!("if (!({})) {{", same(program, inputs)));
+            let answers = if is_controller(program) {
+                page.line(&format!("const {real} given = real(vectors[k][{inputs}]);"));
+                events(page, program, prefix);
+                inputs + 1
+            } else {
+                page.line(&called(program, prefix, program.entry()));
+                inputs
+            };
+            page.line(&format!("if (!({})) {{", same(program, prefix, answers)));
             page.inside(|page| {
                 page.line("if (different == 0U) { printf(\"first at sample %u\\n\", k); }");
                 page.line("++different;");
@@ -98,18 +122,47 @@ fn called(program: &Program, prefix: &str, name: &str) -> String {
 }
 
 /// True where every member of the answer is the one of the vector.
-fn same(program: &Program, inputs: usize) -> String {
+fn same(program: &Program, prefix: &str, first: usize) -> String {
     let [reals, marks] = program.answers();
     let reals = reals
         .iter()
-        .zip(inputs..)
+        .zip(first..)
         .map(|(name, index)| format!("bits_of(answer.{name}) == vectors[k][{index}]"));
-    let marks =
-        marks.iter().zip(0..).map(|(name, index)| format!("answer.{name} == marks[k][{index}]"));
+    let marks = marks.iter().zip(0..).map(|(name, index)| match *name {
+        "saturated" => format!("{prefix}_saturated(&answer) == marks[k][{index}]"),
+        name => format!("answer.{name} == marks[k][{index}]"),
+    });
     reals.chain(marks).collect::<Vec<_>>().join(" && ")
 }
 
-fn hex<R: Real>(value: R, is_single: bool) -> String {
+/// What is done at a vector.
+fn events(page: &mut Page, program: &Program, prefix: &str) {
+    let call =
+        |name: &str, more: &str| format!("{prefix}_{name}(&{prefix}_design, &state, {more}&answer");
+    let has = |name: &str| program.members(Part::State).iter().any(|member| member.name == name);
+    page.line("switch (marks[k][2]) {");
+    page.line(&format!("case 1U: {prefix}_reset(&{prefix}_design, &state); break;"));
+    page.line("case 4U:");
+    let all = format!("{prefix}_faults(&state) != (k > 0U ? marks[k - 1U][1] : 0U)");
+    page.line(&format!("    if ({all}) {{ ++different; }}"));
+    page.line("    break;");
+    for (name, number) in [("command_rad", 5), ("integral", 6)] {
+        if has(name) {
+            page.line(&format!("case {number}U: state.{name} = given; break;"));
+        }
+    }
+    page.line("default: break;");
+    page.line("}");
+    page.line(&format!("if (marks[k][2] == 2U) {{ {}, 1U); }}", call("hold", "")));
+    page.line(&format!(
+        "else if (marks[k][2] == 3U) {{ {}, given); }}",
+        call("track", "&sample, ")
+    ));
+    page.line(&format!("else {{ {}); }}", call("step", "&sample, ")));
+}
+
+/// The bits of a number.
+pub(super) fn hex<R: Real>(value: R, is_single: bool) -> String {
     #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
     let single = value.to_f64() as f32;
     if is_single {

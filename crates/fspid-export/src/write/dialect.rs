@@ -39,6 +39,10 @@ pub(super) trait Dialect {
     /// A call for what it does.
     fn run(&self, page: &mut Page, call: &str);
     fn when(&self, condition: &str) -> String;
+    /// The line, or lines, that a condition stands in.
+    fn open(&self, page: &mut Page, text: &str) {
+        page.line(text);
+    }
     fn otherwise(&self) -> &'static str;
     fn repeat(&self, name: &str, first: i32, last: i32) -> String;
     fn end(&self, block: Block) -> &'static str;
@@ -60,6 +64,22 @@ pub(super) trait Dialect {
         text
     }
 
+    /// A value of an array.
+    fn element(&self, array: &str, index: &str) -> String {
+        format!("{array}[{index}]")
+    }
+
+    /// Writes a statement that this language has a way of its own for; false if it has none.
+    fn own(&self, _: &mut Page, _: &Statement) -> bool {
+        false
+    }
+
+    /// True where a value, which is written twice, lies between the negative of a number and the number; `None` for a
+    /// language that asks for the magnitude.
+    fn within(&self, _value: &str, _most: &str) -> Option<String> {
+        None
+    }
+
     /// A value of the function, as it is called in this language.
     fn local(&self, name: &str) -> String {
         name.to_owned()
@@ -74,6 +94,9 @@ pub(super) fn block(dialect: &impl Dialect, page: &mut Page, body: &[Statement])
 }
 
 fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
+    if dialect.own(page, statement) {
+        return;
+    }
     match statement {
         Statement::Remark(text) => dialect.remark(page, text),
         Statement::Let(name, kind, value) => {
@@ -84,7 +107,7 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             dialect.assign(page, &place(dialect, at), &outer(dialect, value));
         }
         Statement::If(condition, then, otherwise) => {
-            page.line(&dialect.when(&outer(dialect, condition)));
+            dialect.open(page, &dialect.when(&outer(dialect, condition)));
             page.inside(|page| block(dialect, page, then));
             if !otherwise.is_empty() {
                 page.line(dialect.otherwise());
@@ -97,8 +120,8 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
             page.inside(|page| block(dialect, page, body));
             page.line(dialect.end(Block::For));
         }
-        Statement::Call(name, arguments) => {
-            dialect.run(page, &dialect.call(name, given(dialect, arguments)));
+        Statement::Call(name, given) => {
+            dialect.run(page, &dialect.call(name, arguments(dialect, given)));
         }
         Statement::Return(value) => {
             let value = value.as_ref().map(|value| outer(dialect, value));
@@ -107,35 +130,55 @@ fn write(dialect: &impl Dialect, page: &mut Page, statement: &Statement) {
     }
 }
 
-fn given(dialect: &impl Dialect, arguments: &[Argument]) -> Vec<String> {
+/// What a function is called with, as text.
+pub(super) fn arguments(dialect: &impl Dialect, given: &[Argument]) -> Vec<String> {
     let text = |argument: &Argument| match argument {
         Argument::Value(value) => outer(dialect, value),
         Argument::Array(name) => dialect.local(name),
     };
-    arguments.iter().map(text).collect()
+    given.iter().map(text).collect()
 }
 
-fn place(dialect: &impl Dialect, place: &Place) -> String {
+pub(super) fn place(dialect: &impl Dialect, place: &Place) -> String {
     match place {
         Place::Local(name) => dialect.local(name),
         Place::Element(name, index) => {
-            format!("{}[{}]", dialect.local(name), outer(dialect, index))
+            dialect.element(&dialect.local(name), &outer(dialect, index))
         }
         Place::Member(part, name) => dialect.member(*part, name),
         Place::MemberElement(part, name, index) => {
-            format!("{}[{}]", dialect.member(*part, name), outer(dialect, index))
+            dialect.element(&dialect.member(*part, name), &outer(dialect, index))
         }
     }
 }
 
 /// An expression that needs no brackets around it.
-fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+pub(super) fn outer(dialect: &impl Dialect, value: &Expression) -> String {
+    if let Some(text) = within(dialect, value) {
+        return text;
+    }
     match value {
         Expression::Binary(operator, left, right) if *operator != Operator::BitOr => {
             let (left, right) = (expression(dialect, left), expression(dialect, right));
             format!("{left} {} {right}", sign(dialect, *operator))
         }
         value => expression(dialect, value),
+    }
+}
+
+/// A magnitude that is compared, where the language has a way of its own.
+fn within(dialect: &impl Dialect, value: &Expression) -> Option<String> {
+    let Expression::Binary(Operator::LessOrEqual, left, most) = value else { return None };
+    let (Expression::Magnitude(value), Expression::Number(_) | Expression::Read(Place::Member(..))) =
+        (&**left, &**most)
+    else {
+        return None;
+    };
+    match &**value {
+        Expression::Read(Place::Local(name)) => {
+            dialect.within(&dialect.local(name), &expression(dialect, most))
+        }
+        _ => None,
     }
 }
 
@@ -174,6 +217,6 @@ fn expression(dialect: &impl Dialect, value: &Expression) -> String {
         }
         Expression::ToReal(value) => dialect.to_real(&of(value)),
         Expression::PowerOfTwo(value) => dialect.power_of_two(&outer(dialect, value)),
-        Expression::Call(name, arguments) => dialect.call(name, given(dialect, arguments)),
+        Expression::Call(name, given) => dialect.call(name, arguments(dialect, given)),
     }
 }

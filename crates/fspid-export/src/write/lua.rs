@@ -7,7 +7,8 @@ use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
 
-/// The program as a module that answers `{ design, reset, step, hold }`, of a fuzzy system `{ design, infer }`. It has the bits of its precision where Lua's
+/// The program as a module that answers `{ design, reset, step, hold, track, saturated, faults }`, of a fuzzy system
+/// `{ design, infer }`. It has the bits of its precision where Lua's
 /// numbers do: `LUA_32BITS` for single ones, else double ones.
 #[must_use]
 pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
@@ -21,10 +22,8 @@ pub fn lua(program: &Program, heading: &Heading<'_>) -> String {
         writer.function(&mut page, function);
     }
     page.line("");
-    let all = [program.entry(), "reset", "hold"];
-    let functions =
-        ["reset", "step", "hold", "infer"].into_iter().filter(|name| all.contains(name));
-    let functions = functions.filter(|name| program.function(name).is_some());
+    let names = ["reset", "step", "hold", "track", "saturated", "faults", "infer"];
+    let functions = names.into_iter().filter(|name| program.function(name).is_some());
     let fields = ["design"].into_iter().chain(functions).map(|name| format!("{name} = {name}"));
     page.line(&format!("return {{ {} }}", fields.collect::<Vec<_>>().join(", ")));
     page.text
@@ -60,7 +59,13 @@ pub fn lua_harness<R: Real>(program: &Program, name: &str, vectors: &[Vector<R>]
             if holds_truth { (*mark != 0).to_string() } else { mark.to_string() }
         });
         let answer: Vec<String> = reals.chain(marks).collect();
-        page.line(&format!("check({{ {} }}, {})", sample.join(", "), answer.join(", ")));
+        let event = if program.entry() == "step" {
+            let given = writer.any(vector.event.given().to_f64());
+            format!("{}, {given}, ", vector.event.number())
+        } else {
+            String::new()
+        };
+        page.line(&format!("check({event}{{ {} }}, {})", sample.join(", "), answer.join(", ")));
     }
     page.line(&format!(
         "print(string.format(\"{} samples, %d different\", different))",
@@ -73,9 +78,22 @@ fn check_of_controller(page: &mut Page, program: &Program) {
     page.line("local state, answer, different = {}, {}, 0");
     page.line("controller.reset(controller.design, state)");
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
-    page.line("local function check(sample, command, kp, ki, kd, saturated, faults)");
+    let call = |name: &str| format!("controller.{name}(controller.design, state");
+    page.line("local latched = 0");
+    page.line("local function check(event, given, sample, command, kp, ki, kd, saturated, faults)");
     page.inside(|page| {
-        page.line("controller.step(controller.design, state, sample, answer)");
+        page.line(&format!("if event == 1 then {}) end", call("reset")));
+        page.line("if event == 4 and controller.faults(state) ~= latched then different = different + 1 end");
+        page.line("if event == 5 then state.command_rad = given end");
+        page.line("if event == 6 then state.integral = given end");
+        page.line("if event == 2 then");
+        page.line(&format!("    {}, answer, 1)", call("hold")));
+        page.line("elseif event == 3 then");
+        page.line(&format!("    {}, sample, answer, given)", call("track")));
+        page.line("else");
+        page.line(&format!("    {}, sample, answer)", call("step")));
+        page.line("end");
+        page.line("latched = faults");
         let command = &program.members(Part::Answer)[0].name;
         page.line(&format!("local good = same(answer.{command}, command) and same(answer.kp, kp)"));
         page.line("good = good and same(answer.ki, ki) and same(answer.kd, kd)");

@@ -1,27 +1,40 @@
 //! Programs as text in other languages.
 
+mod ardupilot;
 mod c;
+mod c_external;
 mod c_harness;
+mod c_projects;
+mod c_selftest;
 mod csv;
 mod dialect;
 pub(crate) mod fmu;
 mod heading;
 mod lua;
+mod matlab;
 mod rust;
 mod rust_harness;
 mod rust_rules;
 mod rust_text;
+mod simulink;
 mod structured_text;
 mod structured_text_check;
 mod table;
 
+pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
+pub(crate) use c::{c_expression, c_number};
+pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
+pub use c_projects::{cmake, platformio, sketch};
+pub use c_selftest::c_selftest;
 pub use csv::csv;
 pub use heading::Heading;
 pub use lua::{lua, lua_harness};
+pub use matlab::{matlab, matlab_harness, words};
 pub use rust::rust;
 pub use rust_harness::rust_harness;
+pub use simulink::{simulink, simulink_build};
 pub use structured_text::structured_text;
 pub use structured_text_check::structured_text_check;
 pub use table::{TableFiles, table, table_csv, table_harness};

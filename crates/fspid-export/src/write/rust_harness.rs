@@ -47,7 +47,7 @@ pub fn rust_harness<R: Real>(
     page.line("");
     page.line(&format!("static VECTORS: [([{bits}; 7], [u8; 2]); {}] = [", vectors.len()));
     page.inside(|page| {
-        for Vector { sample, answer, marks } in vectors {
+        for Vector { sample, answer, marks, .. } in vectors {
             let values: Vec<String> =
                 sample.iter().chain(answer).map(|value| hex(*value, is_single)).collect();
             let marks: Vec<String> = marks.iter().map(u8::to_string).collect();

@@ -6,7 +6,9 @@
 use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
 use crate::flat::{Flat, flatten};
-use crate::program::{Kind, Member, Part, Place, Precision, Program, Statement, Value};
+use crate::program::{
+    Expression, Kind, Member, Part, Place, Precision, Program, Statement, Value, local,
+};
 
 /// The program as the function block `FB_<prefix>`.
 #[must_use]
@@ -15,9 +17,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     let writer = Writer { program, flat: &flat };
     let mut page = Page::default();
     heading.lines().iter().for_each(|line| remark(&mut page, line));
-    let about = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer is that \
-                 to a first sample.";
-    remark(&mut page, about);
+    if program.function("reset").is_some() {
+        remark(&mut page, ABOUT);
+    }
     page.line(&format!("FUNCTION_BLOCK FB_{prefix}"));
     writer.inputs_and_outputs(&mut page);
     writer.configuration(&mut page);
@@ -26,6 +28,9 @@ pub fn structured_text(program: &Program, prefix: &str, heading: &Heading<'_>) -
     page.line("END_FUNCTION_BLOCK");
     page.text
 }
+
+const ABOUT: &str = "Call it once every period. While `reset` is TRUE it forgets everything first, so that each answer \
+                     is that to a first sample.";
 
 /// A real with its type; it must be finite.
 pub(super) fn real_literal(value: f64, precision: Precision) -> String {
@@ -41,6 +46,36 @@ pub(super) fn real(precision: Precision) -> &'static str {
     }
 }
 
+/// The name of an input or output. Those of a controller are no word of any compiler; those of a fuzzy system are its
+/// user's, and get a part in front.
+pub(super) fn visible_name(program: &Program, part: Part, name: &str) -> String {
+    match part {
+        _ if program.entry() == "step" => name.to_owned(),
+        Part::Sample => format!("in_{name}"),
+        _ => format!("out_{name}"),
+    }
+}
+
+/// Inputs beside the sample: what is done with a controller besides a step. Name, type, what it is.
+pub(super) fn events(program: &Program) -> Vec<(String, &'static str, &'static str)> {
+    let mut events = Vec::new();
+    if program.function("reset").is_some() {
+        events.push(("reset".to_owned(), "BOOL", "Forget everything first."));
+    }
+    if program.function("faults").is_some() {
+        let doc = "Clear what was latched first.";
+        events.push(("clear_faults".to_owned(), "BOOL", doc));
+    }
+    if let Some(track) = program.function("track") {
+        let doc = "Another commands; take part, so that taking over from it bumps nothing.";
+        events.push(("track".to_owned(), "BOOL", doc));
+        events.extend(track.parameters.iter().map(|given| {
+            (format!("track_{}", given.name), real(program.precision), "What the other commands.")
+        }));
+    }
+    events
+}
+
 /// A remark in the brackets that every compiler knows.
 pub(super) fn remark(page: &mut Page, text: &str) {
     for line in wrapped(&text.replace('`', "'"), 92) {
@@ -48,11 +83,23 @@ pub(super) fn remark(page: &mut Page, text: &str) {
     }
 }
 
-/// `ARRAY[..] OF kind := [..]`, seven values a line.
+/// `ARRAY[..] OF kind := [..]`, some values a line.
 pub(super) fn array(kind: &str, values: &[String]) -> String {
-    let rows: Vec<String> = values.chunks(7).map(|row| format!("    {}", row.join(", "))).collect();
+    // Reals of seventeen digits are too wide for seven in a row.
+    let in_row = if kind == "LREAL" { 3 } else { 7 };
+    let rows: Vec<String> =
+        values.chunks(in_row).map(|row| format!("    {}", row.join(", "))).collect();
     let last = values.len().saturating_sub(1);
     format!("ARRAY[0..{last}] OF {kind} := [\n{}\n]", rows.join(",\n"))
+}
+
+/// A statement on as many lines as it needs.
+pub(super) fn statement(page: &mut Page, text: &str) {
+    let lines = wrapped(text, 92);
+    if let Some((first, rest)) = lines.split_first() {
+        page.line(first);
+        page.inside(|page| rest.iter().for_each(|line| page.line(line)));
+    }
 }
 
 struct Writer<'a> {
@@ -68,8 +115,10 @@ impl Writer<'_> {
     fn inputs_and_outputs(&self, page: &mut Page) {
         page.line("VAR_INPUT");
         page.inside(|page| {
-            remark(page, "Forget everything first.");
-            page.line("reset : BOOL;");
+            for (name, kind, doc) in events(self.program) {
+                remark(page, doc);
+                page.line(&format!("{name} : {kind};"));
+            }
         });
         self.members(page, Part::Sample);
         page.line("END_VAR");
@@ -105,9 +154,11 @@ impl Writer<'_> {
     }
 
     fn memory(&self, page: &mut Page) {
-        page.line("VAR");
-        self.members(page, Part::State);
-        page.line("END_VAR");
+        if !self.program.state.is_empty() {
+            page.line("VAR");
+            self.members(page, Part::State);
+            page.line("END_VAR");
+        }
         page.line("VAR_TEMP");
         page.inside(|page| {
             for (name, kind) in &self.flat.values {
@@ -167,14 +218,29 @@ impl Writer<'_> {
         match part {
             Part::Configuration => format!("design_{name}"),
             Part::State => format!("state_{name}"),
-            Part::Sample | Part::Answer => name.to_owned(),
+            Part::Sample | Part::Answer => visible_name(self.program, part, name),
         }
     }
 
     fn body(&self, page: &mut Page) {
-        let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
-        block(self, page, &[reset]);
+        let when = |page: &mut Page, input: &str, body: &[Statement]| {
+            block(self, page, &[Statement::when(local(input), body.to_vec())]);
+        };
+        if !self.flat.reset.is_empty() {
+            when(page, "reset", &self.flat.reset);
+        }
+        if self.program.function("faults").is_some() {
+            let none = Expression::Byte(0);
+            when(page, "clear_faults", &[Statement::set_member(Part::State, "faults", none)]);
+        }
+        let [before, behind] = self.flat.track.clone().unwrap_or_default();
+        if !before.is_empty() {
+            when(page, "track", &before);
+        }
         block(self, page, &self.flat.step);
+        if !behind.is_empty() {
+            when(page, "track", &behind);
+        }
     }
 
     /// True if a member is a list of small whole numbers.
@@ -264,7 +330,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn assign(&self, page: &mut Page, place: &str, value: &str) {
-        page.line(&format!("{place} := {value};"));
+        statement(page, &format!("{place} := {value};"));
     }
 
     fn run(&self, page: &mut Page, call: &str) {
@@ -273,6 +339,10 @@ impl Dialect for Writer<'_> {
 
     fn when(&self, condition: &str) -> String {
         format!("IF {condition} THEN")
+    }
+
+    fn open(&self, page: &mut Page, text: &str) {
+        statement(page, text);
     }
 
     fn otherwise(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::structured_text::{array, real, real_literal, remark};
+use super::structured_text::{array, events, real, real_literal, remark, statement, visible_name};
 use super::{Heading, Page};
 use crate::interpret::{Cell, Machine};
 use crate::program::{Part, Program};
@@ -30,7 +30,7 @@ pub fn structured_text_check<R: Real>(
     remark(&mut page, &about);
     page.line(&format!("PROGRAM PRG_{prefix}_check"));
     declarations(&mut page, prefix, &columns);
-    body(&mut page, &columns, count);
+    body(&mut page, &columns, count, idle(program));
     page.line("END_PROGRAM");
     page.text
 }
@@ -39,6 +39,8 @@ pub fn structured_text_check<R: Real>(
 struct Column {
     part: Part,
     name: String,
+    /// As the function block calls it.
+    visible: String,
     kind: &'static str,
     values: Vec<String>,
 }
@@ -62,7 +64,8 @@ fn columns<R: Real>(program: &Program, samples: &[Vec<R>]) -> Vec<Column> {
                 Some(Cell::Truth(_)) => "BOOL",
                 _ => real(program.precision),
             };
-            columns.push(Column { part, name, kind, values: Vec::new() });
+            let visible = visible_name(program, part, &name);
+            columns.push(Column { part, name, visible, kind, values: Vec::new() });
         }
     }
     let good =
@@ -107,19 +110,29 @@ fn declarations(page: &mut Page, prefix: &str, columns: &[Column]) {
     page.line("END_VAR");
 }
 
-fn body(page: &mut Page, columns: &[Column], count: usize) {
+/// The inputs beside the sample: a reset at the first one, and nothing else.
+fn idle(program: &Program) -> Vec<String> {
+    let idle = |(name, kind, _): (String, &str, &str)| match (name.as_str(), kind) {
+        ("reset", _) => "reset := (check_index = DINT#0)".to_owned(),
+        (name, "BOOL") => format!("{name} := FALSE"),
+        (name, kind) => format!("{name} := {kind}#0.0"),
+    };
+    events(program).into_iter().map(idle).collect()
+}
+
+fn body(page: &mut Page, columns: &[Column], count: usize, idle: Vec<String>) {
     let of = |column: &Column| format!("{}[check_index]", column.list());
     let (given, expected): (Vec<_>, Vec<_>) =
         columns.iter().partition(|column| column.part == Part::Sample);
     page.line(&format!("IF check_index < DINT#{count} THEN"));
     page.inside(|page| {
-        let inputs: Vec<String> =
-            given.iter().map(|column| format!("{} := {}", column.name, of(column))).collect();
+        let inputs = given.iter().map(|column| format!("{} := {}", column.visible, of(column)));
+        let inputs: Vec<String> = idle.into_iter().chain(inputs).collect();
         let inputs = inputs.join(", ");
-        page.line(&format!("controller(reset := (check_index = DINT#0), {inputs});"));
+        statement(page, &format!("controller({inputs});"));
         page.line("check_good := TRUE;");
         for column in expected {
-            page.line(&format!("IF controller.{} <> {} THEN", column.name, of(column)));
+            page.line(&format!("IF controller.{} <> {} THEN", column.visible, of(column)));
             page.inside(|page| page.line("check_good := FALSE;"));
             page.line("END_IF;");
         }

@@ -88,6 +88,7 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
         setpoint: Profile::new(setpoint_rad, Shape::Step { at_s: 0.0 }).expect("allowed"),
         disturbances: if dice.happens(0.5) { vec![load.expect("allowed")] } else { Vec::new() },
         controllers: vec![NamedController { name: "C".to_owned(), controller }],
+        externals: Vec::new(),
         actuator: actuator(dice),
         surroundings: Surroundings { weather: None, pitch_sensor: sensor(dice), rate_sensor: None },
     }

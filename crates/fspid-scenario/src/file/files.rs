@@ -1,6 +1,6 @@
 //! The files that a file refers to, and the digest of all that was read.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
 
@@ -8,8 +8,11 @@ use crate::file::overrides::Change;
 use crate::keyed::Section;
 use crate::keyed::Table;
 use crate::keyed::document::Item;
-use crate::regular_file::read_regular;
+use crate::regular_file::{read_regular, unread_in_words};
 use fspid_diagnostics::Report;
+
+/// Why a file cannot be referred to.
+const NO_FOLDER: &str = "this scenario is not in a folder, so it cannot refer to files";
 
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
 pub(crate) struct Files<'a> {
@@ -114,8 +117,7 @@ impl<'a> Files<'a> {
 
     /// Adds a text to the digest, with its length, so that no two sets of texts look alike.
     pub(crate) fn digest(&mut self, text: &str) {
-        self.hasher.update((text.len() as u64).to_le_bytes());
-        self.hasher.update(text.as_bytes());
+        self.digest_bytes(text.as_bytes());
     }
 
     /// The digest in hexadecimal digits.
@@ -124,11 +126,23 @@ impl<'a> Files<'a> {
         bytes.iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
+    /// Adds bytes to the digest as [`digest`](Self::digest) adds a text.
+    fn digest_bytes(&mut self, bytes: &[u8]) {
+        self.hasher.update((bytes.len() as u64).to_le_bytes());
+        self.hasher.update(bytes);
+    }
+
+    /// Where a program lies that is referred to, from the root; what it is goes into the digest.
+    pub(crate) fn program(&mut self, path: &str) -> Result<PathBuf, String> {
+        let folder = self.folder.ok_or(NO_FOLDER)?;
+        let bytes = read_regular(&folder.join(path))?;
+        self.digest_bytes(&bytes);
+        folder.join(path).canonicalize().map_err(|error| unread_in_words(&error))
+    }
+
     /// The text of a file that is referred to.
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
-        let Some(folder) = self.folder else {
-            return Err("this scenario is not in a folder, so it cannot refer to files".to_owned());
-        };
+        let folder = self.folder.ok_or(NO_FOLDER)?;
         let bytes = read_regular(&folder.join(path))?;
         String::from_utf8(bytes).map_err(|error| {
             let position = error.utf8_error().valid_up_to();

@@ -1,5 +1,7 @@
 //! `--set path=value`: changes of a document before it is checked.
 //!
+//! `list[]=value` puts an entry behind those of a list.
+//!
 //! A path may lead through a key that names a file or preset into what that says, as in
 //! `plant.preset.numerator[0]`. Such a change waits in [`Files`] until the file has been read.
 
@@ -58,6 +60,7 @@ pub(crate) fn apply(report: &mut Report, files: &mut Files<'_>, document: &mut I
         let allowed = "path=value, such as loop.sample_period_s=0.02";
         return report.missing(place, "", "there is no `=`", allowed);
     };
+    let (path, appends) = path.trim().strip_suffix("[]").map_or((path, false), |it| (it, true));
     let Some(mut steps) = steps(path) else {
         let place = whole(report, &origin, path);
         let allowed = "names joined by dots, such as controller[0].kp or controller.\"my PID\".kp";
@@ -70,8 +73,23 @@ pub(crate) fn apply(report: &mut Report, files: &mut Files<'_>, document: &mut I
         key.warn(report, item.place, path.trim());
     }
     renamed::in_item(report, &mut item, &mut steps.clone());
+    let item = match appends {
+        true => appended(document, &steps, item),
+        false => item,
+    };
     let set = Setting { origin, item };
     put(report, files, document, (&steps, &set));
+}
+
+/// The list at a path with one more entry; what is no list is left to the check.
+fn appended(document: &Item, steps: &[Step], entry: Item) -> Item {
+    let place = entry.place;
+    let mut entries = match find(document, steps, "") {
+        Found::Here(Item { value: Value::Array(entries), .. }) => entries.clone(),
+        Found::Here(_) | Found::InFile(..) | Found::Nothing => Vec::new(),
+    };
+    entries.push(entry);
+    Item { place, value: Value::Array(entries) }
 }
 
 /// Puts a value into the document, or keeps it for the file that its path leads into.

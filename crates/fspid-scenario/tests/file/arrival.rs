@@ -167,6 +167,7 @@ fn expected() -> Result<Scenario, SimError> {
         setpoint: Profile::new(1.0 * DEG, Shape::Step { at_s: 0.5 })?,
         disturbances: disturbances()?,
         controllers: controllers(),
+        externals: Vec::new(),
         surroundings: Surroundings::default(),
     })
 }

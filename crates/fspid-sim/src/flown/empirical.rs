@@ -23,7 +23,7 @@ use crate::controller::Controller;
 use crate::describing::OpenLoop;
 use crate::error::{SimError, positive};
 use crate::plant::{LinearPlant, Plant};
-use crate::scenario::{Prepared, Scenario};
+use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::timing::Timing;
 
 /// An oscillation that is down to this share of what it was a third of the flight before is dying out.
@@ -128,6 +128,19 @@ pub fn empirical_margins(
     controller: &Controller,
     options: &EmpiricalOptions,
 ) -> Result<EmpiricalAnswer, SimError> {
+    flown_margins(scenario, Respondent::Equations(controller), options)
+}
+
+/// The same of whatever answers; an external controller, of whose loop nobody knows the gain crossovers, bears a phase
+/// lag at those frequencies only that the options say.
+///
+/// # Errors
+/// As [`empirical_margins`]; where an external controller cannot be started.
+pub fn flown_margins(
+    scenario: &Scenario,
+    respondent: Respondent<'_>,
+    options: &EmpiricalOptions,
+) -> Result<EmpiricalAnswer, SimError> {
     let tolerance = positive("tolerance", options.tolerance)?;
     let patience = options.patience;
     if !(patience >= 1.0 && patience.is_finite()) {
@@ -135,24 +148,25 @@ pub fn empirical_margins(
         return Err(SimError::Number { what, found: patience, allowed });
     }
     let duration_s = options.duration_s.unwrap_or_else(|| scenario.timing.end_s());
-    let first = Length::of(scenario, controller, &options.criterion, duration_s)?;
+    let first = Length::of(scenario, respondent, &options.criterion, duration_s)?;
     if first.nominal.largest_rad <= 0.0 {
         return Ok(EmpiricalAnswer::NothingMoves);
     }
-    let longer = Length::of(scenario, controller, &options.criterion, patience * duration_s)?;
+    let longer = Length::of(scenario, respondent, &options.criterion, patience * duration_s)?;
     // The longer flight has the last word, and tells of slower growth.
     if let Some(failure) = longer.nominal.failure(&options.criterion, longer.floor_rad) {
         return Ok(EmpiricalAnswer::NominalFails { failure, nominal: longer.nominal });
     }
-    let crossovers_rad_s = match &options.crossovers_rad_s {
-        Some(given) => given.clone(),
-        None => gain_crossovers_rad_s(scenario, controller)?,
+    let crossovers_rad_s = match (&options.crossovers_rad_s, respondent) {
+        (Some(given), _) => given.clone(),
+        (None, Respondent::Equations(controller)) => gain_crossovers_rad_s(scenario, controller)?,
+        (None, Respondent::External(_)) => Vec::new(),
     };
     let longest = patience * patience * duration_s;
-    let longest = Length::of(scenario, controller, &options.criterion, longest)?;
+    let longest = Length::of(scenario, respondent, &options.criterion, longest)?;
     let lengths = [&first, &longer, &longest];
     let criterion = &options.criterion;
-    let mut trials = Trials { lengths, controller, criterion, tolerance, flights: 2 };
+    let mut trials = Trials { lengths, respondent, criterion, tolerance, flights: 2 };
     Ok(EmpiricalAnswer::Margins(Box::new(EmpiricalMargins {
         gain_up: trials.gain(|factor| factor)?,
         gain_down: trials.gain(|factor| 1.0 / factor)?,
@@ -209,14 +223,14 @@ struct Length {
 impl Length {
     fn of(
         scenario: &Scenario,
-        controller: &Controller,
+        respondent: Respondent<'_>,
         criterion: &Criterion,
         duration_s: f64,
     ) -> Result<Self, SimError> {
         let timing = Timing::new(scenario.timing.dt_s(), duration_s)?;
         let flown = Scenario { timing, ..scenario.clone() };
         let prepared = flown.prepare()?;
-        let nominal = Envelope::of(&prepared, controller, &Perturbation::NONE)?;
+        let nominal = Envelope::of(&prepared, respondent, &Perturbation::NONE)?;
         let quiet = is_quiet(&flown, &prepared);
         let floor_rad = criterion.floor_rad(&nominal, quiet);
         Ok(Self { prepared, nominal, floor_rad, quiet })
@@ -227,7 +241,7 @@ impl Length {
 struct Trials<'a> {
     /// The first length and two longer ones.
     lengths: [&'a Length; 3],
-    controller: &'a Controller,
+    respondent: Respondent<'a>,
     criterion: &'a Criterion,
     tolerance: f64,
     flights: usize,
@@ -244,11 +258,11 @@ impl Trials<'_> {
         let mut failure = None;
         for length in self.lengths {
             self.flights += 1;
-            let envelope = Envelope::of(&length.prepared, self.controller, perturbation)?;
+            let envelope = Envelope::of(&length.prepared, self.respondent, perturbation)?;
             failure = envelope.failure(self.criterion, length.floor_rad);
             let [middle_rad, last_rad] = envelope.oscillations_rad;
             match failure {
-                Some(Failure::Diverged { .. }) => break,
+                Some(Failure::Diverged { .. } | Failure::ControllerLost { .. }) => break,
                 None if last_rad <= length.floor_rad => break,
                 None if last_rad > DYING * middle_rad => {
                     failure = Some(Failure::Oscillates { middle_rad, last_rad });

@@ -4,10 +4,9 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use super::Perturbation;
-use crate::closed_loop::fly_perturbed;
-use crate::controller::Controller;
 use crate::error::SimError;
-use crate::scenario::{Prepared, Scenario};
+use crate::external::ControllerLoss;
+use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::sensor::Sensor;
 use crate::trace::Outcome;
 
@@ -74,6 +73,13 @@ pub enum Failure {
         /// When, s.
         at_s: f64,
     },
+    /// An external controller gave no answer.
+    ControllerLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: ControllerLoss,
+    },
     /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
@@ -95,6 +101,9 @@ impl fmt::Display for Failure {
         match self {
             Self::Diverged { at_s } => write!(f, "diverged at t = {at_s:.2} s"),
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {at_s:.2} s"),
+            Self::ControllerLost { at_s, loss } => {
+                write!(f, "the controller {loss} at t = {at_s:.2} s")
+            }
             Self::Swings { .. } => {
                 f.write_str("in its last third the error swings as far as in its middle one")
             }
@@ -109,15 +118,15 @@ impl Envelope {
     /// Flies and watches.
     ///
     /// # Errors
-    /// As [`fly_perturbed`].
+    /// As [`Respondent::fly`].
     pub fn of(
         prepared: &Prepared,
-        controller: &Controller,
+        respondent: Respondent<'_>,
         perturbation: &Perturbation,
     ) -> Result<Self, SimError> {
         let rows = prepared.timing().rows();
         let mut errors_rad = Vec::with_capacity(rows);
-        let outcome = fly_perturbed(prepared, controller, perturbation, |instant| {
+        let outcome = respondent.fly(prepared, perturbation, |instant| {
             errors_rad.push(instant.setpoint_rad - instant.theta_rad);
             ControlFlow::Continue(())
         })?;
@@ -138,6 +147,9 @@ impl Envelope {
         match self.outcome {
             Outcome::Diverged { at_s } => return Some(Failure::Diverged { at_s }),
             Outcome::HitGround { at_s } => return Some(Failure::HitGround { at_s }),
+            Outcome::ControllerLost { at_s, loss } => {
+                return Some(Failure::ControllerLost { at_s, loss });
+            }
             Outcome::Completed => {}
         }
         // Written so that NaN is not held.

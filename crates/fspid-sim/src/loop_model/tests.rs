@@ -50,6 +50,7 @@ impl Case {
             setpoint: Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed"),
             disturbances: vec![Disturbance::new(Entry::Elevator, 0.1, kick).expect("allowed")],
             controllers: vec![named],
+            externals: Vec::new(),
             surroundings: self.surroundings.clone(),
         }
     }

@@ -31,6 +31,8 @@ pub enum RestGains {
     Kept,
     /// Nowhere: an accumulating law without leakage and without limits moves them for ever.
     Drifting,
+    /// Unknown: the controller is a program without equations.
+    Unknown,
 }
 
 impl RestGains {
@@ -52,7 +54,7 @@ impl RestGains {
     pub fn gains(&self) -> Option<Gains<f64>> {
         match self {
             Self::Fixed(gains) | Self::Tuned(gains) => Some(*gains),
-            Self::Kept | Self::Drifting => None,
+            Self::Kept | Self::Drifting | Self::Unknown => None,
         }
     }
 }
@@ -74,7 +76,7 @@ fn keeps_its_gains(controller: &Controller) -> bool {
 /// A controller's loop at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
-    /// The gains that the file says: fixed or nominal.
+    /// The gains that the file says: fixed or nominal; zeros where they are unknown.
     pub nominal: Gains<f64>,
     /// The gains at rest.
     pub gains: RestGains,
@@ -91,6 +93,14 @@ pub struct AtRest {
 }
 
 impl AtRest {
+    /// Of a controller without equations, of which nothing can be asked.
+    #[must_use]
+    pub fn unknown() -> Self {
+        let (unstable, on_one_side, load, not_asked) = (None, None, None, None);
+        let (nominal, gains) = (Gains::ZERO, RestGains::Unknown);
+        Self { nominal, gains, unstable, on_one_side, load, not_asked }
+    }
+
     /// Gains and stability, which every flight is asked. What cannot be asked says why, and the flight is flown.
     #[must_use]
     pub fn stability(scenario: &Scenario, controller: &Controller) -> Self {

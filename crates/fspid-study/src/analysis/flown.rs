@@ -23,6 +23,7 @@ pub fn flown_inputs(study: &Study, name: &str) -> Vec<(f64, f64)> {
         return Vec::new();
     }
     let mut alone = scenario.clone();
+    alone.externals.clear();
     alone.controllers = scenario.controllers.get(index..=index).unwrap_or_default().to_vec();
     let Ok(flight) = simulate(&alone) else {
         return Vec::new();

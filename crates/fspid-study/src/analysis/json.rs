@@ -8,7 +8,9 @@ use fspid_scenario::units::degrees;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::flights::Flights;
-use super::{AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenPoint, PlantLoop, RestLoop};
+use super::{
+    AnalysedLoop, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint, PlantLoop, RestLoop,
+};
 use crate::json::{by_name, merged, present, unless_empty};
 
 /// Version of the answer's shape.
@@ -19,13 +21,14 @@ impl Analysis {
     /// that is unstable has no margins.
     #[must_use]
     pub fn json(&self) -> Value {
-        json!({
+        present(json!({
             "schema": SCHEMA,
             "scenario": self.scenario,
             "broken_at": self.question.point.name(),
             "controllers": self.loops.iter().map(controller).collect::<Vec<_>>(),
+            "externals": unless_empty(&self.externals, FlownExternal::json),
             "not_in_the_linear_loop": self.left_out,
-        })
+        }))
     }
 }
 

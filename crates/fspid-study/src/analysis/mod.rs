@@ -11,6 +11,7 @@
 mod answer;
 mod at_rest;
 mod equilibrium;
+mod externals;
 pub(crate) mod figures;
 mod flights;
 mod flown;
@@ -31,6 +32,7 @@ pub use answer::{Margins, decibels};
 pub(crate) use at_rest::held_in_words;
 pub use at_rest::{AtRest, RestGains};
 pub use equilibrium::{Equilibrium, equilibrium};
+pub use externals::FlownExternal;
 pub use flights::Flights;
 pub use flown::flown_inputs;
 pub use frozen::{FrozenMap, FrozenPoint};
@@ -69,6 +71,8 @@ pub struct Analysis {
     pub question: Question,
     /// One for each controller, in the file's order.
     pub loops: Vec<AnalysedLoop>,
+    /// Controllers that have no loop.
+    pub externals: Vec<FlownExternal>,
     /// What acts in flight and is not in the linear loop.
     pub left_out: Vec<String>,
 }
@@ -94,8 +98,10 @@ impl Analysis {
                 AnalysedLoop::of(scenario, named, question).map_err(|error| too_large(error, named))
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let flown = |named| FlownExternal::of(scenario, named, &question, &loops);
+        let externals = scenario.externals.iter().map(flown).collect::<Result<_, _>>()?;
         let left_out = not_in_the_linear_loop(scenario);
-        Ok(Self { scenario: scenario.name.clone(), question, loops, left_out })
+        Ok(Self { scenario: scenario.name.clone(), question, loops, externals, left_out })
     }
 
     /// True if no loop is known to be unstable, or to have no gains at rest, with margins or without.
@@ -106,11 +112,14 @@ impl Analysis {
             plant.is_stable() == Some(true) && frozen
         };
         self.loops.iter().all(|found| found.plants.iter().all(stable))
+            && self.externals.iter().all(FlownExternal::is_held)
     }
 
-    /// True if every loop is held with margins that are proved, at every gain of its map too.
+    /// True if every loop is held with margins that are proved, at every gain of its map too, and no flight of a
+    /// controller without a loop was seen to fail.
     #[must_use]
     pub fn all_held(&self) -> bool {
         self.loops.iter().all(AnalysedLoop::is_held)
+            && self.externals.iter().all(FlownExternal::is_held)
     }
 }

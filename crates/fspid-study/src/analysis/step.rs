@@ -38,6 +38,7 @@ pub(crate) fn step_responses(scenario: &Scenario) -> Result<Vec<StepResponse>, S
         setpoint: Profile::new(STEP_RAD, Shape::Step { at_s: 0.0 })?,
         disturbances: Vec::new(),
         controllers: Vec::new(),
+        externals: Vec::new(),
         actuator: Actuator::new(actuator.lag()).with_delay(actuator.delay_samples())?,
         surroundings: surroundings(scenario)?,
         ..scenario.clone()

@@ -15,11 +15,15 @@ impl Analysis {
     pub fn text(&self) -> String {
         let point = self.question.point.name();
         let mut out = format!("{}: sampled loop, broken at the {point}\n", self.scenario);
-        let names = self.loops.iter().map(|found| found.name.chars().count());
+        let externals = self.externals.iter().map(|found| found.name.chars().count());
+        let names = self.loops.iter().map(|found| found.name.chars().count()).chain(externals);
         let width = names.max().unwrap_or(0).max(10);
         for found in &self.loops {
             out.push_str(&format!("\n{:width$}  {}\n", found.name, verdict(found)));
             push_loop(&mut out, found);
+        }
+        for external in &self.externals {
+            out.push_str(&external.text(width));
         }
         if !self.left_out.is_empty() {
             out.push_str("\nNot in these numbers:\n");

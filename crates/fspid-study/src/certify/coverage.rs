@@ -188,6 +188,9 @@ pub const COVERAGE: &[KeyCoverage] = &[
         Covered,
         "as the gains that it makes at the airspeed of the scenario",
     ),
+    row("controller.library", NoPart, "a program has no equations and is left out, by name"),
+    row("controller.fmu", NoPart, "as `library`"),
+    row("controller.answer_limit_s", NoPart, "of a program"),
     row("controller.rate_gain", Covered, "the inner loop of pitch rate"),
     row(
         "controller.setpoint_weight",

@@ -27,6 +27,14 @@ pub enum ChoiceError {
         /// Their names.
         known: Vec<String>,
     },
+    /// It is a program that has a socket of its own.
+    #[error(
+        "`{name}` is an external controller, which flies in simulate, verify, analyse --fly, campaign and contest alone; choose one with equations"
+    )]
+    External {
+        /// Its name.
+        name: String,
+    },
     /// There is none of that name.
     #[error("there is no controller `{name}`{}", known_words(name, &names(known)))]
     Unknown {
@@ -81,6 +89,10 @@ impl Pilot {
         name: Option<&str>,
         angles: Angles,
     ) -> Result<Self, ChoiceError> {
+        let is_external = |name: &&str| scenario.externals.iter().any(|it| it.name == *name);
+        if let Some(name) = name.filter(is_external) {
+            return Err(ChoiceError::External { name: name.to_owned() });
+        }
         let controller = chosen(&scenario.controllers, name)?.controller;
         let rate = RateFilter::new(controller.config().dt_s);
         Ok(Self { controller, angles, state: State::new(), rate, log: Log::default() })

@@ -110,10 +110,9 @@ fn worst(requirement: &Requirement, cases: &[Case]) -> Result<Case, NotEvaluated
 pub fn judge(study: &Study, results: &[ControllerResult]) -> Vec<Judgement> {
     let evidence: Vec<Evidence<'_>> = study
         .scenario
-        .controllers
-        .iter()
+        .flyers()
         .zip(results)
-        .map(|(named, result)| Evidence::new(study, named, result))
+        .map(|(flyer, result)| Evidence::new(study, flyer, result))
         .collect();
     let mut judgements = Vec::new();
     for requirement in &study.requirements {

@@ -74,6 +74,11 @@ pub enum NotEvaluated {
         /// Why.
         why: &'static str,
     },
+    /// A loop that has no equations.
+    #[error(
+        "an external controller has no equations here, so that its loop cannot be asked; its flights can"
+    )]
+    External,
     /// No mode of the loop has a frequency that counts.
     #[error("no mode of the loop has a frequency that counts")]
     NoMode,

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::Unstable;
-use fspid_sim::{Exit, Outcome, Timing, Trace};
+use fspid_sim::{ControllerLoss, Exit, Outcome, Timing, Trace};
 
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, left_validity, short,
@@ -33,6 +33,13 @@ pub enum Verdict {
         /// When, s.
         at_s: f64,
     },
+    /// An external controller crashed, hung, ended or answered nothing that could be flown.
+    ControllerLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: ControllerLoss,
+    },
     /// The loop is unstable at the gains that it has at rest, although the flight did not diverge in its window.
     Unstable {
         /// Spectral radius of the sampled closed loop.
@@ -52,7 +59,7 @@ impl Verdict {
         matches!(self, Self::Settled | Self::Flown)
     }
 
-    /// True for a flight that fails by itself: it diverged, hit the ground, left the range of its data, or its loop is
+    /// True for a flight that fails by itself: it diverged, hit the ground, lost its controller, left the range of its data, or its loop is
     /// unstable at rest.
     #[must_use]
     pub fn is_failure(self) -> bool {
@@ -60,6 +67,7 @@ impl Verdict {
             Self::Settled | Self::NotSettled { .. } | Self::Flown => false,
             Self::Diverged { .. }
             | Self::HitGround { .. }
+            | Self::ControllerLost { .. }
             | Self::Unstable { .. }
             | Self::LeftRange(_) => true,
         }
@@ -74,6 +82,7 @@ impl Verdict {
             Self::Flown => "flown",
             Self::Diverged { .. } => "diverged",
             Self::HitGround { .. } => "hit the ground",
+            Self::ControllerLost { .. } => "controller lost",
             Self::Unstable { .. } => "unstable at rest",
             Self::LeftRange(_) => "left the range",
         }
@@ -84,6 +93,7 @@ impl Verdict {
         match self {
             Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
             Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
+            Self::ControllerLost { at_s, loss } => Some(Absent::ControllerLost { at_s, loss }),
             Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
             Self::Settled | Self::NotSettled { .. } | Self::Flown | Self::LeftRange(_) => None,
         }
@@ -98,6 +108,9 @@ impl fmt::Display for Verdict {
             Self::Flown => f.write_str("flown"),
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
+            Self::ControllerLost { at_s, loss } => {
+                write!(f, "the controller {loss} at t = {} s", short(*at_s))
+            }
             Self::Unstable { spectral_radius, doubling_s } => {
                 write!(f, "unstable at rest (")?;
                 if doubling_s.is_finite() {
@@ -157,6 +170,9 @@ impl FlightMetrics {
         let failed = match (trace.outcome, unstable) {
             (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
             (Outcome::HitGround { at_s }, _) => Some(Verdict::HitGround { at_s }),
+            (Outcome::ControllerLost { at_s, loss }, _) => {
+                Some(Verdict::ControllerLost { at_s, loss })
+            }
             (Outcome::Completed, Some(unstable)) => Some(Verdict::Unstable {
                 spectral_radius: unstable.spectral_radius,
                 doubling_s: unstable.doubling_s,

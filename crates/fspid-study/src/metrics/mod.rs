@@ -12,6 +12,7 @@ pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;
+use fspid_sim::ControllerLoss;
 
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -28,6 +29,14 @@ pub enum Absent {
     HitGround {
         /// When, s.
         at_s: f64,
+    },
+    /// An external controller gave no answer.
+    #[error("the controller {loss} at t = {} s", short(*at_s))]
+    ControllerLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: ControllerLoss,
     },
     /// The loop is unstable, whatever the window shows.
     #[error("the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop")]

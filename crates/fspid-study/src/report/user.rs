@@ -57,6 +57,7 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::NotSettled { .. } => ("fair", "\u{2248} Not settled"),
         Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
         Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
+        Verdict::ControllerLost { .. } => ("bad", "\u{2717} CONTROLLER LOST"),
         Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
         Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA"),
     };
@@ -68,6 +69,10 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::HitGround { at_s } => format!(
             "The aircraft came down to the ground at t = {} s, where the flight ends. Nothing can be measured in it.",
             fixed(at_s, 3)
+        ),
+        Verdict::ControllerLost { .. } => format!(
+            "{}, where the flight ends. Nothing can be measured in it.",
+            capital(&verdict.to_string())
         ),
         Verdict::Unstable { spectral_radius, .. } => format!(
             "{}, whatever the window shows; a spectral radius below 1 would be stable, and this one is {}. Nothing \

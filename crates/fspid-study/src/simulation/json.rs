@@ -5,7 +5,7 @@ use fspid_sim::load::ConstantLoad;
 use serde_json::{Map, Value, json};
 
 use super::{ControllerResult, FailedFlight, Judgement, Simulation};
-use crate::analysis::AtRest;
+use crate::analysis::{AtRest, RestGains};
 use crate::json::{finite, present, unless_empty};
 use crate::metrics::{EdgeMetrics, Measured, StepMetrics, Verdict};
 use fspid_scenario::units::degrees;
@@ -87,6 +87,9 @@ fn outcome(verdict: Verdict) -> Value {
         Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => {
             json!({ "kind": kind, "at_s": finite(at_s) })
         }
+        Verdict::ControllerLost { at_s, loss } => {
+            json!({ "kind": kind, "at_s": finite(at_s), "loss": loss.kind() })
+        }
         Verdict::Unstable { spectral_radius, doubling_s } => json!({
             "kind": kind,
             "spectral_radius": finite(spectral_radius),
@@ -121,7 +124,7 @@ impl FailedFlight {
 fn gains(at_rest: &AtRest) -> Value {
     let triple = |Gains { kp, ki, kd }| json!({ "kp": kp, "ki": ki, "kd": kd });
     json!({
-        "nominal": triple(at_rest.nominal),
+        "nominal": (at_rest.gains != RestGains::Unknown).then(|| triple(at_rest.nominal)),
         "at_rest": at_rest.gains.gains().map(triple),
     })
 }

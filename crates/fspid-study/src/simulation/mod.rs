@@ -13,7 +13,9 @@ pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;
 use fspid_sim::stability::{Unstable, instability};
-use fspid_sim::{Controller, NamedController, RestPoint, SimError, Trace, simulate};
+use fspid_sim::{
+    Controller, Flyer, NamedController, RestPoint, Scenario, SimError, Trace, simulate,
+};
 
 use crate::analysis::AtRest;
 pub use crate::judgement::Judgement;
@@ -112,19 +114,15 @@ impl Simulation {
         let scenario = &study.scenario;
         let flight = simulate(scenario)?;
         let results = scenario
-            .controllers
-            .iter()
+            .flyers()
             .zip(flight.traces)
-            .map(|(named, trace)| {
-                // Numbers so large that the loop cannot be judged are refused by their keys.
-                instability(scenario, &named.controller)
-                    .map_err(|error| too_large(error, named))?;
-                let at_rest = AtRest::of(scenario, &named.controller);
+            .map(|(flyer, trace)| {
+                let at_rest = at_rest(scenario, flyer)?;
                 let unstable = at_rest.unstable.filter(&counts);
                 let pushes_s = scenario.pushes_s();
                 let (edges, timing) = (&flight.edges, scenario.timing);
                 let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
-                let (name, range_rule) = (named.name.clone(), study.range_rule);
+                let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
                 let duration_s = scenario.timing.end_s();
                 Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
             })
@@ -163,6 +161,14 @@ impl Simulation {
     pub fn result(&self, name: &str) -> Option<&ControllerResult> {
         self.results.iter().find(|result| result.name == name)
     }
+}
+
+/// The loop of who flies, at the gains that it has at rest.
+fn at_rest(scenario: &Scenario, flyer: Flyer<'_>) -> Result<AtRest, SimError> {
+    let Flyer::Own(named) = flyer else { return Ok(AtRest::unknown()) };
+    // Numbers so large that the loop cannot be judged are refused by their keys.
+    instability(scenario, &named.controller).map_err(|error| too_large(error, named))?;
+    Ok(AtRest::of(scenario, &named.controller))
 }
 
 /// A sampled loop that leaves the range of numbers, blamed on the gain that is farthest out.

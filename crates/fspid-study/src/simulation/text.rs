@@ -87,6 +87,7 @@ fn step(step: &StepMetrics) -> String {
     if let Err(
         reason @ (Absent::Diverged { .. }
         | Absent::HitGround { .. }
+        | Absent::ControllerLost { .. }
         | Absent::Unstable { .. }
         | Absent::NotFinite),
     ) = step.overshoot_pct

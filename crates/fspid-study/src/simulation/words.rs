@@ -27,6 +27,7 @@ impl AtRest {
         let nominal = gains(self.nominal);
         Some(match self.gains {
             RestGains::Fixed(_) => return None,
+            RestGains::Unknown => "a program without equations here: its flight is judged; stability at rest, margins and constant loads are not asked".to_owned(),
             RestGains::Tuned(tuned) => format!("gains nominal {nominal}; at rest {}", gains(tuned)),
             RestGains::Kept => format!(
                 "gains nominal {nominal}; at rest those that they have come to (accumulating law without leakage), so that stability at rest is not asked"

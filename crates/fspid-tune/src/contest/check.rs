@@ -16,8 +16,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     let template = source.template()?;
     let study = template.study();
     let mut problems = Vec::new();
-    let names: Vec<String> =
-        study.scenario.controllers.iter().map(|named| named.name.clone()).collect();
+    let names: Vec<String> = study.scenario.flyers().map(|flyer| flyer.name().to_owned()).collect();
     if names.len() < 2 {
         let found = names.len();
         problems.push(format!("it has {found} controller; a contest needs two or more"));

@@ -138,6 +138,7 @@ pub fn design_for(scenario: &Scenario, rule: Rule, options: &Options) -> Result<
     let pid = Pid::new(gains, config)?;
     let controller = Controller::Fixed(pid);
     let mut flown = scenario.clone();
+    flown.externals.clear();
     flown.controllers = vec![NamedController { name: rule.name().to_owned(), controller }];
     let question = Question { map_points: 0, ..Question::default() };
     let Analysis { mut loops, left_out, .. } = Analysis::of_scenario(&flown, question)?;

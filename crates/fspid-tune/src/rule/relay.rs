@@ -176,7 +176,8 @@ pub(super) fn experiment(
     match outcome {
         Outcome::Diverged { at_s } => return Err(RuleError::RelayDiverged { at_s }),
         Outcome::HitGround { at_s } => return Err(RuleError::RelayHitGround { at_s }),
-        Outcome::Completed => {}
+        // A relay is no program that could be lost.
+        Outcome::Completed | Outcome::ControllerLost { .. } => {}
     }
     let cycles = relay.borrow().cycles.len();
     let Some((settled, k)) = found else {

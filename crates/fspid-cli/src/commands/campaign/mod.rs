@@ -11,6 +11,7 @@ mod shard;
 
 use clap::{Args, Subcommand, ValueEnum};
 
+use super::external_controller::Beside;
 use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
@@ -126,6 +127,8 @@ struct Planned {
     /// Set a value before anything is drawn, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    #[command(flatten)]
+    beside: Beside,
     /// How many runs; 1000 if left out.
     #[arg(long, value_parser = count::<u64>(1, fspid_campaign::MOST_RUNS))]
     runs: Option<u64>,
@@ -150,6 +153,7 @@ impl Planned {
     fn given(&self) -> Option<&'static str> {
         let options = [
             (!self.overrides.is_empty(), "--set"),
+            (self.beside.is_given(), "--library or --fmu"),
             (self.runs.is_some(), "--runs"),
             (self.seed.is_some(), "--seed"),
             (self.sampling.is_some(), "--sampling"),
@@ -159,9 +163,10 @@ impl Planned {
     }
 
     fn campaign(&self, scenario: &std::path::Path, folder: &Folder) -> Result<Campaign, Failure> {
+        let overrides = self.beside.overrides(&self.overrides)?;
         let question = Question {
             scenario,
-            overrides: &self.overrides,
+            overrides: &overrides,
             runs: self.runs.unwrap_or(RUNS),
             seed: self.seed.unwrap_or(SEED),
             sampling: self.sampling.unwrap_or(Spread::Random).into(),

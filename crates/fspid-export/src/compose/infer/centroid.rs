@@ -1,16 +1,22 @@
 //! The centre of gravity of seven triangles, cut at the strengths of their labels.
 
-use fspid_core::fuzzy::Defuzzifier;
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange};
 use fspid_numeric::Real;
 
 use super::super::Refusal;
+use super::limited;
 use crate::program::{
     Expression, Function, Kind, Operator, Parameter, Statement, element, local, number, whole,
 };
 
 /// The function `centroid`.
-pub(in crate::compose) fn function<R: Real>(defuzzifier: Defuzzifier) -> Result<Function, Refusal> {
-    of::<R>("centroid", defuzzifier, 7)
+pub(in crate::compose) fn function<R: Real>(
+    defuzzifier: Defuzzifier,
+    policy: OutOfRange,
+) -> Result<Function, Refusal> {
+    let mut function = of::<R>("centroid", defuzzifier, 7)?;
+    function.body = bounded(policy, function.body);
+    Ok(function)
 }
 
 /// A function like it for any number of triangles, with one at either end of the universe.
@@ -44,6 +50,22 @@ pub(crate) fn of<R: Real>(
     })
 }
 
+/// The centre lies between the outermost ones, and the area is not small where an input is within its range: said so that
+/// a proof in intervals sees it. It changes no bit.
+fn bounded(policy: OutOfRange, mut body: Vec<Statement>) -> Vec<Statement> {
+    let Some(Statement::Return(Some(Expression::Binary(_, moment, area)))) = body.pop() else {
+        return body;
+    };
+    // Outside of the range there are areas of every size.
+    let is_bounded = policy != OutOfRange::Evaluate;
+    let area = if is_bounded { area.larger(number(SMALL_AREA)) } else { *area };
+    let centre = limited(local("centre"), number(-3.0), number(3.0));
+    body.extend([Statement::real("centre", *moment / area), Statement::Return(Some(centre))]);
+    body
+}
+
+/// Far below the area of any set that is cut where the weakest of all strongest rules cuts it.
+const SMALL_AREA: f64 = 1.0 / (1_u64 << 40) as f64;
 /// Spacings from the middle of the universe to its ends.
 fn half_span(triangles: usize) -> f64 {
     0.5 * triangles.saturating_sub(1) as f64

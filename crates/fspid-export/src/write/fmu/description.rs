@@ -16,8 +16,8 @@ fn escaped(text: &str) -> String {
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             '"' => safe.push_str("&quot;"),
-            // XML has no other control characters.
-            c if c.is_control() => safe.push(' '),
+            // What XML has no way to say.
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => safe.push(' '),
             c => safe.push(c),
         }
     }
@@ -83,7 +83,7 @@ fn interface(fmu: &Fmu<'_>) -> String {
     match fmu.version {
         Version::Two => format!(
             "{identifier} {variable_step} canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" \
-             canSerializeFMUstate=\"true\">\n    <SourceFiles>\n      <File name=\"{prefix}.c\"/>\n      <File name=\"fmi2.c\"/>\n    \
+             canSerializeFMUstate=\"true\">\n    <SourceFiles>\n      <File name=\"{prefix}.c\"/>\n      <File name=\"fmu-2.c\"/>\n    \
              </SourceFiles>\n  </CoSimulation>\n"
         ),
         Version::Three => format!(
@@ -172,8 +172,10 @@ fn value(version: Version, variable: &Variable) -> String {
     }
     if variable.role == Role::Parameter {
         let (least, most) = variable.range;
-        pairs.push(("min", decimal(least, false)));
-        pairs.push(("max", decimal(most, false)));
+        // That every number is allowed goes without saying.
+        let is_end = |end: f64| end.abs() < f64::from(f32::MAX);
+        pairs.extend(is_end(least).then(|| ("min", decimal(least, false))));
+        pairs.extend(is_end(most).then(|| ("max", decimal(most, false))));
     }
     if matches!(variable.role, Role::Input | Role::Parameter) {
         pairs.push(("start", decimal(variable.start, false)));

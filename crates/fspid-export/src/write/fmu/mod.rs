@@ -1,8 +1,8 @@
 //! A controller as a functional mock-up unit for co-simulation, FMI 2.0 and 3.0.
 //!
 //! An FMU is a zip archive: a description as XML, sources in C, a library of these for a platform, a page. What is the
-//! same for every controller stands in `sources` as C; what is written here is the controller itself, `model.h` with
-//! its variables, and the description.
+//! same for every controller stands in `sources` as C; what is written here is the controller itself, `fmu-model.h`
+//! with its variables, and the description.
 
 mod description;
 mod model;
@@ -45,7 +45,7 @@ pub(crate) struct Parts {
     pub(crate) sources: Vec<String>,
 }
 
-const INSTANCE: &str = include_str!("sources/instance.h");
+const INSTANCE: &str = include_str!("sources/fmu-instance.h");
 const LICENCE: &str = include_str!("../../../LICENSE-MIT");
 
 impl Version {
@@ -56,11 +56,11 @@ impl Version {
         }
     }
 
-    /// Name and text of the source around an instance.
+    /// Name and text of the source around an instance. No controller's own files have a hyphen in their names.
     const fn source(self) -> (&'static str, &'static str) {
         match self {
-            Self::Two => ("fmi2.c", include_str!("sources/fmi2.c")),
-            Self::Three => ("fmi3.c", include_str!("sources/fmi3.c")),
+            Self::Two => ("fmu-2.c", include_str!("sources/fmu-2.c")),
+            Self::Three => ("fmu-3.c", include_str!("sources/fmu-3.c")),
         }
     }
 
@@ -109,11 +109,11 @@ pub(crate) fn parts(fmu: &Fmu<'_>) -> Parts {
     let mut texts = vec![
         (format!("{prefix}.h"), code.header),
         (format!("{prefix}.c"), code.source),
-        ("instance.h".to_owned(), INSTANCE.to_owned()),
+        ("fmu-instance.h".to_owned(), INSTANCE.to_owned()),
         (name.to_owned(), text.to_owned()),
     ];
     let (token, mark) = identity(&variables, &texts);
-    texts.push(("model.h".to_owned(), model::model(fmu, &variables, &token, &mark)));
+    texts.push(("fmu-model.h".to_owned(), model::model(fmu, &variables, &token, &mark)));
     let described = description::model_description(fmu, &variables, &token);
     let file = |(name, text): (String, String)| File::text(name, text);
     let mut archived = vec![file(("modelDescription.xml".to_owned(), described))];

@@ -1,4 +1,4 @@
-//! `model.h`: what the C around every controller needs to know of this one.
+//! `fmu-model.h`: what the C around every controller needs to know of this one.
 
 use super::super::decimal;
 use super::parameter::orders;

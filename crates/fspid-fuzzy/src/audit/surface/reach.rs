@@ -70,6 +70,21 @@ impl<'a> Reach<'a> {
         &self.answers
     }
 
+    /// All slopes of each output along an input over a box, at kinks those of Clarke's generalised gradient: no bounds where
+    /// an output may jump, and where the box does not fit the system.
+    pub fn slopes(&mut self, cell: &[Interval], input: usize) -> &[Interval] {
+        let Self { field, spreads, .. } = self;
+        if cell.len() != field.firing.system.parts.inputs.len() || input >= cell.len() {
+            spreads.fill(Interval::ENTIRE);
+            return spreads;
+        }
+        field.firing.fire(cell, Some(input));
+        for (output, slope) in spreads.iter_mut().enumerate() {
+            [*slope] = field.answer(output, Some(input)).derivative;
+        }
+        spreads
+    }
+
     /// Whether slopes are worth their while.
     fn is_narrow(&self, cell: &[Interval]) -> bool {
         let mut sides = cell.iter().zip(&self.field.firing.system.parts.inputs);

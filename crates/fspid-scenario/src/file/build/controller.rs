@@ -17,7 +17,7 @@ use crate::keyed::{Key, Section};
 use crate::units::degrees;
 use fspid_diagnostics::Report;
 
-/// The controller of a sound section.
+/// The controller of a sound section; one with equations.
 pub(super) fn controller(
     report: &mut Report,
     files: &mut Files<'_>,
@@ -25,6 +25,8 @@ pub(super) fn controller(
     (dt_s, pressure): (f64, Pressure),
 ) -> Option<Controller> {
     match section.variant()? {
+        // Built elsewhere: it has none.
+        ControllerKind::External => None,
         ControllerKind::Lqi => lqi::controller(report, section, dt_s),
         ControllerKind::P => {
             let factor = schedule::factor(report, section, pressure);

@@ -7,6 +7,7 @@ mod controller;
 pub(crate) mod data;
 mod derived;
 mod ends;
+mod external;
 mod flight;
 mod flown;
 mod linear_aircraft;
@@ -24,7 +25,9 @@ pub use derived::{DerivedGains, GainSource};
 use flown::Flown;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
-use fspid_sim::{ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing};
+use fspid_sim::{
+    ElevatorSign, LinearPlant, NamedController, NamedExternal, Scenario, Surroundings, Timing,
+};
 pub use range_rule::RangeRule;
 use schedule::Pressure;
 use timing::Sampling;
@@ -34,7 +37,7 @@ use crate::file::dispersion::dispersions;
 use crate::file::files::Files;
 use crate::file::overrides;
 use crate::file::requirement::requirements;
-use crate::file::spec::controller::NAME;
+use crate::file::spec::controller::{ControllerKind, NAME};
 use crate::file::spec::scenario as keys;
 use crate::file::tuning::{contest, tuning};
 use crate::keyed::{KeyName, Section};
@@ -83,6 +86,7 @@ pub(crate) fn scenario(
     let surroundings = surroundings(report, files, section, flown.as_ref());
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
+    let externals = externals(report, files, section, timing);
     if let Some(timing) = timing {
         timing::check_memory(report, section, timing);
     }
@@ -101,6 +105,7 @@ pub(crate) fn scenario(
         setpoint: setpoint?,
         disturbances,
         controllers,
+        externals,
         surroundings: surroundings?,
     };
     if section.sound {
@@ -220,6 +225,22 @@ fn controllers(
         }
     }
     (controllers, derived_gains)
+}
+
+/// The controllers without equations.
+fn externals(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+    timing: Option<Timing>,
+) -> Vec<NamedExternal> {
+    let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
+    let is_external = |part: &&Section| part.variant() == Some(ControllerKind::External);
+    let parts = section.sections(keys::CONTROLLER).iter().filter(|part| part.sound);
+    parts
+        .filter(is_external)
+        .filter_map(|part| external::external(report, files, part, dt_s))
+        .collect()
 }
 
 /// True for a plant of another order.

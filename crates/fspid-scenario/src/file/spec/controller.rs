@@ -18,7 +18,13 @@ use super::schedule::SCHEDULE;
 
 words! {
     /// What controls.
-    ControllerKind { P = "p", Pid = "pid", Fspid = "fspid", Lqi = "lqi" }
+    ControllerKind {
+        P = "p",
+        Pid = "pid",
+        Fspid = "fspid",
+        Lqi = "lqi",
+        External = "external",
+    }
 }
 
 words! {
@@ -109,7 +115,32 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
                 &[LQI, ENDS],
             ),
         ),
+        variant(
+            ControllerKind::External.name(),
+            choosing(
+                "A program that answers samples: an export, or one of your own. It runs as you do.",
+                &[&[&LIBRARY, &FMU, &ANSWER_LIMIT_S]],
+                &[one_of!(LIBRARY, FMU)],
+            ),
+        ),
     ],
+);
+
+pub(crate) const LIBRARY: Key<str> = optional(
+    "library",
+    FILE_PATH,
+    "A shared library with the functions of `fspid_external.h`, relative to this file.",
+);
+pub(crate) const FMU: Key<str> = optional(
+    "fmu",
+    FILE_PATH,
+    "An FMU for co-simulation (FMI 2.0 or 3.0) with the variables of `fspid export --to fmu2`, relative to this file.",
+);
+pub(crate) const ANSWER_LIMIT_S: Key<f64> = defaulted(
+    "answer_limit_s",
+    number("s", Range::Between(0.001, 3600.0)),
+    5.0,
+    "The longest time for an answer, by the clock; one that takes longer hangs.",
 );
 
 pub(crate) const RATE_GAIN: Key<f64> = defaulted(

@@ -15,14 +15,15 @@ impl Flights {
     #[must_use]
     pub fn json(&self) -> Value {
         json!({
-            "flown_margins": empirical(&self.empirical),
+            "flown_margins": empirical_json(&self.empirical),
             "limit_cycles": cycles(&self.limit_cycles),
             "along_the_flight": self.along.as_ref().map(along),
         })
     }
 }
 
-fn empirical(answer: &EmpiricalAnswer) -> Value {
+/// What a flight bears, for programs.
+pub(in crate::analysis) fn empirical_json(answer: &EmpiricalAnswer) -> Value {
     match answer {
         EmpiricalAnswer::NominalFails { failure, .. } => {
             json!({ "absent": format!("the flight itself does not hold: {failure}") })

@@ -4,6 +4,9 @@
 mod json;
 mod text;
 
+pub(super) use json::empirical_json;
+pub(super) use text::empirical_lines;
+
 use fspid_sim::describing::{LimitCycles, Search, limit_cycles};
 use fspid_sim::flown::empirical::{EmpiricalAnswer, EmpiricalOptions, empirical_margins};
 use fspid_sim::flown::trajectory::{TrajectoryLinearisation, linearise_along};

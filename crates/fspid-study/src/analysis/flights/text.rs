@@ -13,14 +13,17 @@ impl Flights {
     /// One line for each thing that flights say, a label and a sentence.
     #[must_use]
     pub fn lines(&self) -> Vec<(&'static str, String)> {
-        let mut lines = empirical(&self.empirical);
+        let mut lines = empirical_lines(&self.empirical);
         lines.extend(cycles(&self.limit_cycles));
         lines.extend(self.along.as_ref().map(|along| ("along the flight", sentence(along))));
         lines
     }
 }
 
-fn empirical(answer: &EmpiricalAnswer) -> Vec<(&'static str, String)> {
+/// The lines of what a flight bears.
+pub(in crate::analysis) fn empirical_lines(
+    answer: &EmpiricalAnswer,
+) -> Vec<(&'static str, String)> {
     const LABEL: &str = "flown margins";
     match answer {
         EmpiricalAnswer::Margins(margins) => flown_margins(margins),

@@ -76,7 +76,8 @@ pub(super) fn loops(
 ) -> Result<Vec<PlantEvidence>, NotEvaluated> {
     // In full, so that a replay with these gains as fixed ones gives the same bits.
     let question = Question { map_points, every_point_in_full: true, ..Question::default() };
-    let alone = Scenario { controllers: vec![named.clone()], ..scenario.clone() };
+    let alone =
+        Scenario { controllers: vec![named.clone()], externals: Vec::new(), ..scenario.clone() };
     let analysed = Analysis::of_scenario(&alone, question)?.loops.pop();
     let analysed = analysed.ok_or(NotEvaluated::Linear(SimError::NotLinear))?;
     if let Some(reason) = analysed.absent {
@@ -109,7 +110,9 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
             Some(Case { value: 0.0, place: CasePlace { at_s: Some(at_s), ..CasePlace::default() } })
         }
         // What hits the ground may be stable: the flight fails by itself.
-        fspid_sim::Outcome::Completed | fspid_sim::Outcome::HitGround { .. } => None,
+        fspid_sim::Outcome::Completed
+        | fspid_sim::Outcome::HitGround { .. }
+        | fspid_sim::Outcome::ControllerLost { .. } => None,
     }
 }
 

@@ -7,7 +7,7 @@ mod linear;
 
 use std::cell::OnceCell;
 
-use fspid_sim::{Controller, NamedController};
+use fspid_sim::{Controller, Flyer, NamedController};
 
 use super::{Case, NotEvaluated};
 use crate::metrics::Verdict;
@@ -22,7 +22,7 @@ use linear::PlantEvidence;
 #[derive(Debug)]
 pub struct Evidence<'a> {
     study: &'a Study,
-    named: &'a NamedController,
+    flyer: Flyer<'a>,
     result: &'a ControllerResult,
     /// Whether the loops are stable, asked of every flight.
     held: OnceCell<Result<(), NotEvaluated>>,
@@ -38,10 +38,10 @@ const MAP_POINTS: usize = 9;
 impl<'a> Evidence<'a> {
     /// Evidence of a flight of one of a study's controllers.
     #[must_use]
-    pub fn new(study: &'a Study, named: &'a NamedController, result: &'a ControllerResult) -> Self {
+    pub fn new(study: &'a Study, flyer: Flyer<'a>, result: &'a ControllerResult) -> Self {
         Self {
             study,
-            named,
+            flyer,
             result,
             held: OnceCell::new(),
             loops: OnceCell::new(),
@@ -52,7 +52,15 @@ impl<'a> Evidence<'a> {
     /// Name of the controller.
     #[must_use]
     pub fn controller(&self) -> &str {
-        &self.named.name
+        self.flyer.name()
+    }
+
+    /// The controller's equations.
+    fn named(&self) -> Result<&'a NamedController, NotEvaluated> {
+        match self.flyer {
+            Flyer::Own(named) => Ok(named),
+            Flyer::External(_) => Err(NotEvaluated::External),
+        }
     }
 
     /// Every case of a requirement's measure: the steps of a flight, the plants, the frozen gains.
@@ -72,7 +80,7 @@ impl<'a> Evidence<'a> {
             }
             Family::Loop => linear::cases(self.loops()?, self.result, requirement),
             Family::Frozen => {
-                frozen::require_whole_map(&self.named.controller)?;
+                frozen::require_whole_map(&self.named()?.controller)?;
                 frozen::cases(self.mapped()?, requirement)
             }
             Family::Airframe => airframe::cases(self.study, requirement),
@@ -81,9 +89,9 @@ impl<'a> Evidence<'a> {
 
     /// True for the verdict of a loop at rest whose gains move or whose command is limited.
     fn is_unstable_beyond_fixed_gains(&self) -> bool {
-        let is_simple = match &self.named.controller {
-            Controller::Fixed(pid) => pid.config().is_linear(),
-            Controller::SelfTuning(_) => false,
+        let is_simple = match self.flyer.controller() {
+            Some(Controller::Fixed(pid)) => pid.config().is_linear(),
+            Some(Controller::SelfTuning(_)) | None => false,
         };
         !is_simple && matches!(self.result.metrics.verdict, Verdict::Unstable { .. })
     }
@@ -91,7 +99,9 @@ impl<'a> Evidence<'a> {
     /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.
     fn require_stability(&self) -> Result<(), NotEvaluated> {
         let scenario = &self.study.scenario;
-        let held = self.held.get_or_init(|| linear::require_stability(scenario, self.named));
+        // Without equations there is nothing but the flight.
+        let Flyer::Own(named) = self.flyer else { return Ok(()) };
+        let held = self.held.get_or_init(|| linear::require_stability(scenario, named));
         held.clone()
     }
 
@@ -109,7 +119,8 @@ impl<'a> Evidence<'a> {
         map_points: usize,
     ) -> Result<&'b [PlantEvidence], NotEvaluated> {
         let scenario = &self.study.scenario;
-        let loops = cell.get_or_init(|| linear::loops(scenario, self.named, map_points));
+        let named = self.named()?;
+        let loops = cell.get_or_init(|| linear::loops(scenario, named, map_points));
         loops.as_deref().map_err(NotEvaluated::clone)
     }
 }

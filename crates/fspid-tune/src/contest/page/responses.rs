@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use fspid_page::analysis::{Chapter, Item, Picture};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle};
 use fspid_scenario::units::degrees;
-use fspid_sim::fly;
+use fspid_sim::Perturbation;
 
 use super::{chapter as chapter_of, style};
 use crate::contest::judged::{Contestant, Judged, Quantity};
@@ -151,20 +151,22 @@ fn flown(
     let point = design.found.as_ref().map_or(&[][..], |it| it.point.as_slice());
     let study = flights.study(point, flights.cases().get(case)?, 0).ok()?;
     let prepared = study.scenario.prepare().ok()?;
-    let named = study.scenario.controllers.first()?;
+    let flyer = study.scenario.flyers().next()?;
     let timing = study.scenario.timing;
     let every = timing.rows().div_ceil(MOST_INSTANTS).max(1);
     let mut curves = Curves::default();
-    fly(&prepared, &named.controller, |instant| {
-        if instant.k.is_multiple_of(every) {
-            curves.time_s.push(timing.time_s(instant.k));
-            let setpoint = prepared.setpoint_rad().get(instant.k).copied().unwrap_or(f64::NAN);
-            curves.setpoint_deg.push(degrees(setpoint));
-            curves.pitch_deg.push(degrees(instant.theta_rad));
-            curves.elevator_deg.push(degrees(instant.elevator_rad));
-        }
-        ControlFlow::Continue(())
-    })
-    .ok()?;
+    flyer
+        .respondent()
+        .fly(&prepared, &Perturbation::NONE, |instant| {
+            if instant.k.is_multiple_of(every) {
+                curves.time_s.push(timing.time_s(instant.k));
+                let setpoint = prepared.setpoint_rad().get(instant.k).copied().unwrap_or(f64::NAN);
+                curves.setpoint_deg.push(degrees(setpoint));
+                curves.pitch_deg.push(degrees(instant.theta_rad));
+                curves.elevator_deg.push(degrees(instant.elevator_rad));
+            }
+            ControlFlow::Continue(())
+        })
+        .ok()?;
     Some(curves)
 }

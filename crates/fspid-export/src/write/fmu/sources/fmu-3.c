@@ -1,10 +1,10 @@
 /* The functions of FMI 3.0, around an instance; those of other interfaces than co-simulation say so. */
-#include "model.h"
+#include "fmu-model.h"
 #include "fmi3Functions.h"
 
 typedef fmi3ValueReference reference;
 typedef fmi3LogMessageCallback log_function;
-#include "instance.h"
+#include "fmu-instance.h"
 
 /* The standard gives arguments to functions that need none here. */
 #if defined(__GNUC__)

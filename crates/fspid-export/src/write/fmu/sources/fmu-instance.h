@@ -1,5 +1,5 @@
 /* What both versions of the standard share: an instance, its variables, its time, its state as bytes.
- * model.h, which is written for each controller, stands before this file; so does the type `reference`. */
+ * fmu-model.h, which is written for each controller, stands before this file; so does the type `reference`. */
 #ifndef FSPID_INSTANCE_H
 #define FSPID_INSTANCE_H
 

@@ -1,10 +1,10 @@
 /* The functions of FMI 2.0 for co-simulation, around an instance. */
-#include "model.h"
+#include "fmu-model.h"
 #include "fmi2Functions.h"
 
 typedef fmi2ValueReference reference;
 typedef fmi2CallbackLogger log_function;
-#include "instance.h"
+#include "fmu-instance.h"
 
 /* The standard gives arguments to functions that need none here. */
 #if defined(__GNUC__)

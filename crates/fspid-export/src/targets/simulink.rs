@@ -1,0 +1,19 @@
+//! Simulink: the C with an S-function around it.
+
+use fspid_numeric::Real;
+
+use super::{File, Source};
+use crate::compose::Refusal;
+use crate::write;
+
+pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusal> {
+    let Source { program, prefix, heading, .. } = source;
+    let written = write::c(program, prefix, heading);
+    let function = write::simulink(program, prefix, heading).ok_or(Refusal::NoController)?;
+    Ok(vec![
+        File::text(format!("{prefix}.h"), written.header),
+        File::text(format!("{prefix}.c"), written.source),
+        File::text(format!("{prefix}_sfun.c"), function),
+        File::text("build.m", write::simulink_build(prefix)),
+    ])
+}

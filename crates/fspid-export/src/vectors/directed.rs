@@ -1,0 +1,258 @@
+//! Samples that go to the places where something may be wrong.
+
+use fspid_core::equations::LawKind;
+use fspid_core::{Controller, Fspid, Limits, SecondInput};
+use fspid_numeric::Real;
+
+use super::drawn::BAD;
+use super::{Event, Flight, Remembered, Vector};
+use crate::precision_of;
+
+/// Errors from a tenth of a degree to more than a quarter turn, rad.
+const SIZES_RAD: [f64; 6] = [0.002, 0.01, 0.05, 0.2, 0.6, 1.7];
+/// Samples after which a wind-up has come as far as it will be looked at.
+const LONG: usize = 300;
+const REST: [f64; 3] = [0.0; 3];
+
+pub(super) fn fly<R: Real>(flight: &mut Flight<'_, R>) {
+    flight.reset(REST);
+    if let Controller::SelfTuning(fspid) = flight.controller {
+        rules(flight, fspid);
+        zone(flight, fspid);
+    }
+    errors(flight);
+    bad(flight);
+    taking_over(flight);
+    memories(flight);
+    winding_up(flight);
+    if let Controller::SelfTuning(fspid) = flight.controller
+        && fspid.tuner_equations().structure.law == LawKind::Accumulating
+    {
+        gain_limits(flight, fspid);
+    }
+}
+
+/// What the supervisor of a self-tuner is to see: the error and what stands beside it, in its units.
+fn seek<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, [error, second]: [f64; 2]) {
+    let numbers = fspid.tuner_equations().numbers.map(|number| number.to_f64());
+    let error_rad = error / (numbers.sign * numbers.error_per_rad);
+    let second_rad = second / (numbers.sign * numbers.change_per_rad);
+    match fspid.tuner().settings().second_input {
+        SecondInput::Change => {
+            flight.reset([error_rad - second_rad * numbers.change_divisor, 0.0, 0.0]);
+            flight.step([error_rad, 0.0, 0.0]);
+        }
+        SecondInput::Rate => {
+            flight.reset(REST);
+            flight.step([error_rad, 0.0, -second_rad]);
+        }
+        SecondInput::ModelError(_) => {
+            flight.reset(REST);
+            let model_rad = flight.state.memory().map_or(0.0, |memory| memory.model_rad.to_f64());
+            let pitch_rad = model_rad - second_rad;
+            flight.step([pitch_rad + error_rad, pitch_rad, 0.0]);
+        }
+    }
+}
+
+/// Places of an input: set centres from NB to PB, then those half way between them, then outside.
+fn places<R: Real>(fspid: &Fspid<R>, of_error: bool) -> Vec<f64> {
+    let range = fspid.tuner().supervisor().range().to_f64();
+    let sets = fspid.tuner().settings().input_sets;
+    let centres = if of_error { sets.error } else { sets.change };
+    let (small, medium) = centres.map_or((1.0 / 3.0, 2.0 / 3.0), |centres| {
+        (centres.small().to_f64(), centres.medium().to_f64())
+    });
+    let centres: Vec<f64> =
+        [-1.0, -medium, -small, 0.0, small, medium, 1.0].map(|part| part * range).into();
+    let between = centres.windows(2).map(|pair| 0.55 * pair[0] + 0.45 * pair[1]);
+    let outside = [-1.3 * range, 1.2 * range];
+    centres.iter().copied().chain(between).chain(outside).collect()
+}
+
+/// Every rule where it is the strongest, and where its neighbours are.
+fn rules<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    for error in &errors {
+        for second in &seconds {
+            seek(flight, fspid, [*error, *second]);
+        }
+    }
+}
+
+/// Both sides of the ends of the dead zone.
+fn zone<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let Some(zone) = fspid.tuner().settings().dead_zone else { return };
+    let numbers = fspid.tuner_equations().numbers.map(|number| number.to_f64());
+    let (error, change) = (zone.error_rad.to_f64(), zone.change_rad.to_f64());
+    let (error, change) = (error * numbers.error_per_rad, change * numbers.change_per_rad);
+    for part in [0.0, 0.5, 0.998, 1.0, 1.0005, 1.002, 1.5] {
+        for sign in [-1.0, 1.0] {
+            for [error, change] in
+                [[part * error, 0.0], [0.0, part * change], [part * error, 0.9 * change]]
+            {
+                seek(flight, fspid, [sign * error, sign * change]);
+            }
+        }
+    }
+}
+
+/// Long at the rules that move a gain furthest up, and furthest down, from where all inputs are.
+fn gain_limits<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    let cells = || errors[..7].iter().flat_map(|error| seconds[..7].iter().map(|it| [*error, *it]));
+    for gain in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let moves = |at: &[f64; 2]| {
+                let [error, second] = at.map(R::from_f64);
+                let added = fspid.tuner().increments_where_seen(error, second);
+                sign * added.map_or(0.0, |it| [it.kp, it.ki, it.kd][gain].to_f64())
+            };
+            let furthest = cells().max_by(|a, b| moves(a).total_cmp(&moves(b)));
+            let Some(furthest) = furthest else { continue };
+            seek(flight, fspid, furthest);
+            let start = flight.vectors.len();
+            let mut ways = [[0.0; 3]; 2];
+            if let [.., before, last] = flight.vectors.as_slice() {
+                let radians = flight.angles.radians().unwrap_or(1.0);
+                let radians = |it: &Vector<R>| [0, 1, 2].map(|k| it.sample[k].to_f64() * radians);
+                ways = [before, last].map(radians);
+            }
+            while flight.vectors.len() < start + LONG && !flight.is_full() {
+                stay(flight, fspid, furthest, ways);
+            }
+        }
+    }
+}
+
+/// One more sample at which the supervisor sees about the same.
+fn stay<R: Real>(
+    flight: &mut Flight<'_, R>,
+    fspid: &Fspid<R>,
+    [error, second]: [f64; 2],
+    ways: [[f64; 3]; 2],
+) {
+    let numbers = fspid.tuner_equations().numbers.map(|number| number.to_f64());
+    let error_rad = error / (numbers.sign * numbers.error_per_rad);
+    let second_rad = second / (numbers.sign * numbers.change_per_rad);
+    match fspid.tuner().settings().second_input {
+        // There and back: every second sample sees it.
+        SecondInput::Change => ways.into_iter().for_each(|sample| flight.step(sample)),
+        SecondInput::Rate => flight.step([error_rad, 0.0, -second_rad]),
+        SecondInput::ModelError(_) => {
+            let model_rad = flight.state.memory().map_or(0.0, |memory| memory.model_rad.to_f64());
+            let pitch_rad = model_rad - second_rad;
+            flight.step([pitch_rad + error_rad, pitch_rad, 0.0]);
+        }
+    }
+}
+
+/// Errors of every size that stand, with a rate, and go away again.
+fn errors<R: Real>(flight: &mut Flight<'_, R>) {
+    for size in SIZES_RAD {
+        for sign in [-1.0, 1.0] {
+            flight.reset([0.1 * size, 0.0, 0.0]);
+            for k in 0..12 {
+                let rate = 0.02 * f64::from(k % 5) * sign;
+                flight.step([sign * size, 0.3 * size, rate]);
+            }
+            for _ in 0..4 {
+                flight.step([0.0, 0.001 * sign, 0.0]);
+            }
+        }
+    }
+    for size in SIZES_RAD {
+        flight.reset(REST);
+        for sign in [-1.0, 1.0] {
+            (0..4).for_each(|_| flight.step([sign * size, 0.0, 0.0]));
+        }
+    }
+}
+
+/// What is no pitch, at each place; and the ends of the guard.
+fn bad<R: Real>(flight: &mut Flight<'_, R>) {
+    let guard = flight.controller.config().guard.limit_rad().to_f64();
+    let ends = [1.0, -1.0].map(|sign| [0.9999, 1.0, 1.0001].map(|part| sign * part * guard));
+    let good = [0.05, 0.02, 0.01];
+    let largest = largest::<R>();
+    let ends = ends.into_iter().flatten().chain([largest, -largest]);
+    for value in BAD.into_iter().chain(ends) {
+        for place in 0..3 {
+            let mut sample = good;
+            sample[place] = value;
+            flight.reset(good);
+            flight.step(sample);
+            flight.step(good);
+            flight.event(Event::Faults, good);
+        }
+    }
+    flight.reset([f64::NAN, 0.0, 0.0]);
+    flight.step(good);
+}
+
+/// Another commands: within and beyond every limit, and hands over.
+fn taking_over<R: Real>(flight: &mut Flight<'_, R>) {
+    let guard = flight.controller.config().guard.limit_rad().to_f64();
+    let good = [0.08, 0.03, 0.02];
+    for command in [0.0, 0.05, -0.05, 0.4, -0.4, 3.0, -3.0, guard * 1.001, -guard * 1.001] {
+        flight.reset(good);
+        (0..3).for_each(|_| flight.step(good));
+        flight.track(command, good);
+        flight.track(command, [-0.02, 0.03, -0.01]);
+        (0..3).for_each(|_| flight.step(good));
+        flight.event(Event::Hold, good);
+    }
+    for command in BAD.into_iter().chain([largest::<R>(), -largest::<R>(), guard, -guard]) {
+        flight.reset(good);
+        flight.track(command, good);
+        flight.event(Event::Faults, good);
+        flight.step(good);
+    }
+    for place in 0..3 {
+        let mut sample = good;
+        sample[place] = f64::NAN;
+        flight.track(0.1, sample);
+        flight.event(Event::Faults, good);
+    }
+    flight.reset(good);
+    flight.event(Event::Hold, good);
+}
+
+/// The largest finite number.
+fn largest<R: Real>() -> f64 {
+    precision_of::<R>().largest()
+}
+
+/// Memories that no step has written: at the edge of overflow, beyond it, and outside of the limits.
+fn memories<R: Real>(flight: &mut Flight<'_, R>) {
+    let [_, most] = fspid_core::largest_remembered::<R>().map(R::to_f64);
+    let largest = 0.25 * largest::<R>();
+    let good = [0.05, 0.02, 0.01];
+    for size in [1.0, 0.9995 * most, most, 1.0005 * most, 3.6 * largest, 3.999 * largest] {
+        for value in [-size, size] {
+            for which in [Remembered::Integral, Remembered::Command] {
+                flight.reset(good);
+                flight.event(Event::Memory(which, R::from_f64(value)), good);
+                flight.track(0.1, good);
+                flight.event(Event::Memory(which, R::from_f64(value)), [f64::NAN; 3]);
+                flight.step(good);
+            }
+        }
+    }
+}
+
+/// Long against the limits, and out of it.
+fn winding_up<R: Real>(flight: &mut Flight<'_, R>) {
+    let ends = |limits: &Limits<R>| [limits.lower().to_f64(), limits.upper().to_f64()];
+    let [lower, upper] = flight.controller.config().limits.as_ref().map_or([-0.5, 0.5], ends);
+    let kp = flight.controller.nominal().kp.to_f64().abs().max(0.05);
+    for end in [lower, upper] {
+        // First so that the command is near the end and the integral does the rest.
+        for factor in [0.9, 1.5] {
+            flight.reset(REST);
+            let error = (factor * end / kp).clamp(-1.5, 1.5);
+            (0..LONG).for_each(|_| flight.step([error, 0.0, 0.0]));
+            (0..LONG / 3).for_each(|_| flight.step([-0.2 * error, 0.0, 0.0]));
+        }
+    }
+}

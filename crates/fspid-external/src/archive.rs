@@ -1,0 +1,98 @@
+//! The files of a zip archive, as PKWARE's APPNOTE 6.3 has it: stored or deflated, without encryption, one disk.
+
+use std::io;
+use std::path::{Component, Path};
+
+/// Largest size of all files together, in bytes: a controller has some tens of kilobytes, and a bomb is refused.
+const MOST_BYTES: usize = 64 << 20;
+/// Longest end of an archive: its fixed part and a comment.
+const LONGEST_END: usize = 22 + u16::MAX as usize;
+
+/// Writes the files of an archive into a folder.
+pub(crate) fn unpack(archive: &[u8], folder: &Path) -> io::Result<()> {
+    let mut left = MOST_BYTES;
+    for entry in entries(archive).ok_or_else(|| bad("it is no zip archive"))? {
+        let Entry { name, bytes } = entry?;
+        left = left.checked_sub(bytes.len()).ok_or_else(|| bad("its files are too large"))?;
+        let path = Path::new(&name);
+        if !path.components().all(|part| matches!(part, Component::Normal(_))) {
+            return Err(bad("a name in it leads out of the folder"));
+        }
+        let path = folder.join(path);
+        if name.ends_with('/') {
+            std::fs::create_dir_all(&path)?;
+            continue;
+        }
+        std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
+        std::fs::write(&path, bytes)?;
+    }
+    Ok(())
+}
+
+struct Entry {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+fn bad(reason: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason)
+}
+
+/// The entries of the directory at the end; `None` where there is none.
+fn entries(archive: &[u8]) -> Option<impl Iterator<Item = io::Result<Entry>>> {
+    let from = archive.len().saturating_sub(LONGEST_END);
+    let end = from + archive.get(from..)?.windows(4).rposition(|it| it == b"PK\x05\x06")?;
+    let count = short(archive, end + 10)?;
+    let mut at = long(archive, end + 16)?;
+    Some((0..count).map(move |_| {
+        let (entry, next) = entry(archive, at).ok_or_else(|| bad("its directory is cut off"))?;
+        at = next;
+        entry
+    }))
+}
+
+/// The entry at a place of the directory, and the place of the next.
+fn entry(archive: &[u8], at: usize) -> Option<(io::Result<Entry>, usize)> {
+    archive.get(at..)?.starts_with(b"PK\x01\x02").then_some(())?;
+    let (method, packed, size) =
+        (short(archive, at + 10)?, long(archive, at + 20)?, long(archive, at + 24)?);
+    let [name, extra, comment] = [28, 30, 32].map(|offset| short(archive, at + offset));
+    let (name, next) = (name?, 46 + name? + extra? + comment?);
+    let name = String::from_utf8_lossy(archive.get(at + 46..at + 46 + name)?).into_owned();
+    // The header before the file has lengths of its own.
+    let header = long(archive, at + 42)?;
+    let begin = header + 30 + short(archive, header + 26)? + short(archive, header + 28)?;
+    let packed = archive.get(begin..begin.checked_add(packed)?)?;
+    let bytes = match method {
+        0 => Ok(packed.to_vec()),
+        8 => miniz_oxide::inflate::decompress_to_vec_with_limit(packed, size.min(MOST_BYTES))
+            .map_err(|_| bad("a file in it cannot be unpacked")),
+        _ => Err(bad("a file in it is neither stored nor deflated")),
+    };
+    Some((bytes.map(|bytes| Entry { name, bytes }), at + next))
+}
+
+fn short(bytes: &[u8], at: usize) -> Option<usize> {
+    let found = bytes.get(at..at.checked_add(2)?)?;
+    Some(usize::from(u16::from_le_bytes(found.try_into().ok()?)))
+}
+
+fn long(bytes: &[u8], at: usize) -> Option<usize> {
+    let found = bytes.get(at..at.checked_add(4)?)?;
+    usize::try_from(u32::from_le_bytes(found.try_into().ok()?)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_archive_is_refused_wherever_it_is_cut() {
+        let folder = std::env::temp_dir();
+        assert!(unpack(b"", &folder).is_err());
+        assert!(unpack(b"no archive at all, and longer than its end would be", &folder).is_err());
+        let mut end = b"PK\x05\x06".to_vec();
+        end.extend([0, 0, 0, 0, 1, 0, 1, 0, 9, 0, 0, 0, 200, 0, 0, 0, 0, 0]);
+        assert!(unpack(&end, &folder).is_err());
+    }
+}

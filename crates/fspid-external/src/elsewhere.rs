@@ -1,0 +1,36 @@
+//! Systems on which no controller can be started.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use fspid_sim::external::{Answers, Host};
+use fspid_sim::{External, SimError};
+
+/// What would start external controllers.
+#[derive(Clone, Debug)]
+pub struct ProcessHost;
+
+impl ProcessHost {
+    /// Starts nothing here.
+    #[must_use]
+    pub fn new(_: PathBuf, _: &[&str]) -> Self {
+        Self
+    }
+}
+
+impl Host for ProcessHost {
+    fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError> {
+        Err(SimError::NotStarted {
+            file: external.source.path().display().to_string(),
+            reason: "external controllers talk over a socket of Unix, which this system has not"
+                .to_owned(),
+            allowed: "a scenario without them, or fspid on Linux or macOS".to_owned(),
+        })
+    }
+}
+
+/// Serves nothing here.
+#[must_use]
+pub fn serve(_: &str, _: &Path, _: f64) -> ExitCode {
+    ExitCode::FAILURE
+}

@@ -1,0 +1,178 @@
+//! Controllers that have no equations here: programs that are asked for a command at each sample.
+//!
+//! What is known of one is its file. Whoever starts it is not here either: a process is no business of a simulation, and
+//! a program that can start some says so once with [`set_host`].
+
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use fspid_core::{Sample, Step};
+
+use crate::error::SimError;
+
+/// A controller that is asked and not computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct External {
+    /// What is loaded.
+    pub source: ExternalSource,
+    /// The longest time for an answer, s.
+    pub answer_limit_s: f64,
+    /// Time from sample to sample of the scenario, s.
+    pub dt_s: f64,
+}
+
+/// The file of an external controller.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ExternalSource {
+    /// A shared library with the functions of `fspid_external.h`.
+    Library(PathBuf),
+    /// An FMU for co-simulation, FMI 2.0 or 3.0.
+    Fmu(PathBuf),
+}
+
+impl ExternalSource {
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &std::path::Path {
+        match self {
+            Self::Library(path) | Self::Fmu(path) => path,
+        }
+    }
+}
+
+/// An external controller and what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedExternal {
+    /// Name in traces and reports; unique in its scenario.
+    pub name: String,
+    /// The controller.
+    pub external: External,
+}
+
+/// How an external controller was lost in flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ControllerLoss {
+    /// Its process was ended by a signal.
+    Crashed {
+        /// Number of the signal.
+        signal: i32,
+    },
+    /// It ended its process.
+    Ended {
+        /// The code that it ended with.
+        code: i32,
+    },
+    /// It did not answer in time.
+    Silent {
+        /// The longest time for an answer, s.
+        limit_s: f64,
+    },
+    /// It said that it cannot: an FMU with a status of its standard beyond a warning.
+    Refused {
+        /// The status.
+        status: i32,
+    },
+    /// It answered a command that is NaN or infinite.
+    NotFinite,
+    /// What came was no answer.
+    NoAnswer,
+}
+
+impl ControllerLoss {
+    /// One word or two for programs.
+    #[must_use]
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Crashed { .. } => "crashed",
+            Self::Ended { .. } => "ended",
+            Self::Silent { .. } => "silent",
+            Self::Refused { .. } => "refused",
+            Self::NotFinite => "not finite",
+            Self::NoAnswer => "no answer",
+        }
+    }
+}
+
+/// Signals that programs crash with, as POSIX and Linux number them everywhere alike.
+const SIGNALS: [(i32, &str); 9] = [
+    (1, "SIGHUP"),
+    (2, "SIGINT"),
+    (4, "SIGILL"),
+    (5, "SIGTRAP"),
+    (6, "SIGABRT"),
+    (8, "SIGFPE"),
+    (9, "SIGKILL"),
+    (11, "SIGSEGV"),
+    (15, "SIGTERM"),
+];
+
+impl fmt::Display for ControllerLoss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Crashed { signal } => match SIGNALS.iter().find(|(number, _)| number == signal) {
+                Some((_, name)) => write!(f, "crashed with {name}"),
+                None => write!(f, "crashed with signal {signal}"),
+            },
+            Self::Ended { code } => write!(f, "ended its process with code {code}"),
+            Self::Silent { limit_s } => write!(f, "gave no answer within {limit_s:?} s"),
+            Self::Refused { status } => write!(f, "refused with FMI status {status}"),
+            Self::NotFinite => f.write_str("answered a command that is not finite"),
+            Self::NoAnswer => f.write_str("wrote something else than an answer"),
+        }
+    }
+}
+
+/// One flight of an external controller, from rest.
+pub trait Answers {
+    /// The answer to the next sample.
+    ///
+    /// # Errors
+    /// [`ControllerLoss`] where there is none; the flight is over then.
+    fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss>;
+}
+
+/// What starts external controllers.
+pub trait Host: Send + Sync {
+    /// Starts one, at rest.
+    ///
+    /// # Errors
+    /// [`SimError::NotStarted`] says what is wrong with it and what would be right.
+    fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError>;
+}
+
+static HOST: OnceLock<Box<dyn Host>> = OnceLock::new();
+
+/// Says what starts external controllers in this program; the first that says so stays.
+pub fn set_host(host: impl Host + 'static) {
+    let _ = HOST.set(Box::new(host));
+}
+
+impl External {
+    /// Starts it for one flight.
+    ///
+    /// # Errors
+    /// [`SimError::NoHost`] in a program that starts none, and what the host says.
+    pub fn start(&self) -> Result<Box<dyn Answers>, SimError> {
+        HOST.get().ok_or(SimError::NoHost)?.start(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_host_an_external_controller_is_refused_and_says_why() {
+        let source = ExternalSource::Library(PathBuf::from("controller.so"));
+        let external = External { source, answer_limit_s: 1.0, dt_s: 0.01 };
+        let refused = external.start().err().map(|error| error.to_string());
+        assert!(refused.is_some_and(|text| text.contains("external controllers")));
+    }
+
+    #[test]
+    fn a_crash_is_told_with_the_name_of_its_signal() {
+        assert_eq!(ControllerLoss::Crashed { signal: 11 }.to_string(), "crashed with SIGSEGV");
+        assert_eq!(ControllerLoss::Crashed { signal: 64 }.to_string(), "crashed with signal 64");
+    }
+}
