@@ -296,3 +296,41 @@ pub(super) const fn least(precision: Precision) -> f64 {
         Precision::Double => f64::MIN_POSITIVE,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fspid_fuzzy::{SNormKind, TNormKind};
+
+    #[test]
+    fn every_member_of_the_families_is_a_function_of_a_good_name_or_asks_for_the_platform() {
+        let mut library = Library::default();
+        let mut refused = Vec::new();
+        for kind in ShapeKind::ALL {
+            let given = kind.example().iter().map(|value| number(*value)).collect();
+            let grade = library.grade::<f64>((*kind, kind.example()), given, number(0.0));
+            if let Err(Trouble::Asks(_, function)) = grade {
+                refused.push((kind.name(), function));
+            }
+            let given = kind.example().iter().map(|value| number(*value)).collect();
+            let _ = library.inverse::<f64>((*kind, kind.example()), given, number(0.5));
+        }
+        assert_eq!(refused, [("bell", "pow"), ("cosine", "cos")]);
+        for kind in TNormKind::ALL {
+            assert!(library.t_norm::<f64>(&(*kind).into(), number(0.0), number(1.0)).is_ok());
+        }
+        for kind in SNormKind::ALL {
+            assert!(library.s_norm::<f64>(&(*kind).into(), number(0.0), number(1.0)).is_ok());
+        }
+        for hedge in Hedge::NAMED {
+            assert!(library.hedged::<f64>(&[*hedge], number(0.5)).is_ok());
+        }
+        assert!(library.hedged::<f64>(&[Hedge::Power(3.0)], number(0.5)).is_err());
+        let good = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+        for function in &library.functions {
+            assert!(function.name.chars().all(good), "{}", function.name);
+            // What a controller does in a sample is called so.
+            assert!(!["step", "reset", "hold", "infer"].contains(&function.name));
+        }
+    }
+}

@@ -197,16 +197,7 @@ impl<R: Real> Composer<'_, R> {
         let Self { system, names, configuration, mut library, body, .. } = self;
         library.helpers::<R>(&body);
         let mut functions = library.functions;
-        let remembering = system.parts().outputs.iter().zip(&names.outputs);
-        let remembering = remembering.filter(|(output, _)| output.fallback.previous);
-        let state: Vec<Member> = remembering
-            .flat_map(|(_, name)| {
-                let value =
-                    member(name, format!("The previous answer of {name}."), Value::Real(0.0));
-                let doc = format!("There is a previous answer of {name}.");
-                [value, member(&known(name), doc, Value::Truth(false))]
-            })
-            .collect();
+        let state = remembered(system, &names);
         if !state.is_empty() {
             functions.push(reset(&state));
         }
@@ -257,6 +248,18 @@ impl<R: Real> Composer<'_, R> {
         }
         SystemProgram { program, names, ways }
     }
+}
+
+/// What is remembered of outputs that keep their previous answers.
+fn remembered(system: &System, names: &Names) -> Vec<Member> {
+    let remembering = system.parts().outputs.iter().zip(&names.outputs);
+    let remembering = remembering.filter(|(output, _)| output.fallback.previous);
+    let both = |(_, name): (&fspid_fuzzy::system::Output, &String)| {
+        let value = member(name, format!("The previous answer of {name}."), Value::Real(0.0));
+        let doc = format!("There is a previous answer of {name}.");
+        [value, member(&known(name), doc, Value::Truth(false))]
+    };
+    remembering.flat_map(both).collect()
 }
 
 const SOURCES: &str = "0 there is none, 1 the rules, 2 the middle of the range, 3 the default, 4 the previous \

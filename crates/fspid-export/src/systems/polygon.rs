@@ -151,84 +151,11 @@ impl<R: Real> Composer<'_, R> {
         output: &Output,
         way: &Way,
     ) -> Result<String, Trouble> {
-        let Way::Polygon { join, cells, scales, middle } = way else {
+        let Way::Polygon { join, cells, middle, .. } = way else {
             return Err(super::outputs::VERTICES);
         };
-        let actors = self.terms_of_actors(index);
-        let none = u8::try_from(actors.len()).map_err(|_| {
-            Trouble::Said(
-                "more than 255 conclusions differ by more than their strength",
-                "possible is maximum as aggregation",
-            )
-        })?;
-        let (room, name) = (self.room, self.names.outputs[index].clone());
-        self.body.push(Statement::set_element("levels", whole(i32::from(none)), number(0.0)));
-        let (mut owners, mut grades, mut scaled) = (Vec::new(), Vec::new(), Vec::new());
-        for one in cells {
-            let mut slots = slots(one, &actors);
-            slots.resize(room.lines, (usize::from(none), [0.0; 2]));
-            owners.extend(slots.iter().map(|(actor, _)| u8::try_from(*actor).unwrap_or(none)));
-            grades.extend(slots.iter().flat_map(|(_, grade)| *grade));
-            scaled.extend(slots.iter().map(|(actor, _)| scales.get(*actor) == Some(&true)));
-        }
-        let mut corners: Vec<f64> = cells.iter().map(|it| it.x[0]).collect();
-        corners.extend(cells.last().map(|it| it.x[1]));
-        let mut table = |what: &str, doc: &str, value| {
-            let called = self.member(&format!("{what} {index}"), &format!("{name}_{what}"));
-            self.configuration.add(&called, doc, value);
-            called
-        };
-        let corners =
-            table("corners", "Where the sets of the output have corners.", Value::Reals(corners));
-        let owners = table(
-            "owners",
-            "Whose a line between two corners is, corner by corner; one more than there are is nobody's.",
-            Value::Bytes(owners),
-        );
-        let lines = table("lines", "Grades of these lines at both corners.", Value::Reals(grades));
-        let is_scaled = match (scaled.contains(&true), scaled.contains(&false)) {
-            // Slots that are nobody's never fire.
-            (true, _) if scales.iter().all(|&it| it) => number(1.0),
-            (true, true) => {
-                let bytes = scaled.iter().map(|&it| u8::from(it)).collect();
-                let called = table(
-                    "scaled",
-                    "1 where product scales a line, 0 where minimum cuts it.",
-                    Value::Bytes(bytes),
-                );
-                Expression::ToReal(Box::new(member_element(
-                    Part::Configuration,
-                    &called,
-                    local("line"),
-                )))
-            }
-            _ => number(0.0),
-        };
-        let read = |member: &str, index| member_element(Part::Configuration, member, index);
-        let level = element("levels", read(&owners, local("line")));
-        let owner = Expression::ToReal(Box::new(read(&owners, local("line"))));
-        let mut given = values(["from", "to"]);
-        given.extend([
-            Argument::Value(read(&lines, flat(local("line"), 2, 0))),
-            Argument::Value(read(&lines, flat(local("line"), 2, 1))),
-            Argument::Value(local("level")),
-            Argument::Value(is_scaled),
-            Argument::Value(owner),
-            array("active"),
-            Argument::Value(local("firing")),
-        ]);
-        let slot = vec![
-            Statement::Let("line".into(), Kind::Whole, {
-                let first =
-                    Expression::binary(Operator::Multiply, local("cell"), whole(room.lines()));
-                Expression::binary(Operator::Add, first, local("slot"))
-            }),
-            Statement::real("level", level),
-            Statement::when(
-                number(0.0).less(local("level")),
-                vec![Statement::Call("add_line", given), set("firing", plus("firing", 1))],
-            ),
-        ];
+        let tables = self.tables(index, way)?;
+        let room = self.room;
         let joined = match join {
             Join::Maximum => "join_highest",
             Join::Sum => "join_sum",
@@ -239,30 +166,121 @@ impl<R: Real> Composer<'_, R> {
         given.extend(["active", "edges", "cuts", "pieces"].map(array));
         given.push(Argument::Value(local(&count)));
         let body = vec![
-            Statement::real("from", read(&corners, local("cell"))),
-            Statement::real("to", read(&corners, plus("cell", 1))),
+            Statement::real("from", read(&tables.corners, local("cell"))),
+            Statement::real("to", read(&tables.corners, plus("cell", 1))),
             Statement::Let("firing".into(), Kind::Whole, whole(0)),
-            repeat("slot", room.lines, slot),
+            repeat("slot", room.lines, tables.slot(room)),
             set(&count, Expression::Call(joined, given)),
         ];
         self.body.push(Statement::Let(count.clone(), Kind::Whole, whole(0)));
         self.body.push(Statement::set_element("pieces", room.top(), number(0.0)));
         self.body.push(repeat("cell", cells.len(), body));
-        let peaks = self.member(&format!("middle {index}"), &format!("{name}_middle"));
-        let middle = self.configuration.real(
-            &peaks,
-            "Middle of the range, about which moments are taken.",
-            *middle,
-        );
-        let how = reading::read(
-            &mut self.library,
-            &mut self.body,
-            output.defuzzifier,
-            room,
-            &count,
-            middle,
-            precision_of::<R>(),
-        );
+        let name = format!("{}_middle", self.names.outputs[index]);
+        let called = self.member(&format!("middle {index}"), &name);
+        let doc = "Middle of the range, about which moments are taken.";
+        let middle = self.configuration.real(&called, doc, *middle);
+        let outline = reading::Outline { room, count, middle, precision: precision_of::<R>() };
+        let how = outline.read(&mut self.library, &mut self.body, output.defuzzifier);
         Ok(format!("{how} of a polygon, in closed form, for all its sets are straight-sided"))
+    }
+
+    /// Corners and lines of an output as members of the configuration.
+    fn tables(&mut self, index: usize, way: &Way) -> Result<Tables, Trouble> {
+        let Way::Polygon { cells, scales, .. } = way else { return Err(super::outputs::VERTICES) };
+        let actors = self.terms_of_actors(index);
+        let none = u8::try_from(actors.len()).map_err(|_| TOO_MANY)?;
+        self.body.push(Statement::set_element("levels", whole(i32::from(none)), number(0.0)));
+        let mut all = Vec::new();
+        for one in cells {
+            let mut slots = slots(one, &actors);
+            slots.resize(self.room.lines, (usize::from(none), [0.0; 2]));
+            all.extend(slots);
+        }
+        let mut corners: Vec<f64> = cells.iter().map(|it| it.x[0]).collect();
+        corners.extend(cells.last().map(|it| it.x[1]));
+        let owners = all.iter().map(|(actor, _)| u8::try_from(*actor).unwrap_or(none)).collect();
+        let grades = all.iter().flat_map(|(_, grade)| *grade).collect();
+        let scaled: Vec<u8> =
+            all.iter().map(|(actor, _)| u8::from(scales.get(*actor) == Some(&true))).collect();
+        let corners =
+            self.table(index, "corners", "Where its sets have corners.", Value::Reals(corners));
+        let owners = self.table(
+            index,
+            "owners",
+            "Whose a line between two corners is, corner by corner; one more than there are is nobody's.",
+            Value::Bytes(owners),
+        );
+        let lines = self.table(
+            index,
+            "lines",
+            "Grades of these lines at both corners.",
+            Value::Reals(grades),
+        );
+        // Slots that are nobody's never fire.
+        let scaled = match (scales.contains(&true), scales.contains(&false)) {
+            (true, true) => {
+                let doc = "1 where product scales a line, 0 where minimum cuts it.";
+                let called = self.table(index, "scaled", doc, Value::Bytes(scaled));
+                Expression::ToReal(Box::new(read(&called, local("line"))))
+            }
+            (all_are, _) => number(f64::from(u8::from(all_are))),
+        };
+        Ok(Tables { corners, owners, lines, scaled })
+    }
+
+    fn table(&mut self, index: usize, what: &str, doc: &str, value: Value) -> String {
+        let name = format!("{}_{what}", self.names.outputs[index]);
+        let called = self.member(&format!("{what} {index}"), &name);
+        self.configuration.add(&called, doc, value);
+        called
+    }
+}
+
+const TOO_MANY: Trouble = Trouble::Said(
+    "more than 255 conclusions differ by more than their strength",
+    "possible is maximum as aggregation",
+);
+
+/// Members of the configuration that hold an output's cells.
+struct Tables {
+    corners: String,
+    owners: String,
+    lines: String,
+    /// 1 where product scales the line at hand.
+    scaled: Expression,
+}
+
+fn read(member: &str, index: Expression) -> Expression {
+    member_element(Part::Configuration, member, index)
+}
+
+impl Tables {
+    /// A slot of the cell at hand: its line is added where it fires.
+    fn slot(&self, room: Room) -> Vec<Statement> {
+        let line = || local("line");
+        let owner = read(&self.owners, line());
+        let mut given = values(["from", "to"]);
+        given.extend(
+            [
+                read(&self.lines, flat(line(), 2, 0)),
+                read(&self.lines, flat(line(), 2, 1)),
+                local("level"),
+                self.scaled.clone(),
+                Expression::ToReal(Box::new(owner.clone())),
+            ]
+            .map(Argument::Value),
+        );
+        given.extend([array("active"), Argument::Value(local("firing"))]);
+        let first = Expression::binary(Operator::Multiply, local("cell"), whole(room.lines()));
+        let add = vec![Statement::Call("add_line", given), set("firing", plus("firing", 1))];
+        vec![
+            Statement::Let(
+                "line".into(),
+                Kind::Whole,
+                Expression::binary(Operator::Add, first, local("slot")),
+            ),
+            Statement::real("level", element("levels", owner)),
+            Statement::when(number(0.0).less(local("level")), add),
+        ]
     }
 }

@@ -29,37 +29,47 @@ fn each(room: Room, body: Vec<Statement>) -> Statement {
     repeat("piece", room.pieces, vec![Statement::when(there_is, body)])
 }
 
-/// Reads the number off the outline in `pieces`, of which there are `count`; answers which.
-pub(super) fn read(
-    library: &mut Library,
-    body: &mut Vec<Statement>,
-    method: Defuzzifier,
-    room: Room,
-    count: &str,
-    middle: Expression,
-    precision: Precision,
-) -> &'static str {
-    let (function, how) = match method {
-        Defuzzifier::Bisector(_) => (bisector(room), "the bisector"),
-        Defuzzifier::SmallestOfMaximum(_) => (maximum(room, 0), "the smallest of maximum"),
-        Defuzzifier::MeanOfMaximum(_) => (maximum(room, 1), "the mean of maximum"),
-        Defuzzifier::LargestOfMaximum(_) => (maximum(room, 2), "the largest of maximum"),
-        _ => (centroid(room), "the centroid"),
-    };
-    let name = function.name;
-    if !library.functions.iter().any(|known| known.name == name) {
-        library.functions.push(function);
+/// An outline in `pieces`.
+pub(super) struct Outline {
+    pub(super) room: Room,
+    /// The value that says how many pieces there are.
+    pub(super) count: String,
+    /// The middle of the universe.
+    pub(super) middle: Expression,
+    pub(super) precision: Precision,
+}
+
+impl Outline {
+    /// Reads the number off it; answers which.
+    pub(super) fn read(
+        self,
+        library: &mut Library,
+        body: &mut Vec<Statement>,
+        method: Defuzzifier,
+    ) -> &'static str {
+        let Self { room, count, middle, precision } = self;
+        let (function, how) = match method {
+            Defuzzifier::Bisector(_) => (bisector(room), "the bisector"),
+            Defuzzifier::SmallestOfMaximum(_) => (maximum(room, 0), "the smallest of maximum"),
+            Defuzzifier::MeanOfMaximum(_) => (maximum(room, 1), "the mean of maximum"),
+            Defuzzifier::LargestOfMaximum(_) => (maximum(room, 2), "the largest of maximum"),
+            _ => (centroid(room), "the centroid"),
+        };
+        let name = function.name;
+        if !library.functions.iter().any(|known| known.name == name) {
+            library.functions.push(function);
+        }
+        let top = || element("pieces", room.top());
+        let least = number(least(precision)).at_most(top());
+        let has_height = least.and(top().at_most(number(precision.largest())));
+        let mut given = vec![Argument::Array("pieces".to_owned()), Argument::Value(local(&count))];
+        if !matches!(method, Defuzzifier::Bisector(_)) {
+            given.push(Argument::Value(middle));
+        }
+        given.push(Argument::Array("found".to_owned()));
+        body.push(Statement::when(has_height, vec![Statement::Call(name, given)]));
+        how
     }
-    let top = || element("pieces", room.top());
-    let has_height =
-        number(least(precision)).at_most(top()).and(top().at_most(number(precision.largest())));
-    let mut given = vec![Argument::Array("pieces".to_owned()), Argument::Value(local(count))];
-    if !matches!(method, Defuzzifier::Bisector(_)) {
-        given.push(Argument::Value(middle));
-    }
-    given.push(Argument::Array("found".to_owned()));
-    body.push(Statement::when(has_height, vec![Statement::Call(name, given)]));
-    how
 }
 
 fn parameters(room: Room) -> Vec<Parameter> {
@@ -167,28 +177,6 @@ pub(super) fn halfway(room: Room) -> Function {
         Expression::binary(Operator::Add, last, less)
     };
     let column = |left, right| turned().select(piece(right), piece(left));
-    let (begin, end) = (|| local("begin"), || local("ending"));
-    let root = begin() * begin() + number(2.0) * local("slope") * local("left");
-    let distance = vec![
-        Statement::real("slope", (end() - begin()) / local("width").magnitude()),
-        Statement::real("under", root),
-        set("under", local("under").larger(number(0.0))),
-        Statement::real(
-            "along",
-            number(2.0) * local("left") / (begin() + called("square_root", [local("under")])),
-        ),
-        Statement::If(
-            local("from").less(local("to")),
-            vec![
-                set("place", local("from") + local("along")),
-                set("place", local("place").smaller(local("to"))),
-            ],
-            vec![
-                set("place", local("from") - local("along")),
-                set("place", local("place").larger(local("to"))),
-            ],
-        ),
-    ];
     let slack = || local("area") * number(SLACK);
     let one = vec![
         Statement::when(turned(), vec![set("piece", from_right)]),
@@ -201,7 +189,7 @@ pub(super) fn halfway(room: Room) -> Function {
         // The end of the piece, unless the half is reached before it.
         set("place", local("to")),
         set("reached", (local("left") - slack()).at_most(local("own"))),
-        Statement::when((local("left") + slack()).less(local("own")), distance),
+        Statement::when((local("left") + slack()).less(local("own")), distance()),
         set("left", local("left") - local("own")),
     ];
     let open = is_less(local("walked"), local("count")).and(local("reached").negated());
@@ -225,6 +213,32 @@ pub(super) fn halfway(room: Room) -> Function {
             Statement::Return(Some(local("place"))),
         ],
     }
+}
+
+/// Within the piece: after $d = 2a / (y_0 + \sqrt{y_0^2 + 2 k a})$.
+fn distance() -> Vec<Statement> {
+    let (begin, end) = (|| local("begin"), || local("ending"));
+    let root = begin() * begin() + number(2.0) * local("slope") * local("left");
+    vec![
+        Statement::real("slope", (end() - begin()) / local("width").magnitude()),
+        Statement::real("under", root),
+        set("under", local("under").larger(number(0.0))),
+        Statement::real(
+            "along",
+            number(2.0) * local("left") / (begin() + called("square_root", [local("under")])),
+        ),
+        Statement::If(
+            local("from").less(local("to")),
+            vec![
+                set("place", local("from") + local("along")),
+                set("place", local("place").smaller(local("to"))),
+            ],
+            vec![
+                set("place", local("from") - local("along")),
+                set("place", local("place").larger(local("to"))),
+            ],
+        ),
+    ]
 }
 
 /// `AggregatedSet::maximum`: the smallest, the mean or the largest of the points of highest grade.

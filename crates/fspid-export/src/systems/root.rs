@@ -54,11 +54,6 @@ pub(super) fn scale(precision: Precision) -> Function {
 /// unit in the last place, the root lies above $y + u/2$ where $m - y^2 > y u$, and below $y - u/2$ where
 /// $m - y^2 \le -y u$: both sides are multiples of $u^2$, so that the rest, $u^2/4$, decides nothing else.
 pub(super) fn function(precision: Precision) -> Function {
-    let (unit, split) = match precision {
-        Precision::Single => (f64::from(f32::EPSILON), 4097.0),
-        Precision::Double => (f64::EPSILON, 134_217_729.0),
-    };
-    let (y, square, rest) = (|| local("root"), || local("power"), || local("rest"));
     let mut body = vec![
         Statement::when(
             number(0.0).less(local("x")).negated(),
@@ -81,9 +76,27 @@ pub(super) fn function(precision: Precision) -> Function {
         "turn",
         // From within 1/4: 3e-2, 5e-4, 1e-7, 7e-15, below a unit.
         6,
-        vec![Statement::set("root", number(0.5) * (y() + local("part") / y()))],
+        vec![Statement::set("root", number(0.5) * (local("root") + local("part") / local("root")))],
     ));
-    body.extend([
+    body.extend(corrected(precision));
+    Function {
+        name: "square_root",
+        doc: "The square root, rounded correctly: the same bits on every machine.",
+        parts: &[],
+        parameters: vec![Parameter { name: "x", kind: Kind::Real, written: false }],
+        answers: Some(Kind::Real),
+        body,
+    }
+}
+
+/// Moves `root` to the neighbour that is nearer to the root of `part`, if one is, and answers it.
+fn corrected(precision: Precision) -> Vec<Statement> {
+    let (unit, split) = match precision {
+        Precision::Single => (f64::from(f32::EPSILON), 4097.0),
+        Precision::Double => (f64::EPSILON, 134_217_729.0),
+    };
+    let (y, square, rest) = (|| local("root"), || local("power"), || local("rest"));
+    vec![
         Statement::real("spread", number(split) * y()),
         Statement::real("high", local("spread") - (local("spread") - y())),
         Statement::real("low", y() - local("high")),
@@ -105,15 +118,7 @@ pub(super) fn function(precision: Precision) -> Function {
             )],
         ),
         Statement::Return(Some(y() * local("back"))),
-    ]);
-    Function {
-        name: "square_root",
-        doc: "The square root, rounded correctly: the same bits on every machine.",
-        parts: &[],
-        parameters: vec![Parameter { name: "x", kind: Kind::Real, written: false }],
-        answers: Some(Kind::Real),
-        body,
-    }
+    ]
 }
 
 /// Brings `part` into [1, 4) by powers of 4, and `back` to the power of 2 that its root has to be multiplied by.

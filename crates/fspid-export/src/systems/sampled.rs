@@ -297,6 +297,11 @@ impl<R: Real> Composer<'_, R> {
             sample.extend(piece);
         }
         self.body.push(samples.each(sample));
+        self.halves(is_line, samples);
+    }
+
+    /// Reads the bisector off the pieces.
+    fn halves(&mut self, is_line: bool, samples: &Samples) {
         let count = whole(count_of(samples.count as usize) - i32::from(is_line));
         let from_side = |turned| {
             let values = [count.clone(), number(1.0), samples.real("sum"), number(turned)];

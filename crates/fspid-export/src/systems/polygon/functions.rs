@@ -201,26 +201,14 @@ fn pushed(
     Expression::Call("add_piece", given)
 }
 
-/// The upper envelope of edges: start on the highest and change to whichever crosses first.
-pub(super) fn highest(room: Room) -> Function {
+/// Whether the edge in `slot` is the first to cross the current one from below: `next_crossing`.
+fn look() -> Vec<Statement> {
     let (this, now) = (|column| edge("slot", column), |column| edge("current", column));
-    let higher = now(0).less(this(0)).or(now(0).at_most(this(0)).and(now(1).less(this(1))));
-    let firing = |inside: Vec<Statement>| {
-        repeat(
-            "slot",
-            room.lines,
-            vec![Statement::when(is_less(local("slot"), local("firing")), inside)],
-        )
-    };
-    let along = |t: &str| {
-        let inside = local("from") + (local("to") - local("from")) * local(t);
-        local(t).less(number(1.0)).select(inside, local("to"))
-    };
     let share = local("below") / (local("below") + local("above"));
     let earlier = local("t").less(local("soonest"));
     let steeper = local("t").at_most(local("soonest")).and(edge("next", 1).less(this(1)));
     let sooner = local("crosses").negated().or(earlier).or(steeper);
-    let look = vec![
+    vec![
         Statement::real("above", this(1) - now(1)),
         Statement::when(
             number(0.0).less(local("above")),
@@ -238,13 +226,23 @@ pub(super) fn highest(room: Room) -> Function {
                 ),
             ],
         ),
-    ];
+    ]
+}
+
+/// The upper envelope of edges: start on the highest and change to whichever crosses first.
+pub(super) fn highest(room: Room) -> Function {
+    let (this, now) = (|column| edge("slot", column), |column| edge("current", column));
+    let higher = now(0).less(this(0)).or(now(0).at_most(this(0)).and(now(1).less(this(1))));
+    let along = |t: &str| {
+        let inside = local("from") + (local("to") - local("from")) * local(t);
+        local(t).less(number(1.0)).select(inside, local("to"))
+    };
     let leaving = now(0) * (number(1.0) - local("stop")) + now(1) * local("stop");
     let turn = vec![
         set("crosses", Expression::Truth(false)),
         set("next", local("current")),
         set("soonest", number(1.0)),
-        firing(look),
+        firing(room, look()),
         set("stop", local("crosses").select(local("soonest").larger(local("start")), number(1.0))),
         set("grade_there", leaving),
         set(
@@ -272,7 +270,7 @@ pub(super) fn highest(room: Room) -> Function {
         body: vec![
             whole_of("joined", local("count")),
             whole_of("current", whole(0)),
-            firing(vec![Statement::when(higher, vec![set("current", local("slot"))])]),
+            firing(room, vec![Statement::when(higher, vec![set("current", local("slot"))])]),
             Statement::real("start", number(0.0)),
             Statement::real("stop", number(1.0)),
             Statement::real("grade_here", now(0)),
@@ -340,22 +338,18 @@ pub(super) fn summed(room: Room, bounded: bool) -> Function {
     }
 }
 
-/// Joins what fires in a cell, between one cut and the next: `Outline::join_cell`.
-pub(super) fn join_cell(name: &'static str, join: &'static str, room: Room) -> Function {
-    let lines = room.lines();
-    let active = |column| cell("active", local("slot"), ACTIVE, column);
-    let firing = |inside: Vec<Statement>| {
-        repeat(
-            "slot",
-            room.lines,
-            vec![Statement::when(is_less(local("slot"), local("firing")), inside)],
-        )
-    };
-    let inside = |place: Expression| local("from").less(place.clone()).and(place.less(local("to")));
-    let cut = |column| {
-        let place = Statement::set_element("cuts", local("slot"), active(column));
-        Statement::when(inside(active(column)), vec![place])
-    };
+/// For each line that fires.
+fn firing(room: Room, inside: Vec<Statement>) -> Statement {
+    let fires = is_less(local("slot"), local("firing"));
+    repeat("slot", room.lines, vec![Statement::when(fires, inside)])
+}
+
+fn active(column: i32) -> Expression {
+    cell("active", local("slot"), ACTIVE, column)
+}
+
+/// What lies between one cut and the next.
+fn stretch(join: &'static str, room: Room) -> Vec<Statement> {
     let put =
         |column, value| Statement::set_element("edges", flat(local("slot"), EDGE, column), value);
     let at = |x: &str| {
@@ -375,17 +369,27 @@ pub(super) fn join_cell(name: &'static str, join: &'static str, room: Room) -> F
     let mut given = values(["left", "right", "firing"]);
     given.extend([array("edges"), array("pieces")]);
     given.extend(values(["joined", "count"]));
-    let stretch = vec![
+    vec![
         Statement::real("right", element("cuts", local("cut"))),
         Statement::when(
             local("left").less(local("right")),
             vec![
-                firing(edge),
+                firing(room, edge),
                 set("joined", Expression::Call(join, given)),
                 set("left", local("right")),
             ],
         ),
-    ];
+    ]
+}
+
+/// Joins what fires in a cell, between one cut and the next: `Outline::join_cell`.
+pub(super) fn join_cell(name: &'static str, join: &'static str, room: Room) -> Function {
+    let lines = room.lines();
+    let inside = |place: Expression| local("from").less(place.clone()).and(place.less(local("to")));
+    let cut = |column| {
+        let place = Statement::set_element("cuts", local("slot"), active(column));
+        Statement::when(inside(active(column)), vec![place])
+    };
     let (this, next) = (element("cuts", local("cut")), element("cuts", plus("cut", 1)));
     let swap = vec![
         Statement::real("larger", this.clone()),
@@ -403,7 +407,7 @@ pub(super) fn join_cell(name: &'static str, join: &'static str, room: Room) -> F
             room.lines + 1,
             vec![Statement::set_element("cuts", local("slot"), local("to"))],
         ),
-        firing(vec![cut(3), cut(4)]),
+        firing(room, vec![cut(3), cut(4)]),
     ];
     if lines > 1 {
         let pass =
@@ -413,7 +417,7 @@ pub(super) fn join_cell(name: &'static str, join: &'static str, room: Room) -> F
     }
     body.extend([
         Statement::real("left", local("from")),
-        repeat("cut", room.lines + 1, stretch),
+        repeat("cut", room.lines + 1, stretch(join, room)),
         Statement::Return(Some(local("joined"))),
     ]);
     let mut parameters = vec![real("from"), real("to"), counted("firing")];
