@@ -133,14 +133,16 @@ fn different(system: &System) -> Option<usize> {
     let mut different = 0;
     for vector in system_vectors(system, 3, 60) {
         let inputs = names.inputs.iter().zip(&vector.sample);
-        inputs.for_each(|(name, value)| block.set(name, Value::Lreal(*value)).expect("an input"));
+        inputs.for_each(|(name, value)| {
+            block.set(&format!("in_{name}"), Value::Lreal(*value)).expect("an input")
+        });
         block.call().unwrap_or_else(|problem| panic!("{problem}\n{text}"));
         let same_values = names.outputs.iter().zip(&vector.answer).all(|(name, value)| {
-            matches!(block.get(name), Ok(Value::Lreal(found)) if found.to_bits() == value.to_bits())
+            matches!(block.get(&format!("out_{name}")), Ok(Value::Lreal(found)) if found.to_bits() == value.to_bits())
         });
         let marks = names.sources.iter().chain([&names.faults]).zip(&vector.marks);
         let same_marks = marks.into_iter().all(
-            |(name, mark)| matches!(block.get(name), Ok(Value::Byte(found)) if found == *mark),
+            |(name, mark)| matches!(block.get(&format!("out_{name}")), Ok(Value::Byte(found)) if found == *mark),
         );
         different += usize::from(!(same_values && same_marks));
     }
