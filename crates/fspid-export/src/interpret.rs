@@ -202,7 +202,7 @@ impl<'a, R: Real> Machine<'a, R> {
         given: &[Given],
         locals: &mut Locals<R>,
     ) -> Option<Single<R>> {
-        let mut values = [Single::Whole(0); 4];
+        let mut values = [Single::Whole(0); resolve::MOST_ARGUMENTS];
         for (place, given) in values.iter_mut().zip(given) {
             *place = match given {
                 Given::Value(value) => self.value(code, value, locals),

@@ -84,7 +84,7 @@ fn ran(system: &System, precision: Precision, folder: &Path) -> Option<String> {
     let request =
         SystemRequest { name: "a system", target: Target::C, precision, samples: 300, digest: "0" };
     let exported = export_system(system, &request).ok()?;
-    for file in &exported.files {
+    for file in exported.files.iter().filter(|file| !file.name.contains('/')) {
         std::fs::write(folder.join(&file.name), &file.bytes).expect("a temporary file");
     }
     let built = Command::new("cc")
@@ -133,14 +133,16 @@ fn different(system: &System) -> Option<usize> {
     let mut different = 0;
     for vector in system_vectors(system, 3, 60) {
         let inputs = names.inputs.iter().zip(&vector.sample);
-        inputs.for_each(|(name, value)| block.set(name, Value::Lreal(*value)).expect("an input"));
+        inputs.for_each(|(name, value)| {
+            block.set(&format!("in_{name}"), Value::Lreal(*value)).expect("an input")
+        });
         block.call().unwrap_or_else(|problem| panic!("{problem}\n{text}"));
         let same_values = names.outputs.iter().zip(&vector.answer).all(|(name, value)| {
-            matches!(block.get(name), Ok(Value::Lreal(found)) if found.to_bits() == value.to_bits())
+            matches!(block.get(&format!("out_{name}")), Ok(Value::Lreal(found)) if found.to_bits() == value.to_bits())
         });
         let marks = names.sources.iter().chain([&names.faults]).zip(&vector.marks);
         let same_marks = marks.into_iter().all(
-            |(name, mark)| matches!(block.get(name), Ok(Value::Byte(found)) if found == *mark),
+            |(name, mark)| matches!(block.get(&format!("out_{name}")), Ok(Value::Byte(found)) if found == *mark),
         );
         different += usize::from(!(same_values && same_marks));
     }
@@ -155,5 +157,32 @@ proptest! {
         system in fspid_options::any_system(),
     ) {
         prop_assert!(different(&system).is_none_or(|count| count == 0), "{:#?}", system.parts());
+    }
+}
+
+/// What a real Lua of the same digits prints.
+fn printed_by_lua(system: &System, precision: Precision) -> Option<String> {
+    let request =
+        SystemRequest { name: "a", target: Target::Lua, precision, samples: 200, digest: "0" };
+    let exported = export_system(system, &request).ok()?;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for file in exported.files.iter().filter(|file| !file.name.contains('/')) {
+        std::fs::write(folder.path().join(&file.name), &file.bytes).expect("a temporary file");
+    }
+    let output = crate::lua_interpreter::run(precision, folder.path(), "a_check.lua");
+    Some(crate::lua_interpreter::printed(&output))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 20, max_shrink_iters: 4, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_lua_of_any_system_answers_as_the_system_in_both_kinds_of_lua(
+        system in fspid_options::any_system(),
+    ) {
+        for precision in [Precision::Double, Precision::Single] {
+            let text = printed_by_lua(&system, precision);
+            prop_assert!(text.as_ref().is_none_or(|it| it == "200 samples, 0 different\n"), "{text:?}");
+        }
     }
 }

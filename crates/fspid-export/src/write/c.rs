@@ -74,21 +74,25 @@ impl Writer<'_> {
             page.line("");
             self.structure(&mut page, part);
         }
-        page.line("");
-        page.line("/* The design as it was tuned. */");
-        page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
+        if !self.program.configuration.is_empty() {
+            page.line("");
+            page.line("/* The design as it was tuned. */");
+            page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
+        }
         for function in self.program.functions.iter().filter(|function| is_public(function)) {
             page.line("");
             comment(&mut page, function.doc);
             page.line(&format!("{};", self.signature(function)));
         }
-        page.line("");
-        comment(&mut page, super::c_selftest::DOC);
-        let asked = format!("const {prefix}_configuration *configuration");
-        page.line(&format!("uint16_t {prefix}_selftest({asked});"));
-        page.line("");
-        page.line("/* As before the first sample, with the design as it was tuned. */");
-        page.line(&format!("void {prefix}_init({prefix}_state *state);"));
+        if self.program.entry() == "step" {
+            page.line("");
+            comment(&mut page, super::c_selftest::DOC);
+            let asked = format!("const {prefix}_configuration *configuration");
+            page.line(&format!("uint16_t {prefix}_selftest({asked});"));
+            page.line("");
+            page.line("/* As before the first sample, with the design as it was tuned. */");
+            page.line(&format!("void {prefix}_init({prefix}_state *state);"));
+        }
         page.line("");
         page.line("#ifdef __cplusplus");
         page.line("}");
@@ -133,8 +137,10 @@ impl Writer<'_> {
         page.line("#pragma STDC FP_CONTRACT OFF");
         page.line("#endif");
         page.line("");
-        self.design(&mut page);
-        page.line("");
+        if !self.program.configuration.is_empty() {
+            self.design(&mut page);
+            page.line("");
+        }
         self.magnitude(&mut page);
         if self.uses_power_of_two() {
             page.line("");
@@ -144,11 +150,13 @@ impl Writer<'_> {
             page.line("");
             self.function(&mut page, function);
         }
-        page.line("");
-        page.line(&format!("void {prefix}_init({prefix}_state *state)"));
-        page.line("{");
-        page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
-        page.line("}");
+        if self.program.entry() == "step" {
+            page.line("");
+            page.line(&format!("void {prefix}_init({prefix}_state *state)"));
+            page.line("{");
+            page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
+            page.line("}");
+        }
         page.text
     }
 

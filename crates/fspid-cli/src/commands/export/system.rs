@@ -41,6 +41,8 @@ fn misplaced(arguments: &Arguments) -> Result<(), Failure> {
         "--controller goes with a scenario or design"
     } else if !arguments.overrides.is_empty() {
         "--set goes with a scenario or design"
+    } else if arguments.evidence.is_some() {
+        "--evidence goes with a scenario or design; a fuzzy system has vectors.csv and its check"
     } else if matches!(arguments.angles, Unit::Degrees) {
         "--angles goes with a scenario or design; inputs and outputs of a fuzzy system have the units of its file"
     } else {
