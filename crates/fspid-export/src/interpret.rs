@@ -144,8 +144,8 @@ impl<'a, R: Real> Machine<'a, R> {
 
     fn call(&mut self, code: &Resolved, index: usize, given: &[Single<R>]) -> Option<Single<R>> {
         let function = &code.functions[index];
-        let (mut locals, arrays) = ([Single::Whole(0); resolve::MOST_LOCALS], self.arrays.len());
-        locals[..given.len()].copy_from_slice(given);
+        let (mut locals, arrays) = (given.to_vec(), self.arrays.len());
+        locals.resize(function.values, Single::Whole(0));
         let ended = self.block(code, &function.body, &mut locals);
         self.arrays.truncate(arrays);
         match ended {
@@ -202,14 +202,12 @@ impl<'a, R: Real> Machine<'a, R> {
         given: &[Given],
         locals: &mut Locals<R>,
     ) -> Option<Single<R>> {
-        let mut values = [Single::Whole(0); resolve::MOST_ARGUMENTS];
-        for (place, given) in values.iter_mut().zip(given) {
-            *place = match given {
-                Given::Value(value) => self.value(code, value, locals),
-                Given::Array(local) => locals[*local],
-            };
-        }
-        self.call(code, function, &values[..given.len()])
+        let given = given.iter().map(|given| match given {
+            Given::Value(value) => self.value(code, value, locals),
+            Given::Array(local) => locals[*local],
+        });
+        let values: Vec<Single<R>> = given.collect();
+        self.call(code, function, &values)
     }
 
     fn branch(

@@ -4,11 +4,6 @@ use crate::program::{
     Argument, Expression, Function, Operator, Parameter, Part, Place, Program, Statement,
 };
 
-/// Values that a function may have.
-pub(super) const MOST_LOCALS: usize = 256;
-/// Most values that a function is given: the points of a set, each with its grade, and a value.
-pub(super) const MOST_ARGUMENTS: usize = 25;
-
 /// Where a value stands.
 #[derive(Clone, Debug)]
 pub(super) enum Slot {
@@ -59,6 +54,8 @@ pub(super) enum Action {
 
 #[derive(Clone, Debug)]
 pub(super) struct Body {
+    /// How many values it has, those that it is given among them.
+    pub(super) values: usize,
     pub(super) body: Vec<Action>,
 }
 
@@ -82,7 +79,8 @@ impl Resolved {
                 branches: &mut resolved.branches,
             };
             let body = scope.block(&function.body);
-            resolved.functions.push(Body { body });
+            let values = scope.names.len();
+            resolved.functions.push(Body { values, body });
         }
         resolved
     }
@@ -102,7 +100,6 @@ impl Scope<'_> {
         let known = self.names.iter().position(|known| known == name);
         known.unwrap_or_else(|| {
             self.names.push(name.to_owned());
-            assert!(self.names.len() <= MOST_LOCALS, "{} has too many values", self.function.name);
             self.names.len() - 1
         })
     }
