@@ -50,7 +50,7 @@ same() {
 on_a_board() {
     local board="$1" level="$2" file="$3" top=0x20400000
     [ "$board" = microbit ] && top=0x20004000
-    arm-none-eabi-gcc "$level" "${plain[@]}" -Wno-error "${@:4}" -mthumb --specs=rdimon.specs "-DSTACK_TOP=$top" fspid.c "$file" \
+    arm-none-eabi-gcc "$level" "${plain[@]}" -Wno-error "${@:4}" -mthumb --specs=rdimon.specs "-DSTACK_TOP=$top" fspid.c fspid_selftest.c "$file" \
         "$here/start.c" -I. -Wl,--section-start=.vectors=0 -Wl,-Tdata=0x20000000 -o board.elf 2> /dev/null
     timeout 120 qemu-system-arm -machine "$board" -nographic -semihosting -icount shift=0 -kernel board.elf 2>&1 | tail -1
 }
@@ -101,6 +101,7 @@ for design in "${designs[@]}"; do
             same "$name, Cortex-M0 $level" "$(on_a_board microbit "$level" fspid_check.c -mcpu=cortex-m0)"
         done
         echo "$name, Cortex-M4F -O2: $(on_a_board mps2-an386 -O2 "$here/count.c" "${m4f[@]}")"
+        echo "$name, Cortex-M4F -O2: $(on_a_board mps2-an386 -O2 "$here/count_selftest.c" "${m4f[@]}")"
         echo "$name, Cortex-M3 -O2: $(on_a_board mps2-an385 -O2 "$here/count.c" -mcpu=cortex-m3)"
         arm-none-eabi-gcc -Os "${plain[@]}" "${m4f[@]}" -mthumb -fstack-usage -c fspid.c
         echo "$name, flash at -Os: $(arm-none-eabi-size fspid.o | awk 'NR == 2 { print $1 }') bytes; deepest frames: $(sort -t "$(printf '\t')" -k2 -n -r fspid.su | head -2 | awk '{ printf "%s ", $2 }')bytes"

@@ -1,6 +1,6 @@
 """An FMU in FMPy: validated, flown against its vectors, two side by side, back in time, with other parameters.
 
-    python fmu.py FMU VECTORS
+    python fmu.py FMU VECTORS single|double
 
 Exits with 1 on any finding.
 """
@@ -168,12 +168,14 @@ def command_of(description):
     return next(v.name for v in description.modelVariables if v.name.startswith("command_"))
 
 
-def main(path, vectors):
+def main(path, vectors, numbers):
     folder = fmpy.extract(str(path))
     description = described(path, folder)
     period = float(description.defaultExperiment.stepSize)
+    # The digits of a number of 32 bits are those that name it among its like.
+    kind = numpy.float32 if numbers == "single" else float
     with open(vectors, newline="") as file:
-        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        rows = [{name: float(kind(value)) for name, value in row.items()} for row in csv.DictReader(file)]
     inputs = [v.name for v in description.modelVariables if v.causality == "input"]
     outputs = [name for name in rows[0] if name not in inputs]
     first, second = (Flown(description, folder, name) for name in ("first", "second"))
@@ -216,4 +218,4 @@ def built_from_sources(path, rows, inputs, outputs, period):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]))

@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 44] = [
+const ANSWERS: [(&str, &[i32], &str); 45] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -58,6 +58,7 @@ const ANSWERS: [(&str, &[i32], &str); 44] = [
     ("tune pitch.toml --rule list", &[0], "rules"),
     ("contest contest.toml --budget 4 --seeds 1 --quiet --out who", &[0], "schema"),
     ("export pitch.toml --controller FSPID --to c --samples 50 --out code", &[0], "files"),
+    ("export tip.toml --to lua --samples 50 --out tip-code", &[0], "files"),
     ("infer printed --range 5 --error 1 --change -2", &[0], "outputs"),
     ("explain tip.toml --input service=7 --input food=8", &[0], "outputs"),
     ("convert tip.toml tip.fis --lossy", &[0], "file"),

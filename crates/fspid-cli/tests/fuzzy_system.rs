@@ -454,3 +454,86 @@ fn every_command_takes_fml_and_files_of_the_type_2_toolbox() {
     assert_eq!(code(&told), 2);
     assert!(stderr(&told).contains("bad.xml:21:39: not known as defuzzifier"), "{}", stderr(&told));
 }
+
+/// What a compiled export prints.
+fn checked(folder: &Path, name: &str) -> String {
+    let sources = [format!("{name}.c"), format!("{name}_check.c")];
+    let built = Command::new("cc")
+        .args(["-std=c99", "-O1", "-ffp-contract=off", "-o", "check"])
+        .args(sources)
+        .current_dir(folder)
+        .output()
+        .expect("the compiler that links Rust");
+    assert!(built.status.success(), "{}", stderr(&built));
+    stdout(&Command::new(folder.join("check")).output().expect("what was built"))
+}
+
+#[test]
+fn the_shipped_systems_are_exported_and_answer_alike_in_c() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let systems = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/systems");
+    for (name, way) in [
+        ("tip", "the centroid of a polygon"),
+        ("fan", "the centroid of a polygon"),
+        ("glide", "weighted average of what 3 rules conclude"),
+    ] {
+        let file = format!("{systems}/{name}.toml");
+        let export = ["export", &file, "--to", "c", "--samples", "500", "--out", name];
+        let output = fspid(&export, folder.path());
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert!(stderr(&output).contains(way), "{}", stderr(&output));
+        assert_eq!(checked(&folder.path().join(name), name), "500 samples, 0 different\n");
+    }
+}
+
+#[test]
+fn what_of_a_system_cannot_be_exported_is_refused_with_what_would_make_it_possible() {
+    let folder = folder();
+    let tip = std::fs::read_to_string(folder.path().join("tip.toml")).expect("a file");
+    let curved = tip.replace(
+        "{ shape = \"triangle\", left = 0, peak = 5, right = 10 }",
+        "{ shape = \"gaussian\", centre = 5, sigma = 2 }",
+    );
+    std::fs::write(folder.path().join("curved.toml"), curved).expect("written");
+    let bell = tip.replace(
+        "{ shape = \"gaussian\", centre = 5, sigma = 1.5 }",
+        "{ shape = \"bell\", centre = 5, width = 2, slope = 2 }",
+    );
+    std::fs::write(folder.path().join("bell.toml"), bell).expect("written");
+    for (arguments, words) in [
+        ("curved.toml --to c", ["output `tip`: an exact integral", "--defuzzifier midpoint:1000"]),
+        ("tip.toml --to c --defuzzifier vertices:26", ["vertices:N", "midpoint:N"]),
+        (
+            "bell.toml --to c",
+            ["input `service`, term `good`: the membership function `bell`", "gaussian"],
+        ),
+        (
+            "tip.toml --to fmu2",
+            ["fmu2 is not written of fuzzy systems", "possible are c, lua and st"],
+        ),
+        ("tip.toml --to c --angles degrees", ["--angles", "units of its file"]),
+    ] {
+        let mut all = vec!["export"];
+        all.extend(arguments.split(' '));
+        all.extend(["--out", "code"]);
+        let output = fspid(&all, folder.path());
+        assert_eq!(code(&output), 2, "{arguments}: {}", stderr(&output));
+        for word in words {
+            assert!(stderr(&output).contains(word), "{arguments}: {}", stderr(&output));
+        }
+        assert!(!folder.path().join("code").exists());
+    }
+    let sampled = [
+        "export",
+        "curved.toml",
+        "--to",
+        "c",
+        "--defuzzifier",
+        "midpoint:50",
+        "--samples",
+        "50",
+        "--out",
+        "code",
+    ];
+    assert_eq!(code(&fspid(&sampled, folder.path())), 0);
+}

@@ -4,6 +4,7 @@ use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, precision_of, program};
+use crate::evidence::{self, Subject};
 use crate::program::Precision;
 use crate::targets::{File, Flown, Source, Target, Written};
 use crate::vectors::{eventful, vectors};
@@ -26,6 +27,8 @@ pub struct Request<'a> {
     pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
+    /// Data for a review is asked for, which takes a minute; C has it.
+    pub evidence: bool,
 }
 
 /// Why there is no export.
@@ -58,6 +61,8 @@ pub struct Export {
     pub prefix: String,
     /// The files.
     pub files: Vec<File>,
+    /// The files of the evidence, where it is asked for and the target has some.
+    pub evidence: Vec<File>,
     /// What was chosen, and why.
     pub notes: Vec<String>,
 }
@@ -109,7 +114,17 @@ fn exported<R: Real>(
     let written = written(request.target, &source).map_err(refused)?;
     notes.extend(written.notes);
     let files = written.files;
-    Ok(Export { prefix, files, notes })
+    let subject = Subject {
+        program: &program,
+        controller,
+        prefix: &prefix,
+        heading: &heading,
+        vectors: &vectors,
+        code: &files,
+    };
+    let has_evidence = request.evidence && request.target == Target::C;
+    let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
+    Ok(Export { prefix: prefix.clone(), files, evidence, notes })
 }
 
 /// The files of the target, and the vectors.

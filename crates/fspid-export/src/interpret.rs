@@ -202,7 +202,7 @@ impl<'a, R: Real> Machine<'a, R> {
         given: &[Given],
         locals: &mut Locals<R>,
     ) -> Option<Single<R>> {
-        let mut values = [Single::Whole(0); 4];
+        let mut values = [Single::Whole(0); resolve::MOST_ARGUMENTS];
         for (place, given) in values.iter_mut().zip(given) {
             *place = match given {
                 Given::Value(value) => self.value(code, value, locals),
@@ -360,6 +360,7 @@ fn joined<R: Real>(operator: Operator, left: Single<R>, right: Single<R>) -> Sin
             Operator::Multiply => Single::Whole(left * right),
             Operator::Equal => Single::Truth(left == right),
             Operator::NotEqual => Single::Truth(left != right),
+            Operator::Less => Single::Truth(left < right),
             other => panic!("{other:?} does not join whole numbers"),
         },
         (Single::Byte(left), Single::Byte(right)) => match operator {

@@ -4,10 +4,12 @@
 
 mod compile;
 mod compose;
+mod evidence;
 mod export;
 mod flat;
 pub mod interpret;
 pub mod program;
+mod systems;
 pub mod table;
 mod targets;
 mod trace;
@@ -18,4 +20,8 @@ mod zip;
 pub use compose::{Angles, Refusal, precision_of, program};
 pub use export::{Export, ExportError, Request, export, identifier};
 pub use fspid_core::Controller;
+pub use systems::{
+    NOT_FINITE, Names, OUT_OF_RANGE, SystemProgram, SystemRefusal, SystemRequest, export_system,
+    source_code, system_program, system_vectors,
+};
 pub use targets::{File, Target};

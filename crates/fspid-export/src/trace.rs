@@ -59,6 +59,11 @@ fn constant(traced: Traced) -> Option<f64> {
     })
 }
 
+/// True for the constant 0, which is not -0.
+fn is_zero(traced: Traced) -> bool {
+    matches!(get(traced), Step::Constant(value) if value.to_bits() == 0)
+}
+
 fn infinite(traced: Traced) -> Option<f64> {
     constant(traced).filter(|value| value.is_infinite())
 }
@@ -103,6 +108,10 @@ impl Add for Traced {
 impl Sub for Traced {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
+        if is_zero(other) {
+            // Exact for every number: also -0 - 0 is -0.
+            return self;
+        }
         let end = infinite(self).or(infinite(other).map(|end| -end));
         end.map_or_else(|| step(Step::Binary(Operator::Subtract, self, other)), Self::constant)
     }
@@ -111,6 +120,9 @@ impl Sub for Traced {
 impl Mul for Traced {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
+        if is_zero(self) && is_zero(other) {
+            return self;
+        }
         step(Step::Binary(Operator::Multiply, self, other))
     }
 }

@@ -13,6 +13,7 @@ use fspid_core::{Controller, Faults, Sample, State, Step};
 use fspid_numeric::Real;
 
 use crate::Angles;
+use crate::compose::GAINS;
 pub(crate) use drawn::Draw;
 pub use drawn::samples;
 
@@ -45,6 +46,7 @@ impl<R: Real> Event<R> {
             Self::Faults => "faults",
             Self::Memory(Remembered::Command, _) => "command_rad",
             Self::Memory(Remembered::Integral, _) => "integral",
+            Self::Memory(Remembered::Gain(gain), _) => GAINS[*gain],
         }
     }
 
@@ -59,6 +61,7 @@ impl<R: Real> Event<R> {
             Self::Faults => 4,
             Self::Memory(Remembered::Command, _) => 5,
             Self::Memory(Remembered::Integral, _) => 6,
+            Self::Memory(Remembered::Gain(gain), _) => 7 + *gain as u8,
         }
     }
 
@@ -79,6 +82,8 @@ pub enum Remembered {
     Command,
     /// The integral.
     Integral,
+    /// A gain: 0 for kp, 1 for ki, 2 for kd.
+    Gain(usize),
 }
 
 /// What is done, a sample and its answer, in the units of the export.
@@ -193,6 +198,12 @@ impl<'a, R: Real> Flight<'a, R> {
             }
             Event::Memory(Remembered::Command, value) => state.command_rad = value,
             Event::Memory(Remembered::Integral, value) => state.integral = value,
+            Event::Memory(Remembered::Gain(gain), value) => {
+                if let Some(previous) = &mut state.previous {
+                    let gains = &mut previous.gains;
+                    *[&mut gains.kp, &mut gains.ki, &mut gains.kd][gain] = value;
+                }
+            }
         }
         let step = match event {
             Event::Hold => controller.hold(state, Faults::NOT_FINITE),

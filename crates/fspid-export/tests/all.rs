@@ -3,6 +3,7 @@
 mod ardupilot;
 mod c;
 mod common;
+mod evidence;
 mod fmu;
 mod lua;
 mod lua_interpreter;
@@ -11,6 +12,7 @@ mod rust;
 mod same_bits;
 mod simulink;
 mod structured_text;
+mod systems;
 mod table;
 mod track;
 mod unpacked;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fspid_core::Controller;
 use fspid_export::program::Precision;
-use fspid_export::vectors::vectors;
+use fspid_export::vectors::eventful;
 use fspid_export::write::{Heading, lua, lua_harness};
 use fspid_export::{Angles, Request, Target, export, precision_of, program};
 use fspid_numeric::Real;
@@ -17,7 +17,7 @@ fn write<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) {
     let program = program(controller, angles).expect("nothing here is refused");
     let heading =
         Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
-    let vectors = vectors(controller, angles, 1, 400);
+    let vectors = eventful(controller, angles, 1, 400);
     for (name, text) in [
         ("pitch.lua", lua(&program, &heading)),
         ("check.lua", lua_harness(&program, "pitch", &vectors)),
@@ -33,7 +33,7 @@ fn checked<R: Real>(controller: &Controller<R>, angles: Angles) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 25, max_shrink_iters: 8, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 16, max_shrink_iters: 8, ..ProptestConfig::default() })]
 
     #[test]
     fn the_lua_of_any_controller_answers_as_the_controller_in_both_kinds_of_lua(
@@ -97,6 +97,7 @@ fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
         samples: 50,
         points: 25,
         digest: "0",
+        evidence: false,
     };
     let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");
     assert_eq!(exported.prefix, "controller_math");

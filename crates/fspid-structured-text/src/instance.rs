@@ -48,12 +48,12 @@ pub struct Instance<'a> {
 }
 
 impl Instance<'_> {
-    /// Puts a value into an input.
+    /// Puts a value into an input, or, as a person at a PLC may, into a variable that it keeps.
     ///
     /// # Errors
-    /// [`Mistake::Undeclared`] or [`Mistake::Type`] if it has no such input.
+    /// [`Mistake::Undeclared`] or [`Mistake::Type`] if it has no such variable.
     pub fn set(&mut self, name: &str, value: Value) -> Result<(), Problem> {
-        match self.slot(name, Some(Section::Input))? {
+        match self.slot(name, &[Section::Input, Section::Kept])? {
             (slot, kind) if kind == value.kind() => {
                 self.frame.slots[slot] = Some(value);
                 Ok(())
@@ -67,7 +67,7 @@ impl Instance<'_> {
     /// # Errors
     /// [`Mistake::Undeclared`] if it has no such variable.
     pub fn kind(&self, name: &str) -> Result<Kind, Problem> {
-        self.slot(name, None).map(|(_, kind)| kind)
+        self.slot(name, &[]).map(|(_, kind)| kind)
     }
 
     /// What a variable holds.
@@ -75,7 +75,7 @@ impl Instance<'_> {
     /// # Errors
     /// [`Mistake::Undeclared`] if it has no such variable, [`Mistake::Unset`] if that is a temporary one.
     pub fn get(&self, name: &str) -> Result<Value, Problem> {
-        let (slot, _) = self.slot(name, None)?;
+        let (slot, _) = self.slot(name, &[])?;
         self.frame.slots[slot].ok_or_else(|| Mistake::Unset(name.to_owned()).at(0))
     }
 
@@ -88,10 +88,10 @@ impl Instance<'_> {
         self.code.run(self.codes, &mut self.frame)
     }
 
-    fn slot(&self, name: &str, section: Option<Section>) -> Result<(usize, Kind), Problem> {
+    fn slot(&self, name: &str, sections: &[Section]) -> Result<(usize, Kind), Problem> {
         let wanted = name.to_ascii_uppercase();
         let is_meant = |known: &&Known| {
-            known.name == wanted && section.is_none_or(|section| known.section == section)
+            known.name == wanted && (sections.is_empty() || sections.contains(&known.section))
         };
         match self.code.variables.iter().find(is_meant).map(|known| known.home) {
             Some(Home::Slot(slot, kind)) => Ok((slot, kind)),

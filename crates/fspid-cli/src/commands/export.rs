@@ -1,4 +1,6 @@
-//! `fspid export`: a controller in another language.
+//! `fspid export`: a controller, or a fuzzy system, in another language.
+
+mod system;
 
 use std::path::Path;
 
@@ -10,22 +12,23 @@ use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, Request, Target, export};
+use fspid_export::{Angles, Export, File, Request, Target, export};
 use fspid_scenario::file::{self, Study};
+use fspid_scenario::fuzzy_system;
 use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
 use fspid_study::output;
 
-/// Write a controller in another language: the same bits as the simulator, with vectors that show it.
+/// Write a controller or a fuzzy system in another language: the same bits as the simulator, with vectors that show it.
 ///
 /// The folder holds the code, `vectors.csv` with drawn samples, good and bad ones, and their answers, and a program that asks
 /// the code for the answers and counts those with other bits. Whether the loop is good is not asked: `verify` and `certify` do.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
+    after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  fspid export tip.toml --to c --out tip\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
 )]
 pub(crate) struct Arguments {
-    /// The scenario or design file.
+    /// The scenario or design, or a fuzzy system (.toml, .fis, .fcl, .fll, .xml), which c, lua and st can say.
     file: InFile,
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
@@ -40,7 +43,7 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
-    /// The digits of the numbers; double for fmu2 and fmu3 if left out, else single.
+    /// The digits of the numbers; double for fmu2, fmu3 and fuzzy systems if left out, else single.
     #[arg(long, value_enum)]
     numbers: Option<Numbers>,
     /// The unit of the angles that go in and come out.
@@ -52,6 +55,14 @@ pub(crate) struct Arguments {
     /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
     #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
     points: usize,
+    /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
+    /// script that makes the rest; for c, takes a minute.
+    #[arg(long, value_name = "DIR")]
+    evidence: Option<Folder>,
+    /// How integrals of a fuzzy system are computed: `exact`, `endpoints:N`, `midpoint:N`, `trapezoid:N` or `left-end:N`; as
+    /// its file says if left out.
+    #[arg(long, value_name = "RULE")]
+    defuzzifier: Option<String>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -83,6 +94,14 @@ fn target(name: &str) -> Result<Target, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if fuzzy_system::is_system(&arguments.file) {
+        return system::run(arguments);
+    }
+    if arguments.defuzzifier.is_some() {
+        return Err(Failure::input(
+            "--defuzzifier goes with a fuzzy system; a controller says its own",
+        ));
+    }
     let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
@@ -105,25 +124,41 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: arguments.samples as usize,
         points: arguments.points,
         digest: &study.digest,
+        evidence: evidence(arguments)?.is_some(),
     };
     let exported = export(&named.controller, &request).map_err(Failure::input)?;
+    answer(arguments, ["controller", &named.name], &exported)
+}
+
+/// Writes the files and tells them; `what` is what was exported, and its name.
+fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(), Failure> {
     empty(&arguments.out, arguments.force)?;
-    write(&exported, &arguments.out)?;
+    write(&exported.files, &arguments.out)?;
+    if let Some(folder) = &arguments.evidence {
+        write(&exported.evidence, folder)?;
+    }
     match arguments.format {
         Format::Text => {
             exported.notes.iter().for_each(|it| note(format_args!("{it}")));
-            print(&told(&exported, &arguments.out))
+            let evidence = arguments.evidence.as_ref().map(|it| told(&exported.evidence, it));
+            print(&(told(&exported.files, &arguments.out) + &evidence.unwrap_or_default()))
         }
         Format::Json => print(&json_text(&json!({
             "schema": 1,
-            "controller": named.name,
+            what[0]: what[1],
             "target": arguments.to.name(),
             "prefix": exported.prefix,
             "folder": arguments.out.display().to_string(),
             "files": exported.files.iter().map(|it| &it.name).collect::<Vec<_>>(),
+            "evidence": exported.evidence.iter().map(|it| &it.name).collect::<Vec<_>>(),
             "notes": exported.notes,
         }))),
     }
+}
+
+/// The file's name without its ending.
+fn file_stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "system".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The controller that is meant.
@@ -167,8 +202,19 @@ fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
-    for file in &exported.files {
+/// The folder of the evidence, if the target has some and the folder may be written into.
+fn evidence(arguments: &Arguments) -> Result<Option<&Path>, Failure> {
+    let Some(folder) = &arguments.evidence else { return Ok(None) };
+    if arguments.to != Target::C {
+        let to = arguments.to.name();
+        return Err(Failure::input(format_args!("{to} has no evidence; --to c has")));
+    }
+    empty(folder, arguments.force)?;
+    Ok(Some(folder))
+}
+
+fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
+    for file in files {
         let path = folder.join(&file.name);
         output::make_folder(path.parent().unwrap_or(folder))?;
         output::write(&path, &file.bytes)?;
@@ -176,7 +222,7 @@ fn write(exported: &Export, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn told(exported: &Export, folder: &Path) -> String {
+fn told(files: &[File], folder: &Path) -> String {
     let line = |name: &String| format!("{}\n", folder.join(name).display());
-    exported.files.iter().map(|file| line(&file.name)).collect()
+    files.iter().map(|file| line(&file.name)).collect()
 }

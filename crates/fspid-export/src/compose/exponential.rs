@@ -8,7 +8,7 @@ use crate::program::{Function, Kind, Parameter, Statement, local};
 use crate::trace::{Lane, Listing, Traced};
 
 /// The function `exponential`.
-pub(super) fn function<R: Real>() -> Function {
+pub(crate) fn function<R: Real>() -> Function {
     let mut listing = Listing::new(precision_of::<R>());
     let x = Lane::<R>::new(Traced::read(local("x")));
     let mut body = listing.values(&[("power", lanes::exp(x).0)]);

@@ -1,6 +1,6 @@
 //! The supervisor: from what it sees to the increments of the gains.
 
-mod centroid;
+pub(crate) mod centroid;
 mod labels;
 mod numbers;
 

@@ -5,18 +5,18 @@ use crate::trace::Traced;
 
 /// Members of the configuration, each once.
 #[derive(Default)]
-pub(super) struct Configuration {
+pub(crate) struct Configuration {
     members: Vec<Member>,
 }
 
 impl Configuration {
     /// The members in the order in which they were named.
-    pub(super) fn members(self) -> Vec<Member> {
+    pub(crate) fn members(self) -> Vec<Member> {
         self.members
     }
 
     /// A member of that name; another one with the same name must hold the same.
-    pub(super) fn add(&mut self, name: &str, doc: &str, value: Value) -> Expression {
+    pub(crate) fn add(&mut self, name: &str, doc: &str, value: Value) -> Expression {
         match self.members.iter().find(|known| known.name == name) {
             Some(known) => debug_assert_eq!(known.value, value, "two members are called {name}"),
             None => self.members.push(Member { name: name.to_owned(), doc: doc.to_owned(), value }),
@@ -25,12 +25,12 @@ impl Configuration {
     }
 
     /// A real.
-    pub(super) fn real(&mut self, name: &str, doc: &str, value: f64) -> Expression {
+    pub(crate) fn real(&mut self, name: &str, doc: &str, value: f64) -> Expression {
         self.add(name, doc, Value::Real(value))
     }
 
     /// A number of an equation; an infinite one does nothing and is no member.
-    pub(super) fn traced(&mut self, name: &str, doc: &str, value: f64) -> Traced {
+    pub(crate) fn traced(&mut self, name: &str, doc: &str, value: f64) -> Traced {
         if value.is_infinite() {
             return Traced::configured(value, Expression::Number(0.0));
         }

@@ -1,13 +1,14 @@
 //! From a controller to its program.
 
-mod exponential;
+pub(crate) mod exponential;
 mod infer;
-mod members;
+pub(crate) mod members;
 mod observe;
-mod prune;
+pub(crate) mod prune;
 mod step;
 
 pub(crate) use infer::GAINS;
+pub(crate) use infer::centroid;
 
 use fspid_core::fuzzy::Defuzzifier;
 use fspid_numeric::Real;

@@ -2,25 +2,59 @@
 
 use std::collections::BTreeSet;
 
-use crate::program::{Argument, Expression, Part, Place, Program, Statement};
+use crate::program::{Argument, Expression, Kind, Part, Place, Program, Statement};
 
 /// Removes values and members of configuration and state that are not read, with what is written into them.
-pub(super) fn prune(program: &mut Program) {
+pub(crate) fn prune(program: &mut Program) {
     while remove_unread(program) {}
 }
 
+/// How many statements there are, those within others included.
+pub(crate) fn statements(body: &[Statement]) -> usize {
+    let inside = |statement: &Statement| match statement {
+        Statement::If(_, then, otherwise) => statements(then) + statements(otherwise),
+        Statement::For(.., body) => statements(body),
+        _ => 0,
+    };
+    body.len() + body.iter().map(inside).sum::<usize>()
+}
+
 fn size(program: &Program) -> usize {
-    fn statements(body: &[Statement]) -> usize {
-        let inside = |statement: &Statement| match statement {
-            Statement::If(_, then, otherwise) => statements(then) + statements(otherwise),
-            Statement::For(.., body) => statements(body),
-            _ => 0,
-        };
-        body.len() + body.iter().map(inside).sum::<usize>()
-    }
     let functions: usize =
         program.functions.iter().map(|function| statements(&function.body)).sum();
     functions + program.configuration.len() + program.state.len()
+}
+
+/// Removes functions that `entries` do not call, directly or through others.
+pub(crate) fn remove_uncalled(program: &mut Program, entries: &[&'static str]) {
+    let mut called: BTreeSet<&str> = entries.iter().copied().collect();
+    // One is called only below where it stands.
+    for function in program.functions.iter().rev().filter(|it| !it.body.is_empty()) {
+        if called.contains(function.name) {
+            let text = format!("{:?}", function.body);
+            let names = program.functions.iter().map(|it| it.name);
+            called.extend(names.filter(|name| text.contains(&format!("Call(\"{name}\""))));
+        }
+    }
+    program.functions.retain(|function| called.contains(function.name));
+}
+
+/// Removes arrays that are filled and never read, and reals that are never read; for programs in which a function that
+/// answers a real does nothing else.
+pub(crate) fn remove_unread_arrays(body: &mut Vec<Statement>) {
+    let mut before = usize::MAX;
+    while statements(body) < before {
+        before = statements(body);
+        let mut reads = Reads::new();
+        body.iter().for_each(|statement| read_in(statement, &mut reads));
+        keep(body, &|statement| match statement {
+            Statement::Array(name, _) | Statement::Set(Place::Element(name, _), _) => {
+                reads.contains(&(LOCAL, name.clone()))
+            }
+            Statement::Let(name, Kind::Real, _) => reads.contains(&(LOCAL, name.clone())),
+            _ => true,
+        });
+    }
 }
 
 /// True if something was removed, after which more may be unread.

@@ -261,12 +261,16 @@ impl<R: Real> Composer<'_, R> {
 
     /// The equations with their numbers in the configuration.
     fn equations(&mut self) -> (PidEquations<Traced>, Option<TunerEquations<Traced>>) {
-        let configuration = &mut *self.configuration;
+        let (configuration, uses_rate) = (&mut *self.configuration, self.controller.uses_rate());
         let mut pid = |equations: &PidEquations<R>| PidEquations {
             structure: equations.structure,
-            numbers: equations
-                .numbers
-                .map_named(|name, doc, value| configuration.traced(name, doc, value.to_f64())),
+            numbers: equations.numbers.map_named(|name, doc, value| match value.to_f64() {
+                // Without a rate its gain of 0 is no number of the design.
+                value if name == "rate_gain_s" && !uses_rate && value.to_bits() == 0 => {
+                    Traced::zero()
+                }
+                value => configuration.traced(name, doc, value),
+            }),
         };
         match self.controller {
             Controller::Fixed(fixed) => (pid(fixed.equations()), None),

@@ -21,9 +21,14 @@ pub(crate) struct Flat {
     pub(crate) powers: Option<(&'static str, Value)>,
     /// What `reset` does.
     pub(crate) reset: Vec<Statement>,
-    /// What `step` does, or `infer` of a fuzzy system; it may end early.
+    /// What `step` does, or `infer` of a fuzzy system.
     pub(crate) step: Vec<Statement>,
+    /// What `track` does before and behind a step, where there is one; before it all may end.
+    pub(crate) track: Option<[Vec<Statement>; 2]>,
 }
+
+/// True where a step has nothing more to do.
+const OVER: &str = "step_is_over";
 
 /// Name of the constants 2^64 (or 2^512), 2^32, ... 2.
 pub(crate) const POWERS: &str = "powers_of_two";
@@ -31,12 +36,17 @@ pub(crate) const POWERS: &str = "powers_of_two";
 /// The functions of a program, flat.
 pub(crate) fn flatten(program: &Program) -> Flat {
     let mut flattener = Flattener { program, values: Vec::new(), hoisted: 0, needs_powers: false };
-    let [reset, step] = ["reset", program.entry()].map(|name| flattener.whole_function(name));
+    let reset = flattener.function("reset", Answer::Leaves);
+    let track = program.function("track").map(|function| flattener.track(&function.body));
+    let step = match track {
+        Some(_) => flattener.step(),
+        None => flattener.function(program.entry(), Answer::Leaves),
+    };
     let powers = flattener.needs_powers.then(|| {
         let powers = doublings(program.precision).map(|exponent| f64::exp2(f64::from(exponent)));
         (POWERS, Value::Reals(powers.collect()))
     });
-    Flat { values: flattener.values, powers, reset, step }
+    Flat { values: flattener.values, powers, reset, step, track }
 }
 
 /// The exponents whose sums are all exponents of normal numbers, from the largest on.
@@ -53,6 +63,8 @@ pub(crate) fn doublings(precision: Precision) -> impl Iterator<Item = u32> {
 enum Answer {
     /// Nowhere: it ends all.
     Leaves,
+    /// Nowhere: it notes that the function is over, as more follows behind it.
+    Notes,
     /// Nowhere: what follows goes on.
     Nothing,
     /// Into this place.
@@ -84,10 +96,26 @@ struct Flattener<'a> {
 }
 
 impl Flattener<'_> {
-    fn whole_function(&mut self, name: &'static str) -> Vec<Statement> {
-        let scope = Scope { function: name, answer: Answer::Leaves, arrays: Vec::new() };
+    fn function(&mut self, name: &'static str, answer: Answer) -> Vec<Statement> {
+        let scope = Scope { function: name, answer, arrays: Vec::new() };
         let function = self.program.function(name);
         function.map_or_else(Vec::new, |function| self.block(&scope, &function.body))
+    }
+
+    fn step(&mut self) -> Vec<Statement> {
+        let mut step = vec![Statement::set(OVER, Expression::Truth(false))];
+        self.declare(OVER, Kind::Truth);
+        step.extend(self.function("step", Answer::Notes));
+        step
+    }
+
+    /// What stands around the step in it.
+    fn track(&mut self, body: &[Statement]) -> [Vec<Statement>; 2] {
+        let scope = Scope { function: "track", answer: Answer::Leaves, arrays: Vec::new() };
+        let is_step = |it: &Statement| matches!(it, Statement::Call("step", _));
+        let place = body.iter().position(is_step).unwrap_or(body.len());
+        let (before, behind) = body.split_at(place);
+        [before, behind.get(1..).unwrap_or_default()].map(|part| self.block(&scope, part))
     }
 
     fn declare(&mut self, name: &str, kind: Kind) {
@@ -104,6 +132,15 @@ impl Flattener<'_> {
             match statement {
                 Statement::Return(value) => {
                     self.answered(scope, value.as_ref(), &mut out);
+                    return out;
+                }
+                Statement::If(_, then, otherwise)
+                    if matches!(scope.answer, Answer::Notes)
+                        && (returns(then) || returns(otherwise)) =>
+                {
+                    self.statement(scope, statement, &mut out);
+                    let rest = self.block(scope, body.get(place + 1..).unwrap_or_default());
+                    decide(local(OVER).negated(), rest, Vec::new(), &mut out);
                     return out;
                 }
                 // What follows belongs to the way on which the function goes on.
@@ -131,6 +168,7 @@ impl Flattener<'_> {
         match (&scope.answer, value) {
             (Answer::Into(place), Some(value)) => self.assign(scope, place.clone(), value, out),
             (Answer::Leaves, _) => out.push(Statement::Return(None)),
+            (Answer::Notes, _) => out.push(Statement::set(OVER, Expression::Truth(true))),
             (Answer::Nothing | Answer::Into(_), _) => {}
         }
     }

@@ -5,7 +5,9 @@ use crate::program::{
 };
 
 /// Values that a function may have.
-pub(super) const MOST_LOCALS: usize = 64;
+pub(super) const MOST_LOCALS: usize = 256;
+/// Most values that a function is given: the points of a set, each with its grade, and a value.
+pub(super) const MOST_ARGUMENTS: usize = 25;
 
 /// Where a value stands.
 #[derive(Clone, Debug)]

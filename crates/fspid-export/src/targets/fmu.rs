@@ -9,10 +9,7 @@ use crate::write::fmu::{Fmu, Parts, Version, parts};
 use crate::zip::archive;
 
 /// The archive; what was left out of it is told.
-pub(super) fn files<R: Real>(
-    source: &Source<'_, R>,
-    version: Version,
-) -> Result<Written, Refusal> {
+pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Result<Written, Refusal> {
     if source.flown.is_none() {
         return Err(Refusal::NoController);
     }

@@ -57,3 +57,13 @@ path = \"PREFIX_check.rs\"
 # Or, where it is not in a registry that you use: { path = \"the folder of fspid/crates/fspid-core\" }
 fspid-core = \"=VERSION\"
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::module;
+
+    #[test]
+    fn a_name_that_rust_or_the_package_has_taken_is_another_one() {
+        assert_eq!(["loop", "lib", "pitch"].map(module), ["loop_design", "lib_design", "pitch"]);
+    }
+}

@@ -1,10 +1,12 @@
 //! Samples that go to the places where something may be wrong.
 
+use fspid_core::equations::LawKind;
 use fspid_core::{Controller, Fspid, Limits, SecondInput};
 use fspid_numeric::Real;
 
 use super::drawn::BAD;
 use super::{Event, Flight, Remembered, Vector};
+use crate::precision_of;
 
 /// Errors from a tenth of a degree to more than a quarter turn, rad.
 const SIZES_RAD: [f64; 6] = [0.002, 0.01, 0.05, 0.2, 0.6, 1.7];
@@ -17,13 +19,18 @@ pub(super) fn fly<R: Real>(flight: &mut Flight<'_, R>) {
     if let Controller::SelfTuning(fspid) = flight.controller {
         rules(flight, fspid);
         zone(flight, fspid);
-        gain_limits(flight, fspid);
     }
     errors(flight);
     bad(flight);
     taking_over(flight);
     memories(flight);
     winding_up(flight);
+    if let Controller::SelfTuning(fspid) = flight.controller
+        && fspid.tuner_equations().structure.law == LawKind::Accumulating
+    {
+        gains(flight, fspid);
+        gain_limits(flight, fspid);
+    }
 }
 
 /// What the supervisor of a self-tuner is to see: the error and what stands beside it, in its units.
@@ -70,6 +77,28 @@ fn rules<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
     for error in &errors {
         for second in &seconds {
             seek(flight, fspid, [*error, *second]);
+        }
+    }
+    // Close to the centres, on both sides.
+    let near = 0.0004 * fspid.tuner().supervisor().range().to_f64();
+    for (error, second) in errors.iter().zip(&seconds).take(7) {
+        for side in [[near, near], [-near, -near], [near, -near], [-near, near]] {
+            seek(flight, fspid, [error + side[0], second + side[1]]);
+        }
+    }
+}
+
+/// Gains that no step has left, beyond both of their limits and at the edge of overflow.
+fn gains<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let good = [0.05, 0.02, 0.01];
+    for (gain, numbers) in fspid.tuner_equations().gains.iter().enumerate() {
+        let [lower, upper] = [numbers.lower, numbers.upper].map(Real::to_f64);
+        let beyond = [lower - 1.0, upper + 1.0, lower + 1e-4, upper - 1e-4];
+        let largest = largest::<R>();
+        for value in beyond.into_iter().chain([-largest, largest]).filter(|it| it.is_finite()) {
+            flight.reset(good);
+            flight.event(Event::Memory(Remembered::Gain(gain), R::from_f64(value)), good);
+            flight.step(good);
         }
     }
 }
@@ -168,7 +197,9 @@ fn bad<R: Real>(flight: &mut Flight<'_, R>) {
     let guard = flight.controller.config().guard.limit_rad().to_f64();
     let ends = [1.0, -1.0].map(|sign| [0.9999, 1.0, 1.0001].map(|part| sign * part * guard));
     let good = [0.05, 0.02, 0.01];
-    for value in BAD.into_iter().chain(ends.into_iter().flatten()) {
+    let largest = largest::<R>();
+    let ends = ends.into_iter().flatten().chain([largest, -largest]);
+    for value in BAD.into_iter().chain(ends) {
         for place in 0..3 {
             let mut sample = good;
             sample[place] = value;
@@ -194,26 +225,38 @@ fn taking_over<R: Real>(flight: &mut Flight<'_, R>) {
         (0..3).for_each(|_| flight.step(good));
         flight.event(Event::Hold, good);
     }
-    for command in BAD {
+    for command in BAD.into_iter().chain([largest::<R>(), -largest::<R>(), guard, -guard]) {
+        flight.reset(good);
         flight.track(command, good);
+        flight.event(Event::Faults, good);
         flight.step(good);
     }
-    for place in 0..3 {
+    for (place, bad) in
+        [f64::NAN, guard * 1.001].into_iter().flat_map(|bad| (0..3).map(move |it| (it, bad)))
+    {
         let mut sample = good;
-        sample[place] = f64::NAN;
+        sample[place] = bad;
+        flight.reset(good);
         flight.track(0.1, sample);
+        // A fault that is latched is no reason not to go on.
+        flight.track(0.07, good);
         flight.event(Event::Faults, good);
     }
     flight.reset(good);
     flight.event(Event::Hold, good);
 }
 
+/// The largest finite number.
+fn largest<R: Real>() -> f64 {
+    precision_of::<R>().largest()
+}
+
 /// Memories that no step has written: at the edge of overflow, beyond it, and outside of the limits.
 fn memories<R: Real>(flight: &mut Flight<'_, R>) {
     let [_, most] = fspid_core::largest_remembered::<R>().map(R::to_f64);
-    let largest = 1.0 / (R::MIN_POSITIVE.to_f64() * 4.0);
+    let largest = 0.25 * largest::<R>();
     let good = [0.05, 0.02, 0.01];
-    for size in [1.0, 0.9 * most, 1.1 * most, 0.9 * largest, 3.9 * largest] {
+    for size in [1.0, 0.9995 * most, most, 1.0005 * most, 3.6 * largest, 3.999 * largest] {
         for value in [-size, size] {
             for which in [Remembered::Integral, Remembered::Command] {
                 flight.reset(good);

@@ -2,7 +2,9 @@
 
 use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
-use crate::program::{Function, Kind, Member, Parameter, Part, Precision, Program, Value};
+use crate::program::{
+    Expression, Function, Kind, Member, Parameter, Part, Precision, Program, Value,
+};
 
 /// The text of both files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,6 +24,16 @@ pub fn c(program: &Program, prefix: &str, heading: &Heading<'_>) -> CFiles {
     let lines = heading.lines().join("\n * ");
     let head = format!("/* {lines} */\n");
     CFiles { header: head.clone() + &writer.header(), source: head + &writer.source() }
+}
+
+/// A number as it is written in C.
+pub(crate) fn c_number(program: &Program, value: f64) -> String {
+    Writer { program, prefix: "" }.number(value)
+}
+
+/// An expression as it is written in C.
+pub(crate) fn c_expression(program: &Program, prefix: &str, value: &Expression) -> String {
+    super::dialect::outer(&Writer { program, prefix }, value)
 }
 
 struct Writer<'a> {
@@ -62,21 +74,25 @@ impl Writer<'_> {
             page.line("");
             self.structure(&mut page, part);
         }
-        page.line("");
-        page.line("/* The design as it was tuned. */");
-        page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
+        if !self.program.configuration.is_empty() {
+            page.line("");
+            page.line("/* The design as it was tuned. */");
+            page.line(&format!("extern const {prefix}_configuration {prefix}_design;"));
+        }
         for function in self.program.functions.iter().filter(|function| is_public(function)) {
             page.line("");
             comment(&mut page, function.doc);
             page.line(&format!("{};", self.signature(function)));
         }
-        page.line("");
-        comment(&mut page, super::c_selftest::DOC);
-        let asked = format!("const {prefix}_configuration *configuration");
-        page.line(&format!("uint16_t {prefix}_selftest({asked});"));
-        page.line("");
-        page.line("/* As before the first sample, with the design as it was tuned. */");
-        page.line(&format!("void {prefix}_init({prefix}_state *state);"));
+        if self.program.entry() == "step" {
+            page.line("");
+            comment(&mut page, super::c_selftest::DOC);
+            let asked = format!("const {prefix}_configuration *configuration");
+            page.line(&format!("uint16_t {prefix}_selftest({asked});"));
+            page.line("");
+            page.line("/* As before the first sample, with the design as it was tuned. */");
+            page.line(&format!("void {prefix}_init({prefix}_state *state);"));
+        }
         page.line("");
         page.line("#ifdef __cplusplus");
         page.line("}");
@@ -121,8 +137,10 @@ impl Writer<'_> {
         page.line("#pragma STDC FP_CONTRACT OFF");
         page.line("#endif");
         page.line("");
-        self.design(&mut page);
-        page.line("");
+        if !self.program.configuration.is_empty() {
+            self.design(&mut page);
+            page.line("");
+        }
         self.magnitude(&mut page);
         if self.uses_power_of_two() {
             page.line("");
@@ -132,11 +150,13 @@ impl Writer<'_> {
             page.line("");
             self.function(&mut page, function);
         }
-        page.line("");
-        page.line(&format!("void {prefix}_init({prefix}_state *state)"));
-        page.line("{");
-        page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
-        page.line("}");
+        if self.program.entry() == "step" {
+            page.line("");
+            page.line(&format!("void {prefix}_init({prefix}_state *state)"));
+            page.line("{");
+            page.inside(|page| page.line(&format!("{prefix}_reset(&{prefix}_design, state);")));
+            page.line("}");
+        }
         page.text
     }
 
@@ -175,7 +195,7 @@ impl Writer<'_> {
         page.line(&format!("static {real} {}_magnitude({real} number)", self.prefix));
         page.line("{");
         page.inside(|page| {
-            page.line(&format!("return number > {zero} ? number : {zero} - number;"));
+            page.line(&format!("return (number > {zero}) ? number : ({zero} - number);"));
         });
         page.line("}");
     }
@@ -194,9 +214,8 @@ impl Writer<'_> {
         page.line("{");
         page.inside(|page| {
             page.line(&format!("union {{ uint{bits}_t bits; {real} number; }} power;"));
-            page.line(&format!(
-                "power.bits = (uint{bits}_t)(uint32_t)((int32_t)exponent + {bias}) << {shift};"
-            ));
+            page.line(&format!("const int32_t biased = (int32_t)exponent + {bias};"));
+            page.line(&format!("power.bits = (uint{bits}_t)biased << {shift};"));
             page.line("return power.number;");
         });
         page.line("}");
@@ -289,7 +308,8 @@ impl Dialect for Writer<'_> {
 
     /// Two comparisons tell a proof in intervals where the value lies; the magnitude does not.
     fn within(&self, value: &str, most: &str) -> Option<String> {
-        Some(format!("(-{most} <= {value}) && ({value} <= {most})"))
+        let least = most.strip_prefix('-').map_or_else(|| format!("-{most}"), str::to_owned);
+        Some(format!("({least} <= {value}) && ({value} <= {most})"))
     }
 
     fn bits(&self, left: &str, right: &str) -> String {

@@ -146,7 +146,7 @@ fn events(page: &mut Page, program: &Program, prefix: &str) {
     let all = format!("{prefix}_faults(&state) != (k > 0U ? marks[k - 1U][1] : 0U)");
     page.line(&format!("    if ({all}) {{ ++different; }}"));
     page.line("    break;");
-    for (name, number) in [("command_rad", 5), ("integral", 6)] {
+    for (name, number) in [("command_rad", 5), ("integral", 6), ("kp", 7), ("ki", 8), ("kd", 9)] {
         if has(name) {
             page.line(&format!("case {number}U: state.{name} = given; break;"));
         }

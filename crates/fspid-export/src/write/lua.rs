@@ -86,6 +86,9 @@ fn check_of_controller(page: &mut Page, program: &Program) {
         page.line("if event == 4 and controller.faults(state) ~= latched then different = different + 1 end");
         page.line("if event == 5 then state.command_rad = given end");
         page.line("if event == 6 then state.integral = given end");
+        for (gain, event) in ["kp", "ki", "kd"].iter().zip(7..) {
+            page.line(&format!("if event == {event} then state.{gain} = given end"));
+        }
         page.line("if event == 2 then");
         page.line(&format!("    {}, answer, 1)", call("hold")));
         page.line("elseif event == 3 then");
@@ -105,11 +108,22 @@ fn check_of_controller(page: &mut Page, program: &Program) {
 
 fn check_of_system(page: &mut Page, program: &Program) {
     let [reals, marks] = program.answers();
-    page.line("local answer, different = {}, 0");
+    let given = |name: &str| {
+        let parts = program.function(name).map_or(&[] as &[Part], |function| function.parts);
+        let words = parts.iter().map(|part| match part {
+            Part::Configuration => "controller.design",
+            other => part_name(*other),
+        });
+        format!("controller.{name}({})", words.collect::<Vec<_>>().join(", "))
+    };
+    page.line("local state, answer, different = {}, {}, 0");
+    if program.function("reset").is_some() {
+        page.line(&given("reset"));
+    }
     page.line("local function same(a, b) return a == b and 1 / a == 1 / b end");
     page.line("local function check(sample, ...)");
     page.inside(|page| {
-        page.line("controller.infer(controller.design, sample, answer)");
+        page.line(&given("infer"));
         page.line("local wanted = { ... }");
         page.line("local good = true");
         for (name, index) in reals.iter().zip(1..) {

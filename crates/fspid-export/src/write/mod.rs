@@ -23,6 +23,7 @@ mod table;
 
 pub use ardupilot::ardupilot;
 pub use c::{CFiles, c};
+pub(crate) use c::{c_expression, c_number};
 pub use c_external::{EXTERNAL_HEADER, c_external};
 pub use c_harness::c_harness;
 pub use c_projects::{cmake, platformio, sketch};

@@ -6,7 +6,9 @@
 use super::dialect::{Block, Dialect, Truths, block};
 use super::{Heading, Page, decimal, wrapped};
 use crate::flat::{Flat, flatten};
-use crate::program::{Kind, Member, Part, Place, Precision, Program, Statement, Value};
+use crate::program::{
+    Expression, Kind, Member, Part, Place, Precision, Program, Statement, Value, local,
+};
 
 /// The program as the function block `FB_<prefix>`.
 #[must_use]
@@ -54,6 +56,26 @@ pub(super) fn visible_name(program: &Program, part: Part, name: &str) -> String 
     }
 }
 
+/// Inputs beside the sample: what is done with a controller besides a step. Name, type, what it is.
+pub(super) fn events(program: &Program) -> Vec<(String, &'static str, &'static str)> {
+    let mut events = Vec::new();
+    if program.function("reset").is_some() {
+        events.push(("reset".to_owned(), "BOOL", "Forget everything first."));
+    }
+    if program.function("faults").is_some() {
+        let doc = "Clear what was latched first.";
+        events.push(("clear_faults".to_owned(), "BOOL", doc));
+    }
+    if let Some(track) = program.function("track") {
+        let doc = "Another commands; take part, so that taking over from it bumps nothing.";
+        events.push(("track".to_owned(), "BOOL", doc));
+        events.extend(track.parameters.iter().map(|given| {
+            (format!("track_{}", given.name), real(program.precision), "What the other commands.")
+        }));
+    }
+    events
+}
+
 /// A remark in the brackets that every compiler knows.
 pub(super) fn remark(page: &mut Page, text: &str) {
     for line in wrapped(&text.replace('`', "'"), 92) {
@@ -92,12 +114,12 @@ impl Writer<'_> {
 
     fn inputs_and_outputs(&self, page: &mut Page) {
         page.line("VAR_INPUT");
-        if self.program.function("reset").is_some() {
-            page.inside(|page| {
-                remark(page, "Forget everything first.");
-                page.line("reset : BOOL;");
-            });
-        }
+        page.inside(|page| {
+            for (name, kind, doc) in events(self.program) {
+                remark(page, doc);
+                page.line(&format!("{name} : {kind};"));
+            }
+        });
         self.members(page, Part::Sample);
         page.line("END_VAR");
         page.line("VAR_OUTPUT");
@@ -201,11 +223,24 @@ impl Writer<'_> {
     }
 
     fn body(&self, page: &mut Page) {
+        let when = |page: &mut Page, input: &str, body: &[Statement]| {
+            block(self, page, &[Statement::when(local(input), body.to_vec())]);
+        };
         if !self.flat.reset.is_empty() {
-            let reset = Statement::when(crate::program::local("reset"), self.flat.reset.clone());
-            block(self, page, &[reset]);
+            when(page, "reset", &self.flat.reset);
+        }
+        if self.program.function("faults").is_some() {
+            let none = Expression::Byte(0);
+            when(page, "clear_faults", &[Statement::set_member(Part::State, "faults", none)]);
+        }
+        let [before, behind] = self.flat.track.clone().unwrap_or_default();
+        if !before.is_empty() {
+            when(page, "track", &before);
         }
         block(self, page, &self.flat.step);
+        if !behind.is_empty() {
+            when(page, "track", &behind);
+        }
     }
 
     /// True if a member is a list of small whole numbers.

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::structured_text::{array, real, real_literal, remark, statement, visible_name};
+use super::structured_text::{array, events, real, real_literal, remark, statement, visible_name};
 use super::{Heading, Page};
 use crate::interpret::{Cell, Machine};
 use crate::program::{Part, Program};
@@ -30,7 +30,7 @@ pub fn structured_text_check<R: Real>(
     remark(&mut page, &about);
     page.line(&format!("PROGRAM PRG_{prefix}_check"));
     declarations(&mut page, prefix, &columns);
-    body(&mut page, &columns, count, program.function("reset").is_some());
+    body(&mut page, &columns, count, idle(program));
     page.line("END_PROGRAM");
     page.text
 }
@@ -110,15 +110,24 @@ fn declarations(page: &mut Page, prefix: &str, columns: &[Column]) {
     page.line("END_VAR");
 }
 
-fn body(page: &mut Page, columns: &[Column], count: usize, resets: bool) {
+/// The inputs beside the sample: a reset at the first one, and nothing else.
+fn idle(program: &Program) -> Vec<String> {
+    let idle = |(name, kind, _): (String, &str, &str)| match (name.as_str(), kind) {
+        ("reset", _) => "reset := (check_index = DINT#0)".to_owned(),
+        (name, "BOOL") => format!("{name} := FALSE"),
+        (name, kind) => format!("{name} := {kind}#0.0"),
+    };
+    events(program).into_iter().map(idle).collect()
+}
+
+fn body(page: &mut Page, columns: &[Column], count: usize, idle: Vec<String>) {
     let of = |column: &Column| format!("{}[check_index]", column.list());
     let (given, expected): (Vec<_>, Vec<_>) =
         columns.iter().partition(|column| column.part == Part::Sample);
     page.line(&format!("IF check_index < DINT#{count} THEN"));
     page.inside(|page| {
-        let reset = resets.then(|| "reset := (check_index = DINT#0)".to_owned());
         let inputs = given.iter().map(|column| format!("{} := {}", column.visible, of(column)));
-        let inputs: Vec<String> = reset.into_iter().chain(inputs).collect();
+        let inputs: Vec<String> = idle.into_iter().chain(inputs).collect();
         let inputs = inputs.join(", ");
         statement(page, &format!("controller({inputs});"));
         page.line("check_good := TRUE;");

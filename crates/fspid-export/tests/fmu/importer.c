@@ -309,7 +309,7 @@ static void steps_back(void)
     void *state = NULL, *copy = NULL;
     unsigned half = samples / 2U;
     size_t size = 0U, k;
-    unsigned char *bytes;
+    unsigned char *bytes, keep, time[8];
     fly(it, 0, 0U, half);
     CHECK(get_state(it, &state) == ok && state != NULL);
     fly(it, 0, half, samples);
@@ -333,6 +333,18 @@ static void steps_back(void)
         CHECK(free_state(other, &damaged) == ok);
         (void)reset_(other);
     }
+    /* Behind the mark of 16 bytes: three times, the count of samples, the mode. */
+    keep = bytes[48];
+    bytes[48] = 3U;
+    CHECK(read_state(other, bytes, size, &copy) == error && reset_(other) == ok);
+    bytes[48] = keep;
+    memcpy(time, bytes + 16, 8U);
+    memset(bytes + 16, 0xff, 8U);
+    CHECK(read_state(other, bytes, size, &copy) == error && reset_(other) == ok);
+    memcpy(bytes + 16, time, 8U);
+    /* An input may be anything. */
+    CHECK(set_state(it, state) == ok && set_one(it, input_at[0], NAN) == ok && get_state(it, &state) == ok);
+    CHECK(write_state(it, state, bytes, size) == ok && read_state(other, bytes, size, &copy) == ok);
     CHECK(read_state(other, bytes, size - 1U, &copy) == error);
     CHECK(reset_(other) == ok);
     CHECK(write_state(other, copy, bytes, size - 1U) == error);
@@ -415,13 +427,17 @@ static void refuses_parameters(void)
         CHECK(set_one(it, lower_at, upper + 1.0) == discard);
         CHECK(got(it, lower_at, &after) == ok && bits_of(after) == bits_of(lower));
         both[0] = lower_at; both[1] = upper_at;
-        limits[0] = upper + 1.0; limits[1] = upper + 2.0;
+        limits[0] = 1000.0; limits[1] = 1001.0;
         CHECK(set_many(it, both, 2U, limits) == ok);
         fly(it, 0, 0U, 0U);
         CHECK(reset_(it) == ok);
         CHECK(set_one(it, lower_at, upper + 1.0) == ok);
         CHECK(entered(it, 0.0, 0, 0.0) == ok);
         CHECK(exit_(it) == error);
+        /* Before the first sample the command is 0, or the limit next to it. */
+        CHECK(reset_(it) == ok && entered(it, 0.0, 0, 0.0) == ok && set_many(it, both, 2U, limits) == ok);
+        CHECK(got(it, output_at[0], &after) == ok && bits_of(after) == bits_of(limits[0]));
+        CHECK(exit_(it) == ok && got(it, output_at[0], &after) == ok && bits_of(after) == bits_of(limits[0]));
     }
     free_(it);
 }
@@ -457,6 +473,9 @@ static void wrong_calls(void)
     CHECK(stepped(it, 10.0 * period, period) == error);
     CHECK(reset_(it) == ok && entered(it, 5.0, 0, 0.0) == ok && exit_(it) == ok);
     CHECK(stepped(it, 4.0, period) == error);
+    CHECK(reset_(it) == ok && entered(it, 5.0, 0, 0.0) == ok && exit_(it) == ok);
+    give(it, row_of(0, 0U));
+    CHECK(stepped(it, 5.0, period) == ok && answers(it, row_of(0, 0U)));
     CHECK(reset_(it) == ok && entered(it, 5.0, 0, 0.0) == ok && exit_(it) == ok);
     CHECK(set_one(it, input_at[0], NAN) == ok && stepped(it, 5.0, period) == ok && whole_of(it, output_at[5]) == 1);
     CHECK(set_one(it, output_at[0], 0.0) == error);

@@ -5,6 +5,7 @@ use std::path::Path;
 use fspid_core::fuzzy::OutOfRange;
 use fspid_fuzzy::system::{Parts, Sampling, System};
 use fspid_fuzzy::{LABEL_COUNT, NumberTable, Supervisor};
+use sha2::{Digest as _, Sha256};
 
 use super::scenario;
 use crate::carried::rule_table_names;
@@ -41,6 +42,15 @@ pub fn is_rule_table_file(path: &Path) -> bool {
 pub fn is_scenario(name: &str) -> bool {
     let path = Path::new(name);
     Format::of(path) == Some(Format::Toml) && text(path).is_ok_and(|text| is_scenario_text(&text))
+}
+
+/// SHA-256 of a system's file, in hexadecimal digits.
+///
+/// # Errors
+/// [`LoadError::Unreadable`].
+pub fn digest(path: &Path) -> Result<String, LoadError> {
+    let bytes = Sha256::digest(text(path)?.as_bytes());
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// The system in a file, or that of a shipped rule table with a half range. A scenario file stands for the

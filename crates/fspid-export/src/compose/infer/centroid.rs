@@ -10,31 +10,41 @@ use crate::program::{
 };
 
 /// The function `centroid`.
-pub(super) fn function<R: Real>(
+pub(in crate::compose) fn function<R: Real>(
     defuzzifier: Defuzzifier,
     policy: OutOfRange,
 ) -> Result<Function, Refusal> {
-    let sampled = |count, cells, offset, end_weight| Grid { count, cells, offset, end_weight };
+    let mut function = of::<R>("centroid", defuzzifier, 7)?;
+    function.body = bounded(policy, function.body);
+    Ok(function)
+}
+
+/// A function like it for any number of triangles, with one at either end of the universe.
+pub(crate) fn of<R: Real>(
+    name: &'static str,
+    defuzzifier: Defuzzifier,
+    triangles: usize,
+) -> Result<Function, Refusal> {
+    let sampled = |count, cells, offset, end_weight| {
+        Grid { count, cells, offset, end_weight, triangles }.body::<R>()
+    };
     let (doc, body) = match defuzzifier {
         Defuzzifier::Exact => (
             "Centre of gravity of the cut triangles in closed form, in spacings from the middle.",
-            bounded(policy, exact::<R>()),
+            exact::<R>(triangles),
         ),
-        Defuzzifier::Endpoints(n) => {
-            (SAMPLED, bounded(policy, sampled(n, n - 1, 0.0, 1.0).body::<R>()))
-        }
-        Defuzzifier::Trapezoid(n) => {
-            (SAMPLED, bounded(policy, sampled(n, n - 1, 0.0, 0.5).body::<R>()))
-        }
-        Defuzzifier::Midpoint(n) => (SAMPLED, bounded(policy, sampled(n, n, 0.5, 1.0).body::<R>())),
-        Defuzzifier::LeftEnd(n) => (SAMPLED, bounded(policy, sampled(n, n, 0.0, 1.0).body::<R>())),
+        Defuzzifier::Endpoints(n) => (SAMPLED, sampled(n, n - 1, 0.0, 1.0)),
+        Defuzzifier::Trapezoid(n) => (SAMPLED, sampled(n, n - 1, 0.0, 0.5)),
+        Defuzzifier::Midpoint(n) => (SAMPLED, sampled(n, n, 0.5, 1.0)),
+        Defuzzifier::LeftEnd(n) => (SAMPLED, sampled(n, n, 0.0, 1.0)),
         Defuzzifier::Vertices(_) => return Err(Refusal::Defuzzifier(defuzzifier)),
     };
+    let strengths = Parameter { name: "strengths", kind: Kind::Reals(triangles), written: false };
     Ok(Function {
-        name: "centroid",
+        name,
         doc,
         parts: &[],
-        parameters: vec![Parameter { name: "strengths", kind: Kind::Reals(7), written: false }],
+        parameters: vec![strengths],
         answers: Some(Kind::Real),
         body,
     })
@@ -56,6 +66,14 @@ fn bounded(policy: OutOfRange, mut body: Vec<Statement>) -> Vec<Statement> {
 
 /// Far below the area of any set that is cut where the weakest of all strongest rules cuts it.
 const SMALL_AREA: f64 = 1.0 / (1_u64 << 40) as f64;
+/// Spacings from the middle of the universe to its ends.
+fn half_span(triangles: usize) -> f64 {
+    0.5 * triangles.saturating_sub(1) as f64
+}
+
+fn count_of(triangles: usize) -> i32 {
+    i32::try_from(triangles).unwrap_or(i32::MAX)
+}
 
 const SAMPLED: &str =
     "Centre of gravity of the cut triangles by samples, in spacings from the middle.";
@@ -74,7 +92,7 @@ fn half_of(strength: &str) -> Expression {
 }
 
 /// As `exact` of `fspid-fuzzy`, operation by operation.
-fn exact<R: Real>() -> Vec<Statement> {
+fn exact<R: Real>(triangles: usize) -> Vec<Statement> {
     let sixth = number(R::from_f64(1.0 / 6.0).to_f64());
     let inner_moment = |s: &dyn Fn() -> Expression| {
         s() * (number(0.5) - s() * (number(0.5) - s() * sixth.clone()))
@@ -103,9 +121,9 @@ fn exact<R: Real>() -> Vec<Statement> {
         Statement::real("left_half", half_of("left")),
         Statement::real("area", number(0.0)),
         Statement::real("moment", number(0.0)),
-        Statement::real("position", number(-3.0)),
+        Statement::real("position", number(-half_span(triangles))),
         Statement::Remark("Both halves in each gap between two peaks, less their overlap.".into()),
-        Statement::repeat("gap", 6, gap),
+        Statement::repeat("gap", count_of(triangles) - 1, gap),
         Statement::Return(Some((moment() + ends) / area())),
     ]
 }
@@ -116,14 +134,16 @@ struct Grid {
     cells: u32,
     offset: f64,
     end_weight: f64,
+    triangles: usize,
 }
 
 impl Grid {
     fn body<R: Real>(&self) -> Vec<Statement> {
         let last = i32::try_from(self.count).unwrap_or(i32::MAX) - 1;
-        let cell = (R::from_f64(3.0) + R::from_f64(3.0)) / R::from_f64(f64::from(self.cells));
+        let half_span = half_span(self.triangles);
+        let cell = R::from_f64(2.0 * half_span) / R::from_f64(f64::from(self.cells));
         let real = |index: &str| Expression::ToReal(Box::new(local(index)));
-        let x = (real("sample") + number(self.offset)) * number(cell.to_f64()) - number(3.0);
+        let x = (real("sample") + number(self.offset)) * number(cell.to_f64()) - number(half_span);
         let triangle = number(1.0) - (local("x") - local("peak")).magnitude();
         let union = vec![
             Statement::real("triangle", triangle),
@@ -136,8 +156,8 @@ impl Grid {
         let mut sample = vec![
             Statement::real("x", x),
             Statement::real("grade", number(0.0)),
-            Statement::real("peak", number(-3.0)),
-            Statement::repeat("label", 7, union),
+            Statement::real("peak", number(-half_span)),
+            Statement::repeat("label", count_of(self.triangles), union),
         ];
         if self.end_weight < 1.0 {
             let weighted = number(self.end_weight) * local("grade");

@@ -81,7 +81,8 @@ pub(super) fn body<R: Real>(
     body.push(Statement::Let("rule".to_owned(), Kind::Whole, first));
     for (gain, place) in GAINS.into_iter().zip(0..) {
         let at = |steps| {
-            let rule = Expression::binary(Operator::Add, local("rule"), whole(steps));
+            let further = || Expression::binary(Operator::Add, local("rule"), whole(steps));
+            let rule = if steps == 0 { local("rule") } else { further() };
             member_element(Part::Configuration, &format!("rules_{gain}"), rule)
         };
         let column = |set| element("column_grades", whole(set));

@@ -60,6 +60,8 @@ impl<R: Real> Composer<'_, R> {
         let within = |most| local("given_rad").magnitude().at_most(most);
         body.push(Statement::when(within(self.largest()).negated(), held(NOT_FINITE)));
         body.push(Statement::when(within(self.guard()).negated(), held(IMPLAUSIBLE)));
+        // The step would hold it alike; asked here, it is known below.
+        body.extend(self.believed());
         let joined = Expression::binary(Operator::BitOr, local("latched"), local("fault"));
         body.extend([
             latched(),
@@ -95,7 +97,7 @@ impl<R: Real> Composer<'_, R> {
 
     /// The command within its limits, and the integral that goes with it.
     fn tracked(&mut self) -> Vec<Statement> {
-        let (_, mut body) = self.sampled();
+        let mut body = Vec::new();
         let (pid, _) = self.equations();
         let state = |name: &str| Traced::read(member(Part::State, name));
         let (nominal, zero) = (self.nominal(), Traced::read(number(0.0)));
