@@ -310,9 +310,10 @@ fn flown(controller: &Controller, folder: &Path) -> Vec<Trace> {
         evidence: false,
     };
     let exported = export(controller, &request).expect("nothing that is drawn is refused");
-    std::fs::create_dir_all(folder.join("external")).expect("a folder");
     for file in &exported.files {
-        std::fs::write(folder.join(&file.name), &file.bytes).expect("a file");
+        let path = folder.join(&file.name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(path, &file.bytes).expect("a file");
     }
     library(folder, "drawn.so", &["drawn.c".into(), "external/drawn_external.c".into()], &[]);
     let dt_s = controller.config().dt_s;
