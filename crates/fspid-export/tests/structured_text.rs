@@ -75,7 +75,7 @@ fn different<R: Real>(
         }
         for (name, value) in text.inputs.iter().zip(&vector.sample) {
             // A sample that is no number is what a controller is told to hold by.
-            let nan = R::ZERO / R::ZERO;
+            let nan = R::from_f64(f64::NAN);
             block.set(name, real(if vector.event == Event::Hold { nan } else { *value }))?;
         }
         block.call()?;
