@@ -113,7 +113,7 @@ fn self_tested<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Pat
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, max_shrink_iters: 8, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 8, max_shrink_iters: 8, ..ProptestConfig::default() })]
 
     #[test]
     fn the_c_of_any_controller_answers_as_the_controller_without_a_warning(
