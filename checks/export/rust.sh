@@ -19,7 +19,9 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
         read -r numbers angles <<< "$choice"
         folder="$work/$name-$numbers"
         "$FSPID" export "$design" --controller FSPID --to rust --numbers "$numbers" --angles "$angles" --out "$folder" &> "$work/told"
-        echo "$name, $numbers, $angles: $(cd "$folder" && cargo run --quiet --example check "${here[@]}")"
+        said="$(cd "$folder" && cargo run --quiet --example check "${here[@]}")"
+        echo "$name, $numbers, $angles: $said"
+        [[ "$said" == *" 0 different"* ]]
     done
     if [[ -x /usr/bin/rustc && -d /usr/lib/rustlib/src ]]; then
         (
