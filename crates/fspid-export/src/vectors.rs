@@ -4,7 +4,7 @@
 //! Directed are: every rule at the centres of its sets and between them, both ends of every limit, wind-up and the way
 //! out of it, dead zone, guard, numbers that are none, memories that nobody has written, taking over. Drawn are
 //! set-points that jump by up to 0.6 rad and a pitch that follows with noise. What of a program they reach is counted by
-//! [`Machine::branches`](crate::interpret::Machine::branches), what they find by [`evidence`](crate::evidence).
+//! [`Machine::branches`](crate::interpret::Machine::branches), what they find by the evidence of an export.
 
 mod directed;
 mod drawn;
