@@ -33,8 +33,9 @@ pub(crate) struct Arguments {
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
-    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), table (the
-    /// supervisor alone, in C and CSV), fmu2 or fmu3 (functional mock-up units for co-simulation).
+    /// The language: c (C99, freestanding), lua (5.3), st (Structured Text), rust (a constant of fspid-core), matlab (a
+    /// function and a .fis), simulink (an S-function), table (the supervisor alone, in C and CSV), fmu2 or fmu3 (functional
+    /// mock-up units for co-simulation).
     #[arg(long, value_name = "TARGET", value_parser = target)]
     to: Target,
     /// The folder to write into; a new or an empty one.
@@ -52,9 +53,10 @@ pub(crate) struct Arguments {
     /// How many samples the vectors have.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     samples: u32,
-    /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them.
-    #[arg(long, value_name = "N", default_value_t = fspid_export::table::POINTS)]
-    points: usize,
+    /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them; 49 if left
+    /// out.
+    #[arg(long, value_name = "N")]
+    points: Option<usize>,
     /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
     /// script that makes the rest; for c, takes a minute.
     #[arg(long, value_name = "DIR")]
@@ -122,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Unit::Degrees => Angles::Degrees,
         },
         samples: arguments.samples as usize,
-        points: arguments.points,
+        points: points(arguments)?,
         digest: &study.digest,
         evidence: evidence(arguments)?.is_some(),
     };
@@ -200,6 +202,17 @@ fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
         )));
     }
     Ok(())
+}
+
+/// The points of a table along an input.
+fn points(arguments: &Arguments) -> Result<usize, Failure> {
+    match arguments.points {
+        Some(_) if arguments.to != Target::Table => {
+            let to = arguments.to.name();
+            Err(Failure::input(format_args!("--points goes with --to table; {to} has no table")))
+        }
+        given => Ok(given.unwrap_or(fspid_export::table::POINTS)),
+    }
 }
 
 /// The folder of the evidence, if the target has some and the folder may be written into.

@@ -45,11 +45,26 @@ fn notes(table: &SurfaceTable) -> Vec<String> {
     )];
     for (width, deviations) in [("32", &table.single), ("16", &table.short)] {
         for (name, Deviation { proved, seen, rms }) in ["kp", "ki", "kd"].iter().zip(deviations) {
+            let [seen, rms] = [seen, rms].map(|value| told(*value));
+            let proved = told_above(*proved);
             notes.push(format!(
-                "increment of {name}, {width} bits: off by at most {proved:.5} (proved), {seen:.5} (seen), {rms:.5} (rms)"
+                "increment of {name}, {width} bits: off by at most {proved} (proved), {seen} (seen), {rms} (rms)"
             ));
         }
     }
     notes.push("the rest of the controller is not in the table; --to c writes it, with the exact supervisor".to_owned());
     notes
+}
+
+/// Below it a number is told with its power of ten.
+const SMALL: f64 = 1e-3;
+
+fn told(value: f64) -> String {
+    if value < SMALL { format!("{value:.1e}") } else { format!("{value:.5}") }
+}
+
+/// A bound in digits that are not below it.
+fn told_above(bound: f64) -> String {
+    // Two digits are off by a twentieth of the first at most.
+    told(if bound < SMALL { 1.05 * bound } else { (1e5 * bound).ceil() / 1e5 })
 }
