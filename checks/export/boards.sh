@@ -4,10 +4,8 @@
 # test run. Needs cc and c++; CMake is installed by apt where it is missing.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-if ! command -v cmake > /dev/null; then
-    apt-get update -qq
-    apt-get install -y -qq --no-install-recommends cmake
-fi
+. checks/export/tools.sh
+needs cmake cmake || exit 0
 if [[ -z "${FSPID:-}" ]]; then
     cargo build --release --quiet
     FSPID=target/release/fspid

@@ -2,6 +2,9 @@
 # Runs the ten commands of docs/guide/export.md as they stand there, in a copy of what they ask for.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+. checks/export/tools.sh
+needs qemu-system-arm qemu-system-arm || exit 0
+needs arm-none-eabi-gcc gcc-arm-none-eabi libnewlib-arm-none-eabi || exit 0
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 awk '/^## In ten commands/ { here = 1 } here && /^```$/ { exit } block { print } here && /^```sh$/ { block = 1 }' \

@@ -4,10 +4,9 @@
 # that stub, two blocks side by side. Nobody here can run MATLAB or Simulink itself. Installs octave by apt.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-if ! command -v octave > /dev/null || ! command -v mkoctfile > /dev/null; then
-    apt-get update -qq
-    apt-get install -y -qq --no-install-recommends octave octave-dev
-fi
+. checks/export/tools.sh
+needs octave octave octave-dev || exit 0
+needs mkoctfile octave-dev || exit 0
 if [[ -z "${FSPID:-}" ]]; then
     cargo build --release --quiet
     FSPID=target/release/fspid
