@@ -89,7 +89,8 @@ fn findings<R: Real>(subject: &Subject<'_, R>) -> Vec<Finding> {
             })
             .collect();
         for thread in threads {
-            findings.extend(thread.join().unwrap_or_default());
+            // A change that is lost would look like one that nobody has made.
+            findings.extend(thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         }
     });
     findings.into_values().filter(|finding| !finding.lines.is_empty()).collect()

@@ -1,8 +1,6 @@
 //! What a proof in intervals is asked of the C: from any memory within bounds and for any finite sample, no number
 //! overflows, and the memory is within the same bounds afterwards; so for ever.
 
-use std::fmt::Write as _;
-
 use fspid_core::equations::LawKind;
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Controller, IntegralForm, largest_remembered};
@@ -10,7 +8,7 @@ use fspid_numeric::Real;
 
 use super::Subject;
 use crate::compose::GAINS;
-use crate::program::{Member, Part, Precision, Value};
+use crate::program::{Member, Part, Precision, Program, Value};
 use crate::targets::File;
 use crate::write::c_number;
 
@@ -105,114 +103,101 @@ fn gain_bounds<R: Real>(subject: &Subject<'_, R>, gain: usize) -> [f64; 2] {
     [(numbers.nominal - reach).max(numbers.lower), (numbers.nominal + reach).min(numbers.upper)]
 }
 
+/// The text of `eva_main.c`.
 fn main<R: Real>(subject: &Subject<'_, R>) -> String {
-    let (prefix, program) = (subject.prefix, subject.program);
-    let real = if program.precision == Precision::Single { "float" } else { "double" };
-    let number = |value: f64| c_number(program, value);
-    let (zero, one) = (number(0.0), number(1.0));
-    let mut text = "/* From any memory within its bounds and for any finite sample: nothing overflows, and the memory is within\n   \
-        the same bounds afterwards. What is asked of the exponential, sweep.c shows for every number. */\n"
-        .to_owned();
-    let _ = writeln!(text, "#include \"{prefix}.h\"");
-    if program.function("exponential").is_some() {
-        let _ = writeln!(
-            text,
-            "/*@ requires x <= {zero}; assigns \\result \\from x; ensures \\is_finite(\\result);\n    ensures {zero} <= \
-             \\result; ensures \\result <= {one}; */\nstatic {real} {prefix}_exponential({real} x);"
-        );
-    }
-    let _ = write!(
-        text,
-        "#include \"{prefix}.c\"\n\n/*@ assigns \\result \\from \\nothing; ensures \\is_finite(\\result); */\nextern {real} \
-         any_number(void);\n/*@ assigns \\result \\from \\nothing; */\nextern int any_choice(void);\n\nstatic {real} \
-         between({real} least, {real} most)\n{{\n    {real} number = any_number();\n    if (!(least <= number && number \
-         <= most)) {{\n        number = least;\n    }}\n    return number;\n}}\n\nint main(void)\n{{\n    {prefix}_state state;\n    \
-         {prefix}_sample sample;\n    {prefix}_answer answer;\n    {prefix}_init(&state);\n"
-    );
-    let kept: Vec<&Member> = program.members(Part::State).iter().collect();
-    let asserted = |text: &mut String, when: &str| {
-        for Member { name, value, .. } in &kept {
-            if matches!(value, Value::Real(_)) {
-                let [least, most] = bounds(subject, name).map(number);
-                let _ = writeln!(
-                    text,
-                    "    /*@ assert {name}_{when}: {least} <= state.{name} <= {most}; */"
-                );
-            }
-        }
+    let program = subject.program;
+    let [zero, one] = [0.0, 1.0].map(|value| c_number(program, value));
+    let exponential = match program.function("exponential") {
+        Some(_) => EXPONENTIAL.replace("@ZERO@", &zero).replace("@ONE@", &one),
+        None => String::new(),
     };
-    asserted(&mut text, "begins");
-    for Member { name, value, .. } in &kept {
+    let sample = program.members(Part::Sample).iter();
+    let sample: String =
+        sample.map(|member| format!("    sample.{} = any_number();\n", member.name)).collect();
+    include_str!("scripts/eva_main.c")
+        .replace("@EXPONENTIAL@\n", &exponential)
+        .replace("@BEGINS@\n", &asserted(subject, "begins"))
+        .replace("@MEMORY@\n", &memory(subject))
+        .replace("@SAMPLE@\n", &sample)
+        .replace("@GOES_ON@\n", &asserted(subject, "goes_on"))
+        .replace("@LIMITS@\n", &within_limits(subject))
+        .replace("@COMMAND@", &program.members(Part::Answer)[0].name)
+        .replace("@REAL@", real(program))
+        .replace("@PREFIX@", subject.prefix)
+}
+
+/// What Eva believes of it, and `sweep.c` shows.
+const EXPONENTIAL: &str =
+    "/*@ requires x <= @ZERO@; assigns \\result \\from x; ensures \\is_finite(\\result);
+    ensures @ZERO@ <= \\result; ensures \\result <= @ONE@; */
+static @REAL@ @PREFIX@_exponential(@REAL@ x);
+";
+
+fn real(program: &Program) -> &'static str {
+    if program.precision == Precision::Single { "float" } else { "double" }
+}
+
+/// That every number of the memory is within its bounds.
+fn asserted<R: Real>(subject: &Subject<'_, R>, when: &str) -> String {
+    let reals = subject.program.members(Part::State).iter();
+    let reals = reals.filter(|member| matches!(member.value, Value::Real(_)));
+    let line = |Member { name, .. }: &Member| {
+        let [least, most] = bounds(subject, name).map(|value| c_number(subject.program, value));
+        format!("    /*@ assert {name}_{when}: {least} <= state.{name} <= {most}; */\n")
+    };
+    reals.map(line).collect()
+}
+
+/// Any memory within its bounds.
+fn memory<R: Real>(subject: &Subject<'_, R>) -> String {
+    let line = |Member { name, value, .. }: &Member| {
         let value = match value {
             Value::Real(_) => {
-                let [least, most] = bounds(subject, name).map(number);
-                format!("between({least}, {most})")
+                let ends = bounds(subject, name).map(|value| c_number(subject.program, value));
+                format!("between({})", ends.join(", "))
             }
             Value::Truth(_) => "(any_choice() ? 1U : 0U)".to_owned(),
             _ => "(uint8_t)any_choice()".to_owned(),
         };
-        let _ = writeln!(text, "    state.{name} = {value};");
-    }
-    for member in program.members(Part::Sample) {
-        let _ = writeln!(text, "    sample.{} = any_number();", member.name);
-    }
-    let _ = write!(
-        text,
-        "    switch (any_choice()) {{\n    case 0:\n        {prefix}_hold(&{prefix}_design, &state, &answer, 1U);\n        \
-         break;\n    case 1:\n        {prefix}_track(&{prefix}_design, &state, &sample, &answer, any_number());\n        \
-         break;\n    default:\n        {prefix}_step(&{prefix}_design, &state, &sample, &answer);\n        break;\n    }}\n"
-    );
-    asserted(&mut text, "goes_on");
-    let command = &program.members(Part::Answer)[0].name;
-    let [least, most] = bounds(subject, "command_rad");
-    // Degrees are rounded once more.
-    let unit = subject
-        .heading
-        .angles
-        .and_then(crate::Angles::per_radian)
-        .map_or(1.0, |per_radian| per_radian * (1.0 + 1e-6));
-    if subject.controller.config().limits.is_some() {
-        let [least, most] = [least * unit, most * unit].map(number);
-        let _ = writeln!(
-            text,
-            "    /*@ assert within_limits: {least} <= answer.{command} <= {most}; */"
-        );
-    }
-    let _ = writeln!(text, "    /*@ assert finite: \\is_finite(answer.{command}); */");
-    text += "    return 0;\n}\n";
-    text
+        format!("    state.{name} = {value};\n")
+    };
+    subject.program.members(Part::State).iter().map(line).collect()
 }
 
-fn sweep<R: Real>(subject: &Subject<'_, R>) -> String {
-    let prefix = subject.prefix;
-    if subject.program.precision == Precision::Double {
-        return "/* Numbers of 64 bits are too many for a sweep. */\n#include <stdio.h>\nint main(void)\n{\n    printf(\"not \
-                swept: numbers of 64 bits\\n\");\n    return 0;\n}\n"
-            .to_owned();
+/// That the command is within its limits, where it has some.
+fn within_limits<R: Real>(subject: &Subject<'_, R>) -> String {
+    if subject.controller.config().limits.is_none() {
+        return String::new();
     }
-    let number = |value: f64| c_number(subject.program, value);
-    let largest = number(subject.program.precision.largest());
-    let guard = number(subject.controller.config().guard.limit_rad().to_f64());
-    let exponential = if subject.program.function("exponential").is_some() {
-        format!(
-            "        if (number <= 0.0f) {{\n            const float power = {prefix}_exponential(number);\n            wrong += \
-             !(0.0f <= power && power <= 1.0f);\n            sum = (sum ^ bits_of(power)) * 16777619U;\n        }}\n"
-        )
-    } else {
-        String::new()
-    };
-    format!(
-        "/* Every number of 32 bits, NaN and infinities too: what is asked of a sample says what its bits say, the \
-         magnitude\n   is that of the bits, and the exponential of what is not above 0 lies in 0 to 1. */\n#include <stdint.h>\n\
-         #include <stdio.h>\n#include \"{prefix}.c\"\n\nstatic uint32_t bits_of(float number)\n{{\n    union {{ float number; \
-         uint32_t bits; }} both;\n    both.number = number;\n    return both.bits;\n}}\n\nint main(void)\n{{\n    unsigned long \
-         wrong = 0UL;\n    uint32_t sum = 2166136261U, bits = 0U;\n    do {{\n        union {{ uint32_t bits; float number; \
-         }} both;\n        both.bits = bits;\n        const float number = both.number;\n        const uint32_t size = bits & \
-         0x7FFFFFFFU;\n        const int finite = (-{largest} <= number) && (number <= {largest});\n        const int \
-         believed = (-{guard} <= number) && (number <= {guard});\n        wrong += finite != (size < 0x7F800000U);\n        \
-         wrong += believed != (size <= bits_of({guard}));\n        if (size <= 0x7F800000U) {{\n            wrong += \
-         bits_of({prefix}_magnitude(number)) != size;\n        }}\n{exponential}        ++bits;\n    }} while (bits != 0U);\n    \
-         printf(\"4294967296 numbers, %lu wrong, sum %08lx\\n\", wrong, (unsigned long)sum);\n    return wrong == 0UL ? 0 : \
-         1;\n}}\n"
-    )
+    // Degrees are rounded once more.
+    let per_radian = subject.heading.angles.and_then(crate::Angles::per_radian);
+    let unit = per_radian.map_or(1.0, |per_radian| per_radian * (1.0 + 1e-6));
+    let [least, most] =
+        bounds(subject, "command_rad").map(|value| c_number(subject.program, value * unit));
+    format!("    /*@ assert within_limits: {least} <= answer.@COMMAND@ <= {most}; */\n")
 }
+
+/// The text of `sweep.c`.
+fn sweep<R: Real>(subject: &Subject<'_, R>) -> String {
+    let program = subject.program;
+    if program.precision == Precision::Double {
+        return include_str!("scripts/not_swept.c").to_owned();
+    }
+    let exponential = match program.function("exponential") {
+        Some(_) => SWEPT_EXPONENTIAL,
+        None => "",
+    };
+    let guard = subject.controller.config().guard.limit_rad().to_f64();
+    include_str!("scripts/sweep.c")
+        .replace("@EXPONENTIAL@\n", exponential)
+        .replace("@LARGEST@", &c_number(program, program.precision.largest()))
+        .replace("@GUARD@", &c_number(program, guard))
+        .replace("@PREFIX@", subject.prefix)
+}
+
+const SWEPT_EXPONENTIAL: &str = "        if (number <= 0.0f) {
+            const float power = @PREFIX@_exponential(number);
+            wrong += !(0.0f <= power && power <= 1.0f);
+            sum = (sum ^ bits_of(power)) * 16777619U;
+        }
+";

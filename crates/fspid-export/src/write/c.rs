@@ -1,6 +1,6 @@
 //! C99, freestanding: one header and one source, `stdint.h` alone.
 
-use super::dialect::{Block, Dialect, Truths, block};
+use super::dialect::{Block, Dialect, Truths, all_arguments, block};
 use super::{Heading, Page, decimal, wrapped};
 use crate::program::{
     Expression, Function, Kind, Member, Parameter, Part, Precision, Program, Value,
@@ -329,10 +329,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn call(&self, name: &str, given: Vec<String>) -> String {
-        let parts = self.program.function(name).map_or(&[] as &[Part], |function| function.parts);
-        let parts = parts.iter().map(|part| part_name(*part).to_owned());
-        let all: Vec<String> = parts.chain(given).collect();
-        format!("{}_{name}({})", self.prefix, all.join(", "))
+        format!("{}_{name}({})", self.prefix, all_arguments(self.program, name, given, part_name))
     }
 
     fn remark(&self, page: &mut Page, text: &str) {

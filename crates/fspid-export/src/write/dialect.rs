@@ -1,7 +1,7 @@
 //! What languages have in common: expressions in brackets, statements in blocks.
 
 use super::Page;
-use crate::program::{Argument, Expression, Kind, Operator, Part, Place, Statement};
+use crate::program::{Argument, Expression, Kind, Operator, Part, Place, Program, Statement};
 
 /// What a block was opened by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +150,28 @@ pub(super) fn place(dialect: &impl Dialect, place: &Place) -> String {
             dialect.element(&dialect.member(*part, name), &outer(dialect, index))
         }
     }
+}
+
+/// What parts are called in languages that have no prefix for a constant.
+pub(super) fn part_name(part: Part) -> &'static str {
+    match part {
+        Part::Configuration => "design",
+        Part::State => "state",
+        Part::Sample => "sample",
+        Part::Answer => "answer",
+    }
+}
+
+/// What a function of the program is given: its parts by their names, then the rest.
+pub(super) fn all_arguments(
+    program: &Program,
+    function: &str,
+    given: Vec<String>,
+    part_name: fn(Part) -> &'static str,
+) -> String {
+    let parts = program.function(function).map_or(&[] as &[Part], |function| function.parts);
+    let parts = parts.iter().map(|part| part_name(*part).to_owned());
+    parts.chain(given).collect::<Vec<_>>().join(", ")
 }
 
 /// An expression that needs no brackets around it.

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::dialect::{Block, Dialect, Truths, block};
+use super::dialect::{Block, Dialect, Truths, all_arguments, block, part_name};
 use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
 use crate::vectors::Vector;
@@ -139,15 +139,6 @@ fn check_of_system(page: &mut Page, program: &Program) {
 
 struct Writer<'a> {
     program: &'a Program,
-}
-
-fn part_name(part: Part) -> &'static str {
-    match part {
-        Part::Configuration => "design",
-        Part::State => "state",
-        Part::Sample => "sample",
-        Part::Answer => "answer",
-    }
 }
 
 impl Writer<'_> {
@@ -305,10 +296,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn call(&self, name: &str, given: Vec<String>) -> String {
-        let parts = self.program.function(name).map_or(&[] as &[Part], |function| function.parts);
-        let all: Vec<String> =
-            parts.iter().map(|part| part_name(*part).to_owned()).chain(given).collect();
-        format!("{name}({})", all.join(", "))
+        format!("{name}({})", all_arguments(self.program, name, given, part_name))
     }
 
     fn remark(&self, page: &mut Page, text: &str) {

@@ -5,7 +5,9 @@
 
 use fspid_numeric::Real;
 
-use super::dialect::{Block, Dialect, Truths, arguments, block, outer, place};
+use super::dialect::{
+    Block, Dialect, Truths, all_arguments, arguments, block, outer, part_name, place,
+};
 use super::{Heading, Page, decimal, wrapped};
 use crate::program::{
     Argument, Expression, Function, Kind, Member, Part, Precision, Program, Statement, Value,
@@ -128,15 +130,6 @@ fn kind(program: &Program) -> &'static str {
 /// The parts that a function may write into, of those that it is given.
 fn changed(parts: &[Part]) -> impl Iterator<Item = Part> {
     [Part::Answer, Part::State].into_iter().filter(|part| parts.contains(part))
-}
-
-fn part_name(part: Part) -> &'static str {
-    match part {
-        Part::Configuration => "design",
-        Part::State => "state",
-        Part::Sample => "sample",
-        Part::Answer => "answer",
-    }
 }
 
 struct Writer<'a> {
@@ -280,9 +273,7 @@ impl Dialect for Writer<'_> {
     }
 
     fn call(&self, name: &str, given: Vec<String>) -> String {
-        let parts = self.program.function(name).map_or(&[] as &[Part], |function| function.parts);
-        let parts = parts.iter().map(|part| part_name(*part).to_owned());
-        format!("{name}({})", parts.chain(given).collect::<Vec<_>>().join(", "))
+        format!("{name}({})", all_arguments(self.program, name, given, part_name))
     }
 
     fn own(&self, page: &mut Page, statement: &Statement) -> bool {

@@ -3,6 +3,11 @@
 
 extern void _start(void);
 
+/* The end of the memory, which begins at 0x20000000: of the boards mps2, if nothing else is said. */
+#ifndef STACK_TOP
+#define STACK_TOP 0x20400000U
+#endif
+
 static void stop(void)
 {
     for (;;) {
@@ -18,9 +23,8 @@ static void reset(void)
     _start();
 }
 
-/* The boards have four megabytes of memory from 0x20000000 on. */
 __attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
-    (const void *)0x20400000U, (const void *)reset, (const void *)stop, (const void *)stop,
+    (const void *)STACK_TOP, (const void *)reset, (const void *)stop, (const void *)stop,
     (const void *)stop,        (const void *)stop,  (const void *)stop, 0, 0, 0, 0,
     (const void *)stop,        (const void *)stop,  0, (const void *)stop, (const void *)stop,
 };

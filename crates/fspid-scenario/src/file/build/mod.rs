@@ -87,9 +87,7 @@ pub(crate) fn scenario(
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     let externals = externals(report, files, section, timing);
-    if let Some(timing) = timing {
-        timing::check_memory(report, section, timing);
-    }
+    timing::check_memory(report, section, timing);
     let names = names(section);
     let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
     let dispersions = dispersions(report, section.sections(keys::DISPERSION));

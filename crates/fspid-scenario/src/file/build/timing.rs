@@ -39,7 +39,8 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
 const MOST_ROWS: usize = 2 * fspid_sim::MAX_ROWS;
 
 /// Refuses a comparison whose traces would not fit into memory.
-pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Timing) {
+pub(super) fn check_memory(report: &mut Report, section: &Section, timing: Option<Timing>) {
+    let Some(timing) = timing else { return };
     let controllers = section.sections(keys::CONTROLLER).len();
     if timing.rows() * controllers <= MOST_ROWS {
         return;
