@@ -3,12 +3,16 @@
 //! Answers cross over as JSON and as columns; everything that a person reads or types in Python is Python, in
 //! `python/fspid`. No call holds the interpreter while it works.
 
+mod aircraft;
 mod answer;
 mod array;
 mod campaign;
 mod contest;
+mod controller;
 mod error;
+mod fuzzy;
 mod interrupt;
+mod lti;
 mod scenario;
 mod tune;
 
@@ -16,11 +20,19 @@ mod tune;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use super::aircraft::{aircraft, aircraft_list};
+    #[pymodule_export]
     use super::answer::{Answer, Flight};
     #[pymodule_export]
     use super::array::Column;
     #[pymodule_export]
     use super::campaign::Campaign;
+    #[pymodule_export]
+    use super::controller::Controller;
+    #[pymodule_export]
+    use super::fuzzy::{FuzzySystem, Supervisor};
+    #[pymodule_export]
+    use super::lti::margins;
     #[pymodule_export]
     use super::scenario::{Scenario, starter, starters};
 

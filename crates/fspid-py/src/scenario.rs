@@ -44,6 +44,10 @@ impl Scenario {
         Ok(Self { text, path, folder, overrides, study, written: OnceLock::new() })
     }
 
+    pub(crate) fn study(&self) -> &Study {
+        &self.study
+    }
+
     /// What tunings and contests read.
     pub(crate) fn source(&self, py: Python<'_>) -> PyResult<Source> {
         Ok(Source { path: self.file(py)?, overrides: self.overrides.clone() })

@@ -14,6 +14,8 @@ from .campaign import Campaign
 if TYPE_CHECKING:
     from os import PathLike
 
+    from .controllers import Controller
+
 
 class Scenario:
     """A scenario without a mistake; whatever is wrong with it is a :class:`fspid.ScenarioError` when it is made.
@@ -130,6 +132,12 @@ class Scenario:
         ['controller.PID.kp=2.5']
         """
         return Scenario(self._core.changed(changes({**(paths or {}), **sections})))
+
+    def controller(self, name: str) -> Controller:
+        """A controller of the scenario by itself, for loops that are written in Python."""
+        from .controllers import Controller
+
+        return Controller(_core.Controller(self._core, name))
 
     def paths(self) -> Answer:
         """Every place that :meth:`with_` and dispersions may change, with its value, unit and range."""
