@@ -9,6 +9,7 @@ mod common;
 mod equations;
 mod every_command;
 mod external;
+mod external_fly;
 mod fly;
 mod fuzzy_system;
 mod guide;

@@ -124,7 +124,7 @@ impl fmt::Display for ControllerLoss {
 }
 
 /// One flight of an external controller, from rest.
-pub trait Answers {
+pub trait Answers: fmt::Debug {
     /// The answer to the next sample.
     ///
     /// # Errors

@@ -15,6 +15,8 @@ use fspid_sim::external::set_host;
 
 /// The name of this command.
 const NAME: &str = "external-controller";
+/// Bytes that controllers print beside a stream of commands: with what `fly` tells it fits into every pipe.
+const MOST_PRINTED: u64 = 2048;
 
 /// Answer samples with an external controller; `fspid` starts this for itself.
 #[derive(Debug, Args)]
@@ -46,6 +48,15 @@ impl Beside {
         given.iter().cloned().map(Ok).chain(added).collect()
     }
 
+    /// The name of the only one.
+    pub(crate) fn only(&self) -> Option<String> {
+        let mut all = self.libraries.iter().chain(&self.fmus);
+        let first = all.next().filter(|_| all.next().is_none())?;
+        // Called as the file is that a link leads to.
+        let path = first.canonicalize().ok()?;
+        Some(path.file_name()?.to_str()?.to_owned())
+    }
+
     /// True if there is one.
     pub(crate) fn is_given(&self) -> bool {
         !self.libraries.is_empty() || !self.fmus.is_empty()
@@ -54,7 +65,7 @@ impl Beside {
 
 /// Refuses a controller without equations where only those can be asked that have some, or leaves it out and says so.
 pub(crate) fn leave_out(scenario: &Scenario, asked: Option<&str>) -> Result<(), Failure> {
-    const WAY: &str = "an external controller has no equations here; simulate, verify, analyse --fly, campaign and contest fly it";
+    const WAY: &str = "an external controller has no equations here; simulate, verify, analyse --fly, campaign, contest and `fly` fly it";
     let externals = || scenario.externals.iter().map(|named| named.name.as_str());
     let is_asked = |name: &&str| asked == Some(*name) || scenario.controllers.is_empty();
     if let Some(name) = externals().find(is_asked) {
@@ -80,11 +91,15 @@ fn entry(key: &str, file: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Lets this program start itself for external controllers.
-pub(crate) fn host() {
-    if let Ok(program) = std::env::current_exe() {
-        set_host(ProcessHost::new(program, &[NAME]));
-    }
+/// Lets this program start itself for external controllers. Of what they print beside a stream of commands as much is
+/// passed on as a client need not read.
+pub(crate) fn host(beside_a_stream: bool) {
+    let Ok(program) = std::env::current_exe() else { return };
+    let host = ProcessHost::new(program, &[NAME]);
+    set_host(match beside_a_stream {
+        true => host.printing_at_most(MOST_PRINTED),
+        false => host,
+    });
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
