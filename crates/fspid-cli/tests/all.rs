@@ -11,6 +11,7 @@ mod every_command;
 mod external;
 mod external_fly;
 mod fly;
+mod foreign_fmu;
 mod fuzzy_system;
 mod guide;
 mod learn;

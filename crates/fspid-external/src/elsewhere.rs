@@ -37,6 +37,6 @@ impl Host for ProcessHost {
 
 /// Serves nothing here.
 #[must_use]
-pub fn serve(_: &str, _: &Path, _: f64) -> ExitCode {
+pub fn serve(_: &str, _: &Path, _: f64, _: &[String]) -> ExitCode {
     ExitCode::FAILURE
 }

@@ -14,11 +14,11 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Host};
+use fspid_sim::external::{Answers, Host, Renamed};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
 use tempfile::TempDir;
 
-use crate::archive::unpack;
+use crate::archive::{archive, unpack};
 use crate::frame::{Start, read_answer, write_sample};
 
 /// The longest time for loading a controller: no library of a controller takes as many seconds, however busy a machine is.
@@ -38,7 +38,7 @@ pub(crate) const FMU: &str = "fmu";
 /// The folder of an unpacked FMU.
 fn unpacked(path: &Path) -> io::Result<TempDir> {
     let folder = tempfile::tempdir()?;
-    unpack(&std::fs::read(path)?, folder.path())?;
+    unpack(&archive(path)?, folder.path())?;
     Ok(folder)
 }
 
@@ -52,8 +52,8 @@ pub struct ProcessHost {
 }
 
 impl ProcessHost {
-    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period and the path
-    /// that follow them.
+    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period, the path
+    /// and the names that follow them.
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
         Self { program, arguments: arguments.iter().map(OsString::from).collect(), prints: None }
@@ -93,6 +93,7 @@ impl ProcessHost {
             .args(&self.arguments)
             .args([kind, &format!("{:?}", external.dt_s)])
             .arg(path)
+            .args(external.renamed.iter().map(written))
             .stdin(Stdio::from(OwnedFd::from(theirs)))
             .stdout(output)
             .stderr(errors)
@@ -109,6 +110,11 @@ impl ProcessHost {
             _folder: folder,
         })
     }
+}
+
+/// A name of an FMU's variable, as [`serve`](crate::serve) reads it.
+fn written(renamed: &Renamed) -> String {
+    format!("{}={}", renamed.place.key(renamed.in_degrees), renamed.name)
 }
 
 /// What hears that all was passed on that a controller printed; nothing where it prints itself.
