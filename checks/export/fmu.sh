@@ -32,6 +32,17 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
     done
 done
 
+# Fuzzy systems of their own, with and without memory of the previous answer.
+for system in examples/systems/*.toml; do
+    name="$(basename "$system" .toml)"
+    for version in 2 3; do
+        out="$work/$name-$version"
+        "$fspid" export "$system" --to "fmu$version" --out "$out" > "$out.told" 2>&1
+        python checks/export/fmu_system.py "$out"/*.fmu "$out/vectors.csv" double > "$out.log" 2>&1 || { failed=1; cat "$out.log"; }
+        echo "$name: $(grep "^FMI" "$out.log" || echo "no answer")"
+    done
+done
+
 # Without a compiler there are sources, and a note.
 CC="$work/no-compiler" "$fspid" export data/designs/learned/light.toml --controller FSPID --to fmu3 --out "$work/sources" > "$work/told" 2>&1
 grep "sources only" "$work/told"

@@ -78,7 +78,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// A real as the shortest decimal number that reads back as itself, with a point and perhaps an exponent.
-fn decimal(value: f64, is_single: bool) -> String {
+pub(crate) fn decimal(value: f64, is_single: bool) -> String {
     #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
     let text = if is_single { format!("{:?}", value as f32) } else { format!("{value:?}") };
     match text.split_once('e') {
