@@ -135,7 +135,7 @@ impl<R: Real> Composer<'_, R> {
             Statement::set_member(Part::State, "command_rad", local("tracked_rad")),
             Statement::set_member(Part::Answer, &command, shown),
         ]);
-        body.extend(cut(&local("tracked_rad"), &local("given_rad")));
+        body.extend(cut(self.controller, &local("tracked_rad"), &local("given_rad")));
         body
     }
 }
