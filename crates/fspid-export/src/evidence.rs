@@ -148,7 +148,9 @@ mod tests {
         // No two neighbours are the same, and no two inputs turned conclude the same.
         let number = |cell: usize| 0.1 + 0.003 * ((cell * 37) % 49) as f32;
         let grid = |first: usize| {
-            std::array::from_fn(|row| std::array::from_fn(|column| number(first + 7 * row + column)))
+            std::array::from_fn(|row| {
+                std::array::from_fn(|column| number(first + 7 * row + column))
+            })
         };
         let numbers = NumberTable::new([grid(0), grid(5), grid(11)]).expect("finite");
         tuned(Supervisor::of_numbers(&numbers, 2.0, OutOfRange::Clamp).expect("allowed"))
@@ -196,7 +198,8 @@ mod tests {
     }
 
     #[test]
-    fn every_rule_and_every_number_of_a_design_is_found_when_it_is_changed_or_shown_to_do_nothing() {
+    fn every_rule_and_every_number_of_a_design_is_found_when_it_is_changed_or_shown_to_do_nothing()
+    {
         for controller in [with_labels(), with_numbers()] {
             let left = asked(
                 &controller,

@@ -40,7 +40,9 @@ pub(super) fn functions<R: Real>(
         )],
         OutOfRange::Evaluate if supervisor.numbers().is_none() => Vec::new(),
         // The ends of the range are at three spacings, where the numbers limit once more.
-        OutOfRange::Clamp | OutOfRange::Evaluate if ends_at_three_spacings(supervisor) => Vec::new(),
+        OutOfRange::Clamp | OutOfRange::Evaluate if ends_at_three_spacings(supervisor) => {
+            Vec::new()
+        }
         OutOfRange::Clamp | OutOfRange::Evaluate => vec![Statement::when(is_outside(), clamped())],
     };
     match supervisor.numbers() {

@@ -165,6 +165,12 @@ fn both(truths: impl IntoIterator<Item = Expression>) -> Expression {
     all.unwrap_or(Expression::Truth(true))
 }
 
+/// True where something may cut the command.
+fn is_limited<R: Real>(controller: &Controller<R>) -> bool {
+    let config = controller.config();
+    config.limits.is_some() || config.slew_rad_s.is_some()
+}
+
 /// Answers whether two finite numbers are not the same, without asking whether they are equal; they are where nothing
 /// limits the command.
 fn cut<R: Real>(
@@ -175,8 +181,7 @@ fn cut<R: Real>(
     let mark = |is| Statement::set_member(Part::Answer, "saturated", Expression::Truth(is));
     let differs = left.clone().less(right.clone()).or(right.clone().less(left.clone()));
     let mut marked = vec![mark(false)];
-    let config = controller.config();
-    if config.limits.is_some() || config.slew_rad_s.is_some() {
+    if is_limited(controller) {
         marked.push(Statement::when(differs, vec![mark(true)]));
     }
     marked

@@ -7,10 +7,10 @@ use fspid_core::{Controller, fuzzy::Defuzzifier};
 use fspid_numeric::Real;
 
 use super::normal::normal;
-use super::ranges::{self, Known, Memory, Ranges};
+use super::ranges::{self, Known, Memory, Ranges, above, rounded};
 use super::{Finding, Subject};
 use crate::interpret::Branch;
-use crate::program::{Expression, Program, Statement, Value};
+use crate::program::{Expression, Precision, Program, Statement, Value};
 
 /// A program and what is known of it.
 pub(super) struct Judge<'a> {
@@ -22,6 +22,8 @@ pub(super) struct Judge<'a> {
     plain: Vec<Vec<Statement>>,
     is_mirrored: bool,
     has_halves: bool,
+    /// The weaker of two neighbouring grades is always below a half.
+    is_below_half: bool,
 }
 
 const UNREAD: &str = "nothing reads what it changes";
@@ -42,6 +44,7 @@ impl<'a> Judge<'a> {
             ranges,
             is_mirrored: is_mirrored(program),
             has_halves: has_halves(subject.controller),
+            is_below_half: is_below_half(subject.controller, program.precision),
         }
     }
 
@@ -92,7 +95,8 @@ impl<'a> Judge<'a> {
         let above = &lines[line.saturating_sub(3)..line.min(lines.len())];
         let asks_guard = |it: &&str| it.contains("setpoint_rad") && it.contains("guard_rad)");
         let numbers = self.program.function("lower_set").is_some();
-        let turned = change == "the other sign" && (element == "sign" || numbers && element == "spacing");
+        let turned =
+            change == "the other sign" && (element == "sign" || numbers && element == "spacing");
         let from_centres = element == "fill_grades" && change == "+ for -"
             || element == "warp" && change == "negated" && text.contains("-warped : warped");
         let weaker = matches!(change, "no magnitude" | "or for and")
@@ -114,10 +118,23 @@ impl<'a> Judge<'a> {
             "warp" if change == "<= for <" && text.contains("-warped : warped") => {
                 "both are zeros there, and distances from centres do not show their sign"
             }
+            "exponential" if text.contains("part_8 = ") && change.starts_with("a thousandth") => {
+                "a power of two is made of two others, whose product is exact however it is split"
+            }
             "reset" if self.is_begun(text) => {
                 "read only where a sample has been good, which has written it"
             }
-            "centroid" if self.has_halves && text.contains("height = ") && is_half(change, finding) => {
+            "centroid"
+                if self.has_halves
+                    && self.is_below_half
+                    && text.contains("height = ")
+                    && is_above(finding) =>
+            {
+                "at every number about half way, the weaker of two neighbouring grades is below a half"
+            }
+            "centroid"
+                if self.has_halves && text.contains("height = ") && is_half(change, finding) =>
+            {
                 "two labels are never both stronger than a half by more than rounding, where the overlap is flat"
             }
             _ => return None,
@@ -147,7 +164,9 @@ impl<'a> Judge<'a> {
             });
         }
         let always = |it: &&Expression| match ranges.of(it) {
-            Some(Known::Truth(truth)) => truth.constant() == Some(held) || branch.held + branch.failed == 0,
+            Some(Known::Truth(truth)) => {
+                truth.constant() == Some(held) || branch.held + branch.failed == 0
+            }
             None => true,
             _ => false,
         };
@@ -161,7 +180,8 @@ impl<'a> Judge<'a> {
             && branch.function == "centroid"
             && format!("{:?}", branch.condition).contains("\"lower\"");
         half.then(|| {
-            "cannot by more than rounding: two labels are never both stronger than a half".to_owned()
+            "cannot by more than rounding: two labels are never both stronger than a half"
+                .to_owned()
         })
     }
 
@@ -173,7 +193,9 @@ impl<'a> Judge<'a> {
             _ => "never asked".to_owned(),
         };
         match asked {
-            Expression::Binary(_, left, right) if matches!(ranges.of(left), Some(Known::Real(_))) => {
+            Expression::Binary(_, left, right)
+                if matches!(ranges.of(left), Some(Known::Real(_))) =>
+            {
                 format!("{} stands against {}", side(left), side(right))
             }
             _ => "intervals of what is asked within".to_owned(),
@@ -186,6 +208,37 @@ fn is_half(change: &str, finding: &Finding) -> bool {
     let raised = |text: &str| text.contains("lower < 0.5005");
     change == "always the first"
         || change == "a thousandth more" && finding.lines.iter().all(|(_, text)| raised(text))
+}
+
+/// True for a change of what is taken where the weaker of two is not below a half.
+fn is_above(finding: &Finding) -> bool {
+    let bound = "lower < 0.5f";
+    finding.lines.iter().all(|(_, text)| text.contains(bound) && text.contains("? lower :"))
+}
+
+/// Numbers on either side of half way that are asked.
+const ASKED_ABOUT_HALF: usize = 400;
+
+/// True where at half way between two centres, and at the numbers about it, one of both grades is below one half. Farther
+/// away one of them is lower by more than rounding.
+fn is_below_half<R: Real>(controller: &Controller<R>, precision: Precision) -> bool {
+    let Controller::SelfTuning(fspid) = controller else { return false };
+    let supervisor = fspid.tuner().supervisor();
+    if supervisor.numbers().is_some() {
+        return false;
+    }
+    let centres = supervisor.sets().map(|[centre, _]| centre.to_f64());
+    centres.windows(2).enumerate().all(|(set, pair)| {
+        let half_way = rounded(precision, 0.5 * (pair[0] + pair[1]));
+        [1.0, -1.0].into_iter().all(|sign| {
+            let mut input = sign * half_way;
+            (0..ASKED_ABOUT_HALF).all(|_| {
+                let grades = supervisor.grades(R::from_f64(sign * input));
+                input = above(precision, input);
+                grades[set].to_f64().min(grades[set + 1].to_f64()) < 0.5
+            })
+        })
+    })
 }
 
 /// True where every rule concludes what the rule for both inputs turned concludes, and centres lie likewise.

@@ -131,9 +131,7 @@ fn simple(value: &Expression, ranges: &Ranges<'_>) -> Expression {
                 if then == otherwise { then } else { condition.select(then, otherwise) }
             }
         },
-        Expression::Binary(operator, left, right) => {
-            binary(*operator, [left, right], ranges)
-        }
+        Expression::Binary(operator, left, right) => binary(*operator, [left, right], ranges),
     }
 }
 
@@ -158,12 +156,10 @@ fn binary(operator: Operator, sides: [&Expression; 2], ranges: &Ranges<'_>) -> E
         sides.map(|side| if compares { compared(side) } else { simple(side, ranges) });
     let one = |it: &Expression| matches!(it, Expression::Number(number) if *number == 1.0);
     match (operator, &left, &right) {
-        (Operator::And, Expression::Truth(true), _) | (Operator::Or, Expression::Truth(false), _) => {
-            right
-        }
-        (Operator::And, _, Expression::Truth(true)) | (Operator::Or, _, Expression::Truth(false)) => {
-            left
-        }
+        (Operator::And, Expression::Truth(true), _)
+        | (Operator::Or, Expression::Truth(false), _) => right,
+        (Operator::And, _, Expression::Truth(true))
+        | (Operator::Or, _, Expression::Truth(false)) => left,
         (Operator::And, Expression::Truth(false), _) => Expression::Truth(false),
         (Operator::Or, Expression::Truth(true), _) => Expression::Truth(true),
         (Operator::Multiply | Operator::Divide, _, right) if one(right) => left,

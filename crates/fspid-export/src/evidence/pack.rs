@@ -225,7 +225,10 @@ fn survivors(findings: &[Finding]) -> String {
         return "\nEvery change is found.\n".to_owned();
     }
     left.sort_by_key(|it| it.equivalent.is_some());
-    let mut text = format!("\n{SHOWN}\nNot found, {}:\n\n| where | change | why |\n| --- | --- | --- |\n", left.len());
+    let mut text = format!(
+        "\n{SHOWN}\nNot found, {}:\n\n| where | change | why |\n| --- | --- | --- |\n",
+        left.len()
+    );
     for finding in left {
         let why = finding.equivalent.map_or_else(
             || "not told apart by these vectors".to_owned(),

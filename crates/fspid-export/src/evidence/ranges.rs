@@ -9,13 +9,15 @@
 //! of the outermost halves, at ±8/3, and rounding moves it by less than 0.03. One rule at least is as strong as where two sets cross,
 //! so that the area is not below that of an outermost half that is cut there.
 
+mod joined;
 mod known;
 
 use std::collections::BTreeMap;
 
 use crate::program::{Argument, Expression, Function, Operator, Part, Place, Program, Statement};
-pub(super) use known::{Known, Range, rounded};
-use known::{Truth, above};
+use joined::{bytes, fetched, store, wholes};
+use known::Truth;
+pub(super) use known::{Known, Range, above, rounded};
 
 /// The centre of gravity in spacings, at most.
 const CENTRE: f64 = 2.7;
@@ -29,6 +31,8 @@ type Members<'p> = BTreeMap<(u8, &'p str), Known>;
 struct Env<'p> {
     locals: BTreeMap<&'p str, Known>,
     members: Members<'p>,
+    /// Values that are copies of a member of the sample, which nobody writes.
+    copies: BTreeMap<&'p str, &'p str>,
 }
 
 /// What is known of expressions, by where they stand in the program.
@@ -37,11 +41,13 @@ pub(super) struct Ranges<'p> {
     seen: BTreeMap<usize, Known>,
     /// Facts are of the last round alone.
     is_quiet: bool,
+    /// The area under the rules is kept from being small, also where a change has taken that away.
+    keeps_area: bool,
 }
 
 /// What a program may remember.
 #[derive(Clone, Debug)]
-pub(super) struct Memory(BTreeMap<String, Known>);
+pub(super) struct Memory(BTreeMap<String, Known>, bool);
 
 #[cfg(test)]
 impl Memory {
@@ -63,6 +69,7 @@ fn either<'p>(a: Option<Env<'p>>, b: Option<Env<'p>>) -> Option<Env<'p>> {
         (Some(a), Some(b)) => Some(Env {
             locals: joined(a.locals, &b.locals),
             members: joined(a.members, &b.members),
+            copies: a.copies.into_iter().chain(b.copies).collect(),
         }),
         (a, b) => a.or(b),
     }
@@ -70,10 +77,11 @@ fn either<'p>(a: Option<Env<'p>>, b: Option<Env<'p>>) -> Option<Env<'p>> {
 
 /// What the program may remember, if that could be bounded.
 pub(super) fn memory(program: &Program) -> Option<Memory> {
-    let mut ranges = Ranges { program, seen: BTreeMap::new(), is_quiet: true };
+    let keeps_area = program.function("centroid").is_some_and(keeps_area);
+    let mut ranges = Ranges { keeps_area, ..Ranges::none(program) };
     let mut state = of_state(&ranges.asked("reset", ranges.outside(None))?);
     for round in 0..600 {
-        let start = Memory(state.clone());
+        let start = Memory(state.clone(), ranges.keeps_area);
         let mut grown = state.clone();
         for name in ENTRIES {
             if let Some(after) = ranges.asked(name, ranges.outside(Some(&start))) {
@@ -104,7 +112,7 @@ fn of_state(members: &Members<'_>) -> BTreeMap<String, Known> {
 
 /// What is known of every expression from such a memory on.
 pub(super) fn facts<'p>(program: &'p Program, memory: &Memory) -> Ranges<'p> {
-    let mut ranges = Ranges { program, seen: BTreeMap::new(), is_quiet: false };
+    let mut ranges = Ranges { is_quiet: false, keeps_area: memory.1, ..Ranges::none(program) };
     ranges.asked("reset", ranges.outside(None));
     for name in ENTRIES.into_iter().chain(["saturated"]) {
         ranges.asked(name, ranges.outside(Some(memory)));
@@ -120,7 +128,7 @@ impl<'p> Ranges<'p> {
 
     /// Nothing at all.
     pub(super) fn none(program: &'p Program) -> Self {
-        Self { program, seen: BTreeMap::new(), is_quiet: true }
+        Self { program, seen: BTreeMap::new(), is_quiet: true, keeps_area: false }
     }
 
     fn outside(&self, memory: Option<&Memory>) -> Members<'p> {
@@ -159,7 +167,8 @@ impl<'p> Ranges<'p> {
         members: Members<'p>,
     ) -> (Option<Env<'p>>, Option<Known>) {
         let names = function.parameters.iter().map(|parameter| parameter.name);
-        let env = Env { locals: names.zip(given).collect(), members };
+        let locals = names.zip(given).collect();
+        let env = Env { locals, members, copies: BTreeMap::new() };
         let mut ends = Vec::new();
         let last = self.block(function, Some(env), &function.body, &mut ends);
         let answer = ends.iter().filter_map(|(_, answer)| answer.clone());
@@ -191,7 +200,7 @@ impl<'p> Ranges<'p> {
         match statement {
             Statement::Remark(_) => {}
             Statement::Let(name, _, value) => {
-                let is_centre = name == "centre" && is_exact(function, value);
+                let is_centre = self.keeps_area && function.name == "centroid" && name == "centre";
                 if is_centre {
                     env.locals.insert("area", Known::Real(Range::between(AREA[0], AREA[1])));
                 }
@@ -200,6 +209,9 @@ impl<'p> Ranges<'p> {
                     *it = it.cut(-CENTRE, CENTRE);
                 }
                 env.locals.insert(name, known);
+                if let Expression::Read(Place::Member(Part::Sample, member)) = value {
+                    env.copies.insert(name, member);
+                }
             }
             Statement::Array(name, count) => {
                 env.locals.insert(name, Known::Reals(vec![Range::point(0.0); *count]));
@@ -272,6 +284,7 @@ impl<'p> Ranges<'p> {
     fn put(&mut self, env: &mut Env<'p>, place: &'p Place, known: Known) {
         match place {
             Place::Local(name) => {
+                env.copies.remove(name.as_str());
                 env.locals.insert(name, known);
             }
             Place::Member(part, name) => {
@@ -456,7 +469,13 @@ impl<'p> Ranges<'p> {
     }
 
     /// What a comparison says of both of its sides.
-    fn ordered(&mut self, env: &mut Env<'p>, sides: [&'p Expression; 2], strict: bool, holds: bool) {
+    fn ordered(
+        &mut self,
+        env: &mut Env<'p>,
+        sides: [&'p Expression; 2],
+        strict: bool,
+        holds: bool,
+    ) {
         let precision = self.program.precision;
         let was_quiet = std::mem::replace(&mut self.is_quiet, true);
         let [left, right] = sides.map(|side| self.real(env, side));
@@ -486,9 +505,16 @@ fn narrow<'p>(env: &mut Env<'p>, side: &'p Expression, cut: impl Fn(Range) -> Ra
 }
 
 fn narrow_plain<'p>(env: &mut Env<'p>, side: &'p Expression, cut: impl Fn(Range) -> Range) {
-    if let Expression::Read(place) = side
-        && let Some(Known::Real(known)) = slot(env, place)
-    {
+    let Expression::Read(place) = side else { return };
+    let copied = match place {
+        Place::Local(name) => env.copies.get(name.as_str()).copied(),
+        _ => None,
+    };
+    let of = copied.and_then(|it| env.members.get_mut(&(Part::Sample as u8, it)));
+    if let Some(Known::Real(known)) = of {
+        *known = cut(*known);
+    }
+    if let Some(Known::Real(known)) = slot(env, place) {
         let narrowed = cut(*known);
         if narrowed.low <= narrowed.high {
             *known = narrowed;
@@ -505,73 +531,13 @@ fn slot<'a, 'p>(env: &'a mut Env<'p>, place: &'p Place) -> Option<&'a mut Known>
 }
 
 /// True for the centre of gravity in closed form whose area is kept from being small.
-fn is_exact(function: &Function, value: &Expression) -> bool {
+fn keeps_area(function: &Function) -> bool {
     let over_gaps = |it: &Statement| matches!(it, Statement::For(name, ..) if name == "gap");
-    let is_kept = |it: &Expression| matches!(it, Expression::Select(..));
-    function.name == "centroid"
-        && function.body.iter().any(over_gaps)
-        && matches!(value, Expression::Binary(Operator::Divide, _, area) if is_kept(area))
-}
-
-fn places(index: &Known, count: usize) -> std::ops::RangeInclusive<usize> {
-    let last = count.saturating_sub(1);
-    let end = |it: i32| usize::try_from(it).unwrap_or(0).min(last);
-    match index {
-        Known::Whole([low, high]) => end(*low)..=end(*high),
-        _ => 0..=last,
-    }
-}
-
-fn fetched(array: Option<&Known>, index: &Known) -> Known {
-    match array {
-        Some(Known::Reals(all)) => {
-            let all = all.get(places(index, all.len())).into_iter().flatten().copied();
-            Known::Real(all.reduce(Range::joined).unwrap_or(Range::ANY))
+    let is_kept = |it: &Statement| match it {
+        Statement::Let(name, _, Expression::Binary(Operator::Divide, _, area)) => {
+            name == "centre" && matches!(**area, Expression::Select(..))
         }
-        Some(Known::Bytes(all)) => {
-            let all = all.get(places(index, all.len())).unwrap_or_default();
-            let end = |it: Option<&u8>| it.map_or(0, |it| i32::from(*it));
-            Known::Whole([end(all.iter().min()), end(all.iter().max())])
-        }
-        _ => Known::Real(Range::ANY),
-    }
-}
-
-fn store(array: Option<&mut Known>, index: &Known, known: Known) {
-    if let (Some(Known::Reals(all)), Known::Real(range)) = (array, known) {
-        let places = places(index, all.len());
-        let is_one = places.start() == places.end();
-        for held in all.get_mut(places).into_iter().flatten() {
-            *held = if is_one { range } else { held.joined(range) };
-        }
-    }
-}
-
-fn wholes(operator: Operator, a: [i32; 2], b: [i32; 2]) -> Known {
-    let all = |of: fn(i32, i32) -> i32| {
-        let ends = [of(a[0], b[0]), of(a[0], b[1]), of(a[1], b[0]), of(a[1], b[1])];
-        let [mut low, mut high] = [ends[0]; 2];
-        ends.iter().for_each(|end| (low, high) = (low.min(*end), high.max(*end)));
-        Known::Whole([low, high])
+        _ => false,
     };
-    let apart = a[1] < b[0] || b[1] < a[0];
-    let one = a == b && a[0] == a[1];
-    let equal = Truth { yes: !apart, no: !one };
-    match operator {
-        Operator::Add => all(i32::saturating_add),
-        Operator::Subtract => all(i32::saturating_sub),
-        Operator::Multiply => all(i32::saturating_mul),
-        Operator::Equal => Known::Truth(equal),
-        Operator::NotEqual => Known::Truth(equal.negated()),
-        _ => Known::Truth(Truth::ANY),
-    }
-}
-
-fn bytes(operator: Operator, a: Option<u8>, b: Option<u8>) -> Known {
-    match (operator, a, b) {
-        (Operator::BitOr, a, b) => Known::Byte(a.zip(b).map(|(a, b)| a | b)),
-        (Operator::Equal, Some(a), Some(b)) => Known::Truth(Truth::of(a == b)),
-        (Operator::NotEqual, Some(a), Some(b)) => Known::Truth(Truth::of(a != b)),
-        _ => Known::Truth(Truth::ANY),
-    }
+    function.body.iter().any(over_gaps) && function.body.iter().any(is_kept)
 }

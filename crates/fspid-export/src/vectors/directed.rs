@@ -106,17 +106,57 @@ fn rules<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
 }
 
 /// Close to half way between two centres, where two rules are about as strong, at every centre of the other input.
-fn halves<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+fn halves<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, event: Event<R>) {
     let (errors, seconds) = (places(fspid, true), places(fspid, false));
     for part in [0.4999, 0.5, 0.5001] {
         let half = |pair: &[f64]| part * pair[0] + (1.0 - part) * pair[1];
         for error in errors[..7].windows(2).map(half) {
-            seconds[..7].iter().for_each(|second| seek(flight, fspid, [error, *second]));
+            seconds[..7]
+                .iter()
+                .for_each(|second| seek_with(flight, fspid, [error, *second], event));
         }
         for second in seconds[..7].windows(2).map(half) {
-            errors[..7].iter().for_each(|error| seek(flight, fspid, [*error, second]));
+            errors[..7].iter().for_each(|error| seek_with(flight, fspid, [*error, second], event));
         }
     }
+}
+
+/// So many views around the place where a Gaussian grade passes from one power of two to the next.
+const AROUND_POWERS: usize = 16;
+
+/// Where the exponent of a grade is half of the logarithm of 2, and the sum behind it has the most to do.
+fn powers<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, event: Event<R>) {
+    let supervisor = fspid.tuner().supervisor();
+    if supervisor.numbers().is_some() {
+        return;
+    }
+    let [.., [spacing, sigma], _, _] = supervisor.sets().map(|set| set.map(Real::to_f64));
+    let distance = core::f64::consts::LN_2.sqrt() * sigma / spacing;
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    for (pair, near) in errors[..7].windows(2).zip(seconds.windows(2)) {
+        for part in 0..AROUND_POWERS {
+            let beside = (1.0 + 0.0005 * (part as f64 / 8.0 - 1.0)) * distance;
+            for (from, to, second) in [(pair[0], pair[1], near[0]), (pair[1], pair[0], near[1])] {
+                seek_with(flight, fspid, [from + beside * (to - from), second], event);
+            }
+        }
+    }
+}
+
+/// What gives the derivative's gain the most digits before a sample.
+fn finest<R: Real>(flight: &Flight<'_, R>, fspid: &Fspid<R>) -> Event<R> {
+    let equations = fspid.tuner_equations();
+    if equations.structure.law != LawKind::Accumulating || !flight.has_events {
+        return Event::Step;
+    }
+    Event::Memory(Remembered::Gain(2), R::from_f64(low_gain(flight, fspid, 2, 1.1)))
+}
+
+/// A gain so small, above its limit by some of what a rule adds at most.
+fn low_gain<R: Real>(flight: &Flight<'_, R>, fspid: &Fspid<R>, gain: usize, part: f64) -> f64 {
+    let numbers = fspid.tuner_equations().gains[gain].map(|it| it.to_f64());
+    let lower = Some(numbers.lower).filter(|it| it.is_finite()).unwrap_or(0.0);
+    lower + part * numbers.scale.abs() * flight.controller.config().dt_s.to_f64()
 }
 
 /// So many views that nobody has chosen.
@@ -124,21 +164,21 @@ const VIEWS: usize = 400;
 
 /// Views between and a little outside of all places.
 fn anywhere<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
-    halves(flight, fspid);
+    let event = finest(flight, fspid);
+    halves(flight, fspid, event);
+    powers(flight, fspid, event);
     let (mut draw, range) = (Draw(49), fspid.tuner().supervisor().range().to_f64());
     for _ in 0..VIEWS {
-        seek(flight, fspid, [draw.around(1.05 * range), draw.around(1.05 * range)]);
+        seek_with(flight, fspid, [draw.around(1.05 * range), draw.around(1.05 * range)], event);
     }
 }
 
 /// Every rule from gains so small that what it adds in one sample has the most digits.
 fn low_gains<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
     let (errors, seconds) = (places(fspid, true), places(fspid, false));
-    let dt_s = flight.controller.config().dt_s.to_f64();
-    for (gain, numbers) in fspid.tuner_equations().gains.iter().enumerate() {
-        let lower = Some(numbers.lower.to_f64()).filter(|it| it.is_finite()).unwrap_or(0.0);
-        let added = numbers.scale.to_f64().abs() * dt_s;
-        for value in [lower + 1.1 * added, lower + 1.73 * added] {
+    for gain in 0..3 {
+        for part in [1.1, 1.73] {
+            let value = low_gain(flight, fspid, gain, part);
             let event = Event::Memory(Remembered::Gain(gain), R::from_f64(value));
             for error in &errors[..7] {
                 seconds[..7].iter().for_each(|it| seek_with(flight, fspid, [*error, *it], event));
@@ -362,11 +402,16 @@ fn edges<R: Real>(flight: &mut Flight<'_, R>) {
         if !has_model(flight) {
             continue;
         }
-        for which in [Remembered::Model, Remembered::ModelRate] {
-            edge(flight, 2.0 * rate, |flight, value| {
-                flight.reset(good);
-                write(flight, which, sign * value);
-            });
+        let members = [Remembered::Model, Remembered::ModelRate];
+        // From two memories, since not every one comes to the very end.
+        for (which, other) in members.into_iter().zip(members.into_iter().rev()) {
+            for part in [0.0, 0.3] {
+                edge(flight, 2.0 * rate, |flight, value| {
+                    flight.reset(good);
+                    write(flight, other, part * rate);
+                    write(flight, which, sign * value);
+                });
+            }
         }
         // It comes to the edge while another commands, where nothing was latched before.
         flight.reset(good);

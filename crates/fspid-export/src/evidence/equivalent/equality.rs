@@ -76,7 +76,11 @@ fn in_values<'a>(a: &'a Expression, b: &Expression) -> Option<Choice<'a>> {
     {
         return Some(Choice::Value(asked, [then, otherwise]));
     }
-    children(a).into_iter().zip(children(b)).find(|(a, b)| a != b).and_then(|(a, b)| in_values(a, b))
+    children(a)
+        .into_iter()
+        .zip(children(b))
+        .find(|(a, b)| a != b)
+        .and_then(|(a, b)| in_values(a, b))
 }
 
 /// What an expression is made of.
@@ -90,7 +94,9 @@ fn children(value: &Expression) -> Vec<&Expression> {
         Expression::Binary(_, left, right) => vec![left, right],
         Expression::Select(condition, then, otherwise) => vec![condition, then, otherwise],
         Expression::Call(_, given) => given_values(given),
-        Expression::Read(Place::Element(_, index) | Place::MemberElement(_, _, index)) => vec![index],
+        Expression::Read(Place::Element(_, index) | Place::MemberElement(_, _, index)) => {
+            vec![index]
+        }
         _ => Vec::new(),
     }
 }
@@ -173,8 +179,12 @@ impl At<'_> {
     fn range(&self, value: &Expression) -> Range {
         match value {
             Expression::Number(value) => Range::point(rounded(self.precision, *value)),
+            Expression::Negative(inner) => self.range(inner).negative(),
             Expression::Binary(
-                operator @ (Operator::Add | Operator::Subtract | Operator::Multiply | Operator::Divide),
+                operator @ (Operator::Add
+                | Operator::Subtract
+                | Operator::Multiply
+                | Operator::Divide),
                 left,
                 right,
             ) => self.range(left).computed(*operator, self.range(right), self.precision),
@@ -225,8 +235,12 @@ impl At<'_> {
         let exact = |value: f64| Number(rounded(self.precision, value));
         match (operator, &left, &right) {
             (Operator::Subtract, _, _) if left == right && a.is_finite() => Number(0.0),
-            (Operator::Divide, _, _) if left == right && a.is_finite() && !a.has_zero() => Number(1.0),
-            (Operator::Divide, Number(zero), _) if *zero == 0.0 && b.low > 0.0 && !b.nan => Number(0.0),
+            (Operator::Divide, _, _) if left == right && a.is_finite() && !a.has_zero() => {
+                Number(1.0)
+            }
+            (Operator::Divide, Number(zero), _) if *zero == 0.0 && b.low > 0.0 && !b.nan => {
+                Number(0.0)
+            }
             (Operator::Multiply, Number(a), Number(b)) => exact(a * b),
             (Operator::Add, Number(a), Number(b)) => {
                 exact(rounded(self.precision, *a) + rounded(self.precision, *b))

@@ -95,7 +95,7 @@ impl Range {
         Self { low: self.low.max(low), high: self.high.min(high), nan: false, ..self }
     }
 
-    pub(super) fn negative(self) -> Self {
+    pub(in crate::evidence) fn negative(self) -> Self {
         let minus_zero = self.has_zero();
         Self { low: -self.high, high: -self.low, minus_zero, ..self }
     }
@@ -114,7 +114,12 @@ impl Range {
     }
 
     /// Rounding never changes an order, so that the ends are rounded as the program rounds.
-    pub(in crate::evidence) fn computed(self, operator: Operator, other: Self, precision: Precision) -> Self {
+    pub(in crate::evidence) fn computed(
+        self,
+        operator: Operator,
+        other: Self,
+        precision: Precision,
+    ) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self { nan: true, ..self };
         }
@@ -187,7 +192,7 @@ pub(in crate::evidence) fn rounded(precision: Precision, value: f64) -> f64 {
 
 /// The next number above, in the program's precision.
 #[allow(clippy::cast_possible_truncation, reason = "a number of the program")]
-pub(super) fn above(precision: Precision, value: f64) -> f64 {
+pub(in crate::evidence) fn above(precision: Precision, value: f64) -> f64 {
     match precision {
         Precision::Single => f64::from((value as f32).next_up()),
         Precision::Double => value.next_up(),
