@@ -159,11 +159,11 @@ mod tests {
     /// What is asked about the changes of a controller that are chosen.
     fn asked(
         controller: &Controller<f32>,
+        vectors: &[Vector<f32>],
         is_chosen: impl Fn(&Mutant) -> bool,
         answer: impl Fn(&Judge<'_>, &Finding, &Program, &[&str]) -> bool,
     ) -> Vec<String> {
         let program = crate::program(controller, Angles::Radians).expect("nothing is refused");
-        let vectors = eventful(controller, Angles::Radians, 1, ASKED);
         let heading = Heading {
             name: "FSPID",
             digest: "0",
@@ -175,7 +175,7 @@ mod tests {
             controller,
             prefix: "fspid",
             heading: &heading,
-            vectors: &vectors,
+            vectors,
             code: &[],
         };
         let judge = Judge::new(&subject);
@@ -188,7 +188,7 @@ mod tests {
             let lines = source.lines().zip(text.lines()).zip(1..);
             let lines = lines.filter(|((before, after), _)| before != after);
             let lines = lines.map(|((_, after), line)| (line, after.to_owned())).collect();
-            let vector = run::first_different(&changed, &vectors);
+            let vector = run::first_different(&changed, vectors);
             let finding = Finding { mutant, lines, vector, equivalent: None };
             if answer(&judge, &finding, &changed, &rows) {
                 named.push(format!("{} {}", finding.mutant.element, finding.mutant.change));
@@ -201,8 +201,10 @@ mod tests {
     fn every_rule_and_every_number_of_a_design_is_found_when_it_is_changed_or_shown_to_do_nothing()
     {
         for controller in [with_labels(), with_numbers()] {
+            let vectors = eventful(&controller, Angles::Radians, 1, ASKED);
             let left = asked(
                 &controller,
+                &vectors,
                 |it| it.is_design,
                 |judge, finding, changed, rows| {
                     finding.vector.is_none() && judge.reason(finding, changed, rows).is_none()
@@ -215,8 +217,11 @@ mod tests {
     #[test]
     fn what_a_vector_finds_is_never_said_to_change_nothing() {
         let pid = Controller::Fixed(Pid::new(GAINS, config()).expect("allowed"));
+        // Steps alone: what others write into the memory is what some guards are for.
+        let steps = crate::vectors::vectors(&pid, Angles::Radians, 1, 3000);
         let wrong = asked(
             &pid,
+            &steps,
             |_| true,
             |judge, finding, changed, rows| {
                 finding.vector.is_some() && judge.reason(finding, changed, rows).is_some()
