@@ -163,7 +163,7 @@ impl<'a> Judge<'a> {
                 }
             });
         }
-        let always = |it: &&Expression| match ranges.of(it) {
+        let always = |it: &Expression| match ranges.of(it) {
             Some(Known::Truth(truth)) => {
                 truth.constant() == Some(held) || branch.held + branch.failed == 0
             }
@@ -172,7 +172,7 @@ impl<'a> Judge<'a> {
         };
         let nowhere = branch.held + branch.failed == 0;
         let shown = !found.is_empty()
-            && found.iter().all(|it| always(&it) && (!nowhere || ranges.of(it).is_none()));
+            && found.iter().all(|it| always(it) && (!nowhere || ranges.of(it).is_none()));
         if shown {
             return Some(format!("cannot: {}", self.why(found.first()?)));
         }

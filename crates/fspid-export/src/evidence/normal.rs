@@ -154,7 +154,7 @@ fn binary(operator: Operator, sides: [&Expression; 2], ranges: &Ranges<'_>) -> E
     let compares = matches!(operator, Operator::Less | Operator::LessOrEqual);
     let [left, right] =
         sides.map(|side| if compares { compared(side) } else { simple(side, ranges) });
-    let one = |it: &Expression| matches!(it, Expression::Number(number) if *number == 1.0);
+    let one = |it: &Expression| matches!(it, Expression::Number(number) if number.to_bits() == 1.0_f64.to_bits());
     match (operator, &left, &right) {
         (Operator::And, Expression::Truth(true), _)
         | (Operator::Or, Expression::Truth(false), _) => right,

@@ -79,7 +79,8 @@ impl Range {
 
     /// The number, where it can only be one, and which zero is known.
     pub(in crate::evidence) fn constant(&self) -> Option<f64> {
-        (self.low == self.high && !self.nan && self.low != 0.0).then_some(self.low)
+        let is_one = self.low.to_bits() == self.high.to_bits();
+        (is_one && !self.nan && self.low != 0.0).then_some(self.low)
     }
 
     pub(in crate::evidence) fn joined(self, other: Self) -> Self {
