@@ -11,7 +11,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Host};
+use fspid_sim::external::{Answers, Host, Lost};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
 use tempfile::TempDir;
 
@@ -32,10 +32,26 @@ const SAME_PERIOD: f64 = 1e-6;
 pub(crate) const LIBRARY: &str = "library";
 pub(crate) const FMU: &str = "fmu";
 
+/// What is wrong with a machine, or with an FMU.
+enum Unspawned {
+    Host(io::Error),
+    Archive(String),
+}
+
+impl From<io::Error> for Unspawned {
+    fn from(error: io::Error) -> Self {
+        Self::Host(error)
+    }
+}
+
 /// The folder of an unpacked FMU.
-fn unpacked(path: &Path) -> io::Result<TempDir> {
+fn unpacked(path: &Path) -> Result<TempDir, Unspawned> {
     let folder = tempfile::tempdir()?;
-    unpack(&std::fs::read(path)?, folder.path())?;
+    unpack(&std::fs::read(path)?, folder.path()).map_err(|error| match error.kind() {
+        // What the reader of archives says; all else is the system's.
+        io::ErrorKind::InvalidData => Unspawned::Archive(error.to_string()),
+        _ => Unspawned::Host(error),
+    })?;
     Ok(folder)
 }
 
@@ -54,7 +70,7 @@ impl ProcessHost {
         Self { program, arguments: arguments.iter().map(OsString::from).collect() }
     }
 
-    fn spawn(&self, external: &External) -> io::Result<Process> {
+    fn spawn(&self, external: &External) -> Result<Process, Unspawned> {
         let (stream, theirs) = UnixStream::pair()?;
         let (kind, folder) = match &external.source {
             ExternalSource::Library(_) => (LIBRARY, None),
@@ -84,34 +100,35 @@ impl ProcessHost {
 
 impl Host for ProcessHost {
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError> {
-        let refused = |reason: String, allowed: String| {
-            let file = external.source.path().display().to_string();
-            SimError::NotStarted { file, reason, allowed }
-        };
+        let file = external.source.path().display().to_string();
         let spawned = self.spawn(external).and_then(|mut process| {
             let start = process.begin()?;
             Ok((process, start))
         });
-        let (process, start) = spawned.map_err(|error| {
-            let allowed = "a file that can be read, and a process that can be started";
-            refused(error.to_string(), allowed.to_owned())
+        let (process, start) = spawned.map_err(|error| match error {
+            Unspawned::Host(reason) => {
+                SimError::Host { file: file.clone(), reason: reason.to_string() }
+            }
+            Unspawned::Archive(reason) => {
+                let allowed = "an FMU, which is a zip archive, whole and without encryption";
+                SimError::NotStarted { file: file.clone(), reason, allowed: allowed.to_owned() }
+            }
         })?;
+        let refused = |reason, allowed| Err(SimError::NotStarted { file, reason, allowed });
         match start {
             Ok(Start::Ready { period_s }) if is_period(period_s, external.dt_s) => {
                 Ok(Box::new(process))
             }
-            Ok(Start::Ready { period_s }) => Err(refused(
+            Ok(Start::Ready { period_s }) => refused(
                 format!(
                     "its period is {period_s:?} s, and the scenario samples every {:?} s",
                     external.dt_s
                 ),
                 "the same period, or 0 for a controller that has none".to_owned(),
-            )),
-            Ok(Start::Refused { reason, allowed }) => Err(refused(reason, allowed)),
-            Err(loss) => Err(refused(
-                format!("the controller {loss} while it was loaded"),
-                "a library that can be loaded, whose `fspid_external_reset` returns".to_owned(),
-            )),
+            ),
+            Ok(Start::Refused { reason, allowed }) => refused(reason, allowed),
+            // Crashing before the first sample is as much of a verdict as crashing at it.
+            Err(loss) => Ok(Box::new(Lost(loss))),
         }
     }
 }

@@ -77,6 +77,8 @@ pub enum ControllerLoss {
     NotFinite,
     /// What came was no answer.
     NoAnswer,
+    /// It could not be started, though it could before.
+    NotStarted,
 }
 
 impl ControllerLoss {
@@ -90,6 +92,7 @@ impl ControllerLoss {
             Self::Refused { .. } => "refused",
             Self::NotFinite => "not finite",
             Self::NoAnswer => "no answer",
+            Self::NotStarted => "not started",
         }
     }
 }
@@ -119,6 +122,7 @@ impl fmt::Display for ControllerLoss {
             Self::Refused { status } => write!(f, "refused with FMI status {status}"),
             Self::NotFinite => f.write_str("answered a command that is not finite"),
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
+            Self::NotStarted => f.write_str("could not be started for this flight"),
         }
     }
 }
@@ -132,12 +136,23 @@ pub trait Answers {
     fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss>;
 }
 
+/// A controller that is lost before its first sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Lost(pub ControllerLoss);
+
+impl Answers for Lost {
+    fn answer(&mut self, _: Sample<f64>) -> Result<Step<f64>, ControllerLoss> {
+        Err(self.0)
+    }
+}
+
 /// What starts external controllers.
 pub trait Host: Send + Sync {
-    /// Starts one, at rest.
+    /// Starts one, at rest. One that is lost on the way answers with that loss.
     ///
     /// # Errors
-    /// [`SimError::NotStarted`] says what is wrong with it and what would be right.
+    /// [`SimError::NotStarted`] says what is wrong with it and what would be right, [`SimError::Host`] what is wrong
+    /// with the machine.
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError>;
 }
 

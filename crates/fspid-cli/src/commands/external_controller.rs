@@ -80,9 +80,13 @@ fn entry(key: &str, file: &Path) -> Result<String, Failure> {
     }
 }
 
+/// The program that runs, whatever lies at its path by now: Linux keeps it there, also once it is removed.
+const RUNNING: &str = "/proc/self/exe";
+
 /// Lets this program start itself for external controllers.
 pub(crate) fn host() {
-    if let Ok(program) = std::env::current_exe() {
+    let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
+    if let Some(program) = running.or_else(|| std::env::current_exe().ok()) {
         set_host(ProcessHost::new(program, &[NAME]));
     }
 }
