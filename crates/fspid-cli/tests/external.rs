@@ -326,7 +326,7 @@ fn flown(controller: &Controller, folder: &Path) -> Vec<Trace> {
     let mut scenario = Scenario::new("drawn", plant.expect("a plant"), timing, setpoint)
         .with_controller("original", *controller);
     let source = ExternalSource::Library(folder.join("drawn.so"));
-    let external = External { source, answer_limit_s: 60.0, dt_s };
+    let external = External { source, contents: None, answer_limit_s: 60.0, dt_s };
     scenario.externals.push(NamedExternal { name: "export".to_owned(), external });
     simulate(&scenario).expect("flies").traces
 }

@@ -11,7 +11,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Host, Lost};
+use fspid_sim::external::{Answers, Contents, Host, Lost};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
 use tempfile::TempDir;
 
@@ -45,15 +45,18 @@ impl From<io::Error> for Unspawned {
 }
 
 /// The folder of an unpacked FMU.
-fn unpacked(path: &Path) -> Result<TempDir, Unspawned> {
+fn unpacked(path: &Path, contents: Option<&Contents>) -> Result<TempDir, Unspawned> {
     let folder = tempfile::tempdir()?;
-    unpack(&std::fs::read(path)?, folder.path()).map_err(|error| match error.kind() {
+    let archive = contents.map_or_else(|| std::fs::read(path).map(Into::into), |it| Ok(it.0.clone()))?;
+    unpack(&archive, folder.path()).map_err(|error| match error.kind() {
         // What the reader of archives says; all else is the system's.
         io::ErrorKind::InvalidData => Unspawned::Archive(error.to_string()),
         _ => Unspawned::Host(error),
     })?;
     Ok(folder)
 }
+
+const CHANGED: &str = "the file has changed since it was read; begin again with what it is now, or put back what it was";
 
 /// Starts a process of a program for each flight.
 #[derive(Clone, Debug)]
@@ -74,7 +77,7 @@ impl ProcessHost {
         let (stream, theirs) = UnixStream::pair()?;
         let (kind, folder) = match &external.source {
             ExternalSource::Library(_) => (LIBRARY, None),
-            ExternalSource::Fmu(path) => (FMU, Some(unpacked(path)?)),
+            ExternalSource::Fmu(path) => (FMU, Some(unpacked(path, external.contents.as_ref())?)),
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
         let child = Command::new(&self.program)
@@ -103,6 +106,7 @@ impl Host for ProcessHost {
         let file = external.source.path().display().to_string();
         let spawned = self.spawn(external).and_then(|mut process| {
             let start = process.begin()?;
+            require_unchanged(external)?;
             Ok((process, start))
         });
         let (process, start) = spawned.map_err(|error| match error {
@@ -130,6 +134,18 @@ impl Host for ProcessHost {
             // Crashing before the first sample is as much of a verdict as crashing at it.
             Err(loss) => Ok(Box::new(Lost(loss))),
         }
+    }
+}
+
+/// Refuses a library that is another one than was read: what is told of a flight would be told of that one. An FMU is
+/// unpacked from what was read; a library has to be loaded where it lies, for it may look for others beside itself.
+fn require_unchanged(External { source, contents, .. }: &External) -> io::Result<()> {
+    let (ExternalSource::Library(path), Some(Contents(bytes))) = (source, contents) else {
+        return Ok(());
+    };
+    match std::fs::read(path).is_ok_and(|found| found == **bytes) {
+        true => Ok(()),
+        false => Err(io::Error::other(CHANGED)),
     }
 }
 

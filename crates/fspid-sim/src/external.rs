@@ -5,7 +5,7 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use fspid_core::{Sample, Step};
 
@@ -16,10 +16,22 @@ use crate::error::SimError;
 pub struct External {
     /// What is loaded.
     pub source: ExternalSource,
+    /// What was in that file when it was read, and what flies therefore; None flies what is there.
+    pub contents: Option<Contents>,
     /// The longest time for an answer, s.
     pub answer_limit_s: f64,
     /// Time from sample to sample of the scenario, s.
     pub dt_s: f64,
+}
+
+/// The bytes of a file.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Contents(pub Arc<[u8]>);
+
+impl fmt::Debug for Contents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} bytes", self.0.len())
+    }
 }
 
 /// The file of an external controller.
@@ -180,7 +192,7 @@ mod tests {
     #[test]
     fn without_a_host_an_external_controller_is_refused_and_says_why() {
         let source = ExternalSource::Library(PathBuf::from("controller.so"));
-        let external = External { source, answer_limit_s: 1.0, dt_s: 0.01 };
+        let external = External { source, contents: None, answer_limit_s: 1.0, dt_s: 0.01 };
         let refused = external.start().err().map(|error| error.to_string());
         assert!(refused.is_some_and(|text| text.contains("external controllers")));
     }

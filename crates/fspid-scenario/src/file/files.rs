@@ -1,6 +1,8 @@
 //! The files that a file refers to, and the digest of all that was read.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest as _, Sha256};
 
@@ -14,10 +16,31 @@ use fspid_diagnostics::Report;
 /// Why a file cannot be referred to.
 const NO_FOLDER: &str = "this scenario is not in a folder, so it cannot refer to files";
 
+/// What was read, and where it lies, by its path. A scenario that is built again and again is built of the same bytes,
+/// whatever became of its files meanwhile: those that its digest is of.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept(Arc<Mutex<BTreeMap<PathBuf, (PathBuf, Arc<[u8]>)>>>);
+
+impl Kept {
+    /// Where a file lies, from the root, and what is in it.
+    fn read(&self, path: PathBuf) -> Result<(PathBuf, Arc<[u8]>), String> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = kept.get(&path) {
+            return Ok(found.clone());
+        }
+        let bytes: Arc<[u8]> = read_regular(&path)?.into();
+        let root = path.canonicalize().map_err(|error| unread_in_words(&error))?;
+        let found = (root, bytes);
+        kept.insert(path, found.clone());
+        Ok(found)
+    }
+}
+
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
 pub(crate) struct Files<'a> {
     folder: Option<&'a Path>,
     hasher: Sha256,
+    kept: Kept,
     /// Path of the key that refers to a file, the file's specification, and what it says.
     referred: Vec<(String, &'static Table, Section)>,
     /// Path of a key that is left out, and the word that a file makes its default.
@@ -36,12 +59,18 @@ impl<'a> Files<'a> {
         Self {
             folder,
             hasher: Sha256::new(),
+            kept: Kept::default(),
             referred: Vec::new(),
             filled: Vec::new(),
             changes: Vec::new(),
             written: Vec::new(),
             documents: None,
         }
+    }
+
+    /// The same with what was read before.
+    pub(crate) fn of_kept(folder: Option<&'a Path>, kept: &Kept) -> Self {
+        Self { kept: kept.clone(), ..Self::new(folder) }
     }
 
     /// Keeps what the file says that the key at `path` refers to.
@@ -132,19 +161,19 @@ impl<'a> Files<'a> {
         self.hasher.update(bytes);
     }
 
-    /// Where a program lies that is referred to, from the root; what it is goes into the digest.
-    pub(crate) fn program(&mut self, path: &str) -> Result<PathBuf, String> {
+    /// Where a program lies that is referred to, from the root, and its bytes; what it is goes into the digest.
+    pub(crate) fn program(&mut self, path: &str) -> Result<(PathBuf, Arc<[u8]>), String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let bytes = read_regular(&folder.join(path))?;
+        let (path, bytes) = self.kept.read(folder.join(path))?;
         self.digest_bytes(&bytes);
-        folder.join(path).canonicalize().map_err(|error| unread_in_words(&error))
+        Ok((path, bytes))
     }
 
     /// The text of a file that is referred to.
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let bytes = read_regular(&folder.join(path))?;
-        String::from_utf8(bytes).map_err(|error| {
+        let (_, bytes) = self.kept.read(folder.join(path))?;
+        String::from_utf8(bytes.to_vec()).map_err(|error| {
             let position = error.utf8_error().valid_up_to();
             format!("not UTF-8 from byte {position} on")
         })

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fspid_sim::external::Contents;
 use fspid_sim::{External, ExternalSource, NamedExternal};
 
 use crate::file::files::Files;
@@ -21,8 +22,8 @@ pub(super) fn external(
         true => (keys::FMU, ExternalSource::Fmu),
         false => (keys::LIBRARY, ExternalSource::Library),
     };
-    let path = match files.program(section.get(key)?) {
-        Ok(path) => path,
+    let (path, bytes) = match files.program(section.get(key)?) {
+        Ok(found) => found,
         Err(reason) => {
             let message = format!("cannot be read: {reason}");
             let allowed = "a shared library or an FMU, its path relative to the scenario's folder";
@@ -31,6 +32,7 @@ pub(super) fn external(
         }
     };
     let answer_limit_s = section.get(keys::ANSWER_LIMIT_S)?;
-    let external = External { source: of(path), answer_limit_s, dt_s };
+    let (source, contents) = (of(path), Some(Contents(bytes)));
+    let external = External { source, contents, answer_limit_s, dt_s };
     Some(NamedExternal { name, external })
 }
