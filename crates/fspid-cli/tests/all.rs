@@ -9,6 +9,8 @@ mod common;
 mod equations;
 mod every_command;
 mod external;
+#[cfg(unix)]
+mod external_losses;
 mod fly;
 mod fuzzy_system;
 mod guide;

@@ -20,6 +20,8 @@ mod library;
 mod process;
 #[cfg(unix)]
 mod serve;
+#[cfg(unix)]
+mod timed;
 
 #[cfg(unix)]
 pub use process::ProcessHost;

@@ -89,6 +89,8 @@ pub enum ControllerLoss {
     NotFinite,
     /// What came was no answer.
     NoAnswer,
+    /// Its process is gone, and the system keeps it to itself how: signals of children are ignored.
+    Gone,
     /// It could not be started, though it could before.
     NotStarted,
 }
@@ -104,18 +106,20 @@ impl ControllerLoss {
             Self::Refused { .. } => "refused",
             Self::NotFinite => "not finite",
             Self::NoAnswer => "no answer",
+            Self::Gone => "gone",
             Self::NotStarted => "not started",
         }
     }
 }
 
-/// Signals that programs crash with, as POSIX and Linux number them everywhere alike.
-const SIGNALS: [(i32, &str); 9] = [
+/// Signals that programs crash with; all but one have the same number on every system.
+const SIGNALS: [(i32, &str); 10] = [
     (1, "SIGHUP"),
     (2, "SIGINT"),
     (4, "SIGILL"),
     (5, "SIGTRAP"),
     (6, "SIGABRT"),
+    (if cfg!(target_os = "linux") { 7 } else { 10 }, "SIGBUS"),
     (8, "SIGFPE"),
     (9, "SIGKILL"),
     (11, "SIGSEGV"),
@@ -134,6 +138,7 @@ impl fmt::Display for ControllerLoss {
             Self::Refused { status } => write!(f, "refused with FMI status {status}"),
             Self::NotFinite => f.write_str("answered a command that is not finite"),
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
+            Self::Gone => f.write_str("ended, and the system does not tell how"),
             Self::NotStarted => f.write_str("could not be started for this flight"),
         }
     }

@@ -87,7 +87,7 @@ const RUNNING: &str = "/proc/self/exe";
 pub(crate) fn host() {
     let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
     if let Some(program) = running.or_else(|| std::env::current_exe().ok()) {
-        set_host(ProcessHost::new(program, &[NAME]));
+        set_host(ProcessHost::new(program, &[NAME]).telling(|words| note(words)));
     }
 }
 
