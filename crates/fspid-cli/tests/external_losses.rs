@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::common::{code, fspid, json, started, text};
 use crate::external::{library, verdict};
 
-/// A controller that flies well, but for what is put into it.
+/// A controller that flies well, but for what is put into it. Of its memory it writes the first half alone.
 const SOURCE: &str = r#"
 #include "fspid_external.h"
 #include <math.h>
@@ -18,7 +18,7 @@ const SOURCE: &str = r#"
 #include <unistd.h>
 uint32_t fspid_external_version(void) { return FSPID_EXTERNAL_VERSION; }
 double fspid_external_period_s(void) { return 0.0; }
-size_t fspid_external_state_bytes(void) { return sizeof(int); }
+size_t fspid_external_state_bytes(void) { return sizeof(int) + sizeof(float); }
 /* How often it was started, kept in a file. */
 static int starts(void)
 {
@@ -134,6 +134,22 @@ fn a_crash_before_the_first_sample_is_a_verdict_at_0_s() {
     assert_eq!(code(&output), 1, "{}", text(&output.stderr));
     assert_eq!(verdict(&json(&output), "X"), "the controller crashed with SIGABRT at t = 0 s");
     assert_eq!(verdict(&json(&output), "PID"), "settled");
+}
+
+#[test]
+fn memory_that_is_not_written_is_no_zero_and_what_lies_behind_it_is_not_the_controllers() {
+    for (step, told) in [
+        ("((int *)state)[2] = 0", "the controller wrote behind the memory that it asked for at t ="),
+        (
+            "answer->command_rad = ((float *)state)[1]",
+            "the controller answered a command that is not finite at t =",
+        ),
+    ] {
+        let folder = folder("pitch-hold");
+        build(folder.path(), "", step, "");
+        let found = verdict(&json(&simulated(folder.path())), "X");
+        assert!(found.starts_with(told), "{step}: {found}");
+    }
 }
 
 #[test]

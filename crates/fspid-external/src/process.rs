@@ -22,6 +22,7 @@ use tempfile::TempDir;
 
 use crate::archive::unpack;
 use crate::frame::{Start, read_answer, write_sample};
+use crate::library::OVERRAN;
 use crate::timed::Timed;
 
 /// What loading a controller may take beyond its time for an answer: a process starts in less, however busy a machine is.
@@ -289,7 +290,10 @@ impl Answers for Process {
         let written = write_sample(&mut timed, &sample);
         let read = written.and_then(|()| read_answer(&mut timed));
         let answer = read.map_err(|error| self.lost(&error, self.limit))?;
-        let (number, step) = answer.map_err(|status| ControllerLoss::Refused { status })?;
+        let (number, step) = answer.map_err(|status| match status {
+            OVERRAN => ControllerLoss::Overran,
+            status => ControllerLoss::Refused { status },
+        })?;
         if number != self.sample {
             self.is_lost = true;
             return Err(ControllerLoss::NoAnswer);

@@ -100,7 +100,7 @@ impl Controller {
 
     fn step(&mut self, sample: &Sample<f64>) -> Result<Step<f64>, i32> {
         match self {
-            Self::Library(library) => Ok(library.step(sample)),
+            Self::Library(library) => library.step(sample),
             Self::Fmu(fmu) => fmu.step(sample),
         }
     }

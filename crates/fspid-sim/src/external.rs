@@ -85,6 +85,8 @@ pub enum ControllerLoss {
         /// The status.
         status: i32,
     },
+    /// It wrote behind the memory that it asked for.
+    Overran,
     /// It answered a command that is NaN or infinite.
     NotFinite,
     /// What came was no answer.
@@ -104,6 +106,7 @@ impl ControllerLoss {
             Self::Ended { .. } => "ended",
             Self::Silent { .. } => "silent",
             Self::Refused { .. } => "refused",
+            Self::Overran => "overran",
             Self::NotFinite => "not finite",
             Self::NoAnswer => "no answer",
             Self::Gone => "gone",
@@ -136,6 +139,7 @@ impl fmt::Display for ControllerLoss {
             Self::Ended { code } => write!(f, "ended its process with code {code}"),
             Self::Silent { limit_s } => write!(f, "gave no answer within {limit_s:?} s"),
             Self::Refused { status } => write!(f, "refused with FMI status {status}"),
+            Self::Overran => f.write_str("wrote behind the memory that it asked for"),
             Self::NotFinite => f.write_str("answered a command that is not finite"),
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
             Self::Gone => f.write_str("ended, and the system does not tell how"),
