@@ -74,10 +74,16 @@ fn entry(key: &str, file: &Path) -> Result<String, Failure> {
     let name = path.file_name().unwrap_or_default();
     match (name.to_str(), path.to_str()) {
         (Some(name), Some(path)) => {
-            Ok(format!("controller[]={{ name = {name:?}, kind = \"external\", {key} = {path:?} }}"))
+            let (name, path) = (toml_text(name), toml_text(path));
+            Ok(format!("controller[]={{ name = {name}, kind = \"external\", {key} = {path} }}"))
         }
         _ => Err(refused(&"its path is no text")),
     }
+}
+
+/// A text as TOML writes it: as JSON does, but for one character.
+fn toml_text(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
 /// The program that runs, whatever lies at its path by now: Linux keeps it there, also once it is removed.

@@ -10,7 +10,7 @@ use crate::file::overrides::Change;
 use crate::keyed::Section;
 use crate::keyed::Table;
 use crate::keyed::document::Item;
-use crate::regular_file::{read_regular, unread_in_words};
+use crate::regular_file::{read_program, read_regular, unread_in_words};
 use fspid_diagnostics::Report;
 
 /// Why a file cannot be referred to.
@@ -23,12 +23,16 @@ pub(crate) struct Kept(Arc<Mutex<BTreeMap<PathBuf, (PathBuf, Arc<[u8]>)>>>);
 
 impl Kept {
     /// Where a file lies, from the root, and what is in it.
-    fn read(&self, path: PathBuf) -> Result<(PathBuf, Arc<[u8]>), String> {
+    fn read(
+        &self,
+        path: PathBuf,
+        read: fn(&Path) -> Result<Vec<u8>, String>,
+    ) -> Result<(PathBuf, Arc<[u8]>), String> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = kept.get(&path) {
             return Ok(found.clone());
         }
-        let bytes: Arc<[u8]> = read_regular(&path)?.into();
+        let bytes: Arc<[u8]> = read(&path)?.into();
         let root = path.canonicalize().map_err(|error| unread_in_words(&error))?;
         let found = (root, bytes);
         kept.insert(path, found.clone());
@@ -164,7 +168,7 @@ impl<'a> Files<'a> {
     /// Where a program lies that is referred to, from the root, and its bytes; what it is goes into the digest.
     pub(crate) fn program(&mut self, path: &str) -> Result<(PathBuf, Arc<[u8]>), String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let (path, bytes) = self.kept.read(folder.join(path))?;
+        let (path, bytes) = self.kept.read(folder.join(path), read_program)?;
         self.digest_bytes(&bytes);
         Ok((path, bytes))
     }
@@ -172,7 +176,7 @@ impl<'a> Files<'a> {
     /// The text of a file that is referred to.
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let (_, bytes) = self.kept.read(folder.join(path))?;
+        let (_, bytes) = self.kept.read(folder.join(path), read_regular)?;
         String::from_utf8(bytes.to_vec()).map_err(|error| {
             let position = error.utf8_error().valid_up_to();
             format!("not UTF-8 from byte {position} on")
