@@ -9,9 +9,11 @@ mod common;
 mod equations;
 mod every_command;
 mod external;
+mod external_fly;
 #[cfg(unix)]
 mod external_losses;
 mod fly;
+mod foreign_fmu;
 mod fuzzy_system;
 mod guide;
 mod learn;

@@ -143,7 +143,10 @@ fn a_crash_before_the_first_sample_is_a_verdict_at_0_s() {
 #[test]
 fn memory_that_is_not_written_is_no_zero_and_what_lies_behind_it_is_not_the_controllers() {
     for (step, told) in [
-        ("((int *)state)[2] = 0", "the controller wrote behind the memory that it asked for at t ="),
+        (
+            "((int *)state)[2] = 0",
+            "the controller wrote behind the memory that it asked for at t =",
+        ),
         (
             "answer->command_rad = ((float *)state)[1]",
             "the controller answered a command that is not finite at t =",

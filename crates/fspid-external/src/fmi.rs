@@ -385,7 +385,7 @@ fn three((library, _, [name, token, resources]): &Kept) -> Result<(Calls, Instan
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::Variable;
+    use crate::variables::Variable;
 
     #[test]
     fn a_folder_is_written_as_an_address() {

@@ -22,6 +22,8 @@ mod process;
 mod serve;
 #[cfg(unix)]
 mod timed;
+#[cfg(unix)]
+mod variables;
 
 #[cfg(unix)]
 pub use process::ProcessHost;

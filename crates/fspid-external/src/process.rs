@@ -2,25 +2,25 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
-use std::io::{self, Write as _};
+use std::io::{self, PipeReader, Read as _, Write as _};
 use std::net::Shutdown;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Contents, Host, Lost};
+use fspid_sim::external::{Answers, Contents, Host, Lost, Renamed};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
-use rustix::process::{
-    Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid,
-};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use tempfile::TempDir;
 
-use crate::archive::unpack;
+use crate::archive::{archive, unpack};
 use crate::frame::{Start, read_answer, write_sample};
 use crate::library::OVERRAN;
 use crate::timed::Timed;
@@ -58,11 +58,14 @@ impl From<io::Error> for Unspawned {
 
 /// Unpacks what was read of an FMU, or else what lies there.
 fn unpack_into(folder: &Path, external: &External) -> Result<(), Unspawned> {
-    let archive = match &external.contents {
-        Some(Contents(bytes)) => Arc::clone(bytes),
-        None => std::fs::read(external.source.path())?.into(),
+    let unpacked = || {
+        let bytes: Arc<[u8]> = match &external.contents {
+            Some(Contents(bytes)) => Arc::clone(bytes),
+            None => archive(external.source.path())?.into(),
+        };
+        unpack(&bytes, folder)
     };
-    unpack(&archive, folder).map_err(|error| match error.kind() {
+    unpacked().map_err(|error| match error.kind() {
         // What the reader of archives says; all else is the system's.
         io::ErrorKind::InvalidData => Unspawned::Archive(error.to_string()),
         _ => Unspawned::Host(error),
@@ -77,21 +80,45 @@ pub struct ProcessHost {
     program: PathBuf,
     arguments: Vec<OsString>,
     notes: Arc<Notes>,
+    /// What is still passed on of what controllers print, bytes; nothing where all is.
+    prints: Option<Arc<AtomicU64>>,
 }
 
 impl ProcessHost {
-    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period and the path
-    /// that follow them.
+    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period, the path
+    /// and the names that follow them.
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(OsString::from).collect();
-        Self { program, arguments, notes: Arc::default() }
+        Self { program, arguments, notes: Arc::default(), prints: None }
     }
 
     /// Says who is told what a controller does that is part of no verdict: how it ends behind its last sample.
     #[must_use]
     pub fn telling(self, tell: fn(&str)) -> Self {
         Self { notes: Arc::new(Notes { tell: Some(tell), ..Notes::default() }), ..self }
+    }
+
+    /// The same that passes on so many bytes of what all controllers print, and drops the rest: whoever does not read our
+    /// standard error stops neither them nor us.
+    #[must_use]
+    pub fn printing_at_most(self, bytes: u64) -> Self {
+        Self { prints: Some(Arc::new(AtomicU64::new(bytes))), ..self }
+    }
+
+    /// Where a controller prints, and what says that it has ended. Standard output holds our own answers.
+    fn prints(&self) -> io::Result<(Printer, [Stdio; 2])> {
+        let Some(left) = self.prints.clone() else {
+            return Ok((Printer(None), [Stdio::from(io::stderr()), Stdio::inherit()]));
+        };
+        let (reader, writer) = io::pipe()?;
+        let both = [Stdio::from(writer.try_clone()?), Stdio::from(writer)];
+        let (ended, wait) = channel();
+        std::thread::spawn(move || {
+            pass_on(reader, &left);
+            let _ = ended.send(());
+        });
+        Ok((Printer(Some(wait)), both))
     }
 
     fn spawn(&self, external: &External) -> io::Result<Process> {
@@ -103,13 +130,15 @@ impl ProcessHost {
             }
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
+        let (printer, [output, errors]) = self.prints()?;
         let child = Command::new(&self.program)
             .args(&self.arguments)
             .args([kind, &format!("{:?}", external.dt_s)])
             .arg(path)
+            .args(external.renamed.iter().map(written))
             .stdin(Stdio::from(OwnedFd::from(theirs)))
-            // Standard output holds our own answers.
-            .stdout(Stdio::from(io::stderr()))
+            .stdout(output)
+            .stderr(errors)
             // Ctrl-C is for us: a flight that was begun is no crash of its controller.
             .process_group(0)
             .spawn()?;
@@ -121,8 +150,29 @@ impl ProcessHost {
             is_lost: false,
             file: external.source.path().to_owned(),
             notes: Arc::clone(&self.notes),
+            printer,
             folder,
         })
+    }
+}
+
+/// A name of an FMU's variable, as [`serve`](crate::serve) reads it.
+fn written(renamed: &Renamed) -> String {
+    format!("{}={}", renamed.place.key(renamed.in_degrees), renamed.name)
+}
+
+/// What hears that all was passed on that a controller printed; nothing where it prints itself.
+#[derive(Debug)]
+struct Printer(Option<Receiver<()>>);
+
+/// Passes on what is left to be passed on, and reads the rest, so that nobody waits.
+fn pass_on(mut reader: PipeReader, left: &AtomicU64) {
+    let mut bytes = [0; 1024];
+    while let Ok(read @ 1..) = reader.read(&mut bytes) {
+        let taken = |left: u64| Some(left.saturating_sub(read as u64));
+        let before = left.fetch_update(Relaxed, Relaxed, taken).unwrap_or_default();
+        let most = usize::try_from(before).unwrap_or(read).min(read);
+        let _ = io::stderr().write_all(bytes.get(..most).unwrap_or_default());
     }
 }
 
@@ -198,6 +248,7 @@ impl Notes {
 }
 
 /// A controller in flight.
+#[derive(Debug)]
 struct Process {
     child: Child,
     stream: UnixStream,
@@ -208,6 +259,7 @@ struct Process {
     is_lost: bool,
     file: PathBuf,
     notes: Arc<Notes>,
+    printer: Printer,
     /// What an FMU was unpacked into, removed behind it.
     folder: Option<TempDir>,
 }
@@ -263,7 +315,11 @@ impl Process {
         let status = status?;
         let code = status.exit_status().unwrap_or_default();
         let signal = status.terminating_signal();
-        Some(signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed { signal }))
+        Some(
+            signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed {
+                signal,
+            }),
+        )
     }
 
     /// Lets it end once nobody asks any more, and tells how if that is not as it should be.
@@ -318,5 +374,9 @@ impl Drop for Process {
         }
         let _ = self.child.kill();
         let _ = self.child.wait();
+        // Its last words, unless a process that it has left behind still holds the pipe.
+        if let Some(ended) = &self.printer.0 {
+            let _ = ended.recv_timeout(END_LIMIT);
+        }
     }
 }

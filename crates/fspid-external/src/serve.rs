@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
+use fspid_sim::external::{Place, Renamed};
 use rustix::process::{Signal, kill_current_process_group};
 
 use crate::fmu::FmuController;
@@ -20,11 +21,12 @@ use crate::process::{FMU, FOLDER, LIBRARY};
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
 /// Loads a controller of this kind, `library` or `fmu` (its folder), and answers what comes each `dt_s` over standard
-/// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. What the controller prints is passed on to
+/// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. `renamed` are names of an FMU's variables, such as
+/// `setpoint_rad=theta_ref`. What the controller prints is passed on to
 /// standard error.
 #[must_use]
-pub fn serve(kind: &str, path: &Path, dt_s: f64) -> ExitCode {
-    let conversed = converse(kind, path, dt_s);
+pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode {
+    let conversed = converse(kind, path, dt_s, renamed);
     if kind == FMU {
         remove(path);
     }
@@ -35,7 +37,7 @@ pub fn serve(kind: &str, path: &Path, dt_s: f64) -> ExitCode {
     }
 }
 
-fn converse(kind: &str, path: &Path, dt_s: f64) -> io::Result<()> {
+fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Result<()> {
     let mut stream = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
     let asked_by = u32::from_ne_bytes(read(&mut stream)?);
     let folder = (kind == FMU).then(|| path.to_owned());
@@ -44,7 +46,7 @@ fn converse(kind: &str, path: &Path, dt_s: f64) -> io::Result<()> {
     if read::<1>(&mut stream).is_err() {
         return Ok(());
     }
-    let mut controller = match Controller::load(kind, path, dt_s) {
+    let mut controller = match Controller::load(kind, path, dt_s, renamed) {
         Ok(controller) => controller,
         Err((reason, allowed)) => return Start::Refused { reason, allowed }.write(&mut stream),
     };
@@ -65,7 +67,9 @@ fn end_with(asked_by: u32, folder: Option<PathBuf>) {
     while parent_id() == asked_by {
         std::thread::sleep(LOOK_AGAIN);
     }
-    folder.as_deref().map_or((), remove);
+    if let Some(folder) = folder {
+        remove(&folder);
+    }
     let _ = kill_current_process_group(Signal::KILL);
 }
 
@@ -77,16 +81,24 @@ fn remove(folder: &Path) {
     }
 }
 
+/// Reads what the simulator's side wrote.
+fn named(text: &str) -> Option<Renamed> {
+    let (key, name) = text.split_once('=')?;
+    let (place, in_degrees) = Place::of_key(key)?;
+    Some(Renamed { place, in_degrees, name: name.to_owned() })
+}
+
 enum Controller {
     Library(LibraryController),
     Fmu(Box<FmuController>),
 }
 
 impl Controller {
-    fn load(kind: &str, path: &Path, dt_s: f64) -> Result<Self, Refusal> {
+    fn load(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> Result<Self, Refusal> {
+        let renamed: Vec<Renamed> = renamed.iter().filter_map(|text| named(text)).collect();
         match kind {
             LIBRARY => LibraryController::load(path).map(Self::Library),
-            FMU => FmuController::load(path, dt_s).map(|fmu| Self::Fmu(Box::new(fmu))),
+            FMU => FmuController::load(path, dt_s, &renamed).map(|fmu| Self::Fmu(Box::new(fmu))),
             other => Err((format!("is called {other}"), format!("{LIBRARY} or {FMU}"))),
         }
     }
