@@ -116,18 +116,26 @@ mod tests {
     /// An archive of one stored file.
     fn stored(bytes: &[u8], flags: u8) -> Vec<u8> {
         let sizes = [(bytes.len() as u32).to_le_bytes(); 2].concat();
-        let common = [&[20, 0, flags, 0, 0, 0, 0, 0, 0, 0][..], &(crc32(bytes) as u32).to_le_bytes(), &sizes].concat();
+        let common = [
+            &[20, 0, flags, 0, 0, 0, 0, 0, 0, 0][..],
+            &(crc32(bytes) as u32).to_le_bytes(),
+            &sizes,
+        ]
+        .concat();
         let mut archive = [b"PK\x03\x04", &common[..], &[1, 0, 0, 0, b'f'], bytes].concat();
         let at = (archive.len() as u32).to_le_bytes();
         archive.extend([b"PK\x01\x02\x14\x00", &common[..], &[1], &[0; 17], b"f"].concat());
-        archive.extend([&b"PK\x05\x06\0\0\0\0\x01\0\x01\0"[..], &[47, 0, 0, 0], &at, &[0; 2]].concat());
+        archive.extend(
+            [&b"PK\x05\x06\0\0\0\0\x01\0\x01\0"[..], &[47, 0, 0, 0], &at, &[0; 2]].concat(),
+        );
         archive
     }
 
     #[test]
     fn an_archive_is_unpacked_if_it_is_whole_and_readable() {
         let folder = tempfile::tempdir().expect("a folder");
-        let refused = |archive: &[u8]| unpack(archive, folder.path()).err().map(|it| it.to_string());
+        let refused =
+            |archive: &[u8]| unpack(archive, folder.path()).err().map(|it| it.to_string());
         assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
         let whole = stored(b"some bytes", 0);
         assert_eq!(refused(&whole), None);

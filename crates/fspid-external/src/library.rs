@@ -100,7 +100,8 @@ impl LibraryController {
         // SAFETY: the memory has the bytes that the controller asked for, and nobody else's.
         unsafe { reset(state.pointer()) };
         if !state.is_whole() {
-            let reason = format!("writes in `{}` beyond the {bytes} bytes that it asks for", NAMES[3]);
+            let reason =
+                format!("writes in `{}` beyond the {bytes} bytes that it asks for", NAMES[3]);
             return Err((reason, format!("as many bytes as it writes, from `{}`", NAMES[2])));
         }
         let step = function(&library, step)?;

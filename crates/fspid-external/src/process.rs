@@ -15,9 +15,7 @@ use std::time::Duration;
 use fspid_sim::core::{Sample, Step};
 use fspid_sim::external::{Answers, Contents, Host, Lost};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
-use rustix::process::{
-    Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid,
-};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use tempfile::TempDir;
 
 use crate::archive::unpack;
@@ -263,7 +261,11 @@ impl Process {
         let status = status?;
         let code = status.exit_status().unwrap_or_default();
         let signal = status.terminating_signal();
-        Some(signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed { signal }))
+        Some(
+            signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed {
+                signal,
+            }),
+        )
     }
 
     /// Lets it end once nobody asks any more, and tells how if that is not as it should be.

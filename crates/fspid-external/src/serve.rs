@@ -65,7 +65,9 @@ fn end_with(asked_by: u32, folder: Option<PathBuf>) {
     while parent_id() == asked_by {
         std::thread::sleep(LOOK_AGAIN);
     }
-    folder.as_deref().map_or((), remove);
+    if let Some(folder) = folder {
+        remove(&folder);
+    }
     let _ = kill_current_process_group(Signal::KILL);
 }
 

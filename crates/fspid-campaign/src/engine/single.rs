@@ -3,9 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_sim::{
-    ControllerLoss, Exit, Flyer, Outcome, Perturbation, Prepared, SimError, Trace,
-};
+use fspid_sim::{ControllerLoss, Exit, Flyer, Outcome, Perturbation, Prepared, SimError, Trace};
 
 /// One flight, recorded in an empty trace as far as measures need it. An external controller that cannot be started is
 /// lost: whoever flies beside it has nothing to do with that.

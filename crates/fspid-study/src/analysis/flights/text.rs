@@ -1,9 +1,9 @@
 //! Flights in words.
 
 use fspid_sim::describing::{LimitCycle, LimitCycles};
-use fspid_sim::flown::{Failure, Margin};
 use fspid_sim::flown::empirical::{EmpiricalAnswer, EmpiricalMargins};
 use fspid_sim::flown::trajectory::TrajectoryLinearisation;
+use fspid_sim::flown::{Failure, Margin};
 
 use super::Flights;
 use crate::analysis::decibels;
