@@ -6,10 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 . checks/export/tools.sh
 needs cmake cmake || exit 0
-if [[ -z "${FSPID:-}" ]]; then
-    cargo build --release --quiet
-    FSPID=target/release/fspid
-fi
+program
 stubs="$PWD/checks/export/stubs"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT

@@ -26,7 +26,7 @@ if [ "$long" = --long ]; then
     needs simavr simavr
 fi
 
-cargo build --release --quiet
+program
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 here="$PWD/checks/export"
@@ -34,7 +34,7 @@ scripts="$PWD/crates/fspid-export/src/evidence/scripts"
 plain=(-std=c99 -Wall -Wextra -Wconversion -Werror -ffp-contract=off)
 
 # Folder, samples, design, and what else is asked for.
-written() { target/release/fspid export "$3" --controller FSPID --to c --samples "$2" --out "$work/$1" "${@:4}" > /dev/null; }
+written() { "$FSPID" export "$3" --controller FSPID --to c --samples "$2" --out "$work/$1" "${@:4}" > /dev/null; }
 
 # Lane and what it printed; ends where a bit differs.
 same() {

@@ -12,7 +12,7 @@ needs clang clang
 needs arm-none-eabi-gcc gcc-arm-none-eabi libnewlib-arm-none-eabi
 needs qemu-system-arm qemu-system-arm
 
-cargo build --release --quiet
+program
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 failed=0
@@ -21,7 +21,7 @@ wrong() { echo "WRONG: $*"; failed=1; }
 for design in data/designs/navion-paper.toml data/designs/learned/light.toml data/designs/learned/transport.toml; do
     name="$(basename "$design" .toml)"
     for again in first second; do
-        target/release/fspid export "$design" --controller FSPID --to c --out "$work/$name-$again-code" \
+        "$FSPID" export "$design" --controller FSPID --to c --out "$work/$name-$again-code" \
             --evidence "$work/$name-$again" > /dev/null 2>&1
     done
     diff -r "$work/$name-first" "$work/$name-second" > /dev/null || wrong "$name: other bytes a second time"

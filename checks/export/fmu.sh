@@ -8,8 +8,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-fspid="${FSPID:-target/release/fspid}"
-if [ -z "${FSPID:-}" ]; then cargo build --release --quiet -p fspid-cli; fi
+. checks/export/tools.sh
+program
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 python3 -m venv "$work/python"
@@ -23,8 +23,8 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
     for version in 2 3; do
         for numbers in double single; do
             out="$work/$name-$version-$numbers"
-            "$fspid" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out" > "$out.told" 2>&1
-            "$fspid" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out.again" > "$out.told" 2>&1
+            "$FSPID" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out" > "$out.told" 2>&1
+            "$FSPID" export "$design" --controller FSPID --to "fmu$version" --numbers "$numbers" --out "$out.again" > "$out.told" 2>&1
             cmp "$out/fspid.fmu" "$out.again/fspid.fmu"
             python checks/export/fmu.py "$out/fspid.fmu" "$out/vectors.csv" "$numbers" > "$out.log" 2>&1 || { failed=1; cat "$out.log"; }
             echo "$name, $numbers: $(grep "^FMI" "$out.log" || echo "no answer")"
@@ -33,7 +33,7 @@ for design in data/designs/navion-paper.toml data/designs/learned/light.toml dat
 done
 
 # Without a compiler there are sources, and a note.
-CC="$work/no-compiler" "$fspid" export data/designs/learned/light.toml --controller FSPID --to fmu3 --out "$work/sources" > "$work/told" 2>&1
+CC="$work/no-compiler" "$FSPID" export data/designs/learned/light.toml --controller FSPID --to fmu3 --out "$work/sources" > "$work/told" 2>&1
 grep "sources only" "$work/told"
 echo "sources only: $(stat -c %s "$work/sources/fspid.fmu") bytes"
 

@@ -7,10 +7,7 @@ cd "$(dirname "$0")/../.."
 . checks/export/tools.sh
 needs octave octave octave-dev || exit 0
 needs mkoctfile octave-dev || exit 0
-if [[ -z "${FSPID:-}" ]]; then
-    cargo build --release --quiet
-    FSPID=target/release/fspid
-fi
+program
 stubs="$PWD/checks/export/stubs/matlab"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT

@@ -4,10 +4,8 @@
 # it the last part is left out and said so.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-if [[ -z "${FSPID:-}" ]]; then
-    cargo build --release --quiet
-    FSPID=target/release/fspid
-fi
+. checks/export/tools.sh
+program
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 export CARGO_TARGET_DIR="$PWD/target/export-rust"

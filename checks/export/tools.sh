@@ -10,3 +10,10 @@ needs() {
         return 1
     fi
 }
+
+# The program that exports: the one that FSPID names, else a release build.
+program() {
+    [[ -z "${FSPID:-}" ]] || return 0
+    cargo build --release --quiet -p fspid-cli
+    FSPID="$PWD/target/release/fspid"
+}

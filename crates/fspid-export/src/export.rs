@@ -1,5 +1,8 @@
 //! The files of an export.
 
+use std::panic::resume_unwind;
+use std::thread;
+
 use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
@@ -129,12 +132,18 @@ fn exported<R: Real>(
 
 /// The files of the target, and the vectors.
 pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result<Written, Refusal> {
-    let mut written = target.files(source)?;
     // A table is no controller.
-    if target != Target::Table {
-        written.files.push(File::text("vectors.csv", write::csv(source.program, source.vectors)));
+    if target == Target::Table {
+        return target.files(source);
     }
-    Ok(written)
+    // The digits of a hundred thousand numbers take as long as all else.
+    thread::scope(|scope| {
+        let csv = scope.spawn(|| write::csv(source.program, source.vectors));
+        let mut written = target.files(source)?;
+        let csv = csv.join().unwrap_or_else(|panic| resume_unwind(panic));
+        written.files.push(File::text("vectors.csv", csv));
+        Ok(written)
+    })
 }
 
 /// That a name is another one in the code, if it is.

@@ -122,18 +122,13 @@ pub fn eventful<R: Real>(
 }
 
 fn flown<R: Real>(mut flight: Flight<'_, R>, seed: u64) -> Vec<Vector<R>> {
-    directed::fly(&mut flight);
+    let count = flight.count;
     // Few samples are no reason to draw none.
-    flight.vectors.truncate(flight.count - flight.count / 4);
-    let (controller, angles, count) = (flight.controller, flight.angles, flight.count);
-    let mut again = Flight::new(controller, angles, flight.has_events, count);
-    for vector in &flight.vectors {
-        if let [setpoint, measurement, rate] = *vector.sample {
-            again.again(vector.event, [setpoint, measurement, rate]);
-        }
-    }
-    drawn::fly(&mut again, seed);
-    again.vectors
+    flight.count = count - count / 4;
+    directed::fly(&mut flight);
+    flight.count = count;
+    drawn::fly(&mut flight, seed);
+    flight.vectors
 }
 
 /// A controller and what it has answered.
@@ -148,7 +143,8 @@ struct Flight<'a, R> {
 
 impl<'a, R: Real> Flight<'a, R> {
     fn new(controller: &'a Controller<R>, angles: Angles, has_events: bool, count: usize) -> Self {
-        Self { controller, angles, has_events, count, state: State::new(), vectors: Vec::new() }
+        let vectors = Vec::with_capacity(count);
+        Self { controller, angles, has_events, count, state: State::new(), vectors }
     }
 
     fn is_full(&self) -> bool {

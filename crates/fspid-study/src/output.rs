@@ -1,8 +1,11 @@
 //! Files that are either the old ones or the new ones, never halves.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 /// A file or folder that could not be written. Nothing at the path has changed.
 #[derive(Debug, thiserror::Error)]
@@ -35,11 +38,36 @@ pub fn in_words(reason: &io::Error) -> String {
 /// # Errors
 /// [`OutputError`] with the path; an existing file is then as it was.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
-    write_by(path, |file| {
-        file.write_all(contents.as_ref())
-            .map_err(|reason| OutputError { path: path.to_owned(), reason })
-    })
+    write_by(path, |file| file.write_all(contents.as_ref()).map_err(|reason| failed(path, reason)))
 }
+
+/// Writes many files, none of them under its name before all are whole: where one cannot be written, no file has changed.
+/// Several are flushed to the disk at a time, which is what takes the time.
+///
+/// # Errors
+/// [`OutputError`] with the path of the first that could not be written.
+pub fn write_all(files: &[(PathBuf, &[u8])]) -> Result<(), OutputError> {
+    let begin = |(path, contents): &(PathBuf, &[u8])| {
+        let write = |file: &mut BufWriter<&File>| file.write_all(contents);
+        begun(path, |file| write(file).map_err(|reason| failed(path, reason)))
+    };
+    let begin_each = |part: &[_]| part.iter().map(begin).collect::<Result<Vec<_>, OutputError>>();
+    let share = files.len().div_ceil(AT_A_TIME).max(1);
+    let whole: Result<Vec<_>, _> = thread::scope(|scope| {
+        let parts: Vec<_> =
+            files.chunks(share).map(|part| scope.spawn(move || begin_each(part))).collect();
+        let joined = parts.into_iter().map(thread::ScopedJoinHandle::join);
+        joined.map(|part| part.unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    });
+    let whole: Vec<Whole> = whole?.into_iter().flatten().filter_map(|((), whole)| whole).collect();
+    let folders: BTreeSet<PathBuf> = whole.iter().map(|it| it.folder().to_owned()).collect();
+    whole.into_iter().try_for_each(Whole::persist)?;
+    folders.iter().for_each(|folder| flush(folder));
+    Ok(())
+}
+
+/// How many files are flushed at a time.
+const AT_A_TIME: usize = 4;
 
 /// As [`write()`], of what a function writes piece by piece. Nothing there is changed where it fails.
 ///
@@ -49,29 +77,72 @@ pub fn write_by<T, E: From<OutputError>>(
     path: &Path,
     contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, E>,
 ) -> Result<T, E> {
-    let failed = |reason| OutputError { path: path.to_owned(), reason };
-    if path == Path::new("-") {
-        return filled(&standard_output().map_err(failed)?, contents, failed);
+    let (answer, whole) = begun(path, contents)?;
+    if let Some(whole) = whole {
+        let folder = whole.folder().to_owned();
+        whole.persist()?;
+        flush(&folder);
     }
-    let folder = match path.parent() {
+    Ok(answer)
+}
+
+/// A new file beside its place, on the disk.
+struct Whole {
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+}
+
+impl Whole {
+    fn folder(&self) -> &Path {
+        folder_of(&self.path)
+    }
+
+    /// Puts it at its place.
+    fn persist(self) -> Result<(), OutputError> {
+        let Self { file, path } = self;
+        file.persist(&path).map_err(|error| failed(&path, error.error))?;
+        Ok(())
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
+    }
+}
+
+/// Flushes the names in a folder; not every file system knows how, and the files are safe without.
+fn flush(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+fn failed(path: &Path, reason: io::Error) -> OutputError {
+    OutputError { path: path.to_owned(), reason }
+}
+
+/// Writes what is to stand at the path: into a new file beside it, or into what is there if that is no file.
+fn begun<T, E: From<OutputError>>(
+    path: &Path,
+    contents: impl FnOnce(&mut BufWriter<&File>) -> Result<T, E>,
+) -> Result<(T, Option<Whole>), E> {
+    let failed = |reason| failed(path, reason);
+    if path == Path::new("-") {
+        let answer = filled(&standard_output().map_err(failed)?, contents, failed)?;
+        return Ok((answer, None));
+    }
     if path.is_dir() {
         return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")).into());
     }
     // A device or pipe is written as it is: it has nothing that could be lost.
     if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
         let file = File::options().write(true).open(path).map_err(failed)?;
-        return filled(&file, contents, failed);
+        return Ok((filled(&file, contents, failed)?, None));
     }
-    let file = new_file_in(folder).map_err(failed)?;
+    let file = new_file_in(folder_of(path)).map_err(failed)?;
     let answer = filled(file.as_file(), contents, failed)?;
     file.as_file().sync_all().map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    // The rename itself; not every file system knows how, and the file is safe without.
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(answer)
+    Ok((answer, Some(Whole { file, path: path.to_owned() })))
 }
 
 fn filled<T, E: From<OutputError>>(
@@ -128,6 +199,13 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|reason| OutputError { path: path.to_owned(), reason })
 }
 
+/// A name that every file system takes.
+#[must_use]
+pub fn file_name(name: &str) -> String {
+    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,6 +233,22 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         assert!(write(folder.path(), "x").is_err());
         assert!(folder.path().is_dir());
+    }
+
+    #[test]
+    fn of_many_files_none_changes_where_one_cannot_be_written() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths: Vec<PathBuf> = (0..9).map(|k| folder.path().join(k.to_string())).collect();
+        let files = |text: &'static [u8]| paths.iter().map(|it| (it.clone(), text)).collect();
+        let mut files: [Vec<(PathBuf, &[u8])>; 2] = [files(b"old"), files(b"new")];
+        write_all(&files[0]).expect("written");
+        files[1].push((folder.path().join("missing/a.txt"), b"new"));
+        let message = write_all(&files[1]).expect_err("no folder").to_string();
+        assert!(message.contains("missing"), "{message}");
+        for path in &paths {
+            assert_eq!(fs::read(path).expect("read"), b"old");
+        }
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), paths.len());
     }
 
     #[cfg(target_os = "linux")]

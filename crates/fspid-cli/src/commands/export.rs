@@ -227,12 +227,13 @@ fn evidence(arguments: &Arguments) -> Result<Option<&Path>, Failure> {
 }
 
 fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
-    for file in files {
-        let path = folder.join(&file.name);
+    let mut placed = Vec::new();
+    for File { name, bytes } in files {
+        let path = folder.join(name);
         output::make_folder(path.parent().unwrap_or(folder))?;
-        output::write(&path, &file.bytes)?;
+        placed.push((path, bytes.as_slice()));
     }
-    Ok(())
+    Ok(output::write_all(&placed)?)
 }
 
 fn told(files: &[File], folder: &Path) -> String {

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::Page;
+use super::{Page, put};
 use crate::program::{Part, Precision, Program};
 use crate::vectors::Vector;
 
@@ -25,12 +25,15 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
     page.line("/* Sample, of a controller what is given with the event, answer. */");
     let columns = inputs + usize::from(steps) + reals.len();
     page.line(&format!("static const {bits} vectors[{count}][{columns}] = {{"));
+    // A number has up to 13 or 22 characters.
+    page.text.reserve(count * columns * if is_single { 13 } else { 22 });
     page.inside(|page| {
         for vector in vectors {
             let given = steps.then(|| vector.event.given());
             let values = vector.sample.iter().chain(&given).chain(&vector.answer);
-            let values: Vec<String> = values.map(|value| hex(*value, is_single)).collect();
-            page.line(&format!("{{ {} }},", values.join(", ")));
+            page.row(["{ ", " },"], |text| {
+                put::list(text, ", ", values, |text, value| put_hex(text, *value, is_single));
+            });
         }
     });
     page.line("};");
@@ -40,8 +43,9 @@ pub fn c_harness<R: Real>(program: &Program, prefix: &str, vectors: &[Vector<R>]
         for vector in vectors {
             let event = vector.event.number();
             let marks = vector.marks.iter().chain([&event]);
-            let values: Vec<String> = marks.map(|mark| format!("{mark}U")).collect();
-            page.line(&format!("{{ {} }},", values.join(", ")));
+            page.row(["{ ", "U },"], |text| {
+                put::list(text, "U, ", marks, |text, mark| put::byte(text, *mark));
+            });
         }
     });
     page.line("};");
@@ -163,11 +167,12 @@ fn events(page: &mut Page, program: &Program, prefix: &str) {
 
 /// The bits of a number.
 pub(super) fn hex<R: Real>(value: R, is_single: bool) -> String {
-    #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
-    let single = value.to_f64() as f32;
-    if is_single {
-        format!("{:#x}U", single.to_bits())
-    } else {
-        format!("{:#x}ULL", value.to_f64().to_bits())
-    }
+    let mut text = String::new();
+    put_hex(&mut text, value, is_single);
+    text
+}
+
+fn put_hex<R: Real>(text: &mut String, value: R, is_single: bool) {
+    put::bits(text, value.to_f64(), is_single);
+    text.push_str(if is_single { "U" } else { "ULL" });
 }

@@ -12,6 +12,7 @@ pub(crate) mod fmu;
 mod heading;
 mod lua;
 mod matlab;
+mod put;
 mod rust;
 mod rust_harness;
 mod rust_rules;
@@ -49,9 +50,18 @@ struct Page {
 impl Page {
     fn line(&mut self, line: &str) {
         if !line.is_empty() {
-            self.text.push_str(&"    ".repeat(self.depth));
-            self.text.push_str(line);
+            self.row(["", ""], |text| text.push_str(line));
+        } else {
+            self.text.push('\n');
         }
+    }
+
+    /// A line of what a function writes between a beginning and an end.
+    fn row(&mut self, [begin, end]: [&str; 2], write: impl FnOnce(&mut String)) {
+        (0..self.depth).for_each(|_| self.text.push_str("    "));
+        self.text.push_str(begin);
+        write(&mut self.text);
+        self.text.push_str(end);
         self.text.push('\n');
     }
 
@@ -79,10 +89,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 /// A real as the shortest decimal number that reads back as itself, with a point and perhaps an exponent.
 fn decimal(value: f64, is_single: bool) -> String {
-    #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
-    let text = if is_single { format!("{:?}", value as f32) } else { format!("{value:?}") };
-    match text.split_once('e') {
-        Some((digits, exponent)) if !digits.contains('.') => format!("{digits}.0e{exponent}"),
-        _ => text,
-    }
+    let mut text = String::new();
+    put::decimal(&mut text, value, is_single);
+    text
 }

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::Page;
+use super::{Page, put};
 use crate::compose::Angles;
 use crate::program::Precision;
 use crate::vectors::Vector;
@@ -48,24 +48,16 @@ pub fn rust_harness<R: Real>(
     page.line(&format!("static VECTORS: [([{bits}; 7], [u8; 2]); {}] = [", vectors.len()));
     page.inside(|page| {
         for Vector { sample, answer, marks, .. } in vectors {
-            let values: Vec<String> =
-                sample.iter().chain(answer).map(|value| hex(*value, is_single)).collect();
-            let marks: Vec<String> = marks.iter().map(u8::to_string).collect();
-            page.line(&format!("([{}], [{}]),", values.join(", "), marks.join(", ")));
+            let values = sample.iter().chain(answer).map(|value| value.to_f64());
+            page.row(["([", "]),"], |text| {
+                put::list(text, ", ", values, |text, value| put::bits(text, value, is_single));
+                text.push_str("], [");
+                put::list(text, ", ", marks, |text, mark| put::byte(text, *mark));
+            });
         }
     });
     page.line("];");
     page.text
-}
-
-fn hex<R: Real>(value: R, is_single: bool) -> String {
-    #[allow(clippy::cast_possible_truncation, reason = "numbers of a single program are singles")]
-    let single = value.to_f64() as f32;
-    if is_single {
-        format!("{:#x}", single.to_bits())
-    } else {
-        format!("{:#x}", value.to_f64().to_bits())
-    }
 }
 
 const PROGRAM: &str = "\

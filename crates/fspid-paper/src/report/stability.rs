@@ -92,7 +92,12 @@ fn verdict(certified: &Certified) -> (&'static str, &'static str, String) {
         }
         Verdict::Refuted(certificate, rechecked) => {
             let bearing = certificate.bearing(rechecked);
-            ("unmet", refuted(bearing), format!("{}; {bearing}", why(&certificate.claim)))
+            let why = match bearing {
+                // What that says and what not stands once, above the tables.
+                Bearing::GrowsStandingStill => why(&certificate.claim),
+                bearing => format!("{}; {bearing}", why(&certificate.claim)),
+            };
+            ("unmet", refuted(bearing), why)
         }
         Verdict::Open => ("absent", "? open", open(outcome)),
     }

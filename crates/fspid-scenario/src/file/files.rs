@@ -53,6 +53,8 @@ pub(crate) struct Files<'a> {
     changes: Vec<(Change, bool)>,
     /// What files say that were changed, before the changes, by the path of the key that names them.
     written: Vec<(String, Item)>,
+    /// Files that were read, as the scenario names them, each once.
+    names: Vec<String>,
     /// What was read, by the path of the key that names it; kept if asked for.
     documents: Option<Vec<(String, Item)>>,
 }
@@ -68,6 +70,7 @@ impl<'a> Files<'a> {
             filled: Vec::new(),
             changes: Vec::new(),
             written: Vec::new(),
+            names: Vec::new(),
             documents: None,
         }
     }
@@ -153,6 +156,17 @@ impl<'a> Files<'a> {
         self.digest_bytes(text.as_bytes());
     }
 
+    fn name(&mut self, path: &str) {
+        if !self.names.iter().any(|name| name == path) {
+            self.names.push(path.to_owned());
+        }
+    }
+
+    /// Files that were read, as the scenario names them.
+    pub(crate) fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// The digest in hexadecimal digits.
     pub(crate) fn finish(self) -> String {
         let bytes = self.hasher.finalize();
@@ -168,6 +182,7 @@ impl<'a> Files<'a> {
     /// Where a program lies that is referred to, from the root, and its bytes; what it is goes into the digest.
     pub(crate) fn program(&mut self, path: &str) -> Result<(PathBuf, Arc<[u8]>), String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
+        self.name(path);
         let (path, bytes) = self.kept.read(folder.join(path), read_program)?;
         self.digest_bytes(&bytes);
         Ok((path, bytes))
@@ -176,6 +191,7 @@ impl<'a> Files<'a> {
     /// The text of a file that is referred to.
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
+        self.name(path);
         let (_, bytes) = self.kept.read(folder.join(path), read_regular)?;
         String::from_utf8(bytes.to_vec()).map_err(|error| {
             let position = error.utf8_error().valid_up_to();

@@ -258,4 +258,24 @@ mod tests {
         let problems = template().with(&[(&name, NewValue::Number(1.0))]).expect_err("no file");
         assert!(problems.to_string().contains("has no `x` in it"), "{problems}");
     }
+
+    #[test]
+    fn a_file_that_changes_meanwhile_changes_no_scenario_that_is_built_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let program = folder.path().join("own.so");
+        std::fs::write(&program, "as it was hashed").expect("a file");
+        let external =
+            "\n[[controller]]\nname = \"own\"\nkind = \"external\"\nlibrary = \"own.so\"\n";
+        let (text, extra) = (format!("{SCENARIO}{external}"), Extra::default());
+        let template = Template::parse(&text, "step.toml", Some(folder.path()), &extra);
+        let template = template.expect("a scenario");
+        for change in [Some("another"), None] {
+            match change {
+                Some(bytes) => std::fs::write(&program, bytes).expect("a file"),
+                None => std::fs::remove_file(&program).expect("it was there"),
+            }
+            let again = template.with(&[]).expect("the same scenario");
+            assert_eq!(again.scenario, template.study().scenario);
+        }
+    }
 }
