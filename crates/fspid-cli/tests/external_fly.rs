@@ -159,7 +159,7 @@ fn a_reset_starts_a_lost_controller_anew() {
     assert_eq!(answers[..5], answers[6..]);
     let errors = text(&output.stderr);
     assert_eq!(errors.matches("crashed with SIGABRT at t = 0.03 s").count(), 2, "{errors}");
-    assert!(errors.contains("\"controller_lost\":2,"), "{errors}");
+    assert!(errors.contains("\"controller_lost\":2}"), "{errors}");
 }
 
 #[test]

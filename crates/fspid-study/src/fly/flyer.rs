@@ -110,12 +110,11 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// A sample that is not finite is kept from it: guards are ours, and one that has none would answer NaN for ever.
-    /// An export has guards that hold the same command.
+    /// Angles that are not finite are kept from it: guards are ours, and one that has none would answer NaN for ever. An
+    /// export has guards that hold the same command. A rate is not, for who does not use it goes on.
     fn step(&mut self, sample: Sample<f64>) -> Stepped {
-        let Sample { setpoint_rad, measurement_rad, rate_rad_s } = sample;
         let held = |command_rad, fault, loss| Stepped { command_rad, fault, loss };
-        if ![setpoint_rad, measurement_rad, rate_rad_s].iter().all(|value| value.is_finite()) {
+        if !(sample.setpoint_rad.is_finite() && sample.measurement_rad.is_finite()) {
             return held(self.command_rad, Faults::NOT_FINITE, None);
         }
         let Some(answers) = &mut self.answers else {
@@ -123,7 +122,12 @@ impl Asked {
         };
         match answers.answer(sample) {
             Ok(step) => {
-                let fault = step.faults.without(self.latched);
+                // Only a rate can have latched that, and does so each time.
+                let before = match sample.rate_rad_s.is_finite() {
+                    true => self.latched,
+                    false => self.latched.without(Faults::NOT_FINITE),
+                };
+                let fault = step.faults.without(before);
                 self.command_rad = step.command_rad;
                 self.latched = step.faults;
                 Stepped { command_rad: step.command_rad, fault, loss: None }

@@ -159,7 +159,10 @@ impl Pilot {
             self.log.held(&fault.to_string());
             return answer;
         }
-        self.rate.remember(measurement_rad, rate_rad_s);
+        // One that is not finite was not used.
+        let known = rate_rad_s.is_finite();
+        let remembered = if known { rate_rad_s } else { self.rate.estimate_rad_s(measurement_rad) };
+        self.rate.remember(measurement_rad, remembered);
         if !fault.is_empty() {
             self.log.fault(fault);
         }
