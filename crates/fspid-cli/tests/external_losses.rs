@@ -239,7 +239,7 @@ fn folders_of_fmus_go_with_the_program_however_that_ends() {
     let is_unpacked =
         || folders().any(|it| std::fs::read_dir(it.path()).is_ok_and(|within| within.count() > 0));
     let run = ["campaign", "run", "s.toml", "--runs", "100000", "--threads", "1", "--quiet"];
-    let run = [&run[..], &["--fmu", "f/fspid.fmu"]].concat();
+    let run = [&run[..], &["--fmu", "f/fspid.fmu", "--out", "c"]].concat();
     let mut child = Command::new(env!("CARGO_BIN_EXE_fspid"))
         .args(run)
         .current_dir(folder.path())

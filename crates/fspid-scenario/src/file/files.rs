@@ -16,18 +16,20 @@ use fspid_diagnostics::Report;
 /// Why a file cannot be referred to.
 const NO_FOLDER: &str = "this scenario is not in a folder, so it cannot refer to files";
 
-/// What was read, and where it lies, by its path. A scenario that is built again and again is built of the same bytes,
+/// Where a file lies, from the root, and what is in it.
+type Found = (PathBuf, Arc<[u8]>);
+
+/// What was read, by its path. A scenario that is built again and again is built of the same bytes,
 /// whatever became of its files meanwhile: those that its digest is of.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Kept(Arc<Mutex<BTreeMap<PathBuf, (PathBuf, Arc<[u8]>)>>>);
+pub(crate) struct Kept(Arc<Mutex<BTreeMap<PathBuf, Found>>>);
 
 impl Kept {
-    /// Where a file lies, from the root, and what is in it.
     fn read(
         &self,
         path: PathBuf,
         read: fn(&Path) -> Result<Vec<u8>, String>,
-    ) -> Result<(PathBuf, Arc<[u8]>), String> {
+    ) -> Result<Found, String> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = kept.get(&path) {
             return Ok(found.clone());
@@ -180,7 +182,7 @@ impl<'a> Files<'a> {
     }
 
     /// Where a program lies that is referred to, from the root, and its bytes; what it is goes into the digest.
-    pub(crate) fn program(&mut self, path: &str) -> Result<(PathBuf, Arc<[u8]>), String> {
+    pub(crate) fn program(&mut self, path: &str) -> Result<Found, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
         self.name(path);
         let (path, bytes) = self.kept.read(folder.join(path), read_program)?;
