@@ -10,6 +10,8 @@ mod equations;
 mod every_command;
 mod external;
 mod external_fly;
+#[cfg(unix)]
+mod external_losses;
 mod fly;
 mod foreign_fmu;
 mod fuzzy_system;
