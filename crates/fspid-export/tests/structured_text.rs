@@ -65,11 +65,8 @@ fn different<R: Real>(
         block.set("clear_faults", is(vector.event == Event::Faults))?;
         block.set("track", is(matches!(vector.event, Event::Track(_))))?;
         block.set(&format!("track_{}", text.command), real(vector.event.given()))?;
-        match vector.event {
-            Event::Memory(_, value) => {
-                write(block, &format!("state_{}", vector.event.name()), value)?;
-            }
-            _ => {}
+        if let Event::Memory(_, value) = vector.event {
+            write(block, &format!("state_{}", vector.event.name()), value)?;
         }
         for (name, value) in text.inputs.iter().zip(&vector.sample) {
             // A sample that is no number is what a controller is told to hold by.
