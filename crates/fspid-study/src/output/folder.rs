@@ -101,7 +101,8 @@ impl Moved {
         }
         let failed = |reason| failed(place, reason);
         if place.symlink_metadata().is_ok() {
-            let away = away.join(self.0.len().to_string());
+            let name = place.file_name().unwrap_or_default().to_string_lossy();
+            let away = away.join(format!("{}-{name}", self.0.len()));
             // With a second name for the old file its place is never empty; not every file system has one.
             let named = fs::hard_link(place, &away).or_else(|_| fs::rename(place, &away));
             named.map_err(failed)?;
@@ -115,7 +116,12 @@ impl Moved {
 
 impl Drop for Moved {
     fn drop(&mut self) {
-        self.0.iter().rev().for_each(|[from, to]| drop(fs::rename(to, from)));
+        for [from, to] in self.0.iter().rev() {
+            // Of two names of one file both stay.
+            if fs::rename(to, from).is_ok() {
+                let _ = fs::remove_file(to);
+            }
+        }
     }
 }
 

@@ -51,8 +51,8 @@ fn whole(path: &Path) -> PathBuf {
     )
 }
 
-/// Bytes of a file's name on the file systems of today (`NAME_MAX` of Linux).
-const LONGEST: usize = 255;
+/// Bytes of a file's name: `NAME_MAX` of Linux is 255, and a number stands in front while files are exchanged.
+const LONGEST: usize = 240;
 
 /// Writes all files, or none.
 pub(super) fn write(arguments: &Arguments, exported: &Export) -> Result<(), Failure> {
